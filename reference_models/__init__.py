@@ -1,0 +1,1 @@
+"""Models with their sources, as data."""

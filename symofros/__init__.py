@@ -1,0 +1,64 @@
+"""SYMOFROS: describe a mechanism, get its equations of motion as fast C code that is proved right.
+
+    import symofros as sf
+
+    system = sf.load("arm.yaml")           # native YAML or URDF
+    model = sf.compile(system)             # symbolic equations -> C -> callable
+    M = model.mass_matrix(model.neutral())
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from symofros.description.system import Frame as Frame
+from symofros.description.system import Inertia as Inertia
+from symofros.description.system import Input as Input
+from symofros.description.system import Joint as Joint
+from symofros.description.system import Limits as Limits
+from symofros.description.system import Parameter as Parameter
+from symofros.description.system import RigidBody as RigidBody
+from symofros.description.system import System as System
+from symofros.description.values import Rotation as Rotation
+from symofros.errors import CompileError as CompileError
+from symofros.errors import CompilerMissingWarning as CompilerMissingWarning
+from symofros.errors import DescriptionError as DescriptionError
+from symofros.errors import Problem as Problem
+from symofros.errors import ShapeError as ShapeError
+from symofros.errors import SymofrosError as SymofrosError
+from symofros.errors import UnknownNameError as UnknownNameError
+from symofros.expr.expression import Expression as Expression
+from symofros.expr.expression import evaluate as evaluate
+from symofros.options import Options as Options
+
+if TYPE_CHECKING:
+    from symofros.compiler import compile_system as compile
+    from symofros.description.load import load as load
+    from symofros.description.load import save as save
+    from symofros.runtime.model import Model as Model
+
+__version__ = "0.1.0"
+
+# Loaded at first use: reading files needs pydantic and ruamel.yaml, compiling needs cffi; importing needs neither.
+_LAZY = {
+    "compile": ("symofros.compiler", "compile_system"),
+    "load": ("symofros.description.load", "load"),
+    "save": ("symofros.description.load", "save"),
+    "Model": ("symofros.runtime.model", "Model"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name at its first use."""
+    if name not in _LAZY:
+        raise AttributeError(f"module 'symofros' has no attribute '{name}'")
+    module, attribute = _LAZY[name]
+    value = getattr(import_module(module), attribute)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """The public names, those not loaded yet included."""
+    return sorted({*globals(), *_LAZY})

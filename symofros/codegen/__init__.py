@@ -1,0 +1,1 @@
+"""Program -> C text. Knows no mechanics."""

@@ -1,0 +1,184 @@
+"""Formula text -> Expression, by a whitelist: a model file is untrusted input.
+
+The grammar (powers bind tightest and to the right, a minus sign less tightly than a power):
+
+    sum     = product (("+" | "-") product)*
+    product = unary (("*" | "/") unary)*
+    unary   = ("-" | "+") unary | power
+    power   = atom (("^" | "**") unary)?
+    atom    = number | name | function "(" sum ("," sum)* ")" | "(" sum ")"
+
+Nothing is ever evaluated, looked up or imported; length, depth and size of numbers are bounded.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from symofros.errors import Problem, SymofrosError, did_you_mean
+from symofros.expr.expression import Expression
+from symofros.expr.ops import FUNCTIONS
+
+MAX_LENGTH = 10_000
+MAX_DEPTH = 100
+
+_TOKEN = re.compile(
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z_.]))"
+    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*(?:\[\d{1,6}\])?)"
+    r"|(?P<sign>\*\*|[-+*/^(),]))"
+)
+_DUNDER = re.compile(r"(?:^|\.)__|__(?:$|\.)")
+
+
+class ExpressionError(SymofrosError, ValueError):
+    """A text that is not a formula; says where and why."""
+
+    def __init__(self, text: str, reason: str, position: int, remedy: str = "") -> None:
+        self.text, self.reason, self.position, self.remedy = text, reason, position, remedy
+        super().__init__(f"{reason} at character {position + 1} of '{self.excerpt}'")
+
+    @property
+    def excerpt(self) -> str:
+        """The text around the fault, at most 60 characters."""
+        start = max(0, self.position - 30)
+        cut = self.text[start : start + 60]
+        return ("…" if start else "") + cut + ("…" if start + 60 < len(self.text) else "")
+
+    def problem(self, what: str, where: str = "") -> Problem:
+        """The same fault as a Problem of the named object."""
+        return Problem(
+            f"{what}: {self.reason}",
+            f"'{self.excerpt}' (character {self.position + 1})",
+            "a formula holds numbers, names, + - * / ^, parentheses and the functions " + ", ".join(sorted(FUNCTIONS)),
+            self.remedy,
+            where,
+        )
+
+
+@dataclass
+class _Reader:
+    text: str
+    tokens: list[tuple[str, str, int]]
+    at: int = 0
+    depth: int = 0
+
+    @property
+    def token(self) -> tuple[str, str, int]:
+        return self.tokens[self.at]
+
+    def fail(self, reason: str, remedy: str = "") -> ExpressionError:
+        return ExpressionError(self.text, reason, self.token[2], remedy)
+
+    def take(self, *signs: str) -> str:
+        """The next sign if it is one of these, consumed; "" otherwise."""
+        kind, text, _ = self.token
+        if kind == "sign" and text in signs:
+            self.at += 1
+            return text
+        return ""
+
+    def sum(self) -> Expression:
+        left = self.product()
+        while sign := self.take("+", "-"):
+            left = Expression("add" if sign == "+" else "sub", (left, self.product()))
+        return left
+
+    def product(self) -> Expression:
+        left = self.unary()
+        while sign := self.take("*", "/"):
+            left = Expression("mul" if sign == "*" else "div", (left, self.unary()))
+        return left
+
+    def unary(self) -> Expression:
+        # Every nested construct passes here, so this is where depth is counted.
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise self.fail(f"nested deeper than {MAX_DEPTH}", "split it with named parameters")
+        try:
+            sign = self.take("-", "+")
+            if not sign:
+                return self.power()
+            operand = self.unary()
+            if sign == "+":
+                return operand
+            if operand.kind == "number":
+                return Expression("number", number=-operand.number)
+            return Expression("neg", (operand,))
+        finally:
+            self.depth -= 1
+
+    def power(self) -> Expression:
+        base = self.atom()
+        if self.take("^", "**"):
+            return Expression("pow", (base, self.unary()))
+        return base
+
+    def atom(self) -> Expression:
+        kind, text, _ = self.token
+        if kind == "number":
+            number = float(text)
+            if not math.isfinite(number):
+                raise self.fail("number too large for a double")
+            self.at += 1
+            return Expression("number", number=number)
+        if kind == "name":
+            self.at += 1
+            if self.token[:2] == ("sign", "("):
+                self.at -= 1
+                return self.call(text)
+            if text in FUNCTIONS:
+                raise self.fail(f"function '{text}' without its arguments", f"write {text}(…)")
+            return Expression("symbol", name=text)
+        if self.take("("):
+            inner = self.sum()
+            if not self.take(")"):
+                raise self.fail("')' expected")
+            return inner
+        raise self.fail("formula ends too early" if kind == "end" else f"'{text}' unexpected")
+
+    def call(self, name: str) -> Expression:
+        op = FUNCTIONS.get(name)
+        if op is None:
+            raise self.fail(f"'{name}' is not a function that formulas may call", did_you_mean(name, FUNCTIONS))
+        self.at += 2
+        args = [self.sum()]
+        while self.take(","):
+            args.append(self.sum())
+        if not self.take(")"):
+            raise self.fail("')' expected")
+        if len(args) != op.arity:
+            raise self.fail(f"{name} takes {op.arity} argument{'s' * (op.arity > 1)}, {len(args)} given")
+        return Expression(name, tuple(args))
+
+
+def parse(text: str) -> Expression:
+    """Read a formula.
+
+    Args:
+        text: Such as "L1/2 + 0.1*cos(q1)".
+
+    Raises:
+        ExpressionError: Anything outside the grammar, too long, or too deep.
+    """
+    if len(text) > MAX_LENGTH:
+        raise ExpressionError(text, f"longer than {MAX_LENGTH} characters", MAX_LENGTH, "split it with parameters")
+    tokens: list[tuple[str, str, int]] = []
+    at, end = 0, len(text.rstrip())
+    while at < end:
+        match = _TOKEN.match(text, at)
+        if match is None or match.lastgroup is None:
+            at += len(text[at:]) - len(text[at:].lstrip())
+            raise ExpressionError(text, f"{text[at]!r} is not allowed in a formula", at)
+        kind, found, start = match.lastgroup, match.group(match.lastgroup), match.start(match.lastgroup)
+        if kind == "name" and _DUNDER.search(found):
+            raise ExpressionError(text, f"'{found}' is not a legal name", start)
+        tokens.append((kind, found, start))
+        at = match.end()
+    tokens.append(("end", "", end))
+    reader = _Reader(text, tokens)
+    expression = reader.sum()
+    if reader.token[0] != "end":
+        raise reader.fail(f"'{reader.token[1]}' unexpected", "write products with '*'")
+    return expression

@@ -1,0 +1,272 @@
+"""The nouns of a description: System, RigidBody, Joint, Frame, Inertia, Parameter, Input. No computation.
+
+Each is a frozen dataclass; numbers may be floats, formulas ("L1/2") or SymPy expressions. That a description makes
+sense as a whole (names exist, the tree is connected, inertias are physical) is checked by `topology`, all at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Any, Literal
+
+from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
+from symofros.errors import DescriptionError, Problem, did_you_mean
+
+JointKind = Literal["fixed", "revolute", "continuous", "prismatic", "ball", "free"]
+JOINT_KINDS: tuple[JointKind, ...] = ("fixed", "revolute", "continuous", "prismatic", "ball", "free")
+WORLD = "world"
+
+# The checks a body may waive, each with what it lets pass.
+WAIVERS: dict[str, str] = {
+    "nonphysical_inertia": "an inertia that no distribution of mass can have",
+    "massless_tip": "a joint that moves no mass, so that the mass matrix is singular",
+}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A named number: given at run time, or hard-coded in the C code if constant.
+
+    Attributes:
+        name: An identifier, used in formulas.
+        value: Its (default) value.
+        unit: For people, such as "kg m^2".
+        constant: Hard-coded rather than given at run time.
+        description: For people.
+    """
+
+    name: str
+    value: float
+    unit: str = ""
+    constant: bool = False
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class Input:
+    """A named input u, used in formulas of efforts and forces."""
+
+    name: str
+    unit: str = ""
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """An extremity frame E fixed on a body B.
+
+    Attributes:
+        name: Unique on its body.
+        position: p_BE, from Bo to Eo, in B [m].
+        rotation: R_BE.
+    """
+
+    name: str
+    position: Vector = ORIGIN
+    rotation: Rotation = IDENTITY
+
+    def __post_init__(self) -> None:
+        """Convert the position."""
+        object.__setattr__(self, "position", as_vector(self.position, f"frame '{self.name}': position"))
+
+
+@dataclass(frozen=True)
+class Inertia:
+    """Mass, mass centre and inertia matrix of a rigid body.
+
+    Attributes:
+        mass: [kg].
+        center_of_mass: p_BC, from Bo to the mass centre, in B [m].
+        moments: Ixx, Iyy, Izz, Ixy, Ixz, Iyz [kg m^2]; products with the sign they have in the matrix.
+        about: "center_of_mass": about C, along the axes of frame C; "body": about Bo, along the axes of B.
+        rotation: R_BC, axes of the mass-centre frame; only with about="center_of_mass".
+    """
+
+    mass: Value = 0.0
+    center_of_mass: Vector = ORIGIN
+    moments: tuple[Value, Value, Value, Value, Value, Value] = (0.0,) * 6
+    about: Literal["center_of_mass", "body"] = "center_of_mass"
+    rotation: Rotation = IDENTITY
+
+    def __post_init__(self) -> None:
+        """Convert numbers and check the choice of reference point."""
+        object.__setattr__(self, "mass", as_value(self.mass, "mass"))
+        object.__setattr__(self, "center_of_mass", as_vector(self.center_of_mass, "center_of_mass"))
+        moments = tuple(as_value(value, f"inertia[{i}]") for i, value in enumerate(self.moments))
+        if len(moments) == 3:
+            moments = (*moments, 0.0, 0.0, 0.0)
+        if len(moments) != 6:
+            raise DescriptionError(
+                Problem(
+                    "inertia: wrong number of entries",
+                    f"{len(moments)} entries",
+                    "three (Ixx, Iyy, Izz) or six (then Ixy, Ixz, Iyz)",
+                )
+            )
+        object.__setattr__(self, "moments", moments)
+        if self.about not in ("center_of_mass", "body"):
+            raise DescriptionError(
+                Problem(f"inertia: about '{self.about}'", self.about, "about is 'center_of_mass' or 'body'")
+            )
+        if self.about == "body" and not self.rotation.is_identity:
+            raise DescriptionError(
+                Problem(
+                    "inertia: a rotation is given with about='body'",
+                    f"rotation {self.rotation.kind}",
+                    "an inertia about the body origin is along the body's axes",
+                    "drop the rotation, or give the inertia about the center_of_mass",
+                )
+            )
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Bounds of a one-coordinate joint; data for sampling and inverse kinematics, not a force."""
+
+    lower: float | None = None
+    upper: float | None = None
+    velocity: float | None = None
+    effort: float | None = None
+
+
+@dataclass(frozen=True)
+class Joint:
+    """How a body B moves on its parent A: proximal frame P fixed on A, distal frame D = body frame B.
+
+    Attributes:
+        name: Unique; the coordinate and speed of a one-coordinate joint bear it.
+        kind: "fixed", "revolute", "continuous" (revolute without limits), "prismatic", "ball" (quaternion x, y, z, w;
+            angular velocity in D) or "free" (position in P, quaternion; linear and angular velocity in D).
+        parent: The parent body; "world" for the ground.
+        frame: The parent's extremity frame that P is placed in; None for its body frame.
+        position: From that frame's origin to Po, in that frame [m].
+        rotation: From that frame to P.
+        axis: Of a revolute or prismatic joint, in P (= in D); normalised by us.
+        actuated: Adds one input a speed, named like the speed: an effort on the joint [N m or N].
+        effort: Formulas, one a speed, of inputs, parameters, coordinates, speeds (d + coordinate name) and t.
+        limits: Bounds of the coordinate, if any.
+    """
+
+    name: str
+    kind: JointKind = "fixed"
+    parent: str = WORLD
+    frame: str | None = None
+    position: Vector = ORIGIN
+    rotation: Rotation = IDENTITY
+    axis: Vector = (0.0, 0.0, 1.0)
+    actuated: bool = False
+    effort: tuple[Value, ...] = ()
+    limits: Limits | None = None
+
+    def __post_init__(self) -> None:
+        """Convert numbers and check the kind."""
+        what = f"joint '{self.name}'"
+        if self.kind not in JOINT_KINDS:
+            raise DescriptionError(
+                Problem(f"{what}: unknown kind", f"'{self.kind}'", f"one of {', '.join(JOINT_KINDS)}",
+                        did_you_mean(str(self.kind), JOINT_KINDS))
+            )  # fmt: skip
+        object.__setattr__(self, "position", as_vector(self.position, f"{what}: position"))
+        object.__setattr__(self, "axis", as_vector(self.axis, f"{what}: axis"))
+        effort = self.effort if isinstance(self.effort, (tuple, list)) else (self.effort,)
+        object.__setattr__(self, "effort", tuple(as_value(e, f"{what}: effort[{i}]") for i, e in enumerate(effort)))
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """A rigid body with the joint that carries it. Without a joint it is the base, and its frame is the world frame.
+
+    Attributes:
+        name: Unique; also the name of its body frame.
+        joint: How it moves on its parent; None for the base.
+        inertia: None for a massless body.
+        frames: Its extremity frames.
+        waive: Names of checks this body is allowed to fail (see WAIVERS).
+    """
+
+    name: str
+    joint: Joint | None = None
+    inertia: Inertia | None = None
+    frames: tuple[Frame, ...] = ()
+    waive: frozenset[str] = frozenset()
+
+    def __post_init__(self) -> None:
+        """Freeze the collections and check the waivers."""
+        object.__setattr__(self, "frames", tuple(self.frames))
+        object.__setattr__(self, "waive", frozenset(self.waive))
+        for unknown in sorted(self.waive - WAIVERS.keys()):
+            raise DescriptionError(
+                Problem(f"body '{self.name}': unknown waiver", f"'{unknown}'", f"one of {', '.join(WAIVERS)}",
+                        did_you_mean(unknown, WAIVERS))
+            )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class System:
+    """A mechanism as the user stated it.
+
+    Attributes:
+        name: Of the model; the C functions are named after it.
+        bodies: In the order of description.
+        parameters: Run-time parameters and constants.
+        inputs: Named inputs, in order; actuated joints add theirs after these.
+        gravity: Acceleration of gravity in the world frame [m/s^2].
+        notes: What an importer dropped or changed, in words.
+        origin: "file:line" of objects, keyed by ("body", name), ("joint", name), …; not part of equality.
+    """
+
+    name: str
+    bodies: tuple[RigidBody, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    gravity: Vector = (0.0, 0.0, -9.81)
+    notes: tuple[str, ...] = field(default=(), compare=False)
+    origin: Mapping[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Freeze the collections and convert the gravity."""
+        for name in ("bodies", "parameters", "inputs", "notes"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        object.__setattr__(self, "gravity", as_vector(self.gravity, f"system '{self.name}': gravity"))
+        object.__setattr__(self, "origin", MappingProxyType(dict(self.origin)))
+
+    def __reduce__(self) -> Any:
+        """Pickle without the read-only view, which can't be pickled."""
+        return System, (
+            self.name, self.bodies, self.parameters, self.inputs, self.gravity, self.notes, dict(self.origin)
+        )  # fmt: skip
+
+    def body(self, name: str) -> RigidBody:
+        """The body of that name.
+
+        Raises:
+            DescriptionError: There is none.
+        """
+        for body in self.bodies:
+            if body.name == name:
+                return body
+        raise DescriptionError(
+            Problem(f"system '{self.name}': no body '{name}'", ", ".join(b.name for b in self.bodies),
+                    "a body is found by its name", did_you_mean(name, [b.name for b in self.bodies]))
+        )  # fmt: skip
+
+    def with_bodies(self, *bodies: RigidBody) -> System:
+        """The system with these bodies added; a body of the same name is replaced in its place."""
+        merged = {body.name: body for body in self.bodies} | {body.name: body for body in bodies}
+        return replace(self, bodies=tuple(merged.values()))
+
+    def without_bodies(self, *names: str) -> System:
+        """The system without these bodies.
+
+        Raises:
+            DescriptionError: There is no such body.
+        """
+        for name in names:
+            self.body(name)
+        return replace(self, bodies=tuple(body for body in self.bodies if body.name not in names))
+
+    def parameter_values(self) -> dict[str, float]:
+        """Name -> value of every parameter, constants included."""
+        return {parameter.name: parameter.value for parameter in self.parameters}

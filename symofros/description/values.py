@@ -1,0 +1,145 @@
+"""What a number in a description may be: a float, a formula, or a SymPy expression; vectors and rotations of these."""
+
+from __future__ import annotations
+
+import math
+import numbers
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from symofros.description.parser import ExpressionError, parse
+from symofros.errors import DescriptionError, Problem
+from symofros.expr.expression import Expression
+
+Value = float | Expression
+Vector = tuple[Value, Value, Value]
+RotationKind = Literal["rpy", "axis_angle", "quaternion", "matrix"]
+
+_ROTATION_SIZE: dict[str, int] = {"rpy": 3, "axis_angle": 4, "quaternion": 4, "matrix": 9}
+
+
+def as_value(value: Any, what: str = "value") -> Value:
+    """A user's number, formula text or SymPy expression as a Value.
+
+    Args:
+        value: What the user wrote.
+        what: The thing it belongs to, for the error.
+
+    Raises:
+        DescriptionError: Not finite, not a legal formula, or of another type.
+    """
+    if isinstance(value, Expression):
+        return value
+    if isinstance(value, str):
+        try:
+            parsed = parse(value)
+        except ExpressionError as error:
+            raise DescriptionError(error.problem(what)) from None
+        return parsed.number if parsed.kind == "number" else parsed
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        number = float(value)
+        if not math.isfinite(number):
+            raise DescriptionError(
+                Problem(f"{what}: not a finite number", repr(number), "every number is finite", "give a finite value")
+            )
+        return number
+    if type(value).__module__.partition(".")[0] == "sympy":
+        # SymPy costs a third of a second to import; only those who use it pay.
+        from symofros.expr.freeze import freeze
+
+        try:
+            frozen = freeze(value)
+        except ValueError as error:
+            raise DescriptionError(
+                Problem(f"{what}: {error}", str(value), "formulas use the op table's functions only")
+            ) from None
+        return frozen.number if frozen.kind == "number" else frozen
+    raise DescriptionError(
+        Problem(
+            f"{what}: neither a number nor a formula",
+            f"{value!r:.80} of type {type(value).__name__}",
+            "a value is a number, a formula such as 'L1/2', or a SymPy expression",
+        )
+    )
+
+
+def as_values(values: Iterable[Any], size: int, what: str) -> tuple[Value, ...]:
+    """A fixed number of values.
+
+    Raises:
+        DescriptionError: The count is wrong, or a value is.
+    """
+    listed = list(values) if not isinstance(values, str) else [values]
+    if len(listed) != size:
+        raise DescriptionError(
+            Problem(f"{what}: wrong number of entries", f"{len(listed)} entries", f"{size} entries, in order")
+        )
+    return tuple(as_value(value, f"{what}[{i}]") for i, value in enumerate(listed))
+
+
+def as_vector(values: Iterable[Any], what: str) -> Vector:
+    """Three values: x, y, z."""
+    x, y, z = as_values(values, 3, what)
+    return x, y, z
+
+
+def symbols(value: Value) -> frozenset[str]:
+    """The names a value depends on."""
+    return value.symbols() if isinstance(value, Expression) else frozenset()
+
+
+@dataclass(frozen=True)
+class Rotation:
+    """A constant rotation R_AB (x_A = R_AB x_B), in the form it was stated.
+
+    Attributes:
+        kind: "rpy" (URDF's fixed-axis roll, pitch, yaw: Rz(y) Ry(p) Rx(r)) [rad], "axis_angle" (x, y, z, angle)
+            [rad], "quaternion" (x, y, z, w), or "matrix" (nine entries, row by row).
+        values: Its numbers or formulas.
+    """
+
+    kind: RotationKind = "rpy"
+    values: tuple[Value, ...] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        """Check the count and convert the values."""
+        size = _ROTATION_SIZE.get(self.kind)
+        if size is None:
+            raise DescriptionError(
+                Problem(f"rotation: unknown kind '{self.kind}'", self.kind, f"one of {', '.join(_ROTATION_SIZE)}")
+            )
+        object.__setattr__(self, "values", as_values(self.values, size, f"rotation ({self.kind})"))
+
+    @staticmethod
+    def rpy(roll: Any, pitch: Any, yaw: Any) -> Rotation:
+        """Fixed-axis roll, pitch, yaw [rad], as in URDF."""
+        return Rotation("rpy", (roll, pitch, yaw))
+
+    @staticmethod
+    def axis_angle(axis: Sequence[Any], angle: Any) -> Rotation:
+        """A turn by `angle` [rad] about `axis` (normalised by us)."""
+        return Rotation("axis_angle", (*axis, angle))
+
+    @staticmethod
+    def quaternion(x: Any, y: Any, z: Any, w: Any) -> Rotation:
+        """A quaternion, scalar last (normalised by us)."""
+        return Rotation("quaternion", (x, y, z, w))
+
+    @staticmethod
+    def matrix(rows: Sequence[Sequence[Any]]) -> Rotation:
+        """Nine entries, row by row."""
+        return Rotation("matrix", tuple(entry for row in rows for entry in row))
+
+    @property
+    def is_identity(self) -> bool:
+        """Whether it is stated as no rotation at all."""
+        return self.kind == "rpy" and self.values == (0.0, 0.0, 0.0)
+
+    def __iter__(self) -> Iterator[Value]:
+        """Its values."""
+        return iter(self.values)
+
+
+IDENTITY = Rotation()
+ORIGIN: Vector = (0.0, 0.0, 0.0)

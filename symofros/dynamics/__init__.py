@@ -1,0 +1,1 @@
+"""Jourdain's principle: inertia, forces, energy, and which function returns what."""

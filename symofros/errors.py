@@ -1,0 +1,91 @@
+"""The exceptions, and the four-part form of what they say.
+
+Every message names the object, what was found, the rule it breaks, and the remedy.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong with a description.
+
+    Attributes:
+        what: The object and its fault, as in "joint 'q1': parent body 'bas' does not exist".
+        found: What is there instead.
+        rule: What must hold.
+        remedy: What to do.
+        where: "file:line", or "" for an object built in Python.
+    """
+
+    what: str
+    found: str = ""
+    rule: str = ""
+    remedy: str = ""
+    where: str = ""
+
+    def __str__(self) -> str:
+        """The message: one line, then the parts that are given, indented."""
+        head = f"{self.where}: {self.what}" if self.where else self.what
+        parts = [("found", self.found), ("rule", self.rule), ("remedy", self.remedy)]
+        return "\n".join([head, *(f"  {label + ':':<8}{text}" for label, text in parts if text)])
+
+
+class SymofrosError(Exception):
+    """The base of everything this package raises on purpose."""
+
+
+class DescriptionError(SymofrosError):
+    """A description can't be a mechanism; carries every problem found, not only the first."""
+
+    def __init__(self, problems: Sequence[Problem] | Problem) -> None:
+        self.problems: tuple[Problem, ...] = (problems,) if isinstance(problems, Problem) else tuple(problems)
+        super().__init__("\n".join(map(str, self.problems)))
+
+    def __reduce__(self) -> tuple[type[DescriptionError], tuple[tuple[Problem, ...]]]:
+        """Pickle by the problems, so that the error crosses process borders whole."""
+        return type(self), (self.problems,)
+
+
+class ShapeError(SymofrosError, ValueError):
+    """An array does not have the shape a model function needs."""
+
+
+class UnknownNameError(SymofrosError, KeyError):
+    """A name that is not in the model: a frame, a parameter, a function."""
+
+    def __str__(self) -> str:
+        """KeyError would print the repr of the message; this prints the message."""
+        return str(self.args[0])
+
+
+class CompileError(SymofrosError):
+    """The C compiler refused the generated code, or the result did not load."""
+
+
+class CompilerMissingWarning(UserWarning):
+    """No C compiler was found; a slower way is used."""
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """The remedy for a misspelt name: the nearest known one, or the list of them.
+
+    Args:
+        name: What was written.
+        known: What exists.
+
+    Returns:
+        "did you mean 'tip'?", or "use one of: …", or "" when nothing is known.
+    """
+    known = list(known)
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
+    if near:
+        return f"did you mean '{near[0]}'?"
+    if not known:
+        return ""
+    shown = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")
+    return f"use one of: {shown}"

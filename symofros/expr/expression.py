@@ -1,0 +1,115 @@
+"""A scalar formula as the user stated it: an immutable syntax tree over numbers, symbols and the op table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from symofros.expr.graph import Edge, Graph
+from symofros.expr.ops import FUNCTIONS
+
+CONSTANTS: dict[str, float] = {"pi": 3.141592653589793}
+_PRECEDENCE = {"add": 1, "sub": 1, "mul": 2, "div": 2, "neg": 3, "pow": 4}
+_SIGN = {"add": " + ", "sub": " - ", "mul": "*", "div": "/", "pow": "^"}
+
+
+@dataclass(frozen=True, slots=True)
+class Expression:
+    """One node of a formula.
+
+    Attributes:
+        kind: "number", "symbol", "add", "sub", "mul", "div", "pow", "neg", or a function's name.
+        args: Operands.
+        number: The value of a "number".
+        name: The name of a "symbol".
+    """
+
+    kind: str
+    args: tuple[Expression, ...] = ()
+    number: float = 0.0
+    name: str = ""
+
+    def __str__(self) -> str:
+        """The formula in the notation that the parser reads."""
+        return _text(self, 0)
+
+    def symbols(self) -> frozenset[str]:
+        """The names this formula depends on; `pi` is a number, not a name."""
+        return frozenset(node.name for node in walk(self) if node.kind == "symbol" and node.name not in CONSTANTS)
+
+
+def walk(expression: Expression) -> Iterator[Expression]:
+    """Every node of a formula, without recursion."""
+    stack = [expression]
+    while stack:
+        node = stack.pop()
+        yield node
+        stack.extend(node.args)
+
+
+def _text(node: Expression, outer: int) -> str:
+    if node.kind == "number":
+        text = repr(node.number).removesuffix(".0")
+        return f"({text})" if text.startswith("-") and outer > 1 else text
+    if node.kind == "symbol":
+        return node.name
+    own = _PRECEDENCE.get(node.kind)
+    if own is None:
+        return f"{node.kind}({', '.join(_text(arg, 0) for arg in node.args)})"
+    if node.kind == "neg":
+        text = "-" + _text(node.args[0], own)
+    else:
+        left, right = node.args
+        # Subtraction and division associate to the left, powers to the right.
+        raise_left, raise_right = (1, 0) if node.kind == "pow" else (0, 1)
+        text = _text(left, own + raise_left) + _SIGN[node.kind] + _text(right, own + raise_right)
+    return f"({text})" if own < outer else text
+
+
+def lower(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) -> Edge:
+    """Put a formula into a graph.
+
+    Args:
+        expression: The formula.
+        graph: Where its operations go.
+        bindings: The edge of each symbol.
+
+    Raises:
+        KeyError: A symbol has no binding.
+        ArithmeticError: A constant part divides by zero or leaves a function's domain.
+    """
+    kind = expression.kind
+    if kind == "number":
+        return graph.constant(expression.number)
+    if kind == "symbol":
+        if expression.name in CONSTANTS:
+            return graph.constant(CONSTANTS[expression.name])
+        return bindings[expression.name]
+    args = [lower(arg, graph, bindings) for arg in expression.args]
+    if kind == "neg":
+        return -args[0]
+    if kind == "pow":
+        return graph.power(*args)
+    if kind in FUNCTIONS:
+        return graph.call(kind, *args)
+    return {"add": graph.add, "sub": graph.sub, "mul": graph.mul, "div": graph.div}[kind](*args)
+
+
+def evaluate(expression: Expression | float, values: Mapping[str, float]) -> float:
+    """The number of a formula, by the graph's own constant folding.
+
+    Args:
+        expression: The formula, or a number already.
+        values: The number of each symbol.
+
+    Raises:
+        KeyError: A symbol has no value.
+        ArithmeticError: Division by zero, or outside a function's domain.
+    """
+    if isinstance(expression, float):
+        return expression
+    graph = Graph()
+    used = expression.symbols()
+    number = graph.number(lower(expression, graph, {name: graph.constant(values[name]) for name in used}))
+    assert number is not None  # Everything was a number, and numbers fold.
+    return number

@@ -1,0 +1,122 @@
+"""The op table: everything that can be computed, one row an operation.
+
+The graph's constant folding, the interpreter, the C printer and the operation counter all read these rows, so
+they can't disagree. Transcendental rules go through the C library's functions, one element at a time: NumPy's
+own vectorised versions differ from libm in the last bit, and the interpreter must match compiled C bit for bit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+Parity = Literal["odd", "even", ""]
+Cost = Literal["add", "mul", "div", "call"]
+
+
+@dataclass(frozen=True, slots=True)
+class Op:
+    """One operation.
+
+    Attributes:
+        name: Its name in graphs, text dumps and, for functions, in expressions.
+        arity: Number of operands.
+        rule: NumPy arrays in, NumPy array out; IEEE semantics, no exceptions.
+        c: C text with holes {0}, {1}.
+        cost: What the operation counter books it as.
+        parity: How a sign on the only operand moves outside: f(-x) = -f(x) or f(x).
+        is_function: Callable by this name in expressions.
+    """
+
+    name: str
+    arity: int
+    rule: Callable[..., Any]
+    c: str
+    cost: Cost = "call"
+    parity: Parity = ""
+    is_function: bool = True
+
+
+def _libm(function: Callable[..., float], overflow: float = math.inf) -> Callable[..., Any]:
+    """Apply a C library function elementwise, with IEEE results where Python would raise."""
+
+    def scalar(*x: float) -> float:
+        try:
+            return function(*x)
+        except ValueError:  # Outside the domain.
+            return math.nan
+        except OverflowError:
+            return overflow
+
+    def rule(*x: Any) -> Any:
+        if all(isinstance(one, float) for one in x):
+            return scalar(*x)
+        return np.asarray(np.frompyfunc(scalar, len(x), 1)(*x), dtype=np.float64)
+
+    return rule
+
+
+def _log(x: float) -> float:
+    return -math.inf if x == 0.0 else math.log(x)
+
+
+def _sinh(x: float) -> float:
+    return math.copysign(math.inf, x) if abs(x) > 711.0 else math.sinh(x)
+
+
+def _sqrt(x: Any) -> Any:
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(x)
+
+
+def _div(x: Any, y: Any) -> Any:
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        return np.divide(x, y)
+
+
+def _add(x: Any, y: Any) -> Any:
+    with np.errstate(invalid="ignore", over="ignore"):
+        return np.add(x, y)
+
+
+def _mul(x: Any, y: Any) -> Any:
+    with np.errstate(invalid="ignore", over="ignore", under="ignore"):
+        return np.multiply(x, y)
+
+
+ADD, MUL, DIV = "add", "mul", "div"
+
+OPS: dict[str, Op] = {
+    op.name: op
+    for op in (
+        Op(ADD, 2, _add, "{0} + {1}", "add", is_function=False),
+        Op(MUL, 2, _mul, "{0} * {1}", "mul", is_function=False),
+        Op(DIV, 2, _div, "{0} / {1}", "div", is_function=False),
+        Op("pow", 2, _libm(math.pow), "pow({0}, {1})"),
+        Op("sqrt", 1, _sqrt, "sqrt({0})", "div"),
+        Op("exp", 1, _libm(math.exp), "exp({0})"),
+        Op("log", 1, _libm(_log), "log({0})"),
+        Op("sin", 1, _libm(math.sin), "sin({0})", parity="odd"),
+        Op("cos", 1, _libm(math.cos), "cos({0})", parity="even"),
+        Op("tan", 1, _libm(math.tan), "tan({0})", parity="odd"),
+        Op("asin", 1, _libm(math.asin), "asin({0})", parity="odd"),
+        Op("acos", 1, _libm(math.acos), "acos({0})"),
+        Op("atan", 1, _libm(math.atan), "atan({0})", parity="odd"),
+        Op("atan2", 2, _libm(math.atan2), "atan2({0}, {1})"),
+        Op("sinh", 1, _libm(_sinh), "sinh({0})", parity="odd"),
+        Op("cosh", 1, _libm(math.cosh), "cosh({0})", parity="even"),
+        Op("tanh", 1, _libm(math.tanh), "tanh({0})", parity="odd"),
+        Op("abs", 1, np.fabs, "fabs({0})", "add", parity="even"),
+        Op("sign", 1, np.sign, "sym_sign({0})", "add", parity="odd"),
+        Op("min", 2, np.fmin, "fmin({0}, {1})", "add"),
+        Op("max", 2, np.fmax, "fmax({0}, {1})", "add"),
+    )
+}
+
+FUNCTIONS: dict[str, Op] = {name: op for name, op in OPS.items() if op.is_function}

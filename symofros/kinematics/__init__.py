@@ -1,0 +1,1 @@
+"""Base to tip: rotations, joints, bodies, frames."""

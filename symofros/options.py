@@ -1,0 +1,39 @@
+"""What may be chosen about a compilation; every field enters the cache key."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+# Functions of the whole model, and functions of one frame. The names are the methods of Model.
+MODEL_FUNCTIONS = (
+    "mass_matrix",
+    "bias",
+    "generalized_force",
+    "dynamics",
+    "forward_dynamics",
+    "inverse_dynamics",
+    "kinetic_energy",
+    "potential_energy",
+)
+FRAME_FUNCTIONS = ("frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian", "frame_jacobian_rate")
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to compile a system.
+
+    Attributes:
+        functions: What to generate, in one C file; a call of anything else is then an error. None (the default):
+            `dynamics` and `forward_dynamics` at once, every other function by itself when it is first called.
+        frames: The frames that frame functions in `functions` are generated for; None: all.
+        backend: "c", or "interpreter" (NumPy; slow, needs no compiler, the reference for the C code).
+        flags: Flags of the C compiler, in place of the default.
+        compiler: Path or name of the C compiler; None: $CC, cc, gcc, clang, then the ziglang package.
+    """
+
+    functions: tuple[str, ...] | None = None
+    frames: tuple[str, ...] | None = None
+    backend: Literal["c", "interpreter"] = "c"
+    flags: tuple[str, ...] | None = None
+    compiler: str | None = None

@@ -1,0 +1,1 @@
+"""Program -> Program: small, named, verified."""

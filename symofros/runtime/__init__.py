@@ -1,0 +1,1 @@
+"""Compile, cache, load, call. Knows no symbols."""

@@ -1,0 +1,1 @@
+"""Description -> checked graph -> spanning tree -> coordinate indices."""

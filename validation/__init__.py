@@ -1,0 +1,1 @@
+"""Do independent engines agree with the generated code, how fast are they, and where do methods fail."""
