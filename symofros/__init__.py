@@ -34,8 +34,8 @@ from symofros.options import Options as Options
 
 if TYPE_CHECKING:
     from symofros.compiler import compile_system as compile
-    from symofros.description.load import load as load
-    from symofros.description.load import save as save
+    from symofros.loading import load as load
+    from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
 
 __version__ = "0.1.0"
@@ -43,8 +43,8 @@ __version__ = "0.1.0"
 # Loaded at first use: reading files needs pydantic and ruamel.yaml, compiling needs cffi; importing needs neither.
 _LAZY = {
     "compile": ("symofros.compiler", "compile_system"),
-    "load": ("symofros.description.load", "load"),
-    "save": ("symofros.description.load", "save"),
+    "load": ("symofros.loading", "load"),
+    "save": ("symofros.loading", "save"),
     "Model": ("symofros.runtime.model", "Model"),
 }
 

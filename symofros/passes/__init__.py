@@ -1,1 +1,21 @@
-"""Program -> Program: small, named, verified."""
+"""Program -> Program: small, named, verified after each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from symofros.expr.program import Program
+from symofros.passes.stage import check_staged, hoist_parameters
+
+# In order: the pass, and the check of its post-condition.
+PIPELINE: tuple[tuple[Callable[[Program], Program], Callable[[Program], None]], ...] = (
+    (hoist_parameters, check_staged),
+)
+
+
+def run_passes(program: Program) -> Program:
+    """Apply the pipeline, verifying each pass's post-condition."""
+    for apply, verify in PIPELINE:
+        program = apply(program)
+        verify(program)
+    return program

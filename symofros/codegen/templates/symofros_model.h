@@ -1,0 +1,97 @@
+/* symofros_model.h - the C interface of every SYMOFROS model. Written by hand; C99.
+ *
+ * A model is one constant struct, reached through its one exported symbol:
+ *
+ *     const sym_model *NAME_model(void);
+ *
+ * Nothing here allocates, keeps state or is shared between calls: functions are re-entrant, and many models live in
+ * one process. Usage:
+ *
+ *     const sym_model *model = panda_model();
+ *     const sym_function *dynamics = sym_find(model, "dynamics", NULL);
+ *     double pre[...];                        // model->npre doubles
+ *     model->init(model->par_default, pre);   // once per set of parameters
+ *     const double *in[] = {pre, q, v, u, t}; // in the order of dynamics->in
+ *     double *out[] = {M, h, Q};              // in the order of dynamics->out; may not overlap inputs or each other
+ *     double work[...];                       // dynamics->work doubles, at least
+ *     dynamics->eval(in, out, work);
+ *
+ * All quantities are SI, angles in radians; matrices are row by row.
+ */
+#ifndef SYMOFROS_MODEL_H
+#define SYMOFROS_MODEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SYM_ABI 1u
+
+/* cdef begin: what bindings read */
+typedef struct sym_array {
+    const char *name; /* "q", "M", ... */
+    int32_t rows;     /* entries = rows * cols */
+    int32_t cols;     /* 1 for a vector; 1 x 1 for a scalar */
+} sym_array;
+
+typedef struct sym_function {
+    const char *name;     /* "mass_matrix", "frame_jacobian", ... */
+    const char *frame;    /* the frame it is about, or NULL */
+    int32_t n_in, n_out;
+    const sym_array *in;  /* in[0] is always "pre" */
+    const sym_array *out;
+    size_t work;          /* doubles of scratch */
+    void (*eval)(const double *const *in, double *const *out, double *work);
+    /* n states; in_stride[i] is the distance between states of input i in doubles, 0 to use one for all;
+     * outputs are written one state after the other. */
+    void (*batch)(size_t n, const double *const *in, const size_t *in_stride, double *const *out, double *work);
+} sym_function;
+
+typedef struct sym_model {
+    uint32_t abi;          /* SYM_ABI; first, so that it can be read before anything else */
+    uint32_t size;         /* sizeof(sym_model) of the generator */
+    const char *name;
+    const char *hash;      /* of description, options and generator */
+    const char *generator; /* "symofros 0.1.0" */
+    int32_t nq, nv, nu, npar, nc, npre;
+    const char *const *q_names, *const *v_names, *const *u_names, *const *par_names;
+    const double *par_default;
+    const double *q_neutral;
+    void (*init)(const double *par, double *pre);
+    int32_t n_functions;
+    const sym_function *functions;
+} sym_model;
+/* cdef end */
+
+#if defined(__GNUC__) || defined(__clang__)
+#define SYM_NOINLINE __attribute__((noinline))
+#define SYM_EXPORT __attribute__((visibility("default")))
+#elif defined(_MSC_VER)
+#define SYM_NOINLINE __declspec(noinline)
+#define SYM_EXPORT __declspec(dllexport)
+#else
+#define SYM_NOINLINE
+#define SYM_EXPORT
+#endif
+
+/* The function of that name (and frame, NULL for none); NULL where the model was generated without it. */
+static inline const sym_function *sym_find(const sym_model *model, const char *name, const char *frame) {
+    int32_t i;
+    for (i = 0; i < model->n_functions; ++i) {
+        const sym_function *f = &model->functions[i];
+        const int same_frame = frame == NULL ? f->frame == NULL : f->frame != NULL && strcmp(f->frame, frame) == 0;
+        if (same_frame && strcmp(f->name, name) == 0) return f;
+    }
+    return NULL;
+}
+
+static inline double sym_sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : x; }
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,53 @@
+"""What reading a file gives, whatever its format, and how its bytes are had within bounds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from symofros.description.system import System
+from symofros.errors import DescriptionError, Problem
+
+
+@dataclass(frozen=True)
+class Reading:
+    """The outcome of reading a file: what could be read, and everything that could not.
+
+    Attributes:
+        system: What was read, faulty parts left out; None if there is nothing to go on with.
+        problems: Every fault of the file.
+        broken: Names that the file states but that could not be read; later checks don't report references to them.
+    """
+
+    system: System | None
+    problems: tuple[Problem, ...] = ()
+    broken: frozenset[str] = frozenset()
+
+
+def read_bytes(path: Path, limit: int) -> bytes:
+    """The content of a regular file.
+
+    Args:
+        path: Where it is.
+        limit: The most bytes that are accepted.
+
+    Raises:
+        DescriptionError: No such file, not a regular one (a pipe would block), unreadable, or too large.
+    """
+    try:
+        if not path.is_file():
+            found = "a folder" if path.is_dir() else "no such file"
+            raise DescriptionError(Problem(f"'{path}' can't be read", found, "a description is a file"))
+        with path.open("rb") as stream:
+            data = stream.read(limit + 1)
+    except (OSError, ValueError) as error:  # ValueError: a NUL character in the path.
+        reason = getattr(error, "strerror", None) or str(error)
+        raise DescriptionError(Problem(f"{str(path)!r} can't be read", reason, "a description is a file")) from None
+    if len(data) > limit:
+        raise DescriptionError(
+            Problem(
+                f"'{path}' is too large", f"more than {limit} bytes", f"at most {limit >> 20} MiB",
+                "split it, or check that it is the file you meant",
+            )
+        )  # fmt: skip
+    return data

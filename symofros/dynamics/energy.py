@@ -1,0 +1,45 @@
+"""Kinetic and potential energy (docs/theory/rigid.md, section 6)."""
+
+from __future__ import annotations
+
+from symofros.dynamics.inertia import LinkInertia
+from symofros.expr.graph import ZERO, Edge
+from symofros.expr.vector import Vec3
+from symofros.kinematics.links import Motion
+from symofros.topology.tree import BASE
+
+
+def kinetic_energy(motion: Motion, inertias: list[LinkInertia]) -> Edge:
+    """1/2 sum (m v.v + 2 v.(w x S) + w.J w), each link about its own origin (eq. 24)."""
+    g = motion.g
+    speeds: list[tuple[Vec3, Vec3]] = []
+    twice = ZERO
+    for link, body in zip(motion.links, inertias, strict=True):
+        w_A, v_A = (Vec3(g), Vec3(g)) if link.parent == BASE else speeds[link.parent]
+        w, v = link.R_AL.apply_inverse(w_A), link.R_AL.apply_inverse(v_A + w_A.cross(link.p_AL))
+        for k, column in enumerate(link.columns):
+            speed = g.input("v", link.v + k)
+            w, v = w + column.w.scaled(speed), v + column.v.scaled(speed)
+        speeds.append((w, v))
+        momentum = v.scaled(body.m) + w.cross(body.S) + w.cross(body.S)
+        twice = g.add(twice, g.add(v.dot(momentum), w.dot(body.J.times(w))))
+    return g.mul(g.constant(0.5), twice)
+
+
+def potential_energy(motion: Motion, inertias: list[LinkInertia], base: LinkInertia, gravity: Vec3) -> Edge:
+    """Minus the weight's work, zero for mass at the world origin (eq. 25).
+
+    First moments are carried to the base: those of everything beyond a joint, about the joint's origin.
+    """
+    g = motion.g
+    mass = [body.m for body in inertias]
+    moment = [body.S for body in inertias]
+    total = base.S
+    for i, link in reversed(list(enumerate(motion.links))):
+        carried = link.R_AL.apply(moment[i]) + link.p_AL.scaled(mass[i])
+        if link.parent == BASE:
+            total = total + carried
+        else:
+            mass[link.parent] = g.add(mass[link.parent], mass[i])
+            moment[link.parent] = moment[link.parent] + carried
+    return -gravity.dot(total)

@@ -1,0 +1,172 @@
+"""Which function returns what: requests -> a Program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+from symofros.dynamics.energy import kinetic_energy, potential_energy
+from symofros.dynamics.forces import joint_efforts
+from symofros.dynamics.forward import solve
+from symofros.dynamics.inertia import LinkInertia, link_inertias
+from symofros.dynamics.jourdain import inertia_forces
+from symofros.dynamics.mass_matrix import Matrix, mass_matrix
+from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.program import Function, Output, Program
+from symofros.expr.vector import Vec3
+from symofros.kinematics.frames import FrameKinematics
+from symofros.kinematics.links import Motion, set_in_motion
+from symofros.topology.tree import NamedFrame, SpanningTree
+
+
+class Request(NamedTuple):
+    """A function that is asked for; frame functions name their frame."""
+
+    name: str
+    frame: str = ""
+
+
+class Equations:
+    """The equations of motion of one tree: M v' + h = Q, its energies and its frames.
+
+    Each property is formed when it is first needed, in one graph, so functions share what they have in common.
+    """
+
+    def __init__(self, tree: SpanningTree) -> None:
+        self.tree = tree
+        self.g = Graph()
+        self.nv = len(tree.coordinates.v)
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The tree in motion."""
+        return set_in_motion(self.g, self.tree)
+
+    @cached_property
+    def _inertias(self) -> tuple[list[LinkInertia], LinkInertia]:
+        return link_inertias(self.motion)
+
+    @cached_property
+    def gravity(self) -> Vec3:
+        """Acceleration of gravity in the world."""
+        return self.motion.lowering.vector(self.tree.system.gravity)
+
+    @cached_property
+    def M(self) -> Matrix:
+        """Mass matrix (nv x nv)."""
+        return mass_matrix(self.motion, self._inertias[0])
+
+    @cached_property
+    def h(self) -> list[Edge]:
+        """Coriolis, centrifugal and gravity terms (nv)."""
+        return inertia_forces(self.motion, self._inertias[0], [ZERO] * self.nv, self.gravity)
+
+    @cached_property
+    def Q(self) -> list[Edge]:
+        """Generalized forces (nv)."""
+        return joint_efforts(self.motion, with_inputs=True)
+
+    @cached_property
+    def v_rate(self) -> list[Edge]:
+        """The input a, as edges (nv)."""
+        return [self.g.input("a", i) for i in range(self.nv)]
+
+    @cached_property
+    def acceleration(self) -> list[Edge]:
+        """v' = M^-1 (Q - h)."""
+        return solve(self.g, self.M, [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)])
+
+    @cached_property
+    def required(self) -> list[Edge]:
+        """M a + h - Q(q, v, 0): what the inputs must supply for an acceleration a."""
+        total = inertia_forces(self.motion, self._inertias[0], self.v_rate, self.gravity)
+        passive = joint_efforts(self.motion, with_inputs=False)
+        return [self.g.sub(needed, given) for needed, given in zip(total, passive, strict=True)]
+
+    @cached_property
+    def T(self) -> Edge:
+        """Kinetic energy."""
+        return kinetic_energy(self.motion, self._inertias[0])
+
+    @cached_property
+    def V(self) -> Edge:
+        """Potential energy."""
+        return potential_energy(self.motion, *self._inertias, self.gravity)
+
+    @cached_property
+    def frames(self) -> FrameKinematics:
+        """Kinematics of the frames."""
+        return FrameKinematics(self.motion)
+
+    def function(self, request: Request) -> Function:
+        """One function's inputs and outputs.
+
+        Raises:
+            KeyError: There is no such function or frame.
+        """
+        if request.name in _FRAME_FUNCTIONS:
+            inputs, outputs = _FRAME_FUNCTIONS[request.name](self, self.tree.frame(request.frame))
+        else:
+            inputs, outputs = _FUNCTIONS[request.name](self)
+        return Function(request.name, request.frame, inputs, outputs)
+
+
+_Parts = tuple[tuple[str, ...], tuple[Output, ...]]
+
+
+def _vector(name: str, edges: Sequence[Edge]) -> Output:
+    return Output(name, (len(edges),), tuple(edges))
+
+
+def _matrix(name: str, rows: Sequence[Sequence[Edge]]) -> Output:
+    return Output(name, (len(rows), len(rows[0])), tuple(edge for row in rows for edge in row))
+
+
+def _dynamics(e: Equations) -> _Parts:
+    return ("q", "v", "u", "t"), (_matrix("M", e.M), _vector("h", e.h), _vector("Q", e.Q))
+
+
+_FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
+    "mass_matrix": lambda e: (("q",), (_matrix("M", e.M),)),
+    "bias": lambda e: (("q", "v"), (_vector("h", e.h),)),
+    "generalized_force": lambda e: (("q", "v", "u", "t"), (_vector("Q", e.Q),)),
+    "dynamics": _dynamics,
+    "forward_dynamics": lambda e: (("q", "v", "u", "t"), (_vector("a", e.acceleration),)),
+    "inverse_dynamics": lambda e: (("q", "v", "a", "t"), (_vector("tau", e.required),)),
+    "kinetic_energy": lambda e: (("q", "v"), (Output("T", (), (e.T,)),)),
+    "potential_energy": lambda e: (("q",), (Output("V", (), (e.V,)),)),
+}
+
+
+def _pose(e: Equations, frame: NamedFrame) -> _Parts:
+    pose = e.frames.pose(frame)
+    return ("q",), (_vector("p", tuple(pose.p)), Output("R", (3, 3), pose.R.entries))
+
+
+_FRAME_FUNCTIONS: dict[str, Callable[[Equations, NamedFrame], _Parts]] = {
+    "frame_pose": _pose,
+    "frame_velocity": lambda e, f: (("q", "v"), (_vector("V", e.frames.velocity(f)),)),
+    "frame_acceleration": lambda e, f: (("q", "v", "a"), (_vector("A", e.frames.acceleration(f, e.v_rate)),)),
+    "frame_jacobian": lambda e, f: (("q",), (_matrix("J", e.frames.jacobian(f)),)),
+    "frame_jacobian_rate": lambda e, f: (("q", "v"), (_matrix("dJ", e.frames.jacobian_rate(f)),)),
+}
+
+
+def write_program(tree: SpanningTree, requests: Sequence[Request]) -> Program:
+    """Form the requested functions of a tree.
+
+    Args:
+        tree: The mechanism.
+        requests: What to form, in order.
+
+    Returns:
+        A program that reads the groups q, v, a, u, par, t.
+    """
+    equations = Equations(tree)
+    functions = tuple(equations.function(request) for request in requests)
+    names = tree.coordinates
+    sizes = {
+        "q": len(names.q), "v": len(names.v), "a": len(names.v), "u": len(names.u), "par": len(names.par), "t": 1,
+    }  # fmt: skip
+    return Program(tree.system.name, equations.g, sizes, functions)

@@ -1,0 +1,67 @@
+"""The mass matrix by composite accumulation (docs/theory/rigid.md, section 5)."""
+
+from __future__ import annotations
+
+from symofros.dynamics.inertia import LinkInertia, carried_to_parent
+from symofros.expr.graph import ZERO, Edge
+from symofros.expr.vector import Vec3
+from symofros.kinematics.joint import Column
+from symofros.kinematics.links import Motion
+from symofros.topology.tree import BASE
+
+Matrix = list[list[Edge]]
+
+
+def mass_matrix(motion: Motion, inertias: list[LinkInertia]) -> Matrix:
+    """M, from the inertia of everything beyond each joint.
+
+    Column by column: a unit rate of speed k gives the composite body beyond its joint a momentum; M[j][k] is that
+    momentum's virtual power on every speed j on the way to the base (eq. 20). Entries between branches are zero.
+
+    Args:
+        motion: The tree.
+        inertias: Of its links; not changed.
+
+    Returns:
+        nv rows of nv edges, symmetric.
+    """
+    M: Matrix = [[ZERO] * motion.nv for _ in range(motion.nv)]
+    composite = list(inertias)
+    for i, link in reversed(list(enumerate(motion.links))):
+        whole = composite[i]
+        whole.S.named(f"composite_mp_LC[{link.name}]")
+        whole.J.named(f"composite_I_LLo[{link.name}]")
+        for k, column in enumerate(link.columns):
+            f, n = _momentum(whole, column)
+            for j in range(k + 1):
+                _set(M, link.v + j, link.v + k, _virtual_power(link.columns[j], f, n))
+            _project_down(motion, M, i, link.v + k, f, n)
+        if link.parent != BASE:
+            composite[link.parent] = composite[link.parent] + carried_to_parent(link, whole)
+    return M
+
+
+def _momentum(body: LinkInertia, column: Column) -> tuple[Vec3, Vec3]:
+    """Linear momentum, and angular momentum about Lo, of a body that moves by one column."""
+    f = column.v.scaled(body.m) + column.w.cross(body.S)
+    n = body.J.times(column.w) + body.S.cross(column.v)
+    return f, n
+
+
+def _virtual_power(column: Column, f: Vec3, n: Vec3) -> Edge:
+    return column.w.g.add(column.w.dot(n), column.v.dot(f))
+
+
+def _project_down(motion: Motion, M: Matrix, i: int, k: int, f: Vec3, n: Vec3) -> None:
+    """Carry a momentum from link i to the base, and book its virtual power on every joint on the way."""
+    link = motion.links[i]
+    while link.parent != BASE:
+        f, n = link.R_AL.apply(f), link.R_AL.apply(n)
+        n = n + link.p_AL.cross(f)
+        link = motion.links[link.parent]
+        for j, column in enumerate(link.columns):
+            _set(M, link.v + j, k, _virtual_power(column, f, n))
+
+
+def _set(M: Matrix, i: int, j: int, edge: Edge) -> None:
+    M[i][j] = M[j][i] = edge

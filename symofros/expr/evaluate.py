@@ -1,0 +1,83 @@
+"""The NumPy interpreter of a Program: slow, simple, and the reference that C must match bit for bit."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+
+import numpy as np
+
+from symofros.expr.graph import Edge, Graph
+from symofros.expr.ops import OPS, Array
+from symofros.expr.program import Function, Program
+
+
+def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = ()) -> list[int]:
+    """The nodes that must be computed for some edges, operands first; what no edge needs is left out.
+
+    Args:
+        graph: The graph.
+        edges: What is wanted.
+        given: Nodes whose values are at hand.
+    """
+    args, slot, value = graph.args, graph.slot, graph.value
+    found: set[int] = set()
+    stack = [abs(edge) for edge in edges]
+    while stack:
+        node = stack.pop()
+        if node in found or node == 0 or node in slot or node in value or node in given:
+            continue
+        found.add(node)
+        stack.extend(abs(arg) for arg in args[node])
+    return sorted(found)
+
+
+def interpret(program: Program, function: Function, inputs: Mapping[str, Array], n: int) -> list[Array]:
+    """Evaluate one function over a batch.
+
+    Args:
+        program: Staged or not.
+        function: One of its functions.
+        inputs: Each group as (n or 1, size).
+        n: Number of states.
+
+    Returns:
+        One array an output, (n, *shape).
+    """
+    columns = evaluate_edges(program, function.edges(), inputs, program.pre)
+    results, at = [], 0
+    for output in function.outputs:
+        size = len(output.edges)
+        flat = np.empty((n, size))
+        for i in range(size):
+            flat[:, i] = columns[at + i]
+        at += size
+        results.append(flat.reshape(n, *output.shape))
+    return results
+
+
+def evaluate_edges(
+    program: Program, edges: Sequence[Edge], inputs: Mapping[str, Array], given: Mapping[int, tuple[str, int]]
+) -> list[Array | float]:
+    """The values of some edges, each (n,) or a number.
+
+    Args:
+        program: For its graph.
+        edges: What is wanted.
+        inputs: Each group as (n or 1, size).
+        given: Nodes to read from an input group instead of computing them.
+    """
+    graph = program.graph
+    values: dict[int, Array | float] = dict(graph.value)
+
+    def at(edge: Edge) -> Array | float:
+        node = abs(edge)
+        if node == 0:
+            return 0.0
+        if node not in values:
+            group, index = given.get(node) or graph.slot[node]
+            values[node] = inputs[group][:, index]
+        return values[node] if edge > 0 else -values[node]
+
+    for node in needed_nodes(graph, edges, given.keys()):
+        values[node] = OPS[graph.op[node]].rule(*map(at, graph.args[node]))
+    return [at(edge) for edge in edges]

@@ -1,0 +1,63 @@
+"""Program: the named functions of one model over one graph, with shaped inputs and outputs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import prod
+
+from symofros.expr.graph import Edge, Graph, Slot
+
+
+@dataclass(frozen=True)
+class Output:
+    """A named array of edges, row by row."""
+
+    name: str
+    shape: tuple[int, ...]
+    edges: tuple[Edge, ...]
+
+    def __post_init__(self) -> None:
+        """The count must fit the shape."""
+        if len(self.edges) != prod(self.shape):
+            raise ValueError(f"output '{self.name}': {len(self.edges)} edges for shape {self.shape}")
+
+
+@dataclass(frozen=True)
+class Function:
+    """One function of a model.
+
+    Attributes:
+        name: Such as "mass_matrix".
+        frame: The frame it is about, or "".
+        inputs: Groups it takes, in order; "pre" is added where parameter-only work is hoisted.
+        outputs: What it returns.
+    """
+
+    name: str
+    frame: str
+    inputs: tuple[str, ...]
+    outputs: tuple[Output, ...]
+
+    def edges(self) -> list[Edge]:
+        """All output edges."""
+        return [edge for output in self.outputs for edge in output.edges]
+
+
+@dataclass(frozen=True)
+class Program:
+    """All functions of one compilation unit.
+
+    Attributes:
+        name: Of the model.
+        graph: Shared by the functions.
+        sizes: Length of each input group.
+        functions: What is computed.
+        init: After staging, what `pre` holds: parameter-only values, computed once per parameter set.
+    """
+
+    name: str
+    graph: Graph
+    sizes: dict[str, int]
+    functions: tuple[Function, ...]
+    init: tuple[Edge, ...] = ()
+    pre: dict[int, Slot] = field(default_factory=dict)

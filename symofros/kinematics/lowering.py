@@ -1,0 +1,65 @@
+"""Values of the description -> edges: run-time parameters become inputs of the graph, constants become numbers."""
+
+from __future__ import annotations
+
+from symofros.description.values import Rotation, Value, Vector
+from symofros.expr.expression import Expression, lower
+from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.vector import Mat3, Vec3
+from symofros.kinematics.rotations import snapped, stated_rotation
+from symofros.topology.coordinates import CoordinateMap
+from symofros.topology.tree import Placement
+
+
+class Lowering:
+    """Puts values of one system into one graph.
+
+    Attributes:
+        g: The graph.
+        coordinates: Which symbol is which input.
+    """
+
+    def __init__(self, g: Graph, coordinates: CoordinateMap) -> None:
+        self.g = g
+        self.coordinates = coordinates
+        self._bindings: dict[str, Edge] = {name: g.constant(x) for name, x in coordinates.constants.items()}
+
+    def value(self, value: Value) -> Edge:
+        """The edge of one value."""
+        if not isinstance(value, Expression):
+            return self.g.constant(value)
+        for name in value.symbols() - self._bindings.keys():
+            self._bindings[name] = self.g.input(*self.coordinates.symbols[name])
+        return lower(value, self.g, self._bindings)
+
+    def value_without(self, value: Value, inputs: set[str]) -> Edge:
+        """The edge of one value with these inputs set to zero."""
+        self.value(value)  # Binds its symbols.
+        assert isinstance(value, Expression)
+        return lower(value, self.g, {**self._bindings, **dict.fromkeys(inputs, ZERO)})
+
+    def vector(self, vector: Vector) -> Vec3:
+        """The edges of a vector."""
+        return Vec3(self.g, *map(self.value, vector))
+
+    def rotation(self, rotation: Rotation) -> Mat3:
+        """The edges of a rotation matrix."""
+        for value in rotation.values:
+            self.value(value)  # Binds its symbols.
+        return stated_rotation(rotation, self.g, self._bindings)
+
+    def placement(self, placement: Placement, R_LB: Mat3) -> tuple[Mat3, Vec3]:
+        """A chain of constant displacements, seen from the link frame L.
+
+        Args:
+            placement: From the link's body frame B outwards to a frame F.
+            R_LB: The body frame in the link frame (same origin).
+
+        Returns:
+            R_LF and p_LF.
+        """
+        R_LF, p_LF = R_LB, Vec3(self.g)
+        for step in placement:
+            p_LF = p_LF + R_LF.times(self.vector(step.position))
+            R_LF = snapped(R_LF @ self.rotation(step.rotation))
+        return R_LF, p_LF

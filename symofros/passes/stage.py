@@ -1,0 +1,59 @@
+"""Hoist what depends on parameters only into an init function.
+
+Post-condition: no function reads `par` or computes a value that only parameters determine; it reads `pre` instead.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from symofros.expr.evaluate import needed_nodes
+from symofros.expr.graph import Edge, Graph, Slot
+from symofros.expr.program import Program
+
+
+def hoist_parameters(program: Program) -> Program:
+    """Split every function at the border between parameters and the rest.
+
+    Args:
+        program: Unstaged.
+
+    Returns:
+        The program with `init` and `pre` filled in; its functions' outputs are unchanged.
+    """
+    graph = program.graph
+    fixed = _parameter_only(graph)
+    border: set[int] = set()
+    for function in program.functions:
+        edges = function.edges()
+        border.update(abs(edge) for edge in edges if abs(edge) in fixed)
+        for node in needed_nodes(graph, edges, fixed):
+            border.update(abs(arg) for arg in graph.args[node] if abs(arg) in fixed)
+    init: tuple[Edge, ...] = tuple(sorted(border))
+    pre = {node: Slot("pre", i) for i, node in enumerate(init)}
+    return replace(program, init=init, pre=pre, sizes={**program.sizes, "pre": len(init)})
+
+
+def _parameter_only(graph: Graph) -> set[int]:
+    """Nodes that depend on parameters and on nothing else but numbers."""
+    fixed = {node for node, slot in graph.slot.items() if slot.group == "par"}
+    numbers = graph.value
+    for node in range(2, len(graph)):
+        args = graph.args[node]
+        if args and all(abs(arg) in fixed or arg == 0 or abs(arg) in numbers for arg in args):
+            fixed.add(node)
+    return fixed
+
+
+def check_staged(program: Program) -> None:
+    """Verify the post-condition.
+
+    Raises:
+        AssertionError: A function still reads `par`.
+    """
+    graph = program.graph
+    for function in program.functions:
+        for node in needed_nodes(graph, function.edges(), program.pre):
+            for arg in map(abs, graph.args[node]):
+                if arg not in program.pre and arg in graph.slot:
+                    assert graph.slot[arg].group != "par", f"{function.name} reads par at node {node}"

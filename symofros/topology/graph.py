@@ -1,0 +1,283 @@
+"""Everything that can be wrong with a description, found in one go and reported together."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator
+
+from symofros.description.system import WORLD, Joint, RigidBody, System
+from symofros.description.values import Value, symbols
+from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.expr.expression import CONSTANTS
+from symofros.expr.ops import FUNCTIONS
+from symofros.topology.coordinates import JOINT_SIZES, coordinate_names, speed_symbols
+from symofros.topology.numbers import Numbers
+from symofros.topology.physics import inertia_problems, massless_tip_problems
+
+TIME = "t"
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+_MAX_NAME = 200
+
+
+def check(system: System) -> None:
+    """Refuse a system that can't be a mechanism.
+
+    Raises:
+        DescriptionError: With every problem found.
+    """
+    problems = find_problems(system)
+    if problems:
+        raise DescriptionError(problems)
+
+
+def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]:
+    """Every problem of a description.
+
+    Args:
+        system: What the user stated.
+        broken: Names of bodies, parameters and inputs that exist but could not be read; that something refers to
+            them is not reported again.
+    """
+    checker = _Checker(system, frozenset(broken))
+    problems = [*checker.names(), *checker.structure(), *checker.formulas()]
+    if not problems and not broken:
+        numbers = Numbers(system)
+        problems = [*checker.values(numbers)]
+        if not problems:
+            problems = [*inertia_problems(system, numbers), *massless_tip_problems(system, numbers)]
+    elif not any("cycle" in p.what for p in problems):
+        # Physics of single bodies can be judged even where the tree can't.
+        problems += inertia_problems(system, Numbers(system))
+    return problems
+
+
+class _Checker:
+    def __init__(self, system: System, broken: frozenset[str]) -> None:
+        self.system = system
+        self.broken = broken
+        self.bodies = {body.name: body for body in system.bodies}
+        self.joints = [body.joint for body in system.bodies if body.joint is not None]
+        bases = [body for body in system.bodies if body.joint is None]
+        self.base = bases[0] if bases else RigidBody(WORLD)
+        self.extra_bases = bases[1:]
+
+    def where(self, *key: str) -> str:
+        return self.system.origin.get(key, "")
+
+    # Names.
+
+    def names(self) -> Iterator[Problem]:
+        yield from self._unique("body", [body.name for body in self.system.bodies])
+        yield from self._unique("joint", [joint.name for joint in self.joints])
+        for body in self.system.bodies:
+            yield from self._unique("frame", [frame.name for frame in body.frames], body.name)
+            if body.name == WORLD and body.joint is not None:
+                yield Problem(
+                    f"body '{WORLD}' has a joint", f"joint '{body.joint.name}'", f"'{WORLD}' is the ground's own name",
+                    "choose another name", self.where("body", WORLD),
+                )  # fmt: skip
+        yield from self._symbols_unique()
+        for kind, name in self._all_names():
+            if not name or len(name) > _MAX_NAME or not name.isprintable():
+                yield Problem(
+                    f"{kind} with an unusable name", f"{name!r:.60}", f"1 to {_MAX_NAME} printable characters",
+                    "rename it", self.where(kind, name),
+                )  # fmt: skip
+
+    def _all_names(self) -> Iterator[tuple[str, str]]:
+        yield "system", self.system.name
+        for body in self.system.bodies:
+            yield "body", body.name
+            for frame in body.frames:
+                yield "frame", frame.name
+        for joint in self.joints:
+            yield "joint", joint.name
+
+    def _unique(self, kind: str, names: list[str], owner: str = "") -> Iterator[Problem]:
+        on = f" on body '{owner}'" if owner else ""
+        for name, count in Counter(names).items():
+            if count > 1:
+                yield Problem(
+                    f"{kind} '{name}' appears {count} times{on}", f"{count} of them", f"names of {kind}s are unique{on}",
+                    "rename all but one", self.where(kind, *([owner] if owner else []), name),
+                )  # fmt: skip
+
+    def _symbols_unique(self) -> Iterator[Problem]:
+        """Parameters, inputs, coordinates and speeds share the name space of formulas."""
+        taken: dict[str, str] = {TIME: "the time", **dict.fromkeys(CONSTANTS, "a constant")}
+        taken |= dict.fromkeys(FUNCTIONS, "a function")
+        stated = [("parameter", item.name) for item in self.system.parameters]
+        stated += [("input", item.name) for item in self.system.inputs]
+        for kind, name in stated:
+            if not _IDENTIFIER.match(name):
+                yield Problem(
+                    f"{kind} '{name:.60}': not a legal name", repr(name)[:60],
+                    "a letter or underscore, then letters, digits, underscores", "rename it", self.where(kind, name),
+                )  # fmt: skip
+            elif name in taken:
+                yield Problem(
+                    f"{kind} '{name}': the name is taken", f"'{name}' is also {taken[name]}",
+                    "names that formulas use are unique", "rename one of them", self.where(kind, name),
+                )  # fmt: skip
+            taken.setdefault(name, f"a {kind}" if kind == "parameter" else "an input")
+        for joint in self.joints:
+            for role, names in (("coordinate", coordinate_names(joint)), ("speed", speed_symbols(joint))):
+                for name in names:
+                    if taken.get(name, "a coordinate") not in ("a coordinate", "a speed"):
+                        yield Problem(
+                            f"joint '{joint.name}': the name of its {role} is taken",
+                            f"'{name}' is also {taken[name]}", "names that formulas use are unique",
+                            "rename the joint or the other", self.where("joint", joint.name),
+                        )  # fmt: skip
+
+    # The tree.
+
+    def structure(self) -> Iterator[Problem]:
+        if self.extra_bases:
+            names = ", ".join(f"'{body.name}'" for body in [self.base, *self.extra_bases])
+            yield Problem(
+                f"two bases: bodies {names} have no joint", names,
+                "one body at most has no joint, and is the base; every other is connected by its joint",
+                "give the others a joint (kind: free for one that floats)",
+                self.where("body", self.extra_bases[0].name),
+            )  # fmt: skip
+        for body in self.system.bodies:
+            if body.joint is not None:
+                yield from self._joint(body, body.joint)
+        yield from self._cycles()
+        moving = [joint for joint in self.joints if joint.kind != "fixed"]
+        if not moving and not self.broken:
+            yield Problem(
+                f"system '{self.system.name}': nothing moves", f"{len(self.system.bodies)} bodies, no moving joint",
+                "a model has at least one joint that is not fixed", "add a joint; floating_base=True frees a URDF root",
+            )  # fmt: skip
+
+    def _joint(self, body: RigidBody, joint: Joint) -> Iterator[Problem]:
+        where = self.where("joint", joint.name)
+        parent = self.base if joint.parent in (WORLD, self.base.name) else self.bodies.get(joint.parent)
+        if parent is None:
+            if joint.parent not in self.broken:
+                yield Problem(
+                    f"body '{body.name}' is disconnected: joint '{joint.name}' names a parent that does not exist",
+                    f"parent '{joint.parent}'", "a joint's parent is a body of the system, or 'world'",
+                    did_you_mean(joint.parent, [WORLD, *self.bodies]), where,
+                )  # fmt: skip
+        elif joint.frame is not None and joint.frame not in {frame.name for frame in parent.frames}:
+            frames = [frame.name for frame in parent.frames]
+            yield Problem(
+                f"joint '{joint.name}': frame '{joint.frame}' is not on body '{parent.name}'",
+                ", ".join(frames) or "no frames", "a joint sits in a named frame of its parent, or in its body frame",
+                did_you_mean(joint.frame, frames) or "add the frame, or drop the entry", where,
+            )  # fmt: skip
+        nv = JOINT_SIZES[joint.kind][1]
+        if joint.effort and len(joint.effort) != nv:
+            yield Problem(
+                f"joint '{joint.name}': wrong number of efforts", f"{len(joint.effort)} efforts",
+                f"a {joint.kind} joint has {nv} speeds, and one effort for each",
+                "list one formula a speed, 0 where there is none", where,
+            )  # fmt: skip
+        if joint.actuated and nv == 0:
+            yield Problem(f"joint '{joint.name}': a fixed joint is actuated", "actuated: true",
+                          "only a joint that moves can be actuated", "drop the entry", where)  # fmt: skip
+        limits = joint.limits
+        if limits and limits.lower is not None and limits.upper is not None and limits.lower > limits.upper:
+            yield Problem(f"joint '{joint.name}': limits crossed", f"lower {limits.lower}, upper {limits.upper}",
+                          "lower <= upper", "swap them", where)  # fmt: skip
+
+    def _cycles(self) -> Iterator[Problem]:
+        """Follow each body's parents; a body met again on the same walk is on a cycle."""
+        done: set[str] = {self.base.name, WORLD}
+        for start in self.bodies:
+            walk: list[str] = []
+            name = start
+            while name in self.bodies and name not in done and name not in walk:
+                walk.append(name)
+                joint = self.bodies[name].joint
+                name = joint.parent if joint is not None else WORLD
+            if name in walk:
+                loop = walk[walk.index(name) :]
+                yield Problem(
+                    f"cycle of joints: bodies {' -> '.join([*loop, name])} carry each other",
+                    f"{len(loop)} bodies", "joints form a tree that starts at the base",
+                    "cut the loop at one joint and close it with a closure", self.where("body", name),
+                )  # fmt: skip
+            done.update(walk)
+
+    # Formulas.
+
+    def formulas(self) -> Iterator[Problem]:
+        parameters = {parameter.name for parameter in self.system.parameters}
+        moving = set(parameters) | {item.name for item in self.system.inputs} | {TIME}
+        for joint in self.joints:
+            moving |= {*coordinate_names(joint), *speed_symbols(joint)}
+        for what, value, where, is_effort in self._values():
+            known = moving if is_effort else parameters
+            for name in sorted(symbols(value) - known - self.broken):
+                if name in moving:
+                    yield Problem(
+                        f"{what}: '{name}' may not be used here", f"'{value}'",
+                        "geometry, inertia and gravity depend on parameters only", "", where,
+                    )  # fmt: skip
+                else:
+                    yield Problem(
+                        f"{what}: unknown symbol '{name}'", f"'{value}'",
+                        "a formula uses names that the description declares",
+                        did_you_mean(name, known) if known else f"declare it under parameters: {name}", where,
+                    )  # fmt: skip
+
+    def _values(self) -> Iterator[tuple[str, Value, str, bool]]:
+        """Every value of the description: what it is, the value, where it stands, whether it is an effort."""
+        system = self.system
+        for value in system.gravity:
+            yield f"system '{system.name}': gravity", value, self.where("system"), False
+        for body in system.bodies:
+            if body.joint is not None:
+                joint = body.joint
+                where = self.where("joint", joint.name)
+                for label, values in (("position", joint.position), ("rotation", joint.rotation), ("axis", joint.axis)):
+                    for value in values:
+                        yield f"joint '{joint.name}': {label}", value, where, False
+                for value in joint.effort:
+                    yield f"joint '{joint.name}': effort", value, where, True
+            for label, value in _inertia_values(body):
+                yield f"body '{body.name}': {label}", value, self.where("body", body.name), False
+            for frame in body.frames:
+                for value in (*frame.position, *frame.rotation):
+                    what = f"frame '{frame.name}' of body '{body.name}'"
+                    yield what, value, self.where("frame", body.name, frame.name), False
+
+    def values(self, numbers: Numbers) -> Iterator[Problem]:
+        """That every value is a finite number, every rotation a rotation, every axis a direction."""
+        for what, value, where, is_effort in self._values():
+            if not is_effort:
+                yield from numbers.value_problems(what, value, where)
+        for body in self.system.bodies:
+            for what, rotation, where in self._rotations(body):
+                yield from numbers.rotation_problems(what, rotation, where)
+            if body.joint is not None and body.joint.kind in ("revolute", "continuous", "prismatic"):
+                yield from numbers.axis_problems(body.joint, self.where("joint", body.joint.name))
+
+    def _rotations(self, body: RigidBody) -> Iterator[tuple[str, object, str]]:
+        if body.joint is not None:
+            joint = body.joint
+            yield f"joint '{joint.name}': rotation", joint.rotation, self.where("joint", joint.name)
+        if body.inertia is not None:
+            yield f"body '{body.name}': inertia rotation", body.inertia.rotation, self.where("body", body.name)
+        for frame in body.frames:
+            what = f"frame '{frame.name}' of body '{body.name}': rotation"
+            yield what, frame.rotation, self.where("frame", body.name, frame.name)
+
+
+def _inertia_values(body: RigidBody) -> Iterable[tuple[str, Value]]:
+    if body.inertia is None:
+        return
+    inertia = body.inertia
+    yield "mass", inertia.mass
+    for label, values in (
+        ("center_of_mass", inertia.center_of_mass),
+        ("inertia", inertia.moments),
+        ("inertia rotation", inertia.rotation),
+    ):
+        for value in values:
+            yield label, value

@@ -1,0 +1,183 @@
+"""SpanningTree: the checked system as numbered links, with fixed bodies merged into the links that carry them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from symofros.description.system import WORLD, Inertia, Joint, RigidBody, System
+from symofros.description.values import Rotation, Vector
+from symofros.topology.coordinates import JOINT_SIZES, CoordinateMap, map_coordinates
+
+BASE = -1
+
+
+class Step(NamedTuple):
+    """One constant displacement: from a frame to the next, stated in the first."""
+
+    position: Vector
+    rotation: Rotation
+
+
+Placement = tuple[Step, ...]
+
+
+@dataclass(frozen=True)
+class Link:
+    """A body that moves, with everything rigidly attached to it.
+
+    Attributes:
+        name: Of the body whose frame is the link's.
+        joint: What carries it.
+        parent: Index of the parent link, or BASE.
+        placement: From the parent's frame to the joint's proximal frame P.
+        inertias: Of the body and of the bodies fixed to it, each with where it sits.
+        q: Its slice of q, as (start, size).
+        v: Its slice of v, as (start, size).
+    """
+
+    name: str
+    joint: Joint
+    parent: int
+    placement: Placement
+    inertias: tuple[tuple[Placement, Inertia], ...]
+    q: tuple[int, int]
+    v: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class NamedFrame:
+    """A frame that can be asked for.
+
+    Attributes:
+        name: Its public name: its own where that is unique in the system, otherwise "body.frame".
+        qualified: "body.frame", or the body's name for a body frame.
+        link: Index of the link it is on, or BASE.
+        placement: From the link's frame to it.
+    """
+
+    name: str
+    qualified: str
+    link: int
+    placement: Placement
+
+
+@dataclass(frozen=True)
+class SpanningTree:
+    """The mechanism as it is computed with.
+
+    Attributes:
+        system: What the user stated.
+        links: Moving bodies, depth first in the order of description; parents precede children.
+        frames: Every named frame.
+        coordinates: Which name has which index of q, v, u, par.
+    """
+
+    system: System
+    links: tuple[Link, ...]
+    frames: tuple[NamedFrame, ...]
+    coordinates: CoordinateMap
+
+    def ancestors(self, index: int) -> list[int]:
+        """The link and the links that carry it, tip to base."""
+        path = []
+        while index != BASE:
+            path.append(index)
+            index = self.links[index].parent
+        return path
+
+    def frame(self, name: str) -> NamedFrame:
+        """The frame of that public or qualified name.
+
+        Raises:
+            KeyError: There is none.
+        """
+        for frame in self.frames:
+            if name in (frame.name, frame.qualified):
+                return frame
+        raise KeyError(name)
+
+
+def build_tree(system: System) -> SpanningTree:
+    """Number a system that has been checked (`graph.check`).
+
+    Args:
+        system: Without problems; this function relies on it.
+    """
+    children: dict[str, list[RigidBody]] = {}
+    base_names = {WORLD} | {body.name for body in system.bodies if body.joint is None}
+    for body in system.bodies:
+        if body.joint is not None:
+            parent = WORLD if body.joint.parent in base_names else body.joint.parent
+            children.setdefault(parent, []).append(body)
+    base = next((body for body in system.bodies if body.joint is None), RigidBody(WORLD))
+    builder = _Builder(children)
+    builder.place(base, BASE, (), WORLD)
+    links = tuple(builder.links[i].freeze(builder.inertias[i]) for i in range(len(builder.links)))
+    return SpanningTree(system, links, _public_names(builder.frames), map_coordinates(system, [x.joint for x in links]))
+
+
+class _Draft(NamedTuple):
+    name: str
+    joint: Joint
+    parent: int
+    placement: Placement
+    q: tuple[int, int]
+    v: tuple[int, int]
+
+    def freeze(self, inertias: list[tuple[Placement, Inertia]]) -> Link:
+        return Link(self.name, self.joint, self.parent, self.placement, tuple(inertias), self.q, self.v)
+
+
+class _Builder:
+    def __init__(self, children: dict[str, list[RigidBody]]) -> None:
+        self.children = children
+        self.links: list[_Draft] = []
+        self.inertias: list[list[tuple[Placement, Inertia]]] = []
+        self.frames: list[tuple[str, str, int, Placement]] = []
+        self.nq = self.nv = 0
+
+    def place(self, body: RigidBody, link: int, placement: Placement, key: str) -> None:
+        """Put a body, and then what it carries, at a placement on a link; depth first without recursion."""
+        stack = [(body, link, placement, key)]
+        while stack:
+            body, link, placement, key = stack.pop()
+            if body.joint is not None and body.joint.kind != "fixed":
+                link, placement = self._add_link(body, body.joint, link, placement), ()
+            self._attach(body, link, placement)
+            frames = {frame.name: frame for frame in body.frames}
+            carried = []
+            for child in self.children.get(key, ()):
+                assert child.joint is not None
+                joint = child.joint
+                at = placement
+                if joint.frame is not None and joint.frame in frames:
+                    at = (*at, Step(frames[joint.frame].position, frames[joint.frame].rotation))
+                carried.append((child, link, (*at, Step(joint.position, joint.rotation)), child.name))
+            stack.extend(reversed(carried))
+
+    def _add_link(self, body: RigidBody, joint: Joint, parent: int, placement: Placement) -> int:
+        nq, nv = JOINT_SIZES[joint.kind]
+        self.links.append(_Draft(body.name, joint, parent, placement, (self.nq, nq), (self.nv, nv)))
+        self.inertias.append([])
+        self.nq, self.nv = self.nq + nq, self.nv + nv
+        return len(self.links) - 1
+
+    def _attach(self, body: RigidBody, link: int, placement: Placement) -> None:
+        if body.inertia is not None and link != BASE:
+            self.inertias[link].append((placement, body.inertia))
+        self.frames.append((body.name, body.name, link, placement))
+        for frame in body.frames:
+            at = (*placement, Step(frame.position, frame.rotation))
+            self.frames.append((frame.name, f"{body.name}.{frame.name}", link, at))
+
+
+def _public_names(found: list[tuple[str, str, int, Placement]]) -> tuple[NamedFrame, ...]:
+    count: dict[str, int] = {}
+    for own, _, _, _ in found:
+        count[own] = count.get(own, 0) + 1
+    # A body frame keeps the body's name; an extremity frame of that name is then the qualified one.
+    return tuple(
+        NamedFrame(own if count[own] == 1 or own == qualified else qualified, qualified, link, placement)
+        for own, qualified, link, placement in found
+    )
