@@ -1,27 +1,359 @@
 """The native file's shape as pydantic models: the reader validates with them, the JSON Schema is made from them.
 
-Each entry knows how to become its noun (`build`), so that a new field is added in one place. Rewrite the published
-schema after a change: `python -m symofros.description.schema`.
+Each entry knows how to become its noun (`build`), so that a new field is added in one file. After a change, rewrite
+the published schema: `python -m symofros.description.schema`.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainValidator,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 from typing_extensions import Self, TypeAliasType
 
 from symofros.description.parser import MAX_LENGTH
-from symofros.description.system import WAIVERS, WORLD, Frame, Inertia, Input, Joint, JointKind, Limits
-from symofros.description.system import Parameter, RigidBody
-from symofros.description.values import IDENTITY, ORIGIN, Rotation, RotationKind, Value, as_value
+from symofros.description.system import (
+    WAIVERS,
+    WORLD,
+    Frame,
+    Inertia,
+    Input,
+    Joint,
+    JointKind,
+    Limits,
+    Parameter,
+    RigidBody,
+    System,
+)
+from symofros.description.values import IDENTITY, Rotation, RotationKind, Value, as_value
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 VERSION = 1
 SCHEMA_FILE = Path(__file__).with_name("schema.json")
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+ROTATIONS: tuple[RotationKind, ...] = ("rpy", "axis_angle", "quaternion", "matrix")
+
+
+def default_joint_name(body: str) -> str:
+    """The name of a body's joint where the file gives none."""
+    return f"q_{body}"
+
+
+def _fault(problem: Problem) -> PydanticCustomError:
+    """A problem in the form that pydantic collects."""
+    parts = {"what": problem.what, "found": problem.found, "rule": problem.rule, "remedy": problem.remedy}
+    return PydanticCustomError("problem", "{what}", parts)
+
+
+def _value(stated: Any) -> Value:
+    try:
+        return as_value(stated)
+    except DescriptionError as error:
+        raise _fault(error.problems[0]) from None
+
+
+def _waiver(name: str) -> str:
+    if name not in WAIVERS:
+        raise _fault(Problem("unknown waiver", f"'{name}'", f"one of {', '.join(WAIVERS)}", did_you_mean(name, WAIVERS)))
+    return name
+
+
+def _moments(stated: Any) -> Any:
+    """A list of moments as the mapping that it abbreviates."""
+    if not isinstance(stated, list):
+        return stated
+    if len(stated) not in (3, 6):
+        rule = "three (Ixx, Iyy, Izz) or six (then Ixy, Ixz, Iyz)"
+        raise _fault(Problem("wrong number of entries", f"{len(stated)} entries", rule))
+    return dict(zip(MOMENTS, stated, strict=False))
+
+
+def _short_parameter(stated: Any) -> Any:
+    return {"value": stated} if isinstance(stated, (int, float)) and not isinstance(stated, bool) else stated
+
+
+def _listed(stated: Any) -> Any:
+    return stated if isinstance(stated, list) else [stated]
+
+
+def _reserved(stated: Any) -> None:
+    if stated:
+        raise _fault(
+            Problem("this version does not know this section yet", f"{len(_listed(stated))} entries",
+                    "the section is reserved for a later version of the format, and is empty until then", "remove it")
+        )  # fmt: skip
+
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+Text = Annotated[str, Field(max_length=10_000)]
+Formula = TypeAliasType(
+    "Formula",
+    Annotated[
+        Value,
+        PlainValidator(_value),
+        WithJsonSchema(
+            {
+                "description": "A number, or a formula such as 'L1/2 + 0.1*cos(q1)'.",
+                "anyOf": [{"type": "number"}, {"type": "string", "minLength": 1, "maxLength": MAX_LENGTH}],
+            }
+        ),
+    ],
+)
+Three = Annotated[list[Formula], Field(min_length=3, max_length=3)]
+Four = Annotated[list[Formula], Field(min_length=4, max_length=4)]
+Six = Annotated[list[Formula], Field(min_length=6, max_length=6)]
+Matrix = Annotated[list[Three], Field(min_length=3, max_length=3)]
+Waiver = Annotated[str, AfterValidator(_waiver), WithJsonSchema({"type": "string", "enum": [*WAIVERS]})]
+Reserved = Annotated[
+    None, PlainValidator(_reserved), WithJsonSchema({"description": "Reserved.", "enum": [None, [], {}]})
+]
+
+
+class Entry(BaseModel):
+    """A mapping of the file. Strict: no unknown keys, and a text is not taken for a number."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True)
+
+
+class RotationEntry(Entry):
+    """A constant rotation, in exactly one of four forms."""
+
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
+
+    rpy: Three | None = None
+    """Roll, pitch, yaw about fixed axes [rad]: Rz(yaw) Ry(pitch) Rx(roll), as in URDF."""
+    axis_angle: Four | None = None
+    """Axis x, y, z and the angle [rad]."""
+    quaternion: Four | None = None
+    """x, y, z, w: scalar last."""
+    matrix: Matrix | None = None
+    """Three rows of three."""
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Self:
+        given = [kind for kind in ROTATIONS if getattr(self, kind) is not None]
+        if len(given) != 1:
+            found = ", ".join(given) or "none of them"
+            raise _fault(Problem("not exactly one form", found, f"exactly one of {', '.join(ROTATIONS)}", "keep one"))
+        return self
+
+    def build(self) -> Rotation:
+        """The Rotation."""
+        if self.matrix is not None:
+            return Rotation.matrix(self.matrix)
+        kind, values = next((kind, values) for kind in ROTATIONS if (values := getattr(self, kind)) is not None)
+        return Rotation(kind, tuple(values))
+
+
+def _rotation(entry: RotationEntry | None) -> Rotation:
+    return entry.build() if entry else IDENTITY
+
+
+class MomentsEntry(Entry):
+    """Moments and products of inertia [kg m^2]; products with the sign they have in the matrix."""
+
+    ixx: Formula
+    iyy: Formula
+    izz: Formula
+    ixy: Formula = 0.0
+    ixz: Formula = 0.0
+    iyz: Formula = 0.0
+
+
+class InertiaEntry(Entry):
+    """Mass, mass centre and inertia matrix of a rigid body."""
+
+    mass: Formula
+    """[kg]"""
+    center_of_mass: Three = [0.0, 0.0, 0.0]
+    """From the body's origin, in the body frame [m]."""
+    moments: Annotated[
+        MomentsEntry, BeforeValidator(_moments, json_schema_input_type=Three | Six | MomentsEntry)
+    ] | None = None  # fmt: skip
+    """Ixx, Iyy, Izz and, if not zero, Ixy, Ixz, Iyz [kg m^2]."""
+    about: Literal["center_of_mass", "body"] = "center_of_mass"
+    """The point the moments are about; with `body`, they are along the body's axes."""
+    rotation: RotationEntry | None = None
+    """From the body frame to the axes of the moments; only with about: center_of_mass."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        try:
+            self.build()
+        except DescriptionError as error:
+            raise _fault(error.problems[0]) from None
+        return self
+
+    def build(self) -> Inertia:
+        """The Inertia."""
+        moments = [getattr(self.moments, name) for name in MOMENTS] if self.moments else [0.0] * 6
+        x, y, z = self.center_of_mass
+        xx, yy, zz, xy, xz, yz = moments
+        return Inertia(self.mass, (x, y, z), (xx, yy, zz, xy, xz, yz), self.about, _rotation(self.rotation))
+
+
+class LimitsEntry(Entry):
+    """Bounds of a one-coordinate joint: data, not forces."""
+
+    lower: Number | None = None
+    upper: Number | None = None
+    velocity: Number | None = None
+    effort: Number | None = None
+
+    def build(self) -> Limits:
+        """The Limits."""
+        return Limits(self.lower, self.upper, self.velocity, self.effort)
+
+
+class JointEntry(Entry):
+    """How a body moves on its parent."""
+
+    name: Name | None = None
+    """Also the name of the coordinate; `q_` and the body's name if not given."""
+    kind: JointKind
+    parent: Name = WORLD
+    """The body that carries this one; `world` is the ground."""
+    frame: Name | None = None
+    """The parent's frame that the joint sits in; its body frame if not given."""
+    position: Three = [0.0, 0.0, 0.0]
+    """From that frame's origin, in that frame [m]."""
+    rotation: RotationEntry | None = None
+    """From that frame to the joint's."""
+    axis: Three = [0.0, 0.0, 1.0]
+    """Of a revolute, continuous or prismatic joint, in the joint's frame."""
+    actuated: bool = False
+    """Adds an input for each speed: an effort on the joint."""
+    effort: Annotated[
+        list[Formula], Field(max_length=6), BeforeValidator(_listed, json_schema_input_type=list[Formula] | Formula)
+    ] = []  # fmt: skip
+    """One formula a speed, of inputs, parameters, coordinates, speeds (`dq1`) and `t` [N m or N]."""
+    limits: LimitsEntry | None = None
+
+    def build(self, body: str) -> Joint:
+        """The Joint of that body."""
+        name = default_joint_name(body) if self.name is None else self.name
+        (x, y, z), (a, b, c) = self.position, self.axis
+        return Joint(name, self.kind, self.parent, self.frame, (x, y, z), _rotation(self.rotation), (a, b, c),
+                     self.actuated, tuple(self.effort), self.limits.build() if self.limits else None)  # fmt: skip
+
+
+class FrameEntry(Entry):
+    """A frame fixed on a body."""
+
+    position: Three = [0.0, 0.0, 0.0]
+    """From the body's origin, in the body frame [m]."""
+    rotation: RotationEntry | None = None
+    """From the body frame to this one."""
+
+    def build(self, name: str) -> Frame:
+        """The Frame of that name."""
+        x, y, z = self.position
+        return Frame(name, (x, y, z), _rotation(self.rotation))
+
+
+class BodyEntry(Entry):
+    """A rigid body and the joint that carries it; without a joint it is the base."""
+
+    joint: JointEntry | None = None
+    inertia: InertiaEntry | None = None
+    """A body without one is massless."""
+    frames: Annotated[dict[Name, FrameEntry | None], Field(max_length=1000)] | None = None
+    waive: list[Waiver] = []
+    """Checks that this body is allowed to fail."""
+
+    def build(self, name: str) -> RigidBody:
+        """The RigidBody of that name."""
+        frames = tuple((entry or FrameEntry()).build(frame) for frame, entry in (self.frames or {}).items())
+        return RigidBody(
+            name,
+            self.joint.build(name) if self.joint else None,
+            self.inertia.build() if self.inertia else None,
+            frames,
+            frozenset(self.waive),
+        )
+
+
+class ParameterEntry(Entry):
+    """A named number, given at run time unless constant."""
+
+    value: Number
+    unit: Text = ""
+    constant: bool = False
+    """Hard-coded in the C code."""
+    description: Text = ""
+
+    def build(self, name: str) -> Parameter:
+        """The Parameter of that name."""
+        return Parameter(name, float(self.value), self.unit, self.constant, self.description)
+
+
+class InputEntry(Entry):
+    """A named input, for formulas of efforts."""
+
+    unit: Text = ""
+    description: Text = ""
+
+    def build(self, name: str) -> Input:
+        """The Input of that name."""
+        return Input(name, self.unit, self.description)
+
+
+class SystemEntry(Entry):
+    """What concerns the whole."""
+
+    name: Name | None = None
+    """Of the model; the file's name if not given."""
+    gravity: Three = [0.0, 0.0, -9.81]
+    """Acceleration of gravity in the world frame [m/s^2]."""
+
+
+ShortParameter = Annotated[
+    ParameterEntry, BeforeValidator(_short_parameter, json_schema_input_type=Number | ParameterEntry)
+]
+
+
+class NativeFile(Entry):
+    """A SYMOFROS model file, or a part that others include."""
+
+    symofros: Literal[1]
+    """Version of the format."""
+    include: Annotated[list[Name], Field(max_length=100)] | None = None
+    """Files to merge, relative to this one and inside the main file's folder."""
+    system: SystemEntry | None = None
+    parameters: Annotated[dict[Name, ShortParameter], Field(max_length=100_000)] | None = None
+    inputs: Annotated[dict[Name, InputEntry | None], Field(max_length=10_000)] | None = None
+    bodies: Annotated[dict[Name, BodyEntry | None], Field(max_length=10_000)] | None = None
+    """In order: coordinates are numbered depth first in this order."""
+    closures: Reserved = None
+    nonholonomic: Reserved = None
+    options: Reserved = None
+
+
+@cache
+def json_schema() -> dict[str, Any]:
+    """The JSON Schema of the native file."""
+    schema = NativeFile.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def schema_text() -> str:
+    """The JSON Schema as it is published."""
+    return json.dumps(json_schema(), indent=2) + "\n"
+
+
+if __name__ == "__main__":
+    SCHEMA_FILE.write_text(schema_text(), encoding="utf-8")

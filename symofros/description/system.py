@@ -190,13 +190,13 @@ class RigidBody:
     joint: Joint | None = None
     inertia: Inertia | None = None
     frames: tuple[Frame, ...] = ()
-    waive: frozenset[str] = frozenset()
+    waive: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Freeze the collections and check the waivers."""
         object.__setattr__(self, "frames", tuple(self.frames))
-        object.__setattr__(self, "waive", frozenset(self.waive))
-        for unknown in sorted(self.waive - WAIVERS.keys()):
+        object.__setattr__(self, "waive", tuple(sorted(set(self.waive))))
+        for unknown in sorted(set(self.waive) - WAIVERS.keys()):
             raise DescriptionError(
                 Problem(f"body '{self.name}': unknown waiver", f"'{unknown}'", f"one of {', '.join(WAIVERS)}",
                         did_you_mean(unknown, WAIVERS))
@@ -222,7 +222,7 @@ class System:
     parameters: tuple[Parameter, ...] = ()
     inputs: tuple[Input, ...] = ()
     gravity: Vector = (0.0, 0.0, -9.81)
-    notes: tuple[str, ...] = field(default=(), compare=False)
+    notes: tuple[str, ...] = field(default=(), compare=False, repr=False)
     origin: Mapping[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
 
     def __post_init__(self) -> None:

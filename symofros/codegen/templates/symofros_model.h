@@ -34,8 +34,9 @@ extern "C" {
 /* cdef begin: what bindings read */
 typedef struct sym_array {
     const char *name; /* "q", "M", ... */
-    int32_t rows;     /* entries = rows * cols */
-    int32_t cols;     /* 1 for a vector; 1 x 1 for a scalar */
+    int32_t rank;     /* 0 scalar, 1 vector, 2 matrix */
+    int32_t rows;     /* entries = rows * cols; both 1 for a scalar */
+    int32_t cols;     /* 1 for a vector */
 } sym_array;
 
 typedef struct sym_function {

@@ -1,0 +1,139 @@
+"""One function of a program -> C text, in chunks of bounded length that pass values through `work`.
+
+Compilers are superlinear in the length of a function; a chunk is compiled by itself, at the same speed of the result.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from symofros.codegen.statements import Statement, StatementWriter, Store
+from symofros.expr.evaluate import needed_nodes
+from symofros.expr.program import Output, Program
+
+MAX_STATEMENTS = 1000
+_ARRAY = re.compile(r"\b(\w+)\[")
+# Clear an output at once when at least this share of its entries is zero.
+_SPARSE = 0.25
+
+
+@dataclass(frozen=True)
+class FunctionText:
+    """C text of one function.
+
+    Attributes:
+        code: Definitions of its chunks and of the function that calls them.
+        work: Doubles of scratch it needs.
+    """
+
+    code: str
+    work: int
+
+
+class FunctionWriter:
+    """Writes one function.
+
+    Args:
+        program: Staged.
+        c_name: Of the C function.
+        inputs: Names of the input arrays, in order.
+        outputs: What to store, in order.
+        given: Whether parameter-only values are read from `pre` (false for the init function itself).
+    """
+
+    def __init__(
+        self, program: Program, c_name: str, inputs: Sequence[str], outputs: Sequence[Output], given: bool = True
+    ) -> None:
+        self.c_name = c_name
+        self.inputs = tuple(inputs)
+        self.outputs = tuple(outputs)
+        edges = [edge for output in outputs for edge in output.edges]
+        pre = program.pre if given else {}
+        stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
+        self.writer = StatementWriter(program.graph, needed_nodes(program.graph, edges, pre), pre, stores)
+        statements = self.writer.statements()
+        count = max(1, -(-len(statements) // MAX_STATEMENTS))
+        size = -(-len(statements) // count) if statements else 1
+        self.chunks = [statements[i : i + size] for i in range(0, len(statements), size)] or [[]]
+        self.slots = _allocate(self.chunks)
+        self.work = max(self.slots.values(), default=-1) + 1
+
+    def text(self) -> FunctionText:
+        """The C text: chunk functions, then the function that unpacks pointers and calls them."""
+        parts = [self._chunk(i) for i in range(len(self.chunks))]
+        body = [f"    const double *restrict {name} = in[{i}];" for i, name in enumerate(self.inputs)]
+        body += [f"    double *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
+        body += [line for output in self.outputs for line in self._clear(output)]
+        arguments = ", ".join([*self.inputs, *(output.name for output in self.outputs), "work"])
+        body += [f"    {self.c_name}_{i}({arguments});" for i in range(len(self.chunks))]
+        head = f"static void {self.c_name}(const double *const *in, double *const *out, double *restrict work) {{"
+        return FunctionText("\n".join([*parts, head, *body, "}"]), self.work)
+
+    def _clear(self, output: Output) -> list[str]:
+        zeros = [i for i, edge in enumerate(output.edges) if edge == 0]
+        if not zeros:
+            return []
+        if len(zeros) >= _SPARSE * len(output.edges) and len(zeros) > 4:
+            return [f"    memset({output.name}, 0, {len(output.edges)} * sizeof *{output.name});"]
+        return [f"    {output.name}[{i}] = 0.0;" for i in zeros]
+
+    def _chunk(self, index: int) -> str:
+        statements = self.chunks[index]
+        local = {statement.node for statement in statements}
+        crossing = dict.fromkeys(n for statement in statements for n in statement.reads if n not in local)
+        lines = [f"    const double {self.writer.name(node)} = work[{self.slots[node]}];" for node in crossing]
+        for statement in statements:
+            lines += self._lines(statement)
+        names = [*self.inputs, *(output.name for output in self.outputs), "work"]
+        text = "\n".join(lines)
+        used = set(_ARRAY.findall(text))
+        lines = [f"    (void){name};" for name in names if name not in used] + ([text] if text else [])
+        arguments = [f"const double *restrict {name}" for name in self.inputs]
+        arguments += [f"double *restrict {output.name}" for output in self.outputs] + ["double *restrict work"]
+        # A single chunk may be inlined into its caller; several must stay apart.
+        kind = "static SYM_NOINLINE" if len(self.chunks) > 1 else "static"
+        return "\n".join([f"{kind} void {self.c_name}_{index}({', '.join(arguments)}) {{", *lines, "}"])
+
+    def _lines(self, statement: Statement) -> list[str]:
+        writer, node = self.writer, statement.node
+        stored = [f"    {store.array}[{store.index}] = {self._stored(store)};" for store in statement.stores]
+        if node == 0:
+            return stored
+        lines = [f"    const double {writer.name(node)} = {writer.operation(node)};"]
+        if node in self.slots:
+            lines.append(f"    work[{self.slots[node]}] = {writer.name(node)};")
+        return lines + stored
+
+    def _stored(self, store: Store) -> str:
+        return self.writer.text(store.edge)
+
+
+def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
+    """Work slots for values that cross from one chunk into another; slots are reused once their value is dead."""
+    made: dict[int, int] = {}
+    last: dict[int, int] = {}
+    for i, chunk in enumerate(chunks):
+        for statement in chunk:
+            if statement.node:
+                made[statement.node] = i
+            for node in statement.reads:
+                last[node] = i
+    slots: dict[int, int] = {}
+    free: list[int] = []
+    ends: dict[int, list[int]] = {}
+    count = 0
+    for i, chunk in enumerate(chunks):
+        # A slot is free in the chunk after its value's last use, since that chunk loads before it stores.
+        free += ends.pop(i - 1, [])
+        for statement in chunk:
+            node = statement.node
+            if node and last.get(node, i) > i:
+                if not free:
+                    free.append(count)
+                    count += 1
+                slots[node] = free.pop()
+                ends.setdefault(last[node], []).append(slots[node])
+    return slots
+

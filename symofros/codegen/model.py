@@ -1,0 +1,150 @@
+"""Program + ModelRecord -> one C file, by filling a template with finished strings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cache
+from importlib.resources import files
+from string import Template
+
+from symofros.codegen.function import FunctionText, FunctionWriter
+from symofros.codegen.names import c_string, identifier
+from symofros.expr.program import Function, Output, Program
+from symofros.passes.count import count_program
+from symofros.runtime.record import ModelRecord
+
+_INIT = "init_par"
+
+
+@cache
+def template(name: str) -> str:
+    """A file of the template folder."""
+    return (files("symofros.codegen") / "templates" / name).read_text(encoding="utf-8")
+
+
+def model_source(program: Program, record: ModelRecord, generator: str) -> str:
+    """The C file of a program.
+
+    Args:
+        program: Staged.
+        record: Names and defaults.
+        generator: Name and version of what wrote it.
+    """
+    name = identifier(record.name)
+    texts = [_init_function(program, name)]
+    rows = []
+    for i, function in enumerate(program.functions):
+        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}")
+        texts.append(text)
+        rows.append(row)
+    counts = count_program(program)
+    lines = [f" *   {' of '.join(filter(None, key)):<24}{count}" for key, count in counts.items()]
+    return Template(template("model.c.in")).substitute(
+        title=_comment(record.name),
+        generator=generator,
+        hash=record.hash,
+        operations=_comment("\n".join(lines)),
+        functions="\n\n".join(texts),
+        tables="\n".join([*(table for table, _ in rows), _function_table(name, [row for _, row in rows])]),
+        n_functions=len(rows),
+        c_name=name,
+        name=c_string(record.name),
+        nq=len(record.q_names),
+        nv=len(record.v_names),
+        nu=len(record.u_names),
+        npar=len(record.par_names),
+        nc=record.nc,
+        npre=len(program.init),
+        q_names=_strings(record.q_names),
+        v_names=_strings(record.v_names),
+        u_names=_strings(record.u_names),
+        par_names=_strings(record.par_names),
+        par_default=_numbers(record.par_default),
+        q_neutral=_numbers(record.q_neutral),
+    )
+
+
+def _init_function(program: Program, name: str) -> str:
+    """par -> pre, behind the plain signature of the struct's `init`."""
+    writer = FunctionWriter(program, f"{name}_init", ["par"], [Output("pre", (len(program.init),), program.init)], False)
+    text = writer.text()
+    lines = [
+        f"static void {name}_{_INIT}(const double *par, double *pre) {{",
+        f"    double work[{max(1, text.work)}];",
+        "    const double *in[1];",
+        "    double *out[1];",
+        "    in[0] = par;",
+        "    out[0] = pre;",
+        f"    {name}_init(in, out, work);",
+        "}",
+    ]
+    return "\n".join([text.code, *lines])
+
+
+def _one_function(program: Program, function: Function, c_name: str) -> tuple[str, tuple[str, str]]:
+    """Code, and (tables of its arrays, row of the function table)."""
+    inputs = ["pre", *function.inputs]
+    text = FunctionWriter(program, c_name, inputs, function.outputs).text()
+    code = "\n".join([text.code, _batch(c_name, function, len(inputs))])
+    arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)
+    arrays_out = ", ".join(f'{{"{o.name}", {len(o.shape)}, {_rows(o)}, {_columns(o)}}}' for o in function.outputs)
+    tables = (
+        f"static const sym_array {c_name}_in[] = {{{arrays_in}}};\n"
+        f"static const sym_array {c_name}_out[] = {{{arrays_out}}};"
+    )
+    return code, (tables, _row(function, c_name, len(inputs), text))
+
+
+def _row(function: Function, c_name: str, n_in: int, text: FunctionText) -> str:
+    frame = c_string(function.frame) if function.frame else "NULL"
+    return (
+        f"    {{{c_string(function.name)}, {frame}, {n_in}, {len(function.outputs)}, {c_name}_in, {c_name}_out, "
+        f"{text.work}, {c_name}, {c_name}_batch}}"
+    )
+
+
+def _batch(c_name: str, function: Function, n_in: int) -> str:
+    """The loop over states."""
+    n_out = len(function.outputs)
+    lines = [
+        f"static void {c_name}_batch(size_t n, const double *const *in, const size_t *in_stride, double *const *out,",
+        "    double *work) {",
+        f"    const double *x[{n_in}];",
+        f"    double *y[{n_out}];",
+        "    size_t i;",
+        f"    memcpy(x, in, {n_in} * sizeof *x);",
+        f"    memcpy(y, out, {n_out} * sizeof *y);",
+        "    for (i = 0; i < n; ++i) {",
+        f"        {c_name}((const double *const *)x, y, work);",
+        *(f"        x[{k}] += in_stride[{k}];" for k in range(n_in)),
+        *(f"        y[{k}] += {len(o.edges)};" for k, o in enumerate(function.outputs)),
+        "    }",
+        "}",
+    ]
+    return "\n".join(lines)
+
+
+def _function_table(name: str, rows: Sequence[str]) -> str:
+    return f"static const sym_function {name}_functions[] = {{\n" + ",\n".join(rows) + "\n};"
+
+
+def _rows(output: Output) -> int:
+    return output.shape[0] if output.shape else 1
+
+
+def _columns(output: Output) -> int:
+    return output.shape[1] if len(output.shape) > 1 else 1
+
+
+def _strings(names: Iterable[str]) -> str:
+    # C has no empty arrays; sizes say how many entries count.
+    return ", ".join(map(c_string, names)) or "NULL"
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return ", ".join(map(repr, values)) or "0.0"
+
+
+def _comment(text: str) -> str:
+    """Text that can't end a C comment, in ASCII."""
+    return text.replace("*/", "* /").replace("/*", "/ *").encode("ascii", "replace").decode()

@@ -1,0 +1,151 @@
+"""Nodes -> C statements: a value used once stands where it is used, every other has a variable.
+
+Neither choice changes a bit of the result: C evaluates the parenthesised text as the graph states it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from symofros.codegen.names import local_name
+from symofros.expr.graph import Edge, Graph, Slot
+from symofros.expr.ops import ADD, DIV, MUL, OPS
+
+# Operations per statement at most: long lines help neither people nor compilers.
+_MAX_INLINE = 8
+
+
+@dataclass(frozen=True)
+class Store:
+    """An output entry: array name, index, edge."""
+
+    array: str
+    index: int
+    edge: Edge
+
+
+@dataclass(frozen=True)
+class Statement:
+    """One C statement.
+
+    Attributes:
+        node: What it computes; 0 for a store alone.
+        stores: Output entries it fills.
+        reads: Nodes with variables that its text mentions.
+    """
+
+    node: int
+    stores: tuple[Store, ...]
+    reads: tuple[int, ...]
+
+
+class StatementWriter:
+    """Turns the nodes of one function into statements and their text.
+
+    Args:
+        graph: Of the program.
+        nodes: What the function computes, operands first.
+        given: Nodes to read from an input array instead.
+        stores: The function's outputs.
+    """
+
+    def __init__(self, graph: Graph, nodes: Sequence[int], given: Mapping[int, Slot], stores: Sequence[Store]) -> None:
+        self.graph = graph
+        self.given = given
+        self.stores = stores
+        self._inlined = self._choose_inlined(nodes, stores)
+        self._own = [node for node in nodes if node not in self._inlined]
+        self._names: dict[int, str] = {}
+
+    def _choose_inlined(self, nodes: Sequence[int], stores: Sequence[Store]) -> set[int]:
+        graph = self.graph
+        uses: dict[int, int] = {}
+        for node in nodes:
+            for arg in graph.args[node]:
+                uses[abs(arg)] = uses.get(abs(arg), 0) + 1
+        stored = {abs(store.edge) for store in stores}
+        size: dict[int, int] = {}
+        inlined: set[int] = set()
+        for node in nodes:
+            parts = [abs(arg) for arg in graph.args[node] if abs(arg) in inlined]
+            total = 1 + sum(size[part] for part in parts)
+            if total > _MAX_INLINE:
+                # The largest operand gets a variable of its own; the rest fits.
+                largest = max(parts, key=lambda part: size[part])
+                inlined.discard(largest)
+                total -= size[largest]
+            size[node] = total
+            # Function calls keep a variable, so that the sine and cosine of one angle are seen side by side.
+            if uses.get(node) == 1 and node not in stored and node not in graph.label and self._is_arithmetic(node):
+                inlined.add(node)
+        return inlined
+
+    def _is_arithmetic(self, node: int) -> bool:
+        return self.graph.op[node] in (ADD, MUL, DIV)
+
+    def statements(self) -> list[Statement]:
+        """The statements, operands first; each output is stored as soon as its value is known."""
+        waiting: dict[int, list[Store]] = {}
+        own = set(self._own)
+        result = []
+        for store in self.stores:
+            node = abs(store.edge)
+            if node in own:
+                waiting.setdefault(node, []).append(store)
+            elif node != 0:  # A number or an input; zeros are cleared at once.
+                result.append(Statement(0, (store,), ()))
+        for node in self._own:
+            reads = tuple(dict.fromkeys(self._mentioned(node)))
+            result.append(Statement(node, tuple(waiting.get(node, ())), reads))
+        return result
+
+    def _mentioned(self, node: int) -> Iterator[int]:
+        """Nodes with variables in the text of a node."""
+        stack = list(self.graph.args[node])
+        while stack:
+            arg = abs(stack.pop())
+            if arg in self._inlined:
+                stack.extend(self.graph.args[arg])
+            elif arg != 0 and arg not in self.given and arg not in self.graph.value and arg not in self.graph.slot:
+                yield arg
+
+    def name(self, node: int) -> str:
+        """The variable of a node."""
+        if node not in self._names:
+            label = self.graph.label.get(node)
+            self._names[node] = local_name(label, node) if label else f"t{node}"
+        return self._names[node]
+
+    def operation(self, node: int) -> str:
+        """The right-hand side of a node's statement."""
+        graph = self.graph
+        op, args = graph.op[node], graph.args[node]
+        if op == ADD:
+            a, b = args  # The first is positive by construction.
+            return f"{self._operand(a)} {'+' if b > 0 else '-'} {self._operand(abs(b), is_right=True)}"
+        if op in (MUL, DIV):
+            a, b = args  # Both are positive by construction.
+            return OPS[op].c.format(self._operand(a, is_factor=True), self._operand(b, is_factor=True, is_right=True))
+        return OPS[op].c.format(*map(self.text, args))
+
+    def _operand(self, node: int, is_factor: bool = False, is_right: bool = False) -> str:
+        """An operand's text, in parentheses where C would otherwise group or associate differently."""
+        if node not in self._inlined:
+            return self.text(node)
+        is_sum = self.graph.op[node] == ADD
+        needs = is_sum and (is_factor or is_right) or (is_factor and is_right)
+        return f"({self.operation(node)})" if needs else self.operation(node)
+
+    def text(self, edge: Edge) -> str:
+        """The text of an edge: a number, an input entry, a variable, or an inlined operation."""
+        node = abs(edge)
+        number = self.graph.number(edge)
+        if number is not None:
+            return repr(number)
+        slot = self.given.get(node) or self.graph.slot.get(node)
+        if slot is not None:
+            text = f"{slot.group}[{slot.index}]"
+        else:
+            text = f"({self.operation(node)})" if node in self._inlined else self.name(node)
+        return text if edge > 0 else f"-{text}"

@@ -1,0 +1,184 @@
+"""The pipeline on one page.
+
+| stage | from | to |
+|---|---|---|
+| graph.check | System | the same, or every error found |
+| build_tree | System | SpanningTree: numbered links, named frames, indices of q, v, u, par |
+| write_program | SpanningTree, requests | Program: named functions over one expression graph (Jourdain) |
+| run_passes | Program | Program: staged, verified |
+| model_source | Program | C text |
+| build_library | C text | shared library, cached by content |
+| Model | libraries, or programs | callable functions |
+"""
+
+from __future__ import annotations
+
+import hashlib
+import warnings
+from collections.abc import Callable, Iterable
+from functools import cache
+
+from symofros.codegen.interpreted import InterpretedUnit
+from symofros.codegen.model import model_source, template
+from symofros.codegen.names import identifier
+from symofros.description.system import System
+from symofros.dynamics.equations import Request, write_program
+from symofros.errors import CompilerMissingWarning, DescriptionError, Problem, UnknownNameError, did_you_mean
+from symofros.expr.program import Program
+from symofros.kinematics.joint import neutral_coordinates
+from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS, Options
+from symofros.passes import run_passes
+from symofros.runtime.build import build_library
+from symofros.runtime.kernel import Unit
+from symofros.runtime.library import CompiledUnit
+from symofros.runtime.model import Key, Model
+from symofros.runtime.record import ModelRecord, Segment, SegmentKind
+from symofros.runtime.toolchain import Toolchain, find_toolchain
+from symofros.topology.graph import check
+from symofros.topology.tree import SpanningTree, build_tree
+
+GENERATOR = "symofros 0.1.0"
+_EAGER = (Request("dynamics"), Request("forward_dynamics"))
+
+
+def compile_system(system: System, options: Options | None = None) -> Model:
+    """Derive a system's equations of motion, generate C, compile it, load it.
+
+    Args:
+        system: What the user stated.
+        options: What to generate and how; the defaults serve most.
+
+    Raises:
+        DescriptionError: The system can't be a mechanism; every problem is listed.
+        UnknownNameError: `options` names a function or frame that does not exist.
+        CompileError: The C compiler failed.
+    """
+    options = options or Options()
+    tree = plan(system)
+    requests = requested(tree, options)
+    record = describe(tree, options)
+    build = _builder(tree, record, options)
+    first = build(tuple(requests))
+    return Model(record, build if options.functions is None else None, (first,))
+
+
+def plan(system: System) -> SpanningTree:
+    """Check a system and number it.
+
+    Raises:
+        DescriptionError: With every problem found.
+    """
+    check(system)
+    return build_tree(system)
+
+
+def generate(tree: SpanningTree, requests: Iterable[Key], record: ModelRecord) -> tuple[Program, Callable[[], str]]:
+    """Requests -> optimised Program, and its C text on demand."""
+    program = run_passes(write_program(tree, [Request(*key) for key in requests]))
+    return program, lambda: model_source(program, record, GENERATOR)
+
+
+def _builder(tree: SpanningTree, record: ModelRecord, options: Options) -> Callable[[tuple[Key, ...]], Unit]:
+    """What turns requests into callable functions."""
+    toolchain = _choose_toolchain(options)
+
+    def build(requests: tuple[Key, ...]) -> Unit:
+        program, source = generate(tree, requests, record)
+        if toolchain is None:
+            return InterpretedUnit(program)
+        header = template("symofros_model.h")
+        path = build_library(source(), header, toolchain, options.flags)
+        return CompiledUnit(path, f"{identifier(record.name)}_model", header, record.hash)
+
+    return build
+
+
+def _choose_toolchain(options: Options) -> Toolchain | None:
+    """The compiler; None where the interpreter is asked for, or is all there is."""
+    if options.backend == "interpreter":
+        return None
+    toolchain = find_toolchain(options.compiler)
+    if toolchain is None:
+        warnings.warn(
+            "no C compiler found: models run on the NumPy interpreter, some thousand times slower."
+            " Install gcc or clang, or `pip install ziglang`.",
+            CompilerMissingWarning, stacklevel=4,
+        )  # fmt: skip
+    elif toolchain.is_fallback:
+        _warn_fallback()
+    return toolchain
+
+
+@cache
+def _warn_fallback() -> None:
+    """Once a process: that the slower-compiling fallback is in use."""
+    warnings.warn(
+        "no system C compiler found: using the ziglang package, which compiles more slowly. Install gcc or clang.",
+        CompilerMissingWarning, stacklevel=5,
+    )  # fmt: skip
+
+
+def requested(tree: SpanningTree, options: Options) -> list[Request]:
+    """The functions that options ask for at once.
+
+    Raises:
+        UnknownNameError: No such function or frame.
+    """
+    if options.functions is None:
+        return list(_EAGER)
+    known = MODEL_FUNCTIONS + FRAME_FUNCTIONS
+    for name in options.functions:
+        if name not in known:
+            raise UnknownNameError(f"no function '{name}' to generate\n  remedy: {did_you_mean(name, known)}")
+    frames = [frame.name for frame in tree.frames]
+    for name in options.frames or ():
+        if not any(name in (frame.name, frame.qualified) for frame in tree.frames):
+            raise UnknownNameError(f"system '{tree.system.name}': no frame '{name}'\n"
+                                   f"  remedy: {did_you_mean(name, frames)}")  # fmt: skip
+    wanted = [tree.frame(name).name for name in options.frames] if options.frames is not None else frames
+    requests = [Request(name) for name in options.functions if name in MODEL_FUNCTIONS]
+    requests += [Request(name, frame) for name in options.functions if name in FRAME_FUNCTIONS for frame in wanted]
+    if not requests:
+        raise DescriptionError(
+            Problem("options: nothing to generate", "no functions", "functions name at least one, and frames of it")
+        )
+    return requests
+
+
+def describe(tree: SpanningTree, options: Options) -> ModelRecord:
+    """What a model is besides its functions."""
+    names = tree.coordinates
+    lower, upper, neutral, periodic = [], [], [], []
+    for link in tree.links:
+        limits, n = link.joint.limits, link.q[1]
+        lower += [-float("inf") if limits is None or limits.lower is None else limits.lower] * n
+        upper += [float("inf") if limits is None or limits.upper is None else limits.upper] * n
+        neutral += neutral_coordinates(link.joint)
+        periodic += [link.joint.kind in ("revolute", "continuous")] * n
+    return ModelRecord(
+        name=tree.system.name,
+        hash=_hash(tree.system, options),
+        q_names=names.q, v_names=names.v, u_names=names.u, par_names=names.par,
+        frame_names=tuple(frame.name for frame in tree.frames),
+        frame_aliases={frame.qualified: frame.name for frame in tree.frames},
+        par_default=names.par_default,
+        q_neutral=tuple(neutral), q_lower=tuple(lower), q_upper=tuple(upper),
+        segments=_segments(tree), periodic=tuple(periodic),
+    )  # fmt: skip
+
+
+def _segments(tree: SpanningTree) -> tuple[Segment, ...]:
+    kinds: dict[str, SegmentKind] = {"ball": "quaternion", "free": "pose"}
+    segments: list[Segment] = []
+    for link in tree.links:
+        kind = kinds.get(link.joint.kind, "linear")
+        if kind == "linear" and segments and segments[-1].kind == "linear":
+            segments[-1] = segments[-1]._replace(size=segments[-1].size + link.q[1])
+        else:
+            segments.append(Segment(kind, link.q[0], link.v[0], link.q[1]))
+    return tuple(segments)
+
+
+def _hash(system: System, options: Options) -> str:
+    """Identity of a description under these options: dataclasses print every field, in order."""
+    return hashlib.sha256(repr((system, options, GENERATOR)).encode()).hexdigest()[:16]

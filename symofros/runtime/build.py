@@ -1,0 +1,76 @@
+"""C text -> shared library, cached by content.
+
+The key covers the C text, the header, flags, compiler and processor. A library is compiled in a private folder and
+renamed into place, so that concurrent processes and killed compilations never leave a broken one behind.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from symofros.errors import CompileError
+from symofros.runtime.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, cpu_identity
+
+_SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+_SHOWN_LINES = 12
+
+
+def cache_folder() -> Path:
+    """Where compiled models live: $SYMOFROS_CACHE, or symofros in the user's cache folder."""
+    stated = os.environ.get("SYMOFROS_CACHE")
+    if stated:
+        return Path(stated)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "symofros"
+
+
+def build_library(source: str, header: str, toolchain: Toolchain, flags: Sequence[str] | None = None) -> Path:
+    """The shared library of a C file, compiled unless it is in the cache.
+
+    Args:
+        source: Text of the C file.
+        header: Text of symofros_model.h.
+        toolchain: The compiler.
+        flags: In place of the default ones.
+
+    Raises:
+        CompileError: The compiler refused, with its command and words; or the cache folder can't be written.
+    """
+    chosen = tuple(DEFAULT_FLAGS if flags is None else flags)
+    parts = [source, header, *chosen, *SHARED_FLAGS, toolchain.identity, cpu_identity()]
+    key = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+    folder = cache_folder()
+    library = folder / f"{key}{_SUFFIX}"
+    if library.exists():
+        return library
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{key[:8]}-", dir=folder) as private:
+            _compile(Path(private), source, header, toolchain, chosen)
+            os.replace(Path(private) / "model.c", folder / f"{key}.c")
+            os.replace(Path(private) / f"model{_SUFFIX}", library)
+    except OSError as error:
+        raise CompileError(
+            f"the cache folder can't be used: {error}\n  found:  {folder}\n"
+            "  rule:   compiled models are kept in a folder that can be written\n"
+            "  remedy: set SYMOFROS_CACHE to such a folder"
+        ) from error
+    return library
+
+
+def _compile(private: Path, source: str, header: str, toolchain: Toolchain, flags: tuple[str, ...]) -> None:
+    (private / "symofros_model.h").write_text(header, encoding="utf-8")
+    (private / "model.c").write_text(source, encoding="utf-8")
+    command = [*toolchain.command, *flags, *SHARED_FLAGS, "-o", f"model{_SUFFIX}", "model.c", "-lm"]
+    done = subprocess.run(command, cwd=private, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        words = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
+        raise CompileError(
+            f"the C compiler failed with status {done.returncode}\n  command: {' '.join(command)}\n{words}\n"
+            "  remedy: check Options(flags=…) and the compiler; backend='interpreter' needs none"
+        )

@@ -1,0 +1,70 @@
+"""A function that can be called on batches of states, whatever computes it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Signature:
+    """What a function takes and returns.
+
+    Attributes:
+        name: Such as "mass_matrix".
+        frame: The frame it is about, or "".
+        inputs: (group, size) of each input but the parameters.
+        outputs: (name, shape) of each output.
+    """
+
+    name: str
+    frame: str
+    inputs: tuple[tuple[str, int], ...]
+    outputs: tuple[tuple[str, tuple[int, ...]], ...]
+
+
+class Kernel(Protocol):
+    """One function of a compiled or interpreted model."""
+
+    @property
+    def signature(self) -> Signature:
+        """What it takes and returns."""
+        ...
+
+    def prepare(self, par: Array) -> Array:
+        """The parameter-only part of the work.
+
+        Args:
+            par: Parameter sets (m, npar).
+
+        Returns:
+            (m, npre).
+        """
+        ...
+
+    def run(self, n: int, pre: Array, inputs: list[Array]) -> list[Array]:
+        """Evaluate n states.
+
+        Args:
+            n: Number of states.
+            pre: (n or 1, npre), from `prepare`.
+            inputs: Each (n or 1, size), C-contiguous, in the signature's order.
+
+        Returns:
+            One array an output, (n, *shape).
+        """
+        ...
+
+
+class Unit(Protocol):
+    """A group of functions that were generated together."""
+
+    @property
+    def kernels(self) -> dict[tuple[str, str], Kernel]:
+        """Functions by (name, frame)."""
+        ...

@@ -1,0 +1,128 @@
+"""A compiled library in the hand: its struct read, its functions callable without the interpreter lock."""
+
+from __future__ import annotations
+
+import re
+import threading
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import cffi
+import numpy as np
+
+from symofros.errors import CompileError
+from symofros.runtime.kernel import Array, Kernel, Signature
+
+_ABI = 1
+
+
+@cache
+def _interface(header: str) -> Any:
+    """The cffi interface of symofros_model.h: the part between its cdef marks."""
+    match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", header, re.DOTALL)
+    if match is None:
+        raise CompileError("symofros_model.h has lost its cdef marks")
+    ffi = cffi.FFI()
+    ffi.cdef(match.group(1))
+    return ffi
+
+
+class CompiledUnit:
+    """The functions of one shared library.
+
+    Args:
+        path: Of the library.
+        symbol: Its exported function, `NAME_model`.
+        header: Text of symofros_model.h.
+        expected_hash: What the struct must say.
+
+    Raises:
+        CompileError: It does not load, or is not what it should be.
+    """
+
+    def __init__(self, path: Path, symbol: str, header: str, expected_hash: str) -> None:
+        self.ffi = _interface(header)
+        try:
+            # A declaration a symbol: the interface itself is shared by all models.
+            declared = cffi.FFI()
+            declared.include(self.ffi)
+            declared.cdef(f"const sym_model *{symbol}(void);")
+            self._library = declared.dlopen(str(path))
+            self.model = getattr(self._library, symbol)()
+        except (OSError, AttributeError) as error:
+            raise CompileError(
+                f"the compiled model does not load: {error}\n  remedy: delete {path.name} from the cache folder"
+            ) from error
+        found = self.ffi.string(self.model.hash).decode()
+        if self.model.abi != _ABI or found != expected_hash:
+            raise CompileError(
+                f"the compiled model is another one\n  found:  abi {self.model.abi}, hash {found}\n"
+                f"  rule:   abi {_ABI}, hash {expected_hash}\n  remedy: delete {path.name} from the cache folder"
+            )
+        self._kernels: dict[tuple[str, str], Kernel] = {}
+        for i in range(self.model.n_functions):
+            kernel = CompiledKernel(self, self.model.functions[i])
+            self._kernels[kernel.signature.name, kernel.signature.frame] = kernel
+
+    @property
+    def kernels(self) -> dict[tuple[str, str], Kernel]:
+        """Functions by (name, frame)."""
+        return self._kernels
+
+    def prepare(self, par: Array) -> Array:
+        """Run the init function on each parameter set (m, npar) -> (m, npre)."""
+        par = np.ascontiguousarray(par, dtype=np.float64)
+        pre = np.empty((len(par), self.model.npre))
+        for row_in, row_out in zip(par, pre, strict=True):
+            self.model.init(self.ffi.from_buffer("double[]", row_in), self.ffi.from_buffer("double[]", row_out))
+        return pre
+
+
+class _Scratch(threading.local):
+    """Per-thread work arrays, so that threads may call one model at the same time."""
+
+    def __init__(self) -> None:
+        self.work: Any = None
+
+
+class CompiledKernel:
+    """One function of a library."""
+
+    def __init__(self, unit: CompiledUnit, function: Any) -> None:
+        self._unit = unit
+        self._function = function
+        self._scratch = _Scratch()
+        text = unit.ffi.string
+
+        def array(entry: Any) -> tuple[str, tuple[int, ...]]:
+            return text(entry.name).decode(), (entry.rows, entry.cols)[: entry.rank]
+
+        inputs = getattr(function, "in")  # A keyword of Python.
+        self.signature = Signature(
+            text(function.name).decode(),
+            text(function.frame).decode() if function.frame != unit.ffi.NULL else "",
+            tuple((name, shape[0]) for name, shape in map(array, inputs[1 : function.n_in])),
+            tuple(map(array, function.out[0 : function.n_out])),
+        )
+
+    def prepare(self, par: Array) -> Array:
+        """The parameter-only part of the work."""
+        return self._unit.prepare(par)
+
+    def run(self, n: int, pre: Array, inputs: list[Array]) -> list[Array]:
+        """Evaluate n states in a C loop."""
+        ffi, function = self._unit.ffi, self._function
+        outputs = [np.empty((n, *shape)) for _, shape in self.signature.outputs]
+        given = [pre, *inputs]
+        # from_buffer keeps each array alive for the duration of the call.
+        in_buffers = [ffi.from_buffer("double[]", x) for x in given]
+        out_buffers = [ffi.from_buffer("double[]", y) for y in outputs]
+        strides = [0 if x.shape[0] == 1 else x.shape[1] for x in given]
+        if self._scratch.work is None:
+            self._scratch.work = ffi.new("double[]", max(1, function.work))
+        function.batch(
+            n, ffi.new("double *[]", in_buffers), ffi.new("size_t[]", strides), ffi.new("double *[]", out_buffers),
+            self._scratch.work,
+        )  # fmt: skip
+        return outputs

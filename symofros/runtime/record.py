@@ -1,0 +1,74 @@
+"""What is known of a model besides its functions: sizes, names, defaults, the shape of its configuration space."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+SegmentKind = Literal["linear", "quaternion", "pose"]
+
+
+class Segment(NamedTuple):
+    """A run of coordinates of one kind.
+
+    Attributes:
+        kind: "linear" (q' = v), "quaternion" (ball joint) or "pose" (free joint: position and quaternion).
+        q: First index in q.
+        v: First index in v.
+        size: Number of coordinates, for "linear".
+    """
+
+    kind: SegmentKind
+    q: int
+    v: int
+    size: int
+
+
+@dataclass(frozen=True)
+class ModelRecord:
+    """The description of a compiled model that needs no symbols.
+
+    Attributes:
+        name: Of the system.
+        hash: Of description, options and generator.
+        q_names: Coordinates; likewise speeds, inputs, run-time parameters, frames.
+        frame_aliases: Qualified name -> public name of a frame.
+        par_default: Values of the run-time parameters.
+        q_neutral: A configuration on the manifold.
+        q_lower: Bounds to sample within (nq); infinite where there are none.
+        q_upper: Upper bounds, alike.
+        segments: The configuration manifold, in order.
+        periodic: Coordinates that are angles, so that unbounded ones are sampled in one turn.
+        nc: Number of constraints.
+    """
+
+    name: str
+    hash: str
+    q_names: tuple[str, ...]
+    v_names: tuple[str, ...]
+    u_names: tuple[str, ...]
+    par_names: tuple[str, ...]
+    frame_names: tuple[str, ...]
+    frame_aliases: dict[str, str]
+    par_default: tuple[float, ...]
+    q_neutral: tuple[float, ...]
+    q_lower: tuple[float, ...]
+    q_upper: tuple[float, ...]
+    segments: tuple[Segment, ...]
+    periodic: tuple[bool, ...]
+    nc: int = 0
+
+    def sampling_bounds(self) -> list[tuple[float, float]]:
+        """Finite bounds a coordinate: its own, one turn for an angle, one unit otherwise."""
+        bounds = []
+        for low, high, periodic in zip(self.q_lower, self.q_upper, self.periodic, strict=True):
+            reach = math.pi if periodic else 1.0
+            if math.isinf(low) and math.isinf(high):
+                low, high = -reach, reach
+            elif math.isinf(low):
+                low = high - 2 * reach
+            elif math.isinf(high):
+                high = low + 2 * reach
+            bounds.append((low, high))
+        return bounds

@@ -1,0 +1,85 @@
+"""Find a C compiler: the system's, then the `ziglang` package's."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from symofros.errors import CompileError
+
+# -fno-math-errno lets sqrt and sincos be instructions and single calls; -ffast-math was measured and gains nothing.
+DEFAULT_FLAGS = ("-O2", "-march=native", "-fno-math-errno")
+SHARED_FLAGS = ("-shared", "-fPIC", "-fvisibility=hidden", "-std=gnu99")
+
+
+@dataclass(frozen=True)
+class Toolchain:
+    """A compiler that can be called.
+
+    Attributes:
+        command: Program and leading arguments.
+        identity: What it says of its version; part of the cache key.
+        is_fallback: Whether it is the ziglang package's rather than the system's.
+    """
+
+    command: tuple[str, ...]
+    identity: str
+    is_fallback: bool = False
+
+
+@cache
+def find_toolchain(compiler: str | None = None) -> Toolchain | None:
+    """The compiler to use.
+
+    Args:
+        compiler: A path or name; None tries $CC, cc, gcc, clang, then the ziglang package.
+
+    Returns:
+        None if there is none.
+
+    Raises:
+        CompileError: The compiler that was named does not run.
+    """
+    wanted = compiler or os.environ.get("CC")
+    if wanted:
+        command = tuple(shlex.split(wanted))
+        if shutil.which(command[0]) is None:
+            source = "Options(compiler=…)" if compiler else "$CC"
+            raise CompileError(
+                f"compiler '{wanted}' ({source}) was not found\n  rule:   it is a program on the path\n"
+                "  remedy: install it, or leave the choice to us"
+            )
+        return Toolchain(command, _version(command))
+    for name in ("cc", "gcc", "clang"):
+        path = shutil.which(name)
+        if path is not None:
+            return Toolchain((path,), _version((path,)))
+    if importlib.util.find_spec("ziglang") is not None:
+        command = (sys.executable, "-m", "ziglang", "cc")
+        return Toolchain(command, _version(command), is_fallback=True)
+    return None
+
+
+def _version(command: tuple[str, ...]) -> str:
+    done = subprocess.run([*command, "--version"], capture_output=True, text=True, check=False)
+    return f"{' '.join(command)} {done.stdout.splitlines()[0] if done.stdout else ''}"
+
+
+@cache
+def cpu_identity() -> str:
+    """The processor's name and abilities: code for one machine's -march=native may not run on another's."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        lines = []
+    wanted = ("model name", "flags", "Features", "CPU part")
+    found = {line.split(":")[0].strip(): line for line in lines if line.startswith(wanted)}
+    return "|".join([platform.machine(), platform.system(), *sorted(found.values())])

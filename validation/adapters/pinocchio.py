@@ -1,0 +1,123 @@
+"""Pinocchio: recursive algorithms on rigid trees (https://github.com/stack-of-tasks/pinocchio)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from validation.assembly import BASE, Assembly, FrameSite, Mover, assemble
+from validation.conventions import Chart, Encoding, Slot
+from validation.geometry import Array, Placement, skew
+from validation.interface import Engine, States, Subject, Unsupported
+from validation.quantities import DYNAMICS, FRAME_QUANTITIES, SECOND_ROUTE
+
+_WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+
+
+@dataclass(frozen=True)
+class PinocchioEngine:
+    """A `pinocchio.Model` behind the `Engine` protocol.
+
+    Attributes:
+        name: "pinocchio", or "pinocchio-urdf" for its own reading of a file.
+        model: What Pinocchio computes with.
+        chart: Its coordinates against ours.
+        frames: Its indices of the subject's frames.
+        capabilities: What it offers on this route.
+    """
+
+    name: str
+    model: Any
+    chart: Chart
+    frames: tuple[int, ...]
+    capabilities: frozenset[str]
+    version: str = pin.__version__
+
+    def _each(self, states: States, result: Callable[[Any, Array, Array, Array, Array], Any]) -> Array:
+        """One state at a time: results of `result(data, q, v, a, forces)`, stacked."""
+        chart, data = self.chart, self.model.createData()
+        q, v = chart.coordinates(states.q), chart.speeds(states.q, states.v)
+        a, forces = chart.accelerations(states.q, states.v, states.a), chart.forces(states.q, states.applied)
+        return np.array([np.array(result(data, *state)) for state in zip(q, v, a, forces, strict=True)])
+
+    def mass_matrix(self, states: States) -> Array:
+        """Composite rigid bodies."""
+        M = self._each(states, lambda data, q, v, a, f: pin.crba(self.model, data, q))
+        return self.chart.mass_matrix(states.q, M)
+
+    def bias(self, states: States) -> Array:
+        """`nonLinearEffects`; the charts of this engine do not turn, so nothing is added."""
+        h = self._each(states, lambda data, q, v, a, f: pin.nonLinearEffects(self.model, data, q, v))
+        return self.chart.our_forces(states.q, h)
+
+    def kinetic_energy(self, states: States) -> Array:
+        """From body velocities."""
+        return self._each(states, lambda data, q, v, a, f: pin.computeKineticEnergy(self.model, data, q, v))
+
+    def potential_energy(self, states: States) -> Array:
+        """Of gravity."""
+        return self._each(states, lambda data, q, v, a, f: pin.computePotentialEnergy(self.model, data, q))
+
+    def inverse_dynamics(self, states: States) -> Array:
+        """Newton-Euler."""
+        forces = self._each(states, lambda data, q, v, a, f: pin.rnea(self.model, data, q, v, a))
+        return self.chart.our_forces(states.q, forces) - states.passive
+
+    def forward_dynamics(self, states: States) -> Array:
+        """Articulated bodies: no mass matrix is formed, so this is a second algorithm, not a second solve."""
+        a = self._each(states, lambda data, q, v, a, f: pin.aba(self.model, data, q, v, f))
+        return self.chart.our_accelerations(states.q, states.v, a)
+
+    def frame_pose(self, states: States) -> Array:
+        """From forward kinematics."""
+
+        def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
+            pin.framesForwardKinematics(self.model, data, q)
+            poses = [data.oMf[frame] for frame in self.frames]
+            return [np.append(pose.translation, pose.rotation) for pose in poses]
+
+        return self._each(states, result)
+
+    def frame_velocity(self, states: States) -> Array:
+        """From forward kinematics."""
+
+        def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
+            pin.forwardKinematics(self.model, data, q, v)
+            return [pin.getFrameVelocity(self.model, data, frame, _WORLD_AXES).vector for frame in self.frames]
+
+        return self._each(states, result)
+
+    def frame_acceleration(self, states: States) -> Array:
+        """The classical acceleration: the spatial one lacks w x v."""
+
+        def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
+            pin.forwardKinematics(self.model, data, q, v, a)
+            get = pin.getFrameClassicalAcceleration
+            return [get(self.model, data, frame, _WORLD_AXES).vector for frame in self.frames]
+
+        return self._each(states, result)
+
+    def frame_jacobian(self, states: States) -> Array:
+        """From joint Jacobians."""
+
+        def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
+            pin.computeJointJacobians(self.model, data, q)
+            pin.updateFramePlacements(self.model, data)
+            return [np.array(pin.getFrameJacobian(self.model, data, frame, _WORLD_AXES)) for frame in self.frames]
+
+        return self.chart.jacobian(states.q, self._each(states, result))
+
+    def frame_jacobian_rate(self, states: States) -> Array:
+        """From joint Jacobians and their rates."""
+
+        def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
+            pin.computeJointJacobiansTimeVariation(self.model, data, q, v)
+            pin.updateFramePlacements(self.model, data)
+            get = pin.getFrameJacobianTimeVariation
+            return [np.array(get(self.model, data, frame, _WORLD_AXES)) for frame in self.frames]
+
+        return self.chart.jacobian(states.q, self._each(states, result))

@@ -1,0 +1,104 @@
+"""Rotations, placements and quaternions in plain NumPy, written apart from `symofros.kinematics`.
+
+The engines' models are built with these, so an error in the generator's own geometry can't hide in both sides.
+Quaternions are (x, y, z, w). Functions on quaternions and vectors accept leading batch dimensions.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A frame B placed in a frame A.
+
+    Attributes:
+        R: R_AB (3, 3).
+        p: p_AB, from Ao to Bo, in A (3,) [m].
+    """
+
+    R: Array
+    p: Array
+
+    @staticmethod
+    def identity() -> Placement:
+        """B coincides with A."""
+        return Placement(np.eye(3), np.zeros(3))
+
+    def __matmul__(self, other: Placement) -> Placement:
+        """A to B, then B to C."""
+        return Placement(self.R @ other.R, self.p + self.R @ other.p)
+
+
+def skew(p: Array) -> Array:
+    """[p]x, the matrix of the cross product with p (..., 3, 3)."""
+    zero = np.zeros_like(p[..., 0])
+    x, y, z = p[..., 0], p[..., 1], p[..., 2]
+    rows = [zero, -z, y, z, zero, -x, -y, x, zero]
+    return np.stack(rows, axis=-1).reshape(*p.shape[:-1], 3, 3)
+
+
+def about_axis(axis: Array, angle: float) -> Array:
+    """The rotation by `angle` [rad] about a unit axis, by Rodrigues' formula (3, 3)."""
+    K = skew(axis)
+    return np.asarray(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K))
+
+
+def rotation_matrix(kind: str, values: Array) -> Array:
+    """R_AB of a rotation as a description states it.
+
+    Args:
+        kind: "rpy", "axis_angle", "quaternion" or "matrix", as in `symofros.Rotation`.
+        values: Its numbers.
+    """
+    if kind == "matrix":
+        return nearest_rotation(values.reshape(3, 3))
+    if kind == "quaternion":
+        return quaternion_matrix(values / np.linalg.norm(values))
+    if kind == "axis_angle":
+        return about_axis(values[:3] / np.linalg.norm(values[:3]), float(values[3]))
+    x, y, z = np.eye(3)
+    roll, pitch, yaw = map(float, values)
+    return about_axis(z, yaw) @ about_axis(y, pitch) @ about_axis(x, roll)
+
+
+def nearest_rotation(matrix: Array) -> Array:
+    """The rotation nearest to a matrix that was typed with few digits (polar factor)."""
+    U, _, Vt = np.linalg.svd(matrix)
+    return np.asarray(U @ Vt)
+
+
+def quaternion_matrix(quaternion: Array) -> Array:
+    """R of unit quaternions (..., 4) -> (..., 3, 3)."""
+    K = skew(quaternion[..., :3])
+    return np.asarray(np.eye(3) + 2.0 * quaternion[..., 3, None, None] * K + 2.0 * (K @ K))
+
+
+def matrix_quaternion(R: Array) -> Array:
+    """The unit quaternion of a rotation matrix (3, 3) -> (4,).
+
+    The largest of the four components is taken from the diagonal, so that no digits cancel (Shepperd 1978).
+    """
+    trace = float(np.trace(R))
+    squares = np.array([*(1.0 + 2.0 * np.diag(R) - trace), 1.0 + trace])
+    k = int(np.argmax(squares))
+    w_row = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    quaternion = np.append(w_row, squares[3]) if k == 3 else np.append(R[k] + R[:, k], w_row[k])
+    if k != 3:
+        quaternion[k] = squares[k]
+    return np.asarray(quaternion / np.linalg.norm(quaternion))
+
+
+def quaternion_product(a: Array, b: Array) -> Array:
+    """The Hamilton product a b: R(a b) = R(a) R(b) (..., 4)."""
+    va, wa, vb, wb = a[..., :3], a[..., 3:], b[..., :3], b[..., 3:]
+    vector = wa * vb + wb * va + np.cross(va, vb)
+    scalar = wa * wb - np.sum(va * vb, axis=-1, keepdims=True)
+    return np.concatenate([vector, scalar], axis=-1)
