@@ -38,7 +38,7 @@ from symofros.topology.graph import check
 from symofros.topology.tree import SpanningTree, build_tree
 
 GENERATOR = "symofros 0.1.0"
-_EAGER = (Request("dynamics"), Request("forward_dynamics"))
+_EAGER = (Request("dynamics"),)
 
 
 def compile_system(system: System, options: Options | None = None) -> Model:

@@ -25,7 +25,7 @@ class Options:
 
     Attributes:
         functions: What to generate, in one C file; a call of anything else is then an error. None (the default):
-            `dynamics` and `forward_dynamics` at once, every other function by itself when it is first called.
+            `dynamics` at once, every other function by itself when it is first called.
         frames: The frames that frame functions in `functions` are generated for; None: all.
         backend: "c", or "interpreter" (NumPy; slow, needs no compiler, the reference for the C code).
         flags: Flags of the C compiler, in place of the default.

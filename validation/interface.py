@@ -53,23 +53,27 @@ class States:
 
 
 class Engine(Protocol):
-    """One engine's model of one system.
+    """One engine's model of one system: a method for each of its capabilities, N states in, N results out.
 
-    N states in, N results out. Frame quantities are those of the F frames of the subject that the engine was built
-    from; they stack (linear; angular).
-
-    Attributes:
-        name: As tables show it.
-        version: Of its package.
-        capabilities: The quantities it offers, by name; nobody else's comparison shrinks to them.
+    Frame quantities are those of the F frames of the subject that the engine was built from, and stack
+    (linear; angular).
     """
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """As tables show it."""
+
     @property
-    def version(self) -> str: ...
+    def version(self) -> str:
+        """Of its package."""
+
     @property
-    def capabilities(self) -> frozenset[str]: ...
+    def capabilities(self) -> frozenset[str]:
+        """The quantities it offers (`quantities`); nobody else's comparison shrinks to them."""
+
+
+class TreeEngine(Engine, Protocol):
+    """An engine for rigid trees: everything but the forces, which only the description states."""
 
     def mass_matrix(self, states: States) -> Array:
         """M (N, nv, nv)."""

@@ -5,20 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-# Products and sums of a few hundred doubles (eps = 2.2e-16) in another order differ by some 1e-14 of the largest
-# entry; Pinocchio and MuJoCo themselves differ by up to 1.1e-14 on humanoids. Two digits are left for longer trees.
-# Any wrong term shows at 1e-6 or more, so nothing hides below.
+# Sums of some hundred products of doubles (eps = 2.2e-16), done in another order, differ by some 1e-14 of the largest
+# entry; two engines that share nothing with us differ from each other by up to 1.1e-14 on humanoids. The rest is
+# margin for longer trees. A wrong term shows at 1e-6 or more, so nothing hides below.
 ROUNDING = 1e-12
 
-# Solving M a = f amplifies rounding by up to cond(M), which is 1e5 and more for robots with light fingers. The
-# condition found is reported beside the error.
+# Solving M v' = f amplifies rounding by up to cond(M), 1e5 and more for a robot with light fingers. The condition
+# that was found is reported beside the error.
 SOLVE = 1e-9
 
-# Rounding errors are those of the terms that are summed. Where the sum happens to be small, they are judged against
+# The rounding error of a sum is that of its terms. In a state where the sum happens to be small, it is judged against
 # this fraction of what the quantity typically is, not against its own vanishing size.
 SMALL = 1e-2
 
-# What keeps the scale of a quantity away from zero; see `compare.floor`.
+# What keeps a quantity's scale away from zero on a model where it vanishes altogether (a horizontal arm has no
+# gravity torque; what the engines then return is rounding of terms that cancel):
+#   inertia_force  the force that unit acceleration takes: SMALL times the typical largest entry of M
+#   energy         the largest value over all states (its zero is arbitrary), and SMALL times the kinetic energy
+#   unit           SMALL of the unit it is measured in
 Floor = Literal["none", "inertia_force", "energy", "unit"]
 
 
@@ -27,13 +31,14 @@ class Quantity:
     """One thing that engines are compared by.
 
     Attributes:
-        name: The `Engine` method that gives it.
+        name: In tables.
         symbol: For people.
         unit: For people.
         tolerance: Of the error relative to the largest entry.
-        axes: How many trailing axes make one value: 2 for a matrix a state, 1 for a vector, 0 for a number.
-        floor: What its scale is kept above where it vanishes.
-        at_rest: Whether it is asked for with v = 0.
+        axes: How many trailing axes make one value: 2 for a matrix, 1 for a vector, 0 for a number.
+        floor: What its scale is kept above.
+        method: The `Engine` method that computes it, if not named like it.
+        at_rest: Whether it is computed with v = 0.
     """
 
     name: str
@@ -41,31 +46,36 @@ class Quantity:
     unit: str
     tolerance: float
     axes: int
-    floor: Floor = "none"
+    floor: Floor = "unit"
+    method: str = ""
     at_rest: bool = False
-
-    @property
-    def method(self) -> str:
-        """The `Engine` method that computes it."""
-        return "bias" if self.at_rest else self.name
 
 
 QUANTITIES: dict[str, Quantity] = {
     quantity.name: quantity
     for quantity in (
-        Quantity("mass_matrix", "M", "kg m^2, kg m, kg", ROUNDING, 2),
+        Quantity("mass_matrix", "M", "kg m², kg m, kg", ROUNDING, 2, "none"),
         Quantity("bias", "h", "N m, N", ROUNDING, 1, "inertia_force"),
-        Quantity("gravity", "h(q, 0)", "N m, N", ROUNDING, 1, "inertia_force", at_rest=True),
-        Quantity("kinetic_energy", "T", "J", ROUNDING, 0),
+        Quantity("gravity", "h(q, 0)", "N m, N", ROUNDING, 1, "inertia_force", method="bias", at_rest=True),
+        Quantity("generalized_force", "Q", "N m, N", ROUNDING, 1),
+        Quantity("kinetic_energy", "T", "J", ROUNDING, 0, "none"),
         Quantity("potential_energy", "V", "J", ROUNDING, 0, "energy"),
         Quantity("inverse_dynamics", "M a + h - Q", "N m, N", ROUNDING, 1, "inertia_force"),
-        Quantity("forward_dynamics", "v'", "rad/s^2, m/s^2", SOLVE, 1, "unit"),
+        Quantity("forward_dynamics", "dv/dt", "rad/s², m/s²", SOLVE, 1),
         Quantity("frame_pose", "p, R", "m, 1", ROUNDING, 1),
         Quantity("frame_velocity", "v, w", "m/s, rad/s", ROUNDING, 1),
-        Quantity("frame_acceleration", "a, alpha", "m/s^2, rad/s^2", ROUNDING, 1),
+        Quantity("frame_acceleration", "dv/dt, dw/dt", "m/s², rad/s²", ROUNDING, 1),
         Quantity("frame_jacobian", "J", "m, 1", ROUNDING, 2),
-        Quantity("frame_jacobian_rate", "J'", "m/s, 1/s", ROUNDING, 2),
-        Quantity("motion_energy", "T + V along a free motion", "J", ROUNDING, 0),
-        Quantity("generalized_force", "Q", "N m, N", ROUNDING, 1, "unit"),
+        Quantity("frame_jacobian_rate", "dJ/dt", "m/s, 1/s", ROUNDING, 2),
     )
 }
+
+# Energy along a free motion: the states are those of our integration, the energies each engine's own.
+MOTION_ENERGY = Quantity("motion_energy", "T + V on a free motion", "J", ROUNDING, 0, "energy")
+
+FRAME_QUANTITIES = frozenset(name for name in QUANTITIES if name.startswith("frame_"))
+FORCES_STATED = frozenset({"generalized_force"})
+# What an engine that simulates offers; the forces of a description's formulas are known to the description only.
+EVERYTHING = frozenset(QUANTITIES) - FORCES_STATED
+# What an engine's own reading of a file is compared by: all of geometry and inertia enters these.
+SECOND_ROUTE = frozenset({"mass_matrix", "bias", "gravity", "kinetic_energy", "potential_energy"})

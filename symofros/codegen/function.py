@@ -14,6 +14,9 @@ from symofros.expr.evaluate import needed_nodes
 from symofros.expr.program import Output, Program
 
 MAX_STATEMENTS = 1000
+# Past this length, shorter chunks compile twice as fast and run as fast (measured on a 52-link chain, gcc 12); below
+# it, long chunks run faster, because fewer values pass through memory.
+_LONG, _LONG_CHUNK = 6000, 300
 _ARRAY = re.compile(r"\b(\w+)\[")
 # Clear an output at once when at least this share of its entries is zero.
 _SPARSE = 0.25
@@ -54,7 +57,8 @@ class FunctionWriter:
         stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
         self.writer = StatementWriter(program.graph, needed_nodes(program.graph, edges, pre), pre, stores)
         statements = self.writer.statements()
-        count = max(1, -(-len(statements) // MAX_STATEMENTS))
+        longest = MAX_STATEMENTS if len(statements) <= _LONG else _LONG_CHUNK
+        count = max(1, -(-len(statements) // longest))
         size = -(-len(statements) // count) if statements else 1
         self.chunks = [statements[i : i + size] for i in range(0, len(statements), size)] or [[]]
         self.slots = _allocate(self.chunks)

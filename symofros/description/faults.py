@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pydantic_core import ErrorDetails
@@ -30,18 +30,31 @@ _KINDS = {
 }
 
 
-def problem_of(error: ErrorDetails, root: Node, file: str) -> Problem:
+def path_of(error: ErrorDetails) -> Path:
+    """Where in the data the error is; pydantic marks one of a key itself by a last item "[key]"."""
+    loc = error["loc"]
+    return loc[:-1] if loc and loc[-1] == "[key]" else loc
+
+
+def line_of(error: ErrorDetails, root: Node) -> int:
+    """The line of a wrong key or value; of the mapping's key where an entry is missing."""
+    path = path_of(error)
+    if error["type"] == "missing":
+        return root.at(path[:-1]).key_line
+    node = root.at(path)
+    return node.key_line if error["type"] == "extra_forbidden" else node.line
+
+
+def problem_of(error: ErrorDetails, where: str) -> Problem:
     """One of pydantic's errors as a Problem.
 
     Args:
         error: From ValidationError.errors().
-        root: What was validated, with its lines.
-        file: Its name.
+        where: "file:line" of it.
     """
-    path = _path(error["loc"])
+    path = path_of(error)
     context = error.get("ctx", {})
     kind = error["type"]
-    where = f"{file}:{_line(kind, path, root)}"
     if kind == "problem":
         what, found, rule, remedy = (str(context[part]) for part in ("what", "found", "rule", "remedy"))
         return Problem(_about(path, what), found, rule, remedy, where)
@@ -50,7 +63,7 @@ def problem_of(error: ErrorDetails, root: Node, file: str) -> Problem:
         return Problem(_about(path[:-1], f"unknown entry '{_short(path[-1])}'"), f"'{_short(path[-1])}'",
                        f"the entries here are {', '.join(known)}", did_you_mean(str(path[-1]), known), where)  # fmt: skip
     if kind == "missing":
-        return _missing(path, root, where)
+        return _missing(path, error["input"], where)
     if kind == "literal_error":
         return _not_a_choice(path, error["input"], where)
     if kind in ("too_short", "too_long"):
@@ -59,25 +72,11 @@ def problem_of(error: ErrorDetails, root: Node, file: str) -> Problem:
     return Problem(_about(path, "not of the right kind"), _short(error["input"]), f"this is {rule}", "", where)
 
 
-def _path(loc: Sequence[str | int]) -> Path:
-    # Pydantic marks errors of a key itself by a last item "[key]".
-    return tuple(loc[:-1]) if loc and loc[-1] == "[key]" else tuple(loc)
-
-
-def _line(kind: str, path: Path, root: Node) -> int:
-    """The line of a wrong key, or of a wrong value."""
-    if kind == "missing":
-        return root.at(path[:-1]).key_line
-    node = root.at(path)
-    return node.key_line if kind == "extra_forbidden" else node.line
-
-
-def _missing(path: Path, root: Node, where: str) -> Problem:
+def _missing(path: Path, owner: Any, where: str) -> Problem:
     if path == ("symofros",):
         return Problem("the file does not state its format", "no entry 'symofros'",
                        "a description states the version of its format", f"begin with: symofros: {VERSION}", where)  # fmt: skip
-    value = root.at(path[:-1]).value
-    found = ", ".join(value) if isinstance(value, Mapping) and value else "nothing"
+    found = ", ".join(map(_short, owner)) if isinstance(owner, Mapping) and owner else "nothing"
     return Problem(_about(path[:-1], f"entry '{path[-1]}' is missing"), found,
                    f"'{path[-1]}' is always given here", f"add it: {path[-1]}: …", where)  # fmt: skip
 

@@ -1,0 +1,62 @@
+"""The engines: one file each, the only one that imports the engine's package."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+
+from validation.interface import EngineFactory
+
+
+@dataclass(frozen=True)
+class Route:
+    """One way to a second opinion.
+
+    Attributes:
+        module: The adapter.
+        build: Its factory.
+        needs_urdf: It reads a URDF file by itself, and has nothing to say of other models.
+        independent: It shares no equations with us; agreement with it is evidence.
+    """
+
+    module: str
+    build: str = "build"
+    needs_urdf: bool = False
+    independent: bool = True
+
+
+# In the order of reports. The generated C itself is not among them: it is what they are compared with.
+ROUTES: dict[str, Route] = {
+    "pinocchio": Route("validation.adapters.pinocchio"),
+    "mujoco": Route("validation.adapters.mujoco"),
+    "pinocchio-urdf": Route("validation.adapters.pinocchio", "build_from_urdf", needs_urdf=True),
+    "mujoco-urdf": Route("validation.adapters.mujoco", "build_from_urdf", needs_urdf=True),
+    "interpreted": Route("validation.adapters.interpreted", independent=False),
+    "description": Route("validation.adapters.description", independent=False),
+}
+
+
+@dataclass(frozen=True)
+class Missing:
+    """An engine that does not import here.
+
+    Attributes:
+        reason: Why not, and the remedy.
+    """
+
+    reason: str
+
+
+@cache
+def available() -> dict[str, EngineFactory | Missing]:
+    """Every engine by name: how to build its models, or why it does not import here."""
+    return {name: _factory(route) for name, route in ROUTES.items()}
+
+
+def _factory(route: Route) -> EngineFactory | Missing:
+    try:
+        factory: EngineFactory = getattr(import_module(route.module), route.build)
+    except ImportError as error:
+        return Missing(f"{error}; pip install 'symofros[validation]'")
+    return factory

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from validation.assembly import BASE, Assembly, FrameSite, Mover, assemble
-from validation.conventions import Chart, Encoding, Slot
-from validation.geometry import Array, Placement, skew
-from validation.interface import Engine, States, Subject, Unsupported
-from validation.quantities import DYNAMICS, FRAME_QUANTITIES, SECOND_ROUTE
+from validation.assembly import FrameSite, Mover, assemble
+from validation.conventions import Chart, Slot
+from validation.geometry import Array, Placement
+from validation.interface import States, Subject, TreeEngine, Unsupported
+from validation.quantities import EVERYTHING, SECOND_ROUTE
 
+NAME = "pinocchio"
+VERSION: str = pin.__version__
 _WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
 
@@ -33,9 +35,9 @@ class PinocchioEngine:
     name: str
     model: Any
     chart: Chart
-    frames: tuple[int, ...]
-    capabilities: frozenset[str]
-    version: str = pin.__version__
+    frames: tuple[int, ...] = ()
+    capabilities: frozenset[str] = EVERYTHING
+    version: str = VERSION
 
     def _each(self, states: States, result: Callable[[Any, Array, Array, Array, Array], Any]) -> Array:
         """One state at a time: results of `result(data, q, v, a, forces)`, stacked."""
@@ -121,3 +123,68 @@ class PinocchioEngine:
             return [np.array(get(self.model, data, frame, _WORLD_AXES)) for frame in self.frames]
 
         return self.chart.jacobian(states.q, self._each(states, result))
+
+
+def build(subject: Subject) -> TreeEngine | Unsupported:
+    """Pinocchio's model of a description; it merges what is fixed to a joint's body by itself."""
+    assembly = assemble(subject.system)
+    model = pin.Model()
+    model.gravity.linear = assembly.gravity
+    ids = [0]
+    for mover in assembly.movers:
+        ids.append(model.addJoint(ids[mover.parent + 1], _joint_model(mover), _se3(mover.X_AP), mover.joint.name))
+        for part in mover.masses:
+            inertia = pin.Inertia(part.mass, part.p_BC, part.J_BC)
+            model.appendBodyToJoint(ids[-1], inertia, pin.SE3.Identity())
+    frames = tuple(_add_frame(model, ids, assembly.frames[name], name) for name in subject.frames)
+    return PinocchioEngine(NAME, model, Chart.identity(assembly), frames)
+
+
+def _se3(X: Placement) -> Any:
+    return pin.SE3(X.R, X.p)
+
+
+def _joint_model(mover: Mover) -> Any:
+    if mover.kind == "free":
+        return pin.JointModelFreeFlyer()
+    if mover.kind == "ball":
+        return pin.JointModelSpherical()
+    unaligned = pin.JointModelPrismaticUnaligned if mover.kind == "prismatic" else pin.JointModelRevoluteUnaligned
+    return unaligned(mover.axis)
+
+
+def _add_frame(model: Any, ids: list[int], frame: FrameSite, name: str) -> int:
+    placed = pin.Frame(name, ids[frame.mover + 1], 0, _se3(frame.X_BF), pin.FrameType.OP_FRAME)
+    return int(model.addFrame(placed))
+
+
+URDF_NAME = "pinocchio-urdf"
+_ROOT_JOINT = "root_joint"
+
+
+def build_from_urdf(subject: Subject) -> TreeEngine | Unsupported:
+    """Pinocchio's own reading of the file that the description was read from."""
+    assembly = assemble(subject.system)
+    root = (pin.JointModelFreeFlyer(), _ROOT_JOINT) if subject.floating_base else ()
+    try:
+        model = pin.buildModelFromXML(subject.urdf, *root)
+    except (ValueError, RuntimeError) as error:
+        return Unsupported(f"its own reading of the file failed: {error}")
+    model.gravity.linear = assembly.gravity
+    slots = [_slot(model, mover, subject.floating_base and mover is assembly.movers[0]) for mover in assembly.movers]
+    for slot in slots:
+        if isinstance(slot, Unsupported):
+            return slot
+    chart = Chart(tuple(slot for slot in slots if isinstance(slot, Slot)), model.nq, model.nv)
+    if model.nv != assembly.nv:
+        return Unsupported(f"its own reading of the file has {model.nv} speeds, ours {assembly.nv}")
+    return PinocchioEngine(URDF_NAME, model, chart, capabilities=SECOND_ROUTE)
+
+
+def _slot(model: Any, mover: Mover, is_root: bool) -> Slot | Unsupported:
+    name = _ROOT_JOINT if is_root else mover.joint.name
+    if not model.existJointName(name):
+        return Unsupported(f"joint '{name}': not in its own reading of the file")
+    joint = model.joints[model.getJointId(name)]
+    turns = mover.kind == "revolute" and joint.nq == 2
+    return Slot(mover, joint.idx_q, joint.idx_v, "cos_sin" if turns else "same")

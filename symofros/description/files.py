@@ -1,0 +1,200 @@
+"""The native file in: YAML, with the parts it includes, to a System; every fault found, each with its line."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from symofros.description.faults import line_of, path_of, problem_of
+from symofros.description.reading import Reading as Reading
+from symofros.description.reading import read_bytes
+from symofros.description.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
+from symofros.description.system import Input, Parameter, RigidBody, System
+from symofros.description.yaml_nodes import Node, YamlFault, compose
+from symofros.description.yaml_writer import write_yaml as write_yaml
+from symofros.errors import DescriptionError, Problem, did_you_mean
+
+MAX_BYTES = 4 << 20
+MAX_INCLUDE_DEPTH = 10
+MAX_FILES = 100
+SUFFIXES = (".yaml", ".yml")
+
+_SECTIONS = {"parameters": "parameter", "inputs": "input", "bodies": "body"}
+_SUFFIXES = ("px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
+
+
+def read_yaml(path: str | os.PathLike[str]) -> Reading:
+    """Read a native description and what it includes.
+
+    Args:
+        path: The main file. Files that it includes lie in its folder or below.
+
+    Returns:
+        The system without the entries that could not be read, and every problem. No system where names are missing
+        wholesale (a section or an included file), because each use of one would then look like a fault of its own.
+    """
+    main = Path(path)
+    merger = _Merger(main.parent.resolve())
+    merger.add(main, str(main), ())
+    return merger.reading(main.stem)
+
+
+@dataclass
+class _Merger:
+    """Collects the entries of a file and of the files it includes."""
+
+    folder: Path
+    system: SystemEntry = field(default_factory=SystemEntry)
+    parameters: list[Parameter] = field(default_factory=list)
+    inputs: list[Input] = field(default_factory=list)
+    bodies: list[RigidBody] = field(default_factory=list)
+    origin: dict[tuple[str, ...], str] = field(default_factory=dict)
+    problems: list[Problem] = field(default_factory=list)
+    broken: set[str] = field(default_factory=set)
+    incomplete: bool = False
+    seen: set[Path] = field(default_factory=set)
+
+    def reading(self, default_name: str) -> Reading:
+        problems, broken = tuple(self.problems), frozenset(self.broken)
+        if self.incomplete:
+            return Reading(None, problems, broken)
+        x, y, z = self.system.gravity
+        system = System(self.system.name or default_name, tuple(self.bodies), tuple(self.parameters),
+                        tuple(self.inputs), (x, y, z), origin=self.origin)  # fmt: skip
+        return Reading(system, problems, broken)
+
+    def add(self, path: Path, shown: str, including: tuple[Path, ...]) -> None:
+        """Read one file, after the files it includes."""
+        self.seen.add(path.resolve())
+        try:
+            root, problems = compose(read_bytes(path, MAX_BYTES), shown)
+            file, faults, broken = _validate(root, shown)
+        except (YamlFault, DescriptionError) as error:
+            self.problems += [error.problem] if isinstance(error, YamlFault) else error.problems
+            self.incomplete = True
+            return
+        self.problems += sorted([*problems, *faults], key=_line)
+        self.broken |= broken
+        self.incomplete |= file is None
+        if file is None:
+            return
+        here = (*including, path.resolve())
+        for i, text in enumerate(file.include or ()):
+            where = f"{shown}:{root.at(('include', i)).line}"
+            self.include(text, path, shown, here, where)
+        self.merge(file, root, shown, bool(including))
+
+    def include(self, text: str, path: Path, shown: str, here: tuple[Path, ...], where: str) -> None:
+        """Follow one include, if it is allowed; a file that is included twice counts once."""
+        try:
+            target = (path.resolve().parent / text).resolve()
+            problem = self.refusal(text, target, here)
+        except (OSError, ValueError) as error:  # A NUL character, or a loop of links.
+            problem = Problem("include: not a path", str(error), "an include is a relative path")
+        if problem:
+            self.problems.append(Problem(problem.what, problem.found, problem.rule, problem.remedy, where))
+            self.incomplete = True
+        elif target not in self.seen:
+            self.add(target, os.path.normpath(Path(shown).parent / text), here)
+
+    def refusal(self, text: str, target: Path, here: tuple[Path, ...]) -> Problem | None:
+        """Why a file may not be included."""
+        what = f"include '{text:.100}'"
+        if Path(text).is_absolute() or not target.is_relative_to(self.folder):
+            return Problem(f"{what} leaves the main file's folder", text[:100],
+                           "included files lie in that folder or below, links followed",
+                           "copy the file there")  # fmt: skip
+        if target.suffix not in SUFFIXES:
+            return Problem(f"{what} is not a native description", target.suffix or "no suffix",
+                           f"included files end in {' or '.join(SUFFIXES)}")  # fmt: skip
+        if target in here:
+            names = " -> ".join(file.name for file in [*here[here.index(target) :], target])
+            return Problem(f"{what} closes a cycle", names, "files include each other in one direction",
+                           "remove one of the includes")  # fmt: skip
+        if len(here) > MAX_INCLUDE_DEPTH or len(self.seen) >= MAX_FILES:
+            return Problem(f"{what} goes too far", f"{len(here)} levels, {len(self.seen)} files",
+                           f"at most {MAX_INCLUDE_DEPTH} levels and {MAX_FILES} files")  # fmt: skip
+        if not target.is_file():
+            there = [file.name for file in target.parent.glob("*.y*ml")] if target.parent.is_dir() else []
+            return Problem(f"{what}: there is no such file", text[:100], "an included file exists",
+                           did_you_mean(target.name, sorted(there)))  # fmt: skip
+        return None
+
+    def merge(self, file: NativeFile, root: Node, shown: str, included: bool) -> None:
+        """Add one file's entries to what is there."""
+        system_line = f"{shown}:{root.at(('system',)).key_line}"
+        if file.system is not None and included:
+            self.problems.append(Problem("an included file has a 'system' section", "system", "only the main file has one",
+                                         "remove it, or move it there", system_line))  # fmt: skip
+        elif file.system is not None:
+            self.system = file.system
+            self.origin["system",] = system_line
+        for name, parameter in (file.parameters or {}).items():
+            if self.is_new("parameters", name, root, shown):
+                self.parameters.append(parameter.build(name))
+        for name, entry in (file.inputs or {}).items():
+            if self.is_new("inputs", name, root, shown):
+                self.inputs.append((entry or InputEntry()).build(name))
+        for name, body in (file.bodies or {}).items():
+            if self.is_new("bodies", name, root, shown):
+                self.bodies.append((body or BodyEntry()).build(name))
+                self.origin |= dict(_body_origin(self.bodies[-1], root, shown))
+
+    def is_new(self, section: str, name: str, root: Node, shown: str) -> bool:
+        """Record where a named thing stands; whether no other file has one of that name."""
+        kind = _SECTIONS[section]
+        where = f"{shown}:{root.at((section, name)).key_line}"
+        first = self.origin.setdefault((kind, name), where)
+        if first == where:
+            return True
+        self.problems.append(Problem(f"{kind} '{name}' is in two files", f"{first} and {where}",
+                                     "a name is given once in a file and all it includes", "rename one of them",
+                                     where))  # fmt: skip
+        return False
+
+
+def _line(problem: Problem) -> int:
+    return int(problem.where.rpartition(":")[2])
+
+
+def _validate(root: Node, shown: str) -> tuple[NativeFile | None, list[Problem], set[str]]:
+    """A file's entries, faulty ones left out; None if a whole section is unreadable."""
+    data = root.plain()
+    try:
+        return NativeFile.model_validate(data), [], set()
+    except ValidationError as error:
+        faults = error.errors(include_url=False)
+    problems = [problem_of(fault, f"{shown}:{line_of(fault, root)}") for fault in faults]
+    broken: set[str] = set()
+    for path in map(path_of, faults):
+        section = path[0] if path else ""
+        if section in _SECTIONS and len(path) > 1:
+            broken |= _names_of(str(section), str(path[1]), data[section].pop(path[1], None))
+        elif section in ("", "include", *_SECTIONS):
+            return None, problems, broken
+        else:
+            data.pop(section, None)
+    return NativeFile.model_validate({**data, "symofros": 1}), problems, broken
+
+
+def _names_of(section: str, name: str, entry: Any) -> set[str]:
+    """What others may call an unreadable entry: its name and, for a body, its coordinates and speeds."""
+    if section != "bodies":
+        return {name}
+    joint = entry.get("joint") if isinstance(entry, dict) else None
+    stated = joint.get("name") if isinstance(joint, dict) else None
+    own = stated if isinstance(stated, str) else default_joint_name(name)
+    return {name, own, f"d{own}", *(f"{own}.{suffix}" for suffix in _SUFFIXES)}
+
+
+def _body_origin(body: RigidBody, root: Node, shown: str) -> Iterator[tuple[tuple[str, ...], str]]:
+    if body.joint is not None:
+        yield ("joint", body.joint.name), f"{shown}:{root.at(('bodies', body.name, 'joint')).key_line}"
+    for frame in body.frames:
+        line = root.at(("bodies", body.name, "frames", frame.name)).key_line
+        yield ("frame", body.name, frame.name), f"{shown}:{line}"

@@ -1,0 +1,175 @@
+"""The native file out: a System as YAML that reads back as the same system."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from io import StringIO
+from typing import Any
+
+from pydantic import ValidationError
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+
+from symofros.description.faults import problem_of
+from symofros.description.schema import VERSION, NativeFile, default_joint_name
+from symofros.description.system import WORLD, Frame, Inertia, Input, Joint, Limits, Parameter, RigidBody, System
+from symofros.description.values import ORIGIN, Rotation, Value
+from symofros.errors import DescriptionError, Problem
+
+LINE_WIDTH = 120
+
+# Below this, a whole number reads better without ".0" and is the same double.
+_WHOLE = 1e15
+
+# Mappings that stay on lines of their own; any other is short and reads better in braces.
+_OPEN = frozenset({"", "system", "parameters", "inputs", "bodies", "body", "joint", "inertia", "frames"})
+
+Plain = dict[str, Any]
+
+
+def write_yaml(system: System) -> str:
+    """The text of the native file; `read_yaml` gives an equal system from it.
+
+    Args:
+        system: What to write. Fields at their defaults are left out; numbers are exact.
+
+    Raises:
+        DescriptionError: The format can't hold it: two things of one name, or a formula that is too long.
+    """
+    problems = list(_duplicates(system))
+    if problems:
+        raise DescriptionError(problems)
+    document = _document(system)
+    try:
+        NativeFile.model_validate(document)
+    except ValidationError as error:
+        raise DescriptionError([problem_of(fault, "") for fault in error.errors(include_url=False)]) from None
+    stream = StringIO()
+    yaml = YAML()
+    yaml.width = LINE_WIDTH
+    yaml.dump(_styled(document, ""), stream)
+    return stream.getvalue()
+
+
+def _duplicates(system: System) -> Iterator[Problem]:
+    groups = [("parameter", [item.name for item in system.parameters])]
+    groups += [("input", [item.name for item in system.inputs]), ("body", [item.name for item in system.bodies])]
+    groups += [(f"body '{body.name}': frame", [frame.name for frame in body.frames]) for body in system.bodies]
+    for kind, names in groups:
+        for name, count in Counter(names).items():
+            if count > 1:
+                yield Problem(f"{kind} '{name}' can't be written", f"{count} of that name",
+                              "names are the keys of a mapping in the file", "rename all but one")  # fmt: skip
+
+
+def _document(system: System) -> Plain:
+    head: Plain = {"name": system.name}
+    if system.gravity != System("").gravity:
+        head["gravity"] = _list(system.gravity)
+    document: Plain = {"symofros": VERSION, "system": head}
+    document["parameters"] = {item.name: _parameter(item) for item in system.parameters}
+    document["inputs"] = {item.name: _texts(item) for item in system.inputs}
+    document["bodies"] = {item.name: _body(item) for item in system.bodies}
+    return {section: entries for section, entries in document.items() if entries}
+
+
+def _texts(item: Any) -> Plain:
+    return {key: text for key in ("unit", "description") if (text := getattr(item, key))}
+
+
+def _parameter(parameter: Parameter) -> Plain:
+    constant = {"constant": True} if parameter.constant else {}
+    return {"value": _number(float(parameter.value)), **constant, **_texts(parameter)}
+
+
+def _body(body: RigidBody) -> Plain:
+    entries: Plain = {}
+    if body.joint is not None:
+        entries["joint"] = _joint(body.joint, body.name)
+    if body.inertia is not None:
+        entries["inertia"] = _inertia(body.inertia)
+    if body.frames:
+        entries["frames"] = {frame.name: _placement(frame) for frame in body.frames}
+    if body.waive:
+        entries["waive"] = sorted(body.waive)
+    return entries
+
+
+def _joint(joint: Joint, body: str) -> Plain:
+    entries: Plain = {} if joint.name == default_joint_name(body) else {"name": joint.name}
+    entries["kind"] = joint.kind
+    if joint.parent != WORLD:
+        entries["parent"] = joint.parent
+    if joint.frame is not None:
+        entries["frame"] = joint.frame
+    entries |= _placement(joint)
+    if joint.axis != Joint("").axis:
+        entries["axis"] = _list(joint.axis)
+    if joint.actuated:
+        entries["actuated"] = True
+    if joint.effort:
+        entries["effort"] = _list(joint.effort)
+    if joint.limits is not None:
+        entries["limits"] = _limits(joint.limits)
+    return entries
+
+
+def _placement(placed: Joint | Frame) -> Plain:
+    entries: Plain = {}
+    if placed.position != ORIGIN:
+        entries["position"] = _list(placed.position)
+    if not placed.rotation.is_identity:
+        entries["rotation"] = _rotation(placed.rotation)
+    return entries
+
+
+def _limits(limits: Limits) -> Plain:
+    bounds = {"lower": limits.lower, "upper": limits.upper, "velocity": limits.velocity, "effort": limits.effort}
+    return {name: _number(float(bound)) for name, bound in bounds.items() if bound is not None}
+
+
+def _inertia(inertia: Inertia) -> Plain:
+    entries: Plain = {"mass": _number(inertia.mass)}
+    if inertia.center_of_mass != ORIGIN:
+        entries["center_of_mass"] = _list(inertia.center_of_mass)
+    moments = inertia.moments if any(inertia.moments[3:]) else inertia.moments[:3]
+    if any(moments):
+        entries["moments"] = _list(moments)
+    if inertia.about != "center_of_mass":
+        entries["about"] = inertia.about
+    if not inertia.rotation.is_identity:
+        entries["rotation"] = _rotation(inertia.rotation)
+    return entries
+
+
+def _rotation(rotation: Rotation) -> Plain:
+    values = _list(rotation.values)
+    return {rotation.kind: [values[:3], values[3:6], values[6:]] if rotation.kind == "matrix" else values}
+
+
+def _list(values: Iterable[Value]) -> list[Any]:
+    return [_number(value) for value in values]
+
+
+def _number(value: Value) -> Any:
+    """A number in its shortest exact form, a formula as text."""
+    if not isinstance(value, float):
+        return str(value)
+    whole = abs(value) < _WHOLE and value.is_integer() and str(value) != "-0.0"
+    return int(value) if whole else value
+
+
+def _styled(value: Any, role: str) -> Any:
+    """The same data with its layout: sections, bodies and their parts on lines, small things in braces."""
+    if isinstance(value, list):
+        sequence = CommentedSeq(_styled(item, "item") for item in value)
+        sequence.fa.set_flow_style()
+        return sequence
+    if not isinstance(value, dict):
+        return value
+    inner = {"": str, "bodies": lambda _: "body", "body": str, "joint": str, "inertia": str}.get(role, lambda _: "item")
+    mapping = CommentedMap((key, _styled(item, inner(key))) for key, item in value.items())
+    if role not in _OPEN or not value:
+        mapping.fa.set_flow_style()
+    return mapping

@@ -1,0 +1,106 @@
+"""SYMOFROS' generated C: what the others are compared with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+import symofros as sf
+from validation.geometry import Array
+from validation.interface import States, Subject
+from validation.quantities import FRAME_QUANTITIES, QUANTITIES
+
+NAME = "symofros"
+
+_FUNCTIONS = tuple(name for name in QUANTITIES if name != "gravity")
+
+
+@dataclass(frozen=True)
+class SymofrosEngine:
+    """A `symofros.Model` behind the `Engine` protocol; our conventions are its own.
+
+    Attributes:
+        name: "symofros", or "interpreted" for the NumPy back end.
+        model: What computes.
+        frames: The subject's frames.
+    """
+
+    name: str
+    model: sf.Model
+    frames: tuple[str, ...] = ()
+    capabilities: frozenset[str] = frozenset(QUANTITIES)
+    version: str = sf.__version__
+
+    def mass_matrix(self, states: States) -> Array:
+        """M."""
+        return self.model.mass_matrix(states.q)
+
+    def bias(self, states: States) -> Array:
+        """The bias h."""
+        return self.model.bias(states.q, states.v)
+
+    def generalized_force(self, states: States) -> Array:
+        """Q."""
+        return self.model.generalized_force(states.q, states.v, states.u)
+
+    def kinetic_energy(self, states: States) -> Array:
+        """T."""
+        return self.model.kinetic_energy(states.q, states.v)
+
+    def potential_energy(self, states: States) -> Array:
+        """V."""
+        return self.model.potential_energy(states.q)
+
+    def inverse_dynamics(self, states: States) -> Array:
+        """M a + h - Q(q, v, 0), with the model's own Q."""
+        return self.model.inverse_dynamics(states.q, states.v, states.a)
+
+    def forward_dynamics(self, states: States) -> Array:
+        """M^-1 (Q - h), with the model's own Q."""
+        return self.model.forward_dynamics(states.q, states.v, states.u)
+
+    def _frames(self, one: Callable[[str], Array]) -> Array:
+        return np.stack([one(frame) for frame in self.frames], axis=1)
+
+    def frame_pose(self, states: States) -> Array:
+        """Position, then rotation row by row."""
+
+        def one(frame: str) -> Array:
+            p, R = self.model.frame_pose(frame, states.q)
+            return np.concatenate([p, R.reshape(-1, 9)], axis=1)
+
+        return self._frames(one)
+
+    def frame_velocity(self, states: States) -> Array:
+        """Linear, angular."""
+        return self._frames(lambda frame: self.model.frame_velocity(frame, states.q, states.v))
+
+    def frame_acceleration(self, states: States) -> Array:
+        """Linear, angular."""
+        return self._frames(lambda frame: self.model.frame_acceleration(frame, states.q, states.v, states.a))
+
+    def frame_jacobian(self, states: States) -> Array:
+        """Of the frame's velocity."""
+        return self._frames(lambda frame: self.model.frame_jacobian(frame, states.q))
+
+    def frame_jacobian_rate(self, states: States) -> Array:
+        """Its time derivative."""
+        return self._frames(lambda frame: self.model.frame_jacobian_rate(frame, states.q, states.v))
+
+
+def build(subject: Subject) -> SymofrosEngine:
+    """Generate, compile and load everything that is compared, in one C file.
+
+    Raises:
+        DescriptionError: The system can't be a mechanism.
+    """
+    return SymofrosEngine(NAME, sf.compile(subject.system, options(subject, "c")), subject.frames)
+
+
+def options(subject: Subject, backend: Literal["c", "interpreter"]) -> sf.Options:
+    """Just the functions and frames that are compared."""
+    functions = _FUNCTIONS if subject.frames else tuple(f for f in _FUNCTIONS if f not in FRAME_QUANTITIES)
+    return sf.Options(functions=functions, frames=subject.frames, backend=backend)
