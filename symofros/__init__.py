@@ -1,10 +1,10 @@
 """SYMOFROS: describe a mechanism, get its equations of motion as fast C code that is proved right.
 
-    import symofros as sf
+import symofros as sf
 
-    system = sf.load("arm.yaml")           # native YAML or URDF
-    model = sf.compile(system)             # symbolic equations -> C -> callable
-    M = model.mass_matrix(model.neutral())
+system = sf.load("arm.yaml")           # native YAML or URDF
+model = sf.compile(system)             # symbolic equations -> C -> callable
+M = model.mass_matrix(model.neutral())
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from symofros.expr.expression import evaluate as evaluate
 from symofros.options import Options as Options
 
 if TYPE_CHECKING:
-    from symofros.compiler import compile_system as compile
+    from symofros.compiler import compile_system as compile  # noqa: F401
     from symofros.loading import load as load
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model

@@ -148,7 +148,10 @@ def requested(tree: SpanningTree, options: Options) -> list[Request]:
 def describe(tree: SpanningTree, options: Options) -> ModelRecord:
     """What a model is besides its functions."""
     names = tree.coordinates
-    lower, upper, neutral, periodic = [], [], [], []
+    lower: list[float] = []
+    upper: list[float] = []
+    neutral: list[float] = []
+    periodic: list[bool] = []
     for link in tree.links:
         limits, n = link.joint.limits, link.q[1]
         lower += [-float("inf") if limits is None or limits.lower is None else limits.lower] * n

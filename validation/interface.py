@@ -110,22 +110,35 @@ class TreeEngine(Engine, Protocol):
 
 
 @dataclass(frozen=True)
+class UrdfSource:
+    """The file that a system was read from, for engines that read it themselves.
+
+    Attributes:
+        text: Of the file, undecoded: its first line says how it is encoded.
+        verbatim: Our reading of it with every digit as it stands; reading it normally makes exact what was meant so.
+        floating_base: Whether reading it put a free joint under its root.
+    """
+
+    text: bytes
+    verbatim: sf.System
+    floating_base: bool = False
+
+
+@dataclass(frozen=True)
 class Subject:
     """What an engine is built from.
 
     Attributes:
         label: What the model is called in tables.
         system: The description.
-        frames: The frames that frame quantities are compared at.
-        urdf: The text of the URDF file that the system was read from, for engines that read it themselves.
-        floating_base: Whether reading it put a free joint under its root.
+        frames: The frames that frame quantities are compared at; none: the harness chooses.
+        urdf: Its file, if it came from one.
     """
 
     label: str
     system: sf.System
-    frames: tuple[str, ...]
-    urdf: str | None = None
-    floating_base: bool = False
+    frames: tuple[str, ...] = ()
+    urdf: UrdfSource | None = None
 
 
 class EngineFactory(Protocol):

@@ -140,4 +140,3 @@ def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
                 slots[node] = free.pop()
                 ends.setdefault(last[node], []).append(slots[node])
     return slots
-

@@ -65,8 +65,10 @@ def model_source(program: Program, record: ModelRecord, generator: str) -> str:
 
 
 def _init_function(program: Program, name: str) -> str:
-    """par -> pre, behind the plain signature of the struct's `init`."""
-    writer = FunctionWriter(program, f"{name}_init", ["par"], [Output("pre", (len(program.init),), program.init)], False)
+    """Parameters -> pre, behind the plain signature of the struct's `init`."""
+    writer = FunctionWriter(
+        program, f"{name}_init", ["par"], [Output("pre", (len(program.init),), program.init)], False
+    )
     text = writer.text()
     lines = [
         f"static void {name}_{_INIT}(const double *par, double *pre) {{",
@@ -146,5 +148,6 @@ def _numbers(values: Iterable[float]) -> str:
 
 
 def _comment(text: str) -> str:
-    """Text that can't end a C comment, in ASCII."""
-    return text.replace("*/", "* /").replace("/*", "/ *").encode("ascii", "replace").decode()
+    """Text that can't end a C comment, in ASCII, without trigraphs."""
+    plain = text.encode("ascii", "replace").decode()
+    return plain.replace("*/", "* /").replace("/*", "/ *").replace("?", "_")

@@ -16,17 +16,17 @@ Path = tuple[str | int, ...]
 # The mappings whose keys are names of things.
 _THINGS = {"bodies": "body", "parameters": "parameter", "inputs": "input", "frames": "frame"}
 
-# Pydantic's error types -> what the value must be.
+# Pydantic's error types -> what the value must be, and how to write it.
+_NUMBER = ("a number", "write a finite number, such as 0.5; formulas are not read here")
+_MAPPING = ("a mapping", "write it as {name: value}, or on lines of their own")
 _KINDS = {
-    "float_type": "a number",
-    "float_parsing": "a number",
-    "finite_number": "a finite number",
-    "string_type": "a text; put it in quotes if it looks like something else",
-    "bool_type": "true or false",
-    "list_type": "a list, as in [x, y, z]",
-    "dict_type": "a mapping, as in {name: value}",
-    "model_type": "a mapping, as in {name: value}",
-    "model_attributes_type": "a mapping, as in {name: value}",
+    "float_type": _NUMBER,
+    "finite_number": ("a finite number", _NUMBER[1]),
+    "string_type": ("a text", "put it in quotes"),
+    "bool_type": ("true or false", "write true or false"),
+    "list_type": ("a list", "write it as [x, y, z]"),
+    "dict_type": _MAPPING,
+    "model_type": _MAPPING,
 }
 
 
@@ -60,22 +60,26 @@ def problem_of(error: ErrorDetails, where: str) -> Problem:
         return Problem(_about(path, what), found, rule, remedy, where)
     if kind == "extra_forbidden":
         known = _known_keys(path[:-1])
-        return Problem(_about(path[:-1], f"unknown entry '{_short(path[-1])}'"), f"'{_short(path[-1])}'",
-                       f"the entries here are {', '.join(known)}", did_you_mean(str(path[-1]), known), where)  # fmt: skip
+        key = _short(path[-1])
+        return Problem(_about(path[:-1], f"unknown entry '{key}'"), f"'{key}'",
+                       f"the entries here are {', '.join(known)}", did_you_mean(key, known), where)  # fmt: skip
     if kind == "missing":
         return _missing(path, error["input"], where)
     if kind == "literal_error":
         return _not_a_choice(path, error["input"], where)
     if kind in ("too_short", "too_long"):
         return _wrong_count(path, kind, context, where)
-    rule = _KINDS.get(kind, error["msg"].lower())
-    return Problem(_about(path, "not of the right kind"), _short(error["input"]), f"this is {rule}", "", where)
+    expected, remedy = _KINDS.get(kind, ("", ""))
+    what = f"not {expected}" if expected else "not allowed"
+    rule = f"this is {expected}" if expected else error["msg"].lower()
+    return Problem(_about(path, what), f"'{_short(error['input'])}'", rule, remedy, where)
 
 
 def _missing(path: Path, owner: Any, where: str) -> Problem:
     if path == ("symofros",):
         return Problem("the file does not state its format", "no entry 'symofros'",
-                       "a description states the version of its format", f"begin with: symofros: {VERSION}", where)  # fmt: skip
+                       "a description states the version of its format", f"begin with: symofros: {VERSION}",
+                       where)  # fmt: skip
     found = ", ".join(map(_short, owner)) if isinstance(owner, Mapping) and owner else "nothing"
     return Problem(_about(path[:-1], f"entry '{path[-1]}' is missing"), found,
                    f"'{path[-1]}' is always given here", f"add it: {path[-1]}: …", where)  # fmt: skip
@@ -86,7 +90,8 @@ def _not_a_choice(path: Path, value: Any, where: str) -> Problem:
     if path == ("symofros",):
         return Problem("another version of the format", _short(value), f"this program reads version {VERSION}",
                        "update symofros, or convert the file", where)  # fmt: skip
-    return Problem(_about(path, f"unknown choice '{_short(value)}'"), f"'{_short(value)}'", f"one of {', '.join(choices)}",
+    found = f"'{_short(value)}'"
+    return Problem(_about(path, f"unknown choice {found}"), found, f"one of {', '.join(choices)}",
                    did_you_mean(str(value), choices), where)  # fmt: skip
 
 

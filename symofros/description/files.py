@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from symofros.description.faults import line_of, path_of, problem_of
 from symofros.description.reading import Reading as Reading
-from symofros.description.reading import read_bytes
+from symofros.description.reading import in_order, read_bytes
 from symofros.description.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
 from symofros.description.system import Input, Parameter, RigidBody, System
 from symofros.description.yaml_nodes import Node, YamlFault, compose
@@ -78,7 +78,7 @@ class _Merger:
             self.problems += [error.problem] if isinstance(error, YamlFault) else error.problems
             self.incomplete = True
             return
-        self.problems += sorted([*problems, *faults], key=_line)
+        self.problems += in_order([*problems, *faults])
         self.broken |= broken
         self.incomplete |= file is None
         if file is None:
@@ -129,8 +129,9 @@ class _Merger:
         """Add one file's entries to what is there."""
         system_line = f"{shown}:{root.at(('system',)).key_line}"
         if file.system is not None and included:
-            self.problems.append(Problem("an included file has a 'system' section", "system", "only the main file has one",
-                                         "remove it, or move it there", system_line))  # fmt: skip
+            self.problems.append(Problem("an included file has a 'system' section", "system",
+                                         "only the main file has one", "remove it, or move it there",
+                                         system_line))  # fmt: skip
         elif file.system is not None:
             self.system = file.system
             self.origin["system",] = system_line
@@ -156,10 +157,6 @@ class _Merger:
                                      "a name is given once in a file and all it includes", "rename one of them",
                                      where))  # fmt: skip
         return False
-
-
-def _line(problem: Problem) -> int:
-    return int(problem.where.rpartition(":")[2])
 
 
 def _validate(root: Node, shown: str) -> tuple[NativeFile | None, list[Problem], set[str]]:

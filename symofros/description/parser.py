@@ -24,10 +24,14 @@ from symofros.expr.ops import FUNCTIONS
 MAX_LENGTH = 10_000
 MAX_DEPTH = 100
 
+# Of the tree: 1 + 1 + 1 + … is a tower. What works on formulas recurses into them.
+MAX_HEIGHT = 300
+
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z_.]))"
     r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*(?:\[\d{1,6}\])?)"
-    r"|(?P<sign>\*\*|[-+*/^(),]))"
+    r"|(?P<sign>\*\*|[-+*/^(),]))",
+    re.ASCII,
 )
 _DUNDER = re.compile(r"(?:^|\.)__|__(?:$|\.)")
 
@@ -181,4 +185,15 @@ def parse(text: str) -> Expression:
     expression = reader.sum()
     if reader.token[0] != "end":
         raise reader.fail(f"'{reader.token[1]}' unexpected", "write products with '*'")
+    if _height(expression) > MAX_HEIGHT:
+        raise ExpressionError(text, f"a chain of more than {MAX_HEIGHT} operations", 0, "group terms by parentheses")
     return expression
+
+
+def _height(expression: Expression) -> int:
+    height, stack = 0, [(expression, 1)]
+    while stack:
+        node, level = stack.pop()
+        height = max(height, level)
+        stack += [(arg, level + 1) for arg in node.args]
+    return height

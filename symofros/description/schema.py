@@ -9,118 +9,39 @@ from __future__ import annotations
 import json
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    PlainValidator,
-    WithJsonSchema,
-    model_validator,
-)
-from pydantic_core import PydanticCustomError
-from typing_extensions import Self, TypeAliasType
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
-from symofros.description.parser import MAX_LENGTH
-from symofros.description.system import (
-    WAIVERS,
-    WORLD,
-    Frame,
-    Inertia,
-    Input,
-    Joint,
-    JointKind,
-    Limits,
-    Parameter,
-    RigidBody,
-    System,
+from symofros.description.fields import (
+    MOMENTS,
+    Formula,
+    Four,
+    Matrix,
+    Name,
+    Number,
+    Reserved,
+    Six,
+    Text,
+    Three,
+    Waiver,
+    fault,
+    listed,
+    moments_mapping,
+    parameter_mapping,
 )
-from symofros.description.values import IDENTITY, Rotation, RotationKind, Value, as_value
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.description.system import WORLD, Frame, Inertia, Input, Joint, JointKind, Limits, Parameter, RigidBody
+from symofros.description.values import IDENTITY, Rotation, RotationKind
+from symofros.errors import DescriptionError, Problem
 
 VERSION = 1
 SCHEMA_FILE = Path(__file__).with_name("schema.json")
-MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 ROTATIONS: tuple[RotationKind, ...] = ("rpy", "axis_angle", "quaternion", "matrix")
 
 
 def default_joint_name(body: str) -> str:
     """The name of a body's joint where the file gives none."""
     return f"q_{body}"
-
-
-def _fault(problem: Problem) -> PydanticCustomError:
-    """A problem in the form that pydantic collects."""
-    parts = {"what": problem.what, "found": problem.found, "rule": problem.rule, "remedy": problem.remedy}
-    return PydanticCustomError("problem", "{what}", parts)
-
-
-def _value(stated: Any) -> Value:
-    try:
-        return as_value(stated)
-    except DescriptionError as error:
-        raise _fault(error.problems[0]) from None
-
-
-def _waiver(name: str) -> str:
-    if name not in WAIVERS:
-        raise _fault(Problem("unknown waiver", f"'{name}'", f"one of {', '.join(WAIVERS)}", did_you_mean(name, WAIVERS)))
-    return name
-
-
-def _moments(stated: Any) -> Any:
-    """A list of moments as the mapping that it abbreviates."""
-    if not isinstance(stated, list):
-        return stated
-    if len(stated) not in (3, 6):
-        rule = "three (Ixx, Iyy, Izz) or six (then Ixy, Ixz, Iyz)"
-        raise _fault(Problem("wrong number of entries", f"{len(stated)} entries", rule))
-    return dict(zip(MOMENTS, stated, strict=False))
-
-
-def _short_parameter(stated: Any) -> Any:
-    return {"value": stated} if isinstance(stated, (int, float)) and not isinstance(stated, bool) else stated
-
-
-def _listed(stated: Any) -> Any:
-    return stated if isinstance(stated, list) else [stated]
-
-
-def _reserved(stated: Any) -> None:
-    if stated:
-        raise _fault(
-            Problem("this version does not know this section yet", f"{len(_listed(stated))} entries",
-                    "the section is reserved for a later version of the format, and is empty until then", "remove it")
-        )  # fmt: skip
-
-
-Number = Annotated[float, Field(allow_inf_nan=False)]
-Name = Annotated[str, Field(min_length=1, max_length=200)]
-Text = Annotated[str, Field(max_length=10_000)]
-Formula = TypeAliasType(
-    "Formula",
-    Annotated[
-        Value,
-        PlainValidator(_value),
-        WithJsonSchema(
-            {
-                "description": "A number, or a formula such as 'L1/2 + 0.1*cos(q1)'.",
-                "anyOf": [{"type": "number"}, {"type": "string", "minLength": 1, "maxLength": MAX_LENGTH}],
-            }
-        ),
-    ],
-)
-Three = Annotated[list[Formula], Field(min_length=3, max_length=3)]
-Four = Annotated[list[Formula], Field(min_length=4, max_length=4)]
-Six = Annotated[list[Formula], Field(min_length=6, max_length=6)]
-Matrix = Annotated[list[Three], Field(min_length=3, max_length=3)]
-Waiver = Annotated[str, AfterValidator(_waiver), WithJsonSchema({"type": "string", "enum": [*WAIVERS]})]
-Reserved = Annotated[
-    None, PlainValidator(_reserved), WithJsonSchema({"description": "Reserved.", "enum": [None, [], {}]})
-]
 
 
 class Entry(BaseModel):
@@ -148,7 +69,7 @@ class RotationEntry(Entry):
         given = [kind for kind in ROTATIONS if getattr(self, kind) is not None]
         if len(given) != 1:
             found = ", ".join(given) or "none of them"
-            raise _fault(Problem("not exactly one form", found, f"exactly one of {', '.join(ROTATIONS)}", "keep one"))
+            raise fault(Problem("not exactly one form", found, f"exactly one of {', '.join(ROTATIONS)}", "keep one"))
         return self
 
     def build(self) -> Rotation:
@@ -182,7 +103,7 @@ class InertiaEntry(Entry):
     center_of_mass: Three = [0.0, 0.0, 0.0]
     """From the body's origin, in the body frame [m]."""
     moments: Annotated[
-        MomentsEntry, BeforeValidator(_moments, json_schema_input_type=Three | Six | MomentsEntry)
+        MomentsEntry, BeforeValidator(moments_mapping, json_schema_input_type=Three | Six | MomentsEntry)
     ] | None = None  # fmt: skip
     """Ixx, Iyy, Izz and, if not zero, Ixy, Ixz, Iyz [kg m^2]."""
     about: Literal["center_of_mass", "body"] = "center_of_mass"
@@ -195,7 +116,7 @@ class InertiaEntry(Entry):
         try:
             self.build()
         except DescriptionError as error:
-            raise _fault(error.problems[0]) from None
+            raise fault(error.problems[0]) from None
         return self
 
     def build(self) -> Inertia:
@@ -238,7 +159,7 @@ class JointEntry(Entry):
     actuated: bool = False
     """Adds an input for each speed: an effort on the joint."""
     effort: Annotated[
-        list[Formula], Field(max_length=6), BeforeValidator(_listed, json_schema_input_type=list[Formula] | Formula)
+        list[Formula], Field(max_length=6), BeforeValidator(listed, json_schema_input_type=list[Formula] | Formula)
     ] = []  # fmt: skip
     """One formula a speed, of inputs, parameters, coordinates, speeds (`dq1`) and `t` [N m or N]."""
     limits: LimitsEntry | None = None
@@ -283,7 +204,7 @@ class BodyEntry(Entry):
             self.joint.build(name) if self.joint else None,
             self.inertia.build() if self.inertia else None,
             frames,
-            frozenset(self.waive),
+            tuple(self.waive),
         )
 
 
@@ -322,7 +243,7 @@ class SystemEntry(Entry):
 
 
 ShortParameter = Annotated[
-    ParameterEntry, BeforeValidator(_short_parameter, json_schema_input_type=Number | ParameterEntry)
+    ParameterEntry, BeforeValidator(parameter_mapping, json_schema_input_type=Number | ParameterEntry)
 ]
 
 

@@ -34,7 +34,9 @@ _WORDS: dict[str, bool | None] = {
     **dict.fromkeys(("false", "False", "FALSE"), False),
 }
 _INTEGER = re.compile(r"[-+]?[0-9]{1,15}\Z")
-_FLOAT = re.compile(r"[-+]?(?:(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|\.(?:inf|Inf|INF))\Z|\.(?:nan|NaN|NAN)\Z")
+_FLOAT = re.compile(
+    r"(?:[-+]?(?:(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|\.(?:inf|Inf|INF))|\.(?:nan|NaN|NAN))\Z"
+)
 
 
 @dataclass(slots=True)
@@ -128,7 +130,7 @@ def _scalar(event: ScalarEvent) -> Any:
         return _WORDS[text]
     if _INTEGER.match(text):
         return int(text)
-    return float(text.replace(".inf", "inf").replace(".nan", "nan")) if _FLOAT.match(text) else text
+    return float(text.lower().replace(".inf", "inf").replace(".nan", "nan")) if _FLOAT.match(text) else text
 
 
 @dataclass
@@ -166,8 +168,9 @@ class _Builder:
         anchor, tag = getattr(event, "anchor", None), getattr(event, "tag", None)
         if isinstance(event, AliasEvent) or anchor:
             sign = "*" if isinstance(event, AliasEvent) else "&"
-            raise self.fault("anchors and aliases are refused", f"{sign}{anchor}", "every value is written where it is used",
-                             line, "write the value out, or make it a parameter")  # fmt: skip
+            raise self.fault("anchors and aliases are refused", f"{sign}{anchor}",
+                             "every value is written where it is used", line,
+                             "write the value out, or make it a parameter")  # fmt: skip
         if tag:
             raise self.fault("tags are refused", str(tag), "values are plain numbers, texts, lists and mappings", line,
                              "drop the tag")  # fmt: skip

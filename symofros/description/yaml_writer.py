@@ -13,7 +13,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from symofros.description.faults import problem_of
 from symofros.description.schema import VERSION, NativeFile, default_joint_name
-from symofros.description.system import WORLD, Frame, Inertia, Input, Joint, Limits, Parameter, RigidBody, System
+from symofros.description.system import WORLD, Frame, Inertia, Joint, Limits, Parameter, RigidBody, System
 from symofros.description.values import ORIGIN, Rotation, Value
 from symofros.errors import DescriptionError, Problem
 
@@ -92,7 +92,7 @@ def _body(body: RigidBody) -> Plain:
     if body.frames:
         entries["frames"] = {frame.name: _placement(frame) for frame in body.frames}
     if body.waive:
-        entries["waive"] = sorted(body.waive)
+        entries["waive"] = [*body.waive]
     return entries
 
 
@@ -168,8 +168,14 @@ def _styled(value: Any, role: str) -> Any:
         return sequence
     if not isinstance(value, dict):
         return value
-    inner = {"": str, "bodies": lambda _: "body", "body": str, "joint": str, "inertia": str}.get(role, lambda _: "item")
-    mapping = CommentedMap((key, _styled(item, inner(key))) for key, item in value.items())
+    mapping = CommentedMap((key, _styled(item, _role(key, role))) for key, item in value.items())
     if role not in _OPEN or not value:
         mapping.fa.set_flow_style()
     return mapping
+
+
+def _role(key: str, owner: str) -> str:
+    """What an entry is to the layout; names of things are not keys of the format."""
+    if owner == "bodies":
+        return "body"
+    return key if owner in ("", "body") else "item"

@@ -74,7 +74,7 @@ class Equations:
 
     @cached_property
     def acceleration(self) -> list[Edge]:
-        """v' = M^-1 (Q - h)."""
+        """V' = M^-1 (Q - h)."""
         return solve(self.g, self.M, [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)])
 
     @cached_property

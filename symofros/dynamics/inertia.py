@@ -50,9 +50,7 @@ def _shift_form(a: Vec3, b: Vec3) -> Sym3:
     """The symmetric matrix (a.b) 1 - a b^T for parallel a, b."""
     g = a.g
     xx, yy, zz = (g.mul(i, j) for i, j in zip(a, b, strict=True))
-    return Sym3(
-        g, g.add(yy, zz), g.add(xx, zz), g.add(xx, yy), -g.mul(a.x, b.y), -g.mul(a.x, b.z), -g.mul(a.y, b.z)
-    )
+    return Sym3(g, g.add(yy, zz), g.add(xx, zz), g.add(xx, yy), -g.mul(a.x, b.y), -g.mul(a.x, b.z), -g.mul(a.y, b.z))
 
 
 def shifted(S: Vec3, J: Sym3, p: Vec3) -> Sym3:
@@ -166,5 +164,3 @@ def _given(link: MovingLink, give: LinkInertia) -> LinkInertia:
     S = R.times(give.S)
     J = shifted(S, _turned(R, give.J), p)
     return LinkInertia(give.m, S + p.scaled(give.m), J + point_moments(give.m, p))
-
-

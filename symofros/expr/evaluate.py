@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.graph import Edge, Graph, Slot
 from symofros.expr.ops import OPS, Array
 from symofros.expr.program import Function, Program
 
@@ -56,7 +56,7 @@ def interpret(program: Program, function: Function, inputs: Mapping[str, Array],
 
 
 def evaluate_edges(
-    program: Program, edges: Sequence[Edge], inputs: Mapping[str, Array], given: Mapping[int, tuple[str, int]]
+    program: Program, edges: Sequence[Edge], inputs: Mapping[str, Array], given: Mapping[int, Slot]
 ) -> list[Array | float]:
     """The values of some edges, each (n,) or a number.
 
@@ -74,8 +74,8 @@ def evaluate_edges(
         if node == 0:
             return 0.0
         if node not in values:
-            group, index = given.get(node) or graph.slot[node]
-            values[node] = inputs[group][:, index]
+            slot = given.get(node) or graph.slot[node]
+            values[node] = inputs[slot.group][:, slot.index]
         return values[node] if edge > 0 else -values[node]
 
     for node in needed_nodes(graph, edges, given.keys()):

@@ -8,7 +8,7 @@ constants, zeros and ones, so that a mechanism's structure (planar, axis-aligned
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from symofros.expr.ops import ADD, DIV, MUL, OPS
 
@@ -20,7 +20,8 @@ _CONSTANT = "constant"
 _INPUT = "input"
 
 
-class Slot(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Slot:
     """One entry of a named input vector, as in q[3]."""
 
     group: str

@@ -36,7 +36,7 @@ class Vec3:
         return Vec3(self.g, -self.x, -self.y, -self.z)
 
     def scaled(self, factor: Edge) -> Vec3:
-        """factor times the vector."""
+        """Factor times the vector."""
         mul = self.g.mul
         return Vec3(self.g, mul(factor, self.x), mul(factor, self.y), mul(factor, self.z))
 

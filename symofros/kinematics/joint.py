@@ -75,5 +75,3 @@ def neutral_coordinates(joint: Joint) -> tuple[float, ...]:
     if joint.kind == "free":
         return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
     return (0.0,)
-
-

@@ -29,8 +29,12 @@ class Lowering:
         if not isinstance(value, Expression):
             return self.g.constant(value)
         for name in value.symbols() - self._bindings.keys():
-            self._bindings[name] = self.g.input(*self.coordinates.symbols[name])
+            self._bindings[name] = self._input(name)
         return lower(value, self.g, self._bindings)
+
+    def _input(self, name: str) -> Edge:
+        slot = self.coordinates.symbols[name]
+        return self.g.input(slot.group, slot.index)
 
     def value_without(self, value: Value, inputs: set[str]) -> Edge:
         """The edge of one value with these inputs set to zero."""

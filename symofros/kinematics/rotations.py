@@ -135,7 +135,8 @@ def constant_turn(R: Mat3) -> Turn:
         return Turn(g, (MatrixTurn(R),))
     rows = R.numbers()
     for i, j in product(range(3), range(3)):
-        if abs(rows[i][j]) == 1.0:
+        # An entry rounds to 1 long before the others of its row and column round to 0.
+        if abs(rows[i][j]) == 1.0 and not any(rows[i][(j + n) % 3] or rows[(i + n) % 3][j] for n in (1, 2)):
             permutation = _axis_permutation(i, j, rows[i][j])
             rest = _transposed_product(permutation, rows)
             k, c, s = j, rest[(j + 1) % 3][(j + 1) % 3], rest[(j + 2) % 3][(j + 1) % 3]
@@ -205,7 +206,7 @@ def stated_rotation(rotation: Rotation, g: Graph, bindings: Mapping[str, Edge]) 
 
 
 def unit_vector(v: Vec3) -> Vec3:
-    """v divided by its length; exact along a coordinate axis."""
+    """V divided by its length; exact along a coordinate axis."""
     g = v.g
     along = [i for i, edge in enumerate(v) if edge]
     if len(along) == 1 and v.is_constant:
@@ -257,7 +258,7 @@ def frame_with_axis(n: Vec3) -> tuple[Mat3, int, bool] | None:
         return None
     x = [g.number(edge) or 0.0 for edge in n]
     for k in range(3):
-        if abs(x[k]) == 1.0:
+        if abs(x[k]) == 1.0 and abs(x[(k + 1) % 3]) <= EXACT and abs(x[(k + 2) % 3]) <= EXACT:
             return Mat3.identity(g), k, x[k] < 0.0
     # Column 2 is n; the first column is the coordinate axis least along n, made orthogonal to it.
     least = min(range(3), key=lambda i: abs(x[i]))

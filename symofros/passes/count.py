@@ -34,7 +34,8 @@ class Operations:
 
 def count_operations(graph: Graph, edges: Sequence[Edge], given: Collection[int] = ()) -> Operations:
     """Operations that computing some edges takes; signs are free."""
-    return Operations(**Counter(OPS[graph.op[node]].cost for node in needed_nodes(graph, edges, given)))
+    counts = Counter(OPS[graph.op[node]].cost for node in needed_nodes(graph, edges, given))
+    return Operations(counts["mul"], counts["add"], counts["div"], counts["call"])
 
 
 def count_program(program: Program) -> dict[tuple[str, str], Operations]:

@@ -92,13 +92,15 @@ def quaternion_log(q: Array) -> Array:
     size = np.linalg.norm(q[..., :3], axis=-1, keepdims=True)
     angle = 2.0 * np.arctan2(size, q[..., 3:])
     factor = np.where(size < _SMALL, 2.0 + size**2 / 3.0, angle / np.where(size < _SMALL, 1.0, size))
-    return factor * q[..., :3]
+    vector: Array = factor * q[..., :3]
+    return vector
 
 
 def rotate(q: Array, v: Array) -> Array:
     """R(q) v."""
     t = 2.0 * np.cross(q[..., :3], v)
-    return v + q[..., 3:] * t + np.cross(q[..., :3], t)
+    rotated: Array = v + q[..., 3:] * t + np.cross(q[..., :3], t)
+    return rotated
 
 
 def _conjugate(q: Array) -> Array:
@@ -110,7 +112,8 @@ def _relative(a: Array, b: Array) -> Array:
 
 
 def _normalised(q: Array) -> Array:
-    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+    unit: Array = q / np.linalg.norm(q, axis=-1, keepdims=True)
+    return unit
 
 
 def _left_jacobian(w: Array, v: Array) -> Array:
@@ -121,7 +124,8 @@ def _left_jacobian(w: Array, v: Array) -> Array:
     A = np.where(small, 0.5 - angle**2 / 24.0, (1.0 - np.cos(safe)) / safe**2)
     B = np.where(small, 1.0 / 6.0 - angle**2 / 120.0, (safe - np.sin(safe)) / safe**3)
     wv = np.cross(w, v)
-    return v + A * wv + B * np.cross(w, wv)
+    shift: Array = v + A * wv + B * np.cross(w, wv)
+    return shift
 
 
 def _left_jacobian_inverse(w: Array, p: Array) -> Array:
@@ -131,4 +135,5 @@ def _left_jacobian_inverse(w: Array, p: Array) -> Array:
     safe = np.where(small, 1.0, angle)
     C = np.where(small, 1.0 / 12.0 + angle**2 / 720.0, (1.0 - safe / 2.0 / np.tan(safe / 2.0)) / safe**2)
     wp = np.cross(w, p)
-    return p - 0.5 * wp + C * np.cross(w, wp)
+    twist: Array = p - 0.5 * wp + C * np.cross(w, wp)
+    return twist

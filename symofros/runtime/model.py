@@ -105,8 +105,10 @@ class Model:
         par = self._par.copy()
         for name, value in values.items():
             if name not in self.record.par_names:
-                remedy = did_you_mean(name, self.record.par_names) or "constants are hard-coded: recompile to change one"
-                raise UnknownNameError(f"model '{self.record.name}': no run-time parameter '{name}'\n  remedy: {remedy}")
+                remedy = did_you_mean(name, self.record.par_names) or "constants are hard-coded: recompile"
+                raise UnknownNameError(
+                    f"model '{self.record.name}': no run-time parameter '{name}'\n  remedy: {remedy}"
+                )
             if not np.isfinite(value):
                 raise ValueError(f"parameter '{name}': {value!r} is not a finite number")
             par[self.record.par_names.index(name)] = value
@@ -154,7 +156,7 @@ class Model:
         return M, h, Q
 
     def forward_dynamics(self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0) -> Array:
-        """v' (..., nv) that the forces produce."""
+        """The v' (..., nv) that the forces produce."""
         return self._one("forward_dynamics", {"q": q, "v": v, "u": u, "t": t}, par)
 
     def inverse_dynamics(self, q: Given, v: Given, a: Given, *, par: Given | None = None, t: Given = 0.0) -> Array:

@@ -99,8 +99,9 @@ class _Checker:
         for name, count in Counter(names).items():
             if count > 1:
                 yield Problem(
-                    f"{kind} '{name}' appears {count} times{on}", f"{count} of them", f"names of {kind}s are unique{on}",
-                    "rename all but one", self.where(kind, *([owner] if owner else []), name),
+                    f"{kind} '{name}' appears {count} times{on}", f"{count} of them",
+                    f"names of {kind}s are unique{on}", "rename all but one",
+                    self.where(kind, *([owner] if owner else []), name),
                 )  # fmt: skip
 
     def _symbols_unique(self) -> Iterator[Problem]:

@@ -52,7 +52,8 @@ class Numbers:
         else:
             vector, scalar = x[:3] / norm * math.sin(x[3] / 2), math.cos(x[3] / 2)
         cross = skew(vector)
-        return np.eye(3) + 2 * scalar * cross + 2 * cross @ cross
+        R: Array = np.eye(3) + 2 * scalar * cross + 2 * cross @ cross
+        return R
 
     def value_problems(self, what: str, value: Value, where: str) -> Iterator[Problem]:
         """A value that is not finite at the defaults."""

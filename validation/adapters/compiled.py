@@ -11,7 +11,7 @@ import numpy as np
 import symofros as sf
 from validation.geometry import Array
 from validation.interface import States, Subject
-from validation.quantities import FRAME_QUANTITIES, QUANTITIES
+from validation.quantities import FRAME_QUANTITIES, QUANTITIES, SECOND_ROUTE
 
 NAME = "symofros"
 
@@ -98,6 +98,19 @@ def build(subject: Subject) -> SymofrosEngine:
         DescriptionError: The system can't be a mechanism.
     """
     return SymofrosEngine(NAME, sf.compile(subject.system, options(subject, "c")), subject.frames)
+
+
+def build_verbatim(subject: Subject) -> SymofrosEngine:
+    """The same of the file's every digit, for engines that read the file themselves.
+
+    Raises:
+        DescriptionError: The system can't be a mechanism.
+        ValueError: The subject was not read from a URDF file.
+    """
+    if subject.urdf is None:
+        raise ValueError(f"model '{subject.label}' was not read from a URDF file")
+    functions = tuple(name for name in _FUNCTIONS if name in SECOND_ROUTE)
+    return SymofrosEngine(NAME, sf.compile(subject.urdf.verbatim, sf.Options(functions=functions)))
 
 
 def options(subject: Subject, backend: Literal["c", "interpreter"]) -> sf.Options:

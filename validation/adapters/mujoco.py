@@ -273,14 +273,20 @@ _ROOT_JOINT = "root_joint"
 
 def build_from_urdf(subject: Subject) -> TreeEngine | Unsupported:
     """MuJoCo's own reading of the file that the description was read from."""
-    assembly = assemble(subject.system)
+    source = subject.urdf
+    if source is None:
+        return Unsupported("not read from a URDF file")
+    assembly = assemble(source.verbatim)
+    for part in (part for mover in assembly.movers for part in mover.masses):
+        if part.mass == 0.0 and np.any(part.J_BC):
+            return Unsupported(f"body '{part.body}': inertia without mass, which MuJoCo drops when it fuses bodies")
     try:
-        spec = mujoco.MjSpec.from_string(_bare(subject.urdf or ""))
+        spec = mujoco.MjSpec.from_string(_bare(source.text))
     except ValueError as error:
         return Unsupported(f"its own reading of the file failed: {explain(str(error))}")
     spec.option.gravity = assembly.gravity
     names = {mover.joint.name: mover.joint.name for mover in assembly.movers}
-    if subject.floating_base:
+    if source.floating_base:
         spec.worldbody.first_body().add_freejoint(name=_ROOT_JOINT)
         names[assembly.movers[0].joint.name] = _ROOT_JOINT
     model = compiled(spec)
@@ -295,9 +301,9 @@ def build_from_urdf(subject: Subject) -> TreeEngine | Unsupported:
     return MujocoEngine(URDF_NAME, model, chart, capabilities=SECOND_ROUTE)
 
 
-def _bare(urdf: str) -> str:
+def _bare(urdf: bytes) -> str:
     """The file without shapes, whose meshes need not be at hand, and with MuJoCo's own section: radians."""
-    root = ElementTree.fromstring(urdf.encode())
+    root = ElementTree.fromstring(urdf)
     for link in root.iter("link"):
         for shape in [*link.findall("visual"), *link.findall("collision")]:
             link.remove(shape)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from validation.assembly import FrameSite, Mover, assemble
+from validation.assembly import FrameSite, Mass, Mover, assemble
 from validation.conventions import Chart, Slot
 from validation.geometry import Array, Placement
 from validation.interface import States, Subject, TreeEngine, Unsupported
@@ -134,14 +134,20 @@ def build(subject: Subject) -> TreeEngine | Unsupported:
     for mover in assembly.movers:
         ids.append(model.addJoint(ids[mover.parent + 1], _joint_model(mover), _se3(mover.X_AP), mover.joint.name))
         for part in mover.masses:
-            inertia = pin.Inertia(part.mass, part.p_BC, part.J_BC)
-            model.appendBodyToJoint(ids[-1], inertia, pin.SE3.Identity())
+            model.appendBodyToJoint(ids[-1], _inertia(part), pin.SE3.Identity())
     frames = tuple(_add_frame(model, ids, assembly.frames[name], name) for name in subject.frames)
     return PinocchioEngine(NAME, model, Chart.identity(assembly), frames)
 
 
 def _se3(X: Placement) -> Any:
     return pin.SE3(X.R, X.p)
+
+
+def _inertia(part: Mass) -> Any:
+    # The constructor refuses an inertia that no body can have; files state such, and the setters take them.
+    inertia = pin.Inertia.Zero()
+    inertia.mass, inertia.lever, inertia.inertia = part.mass, part.p_BC, part.J_BC
+    return inertia
 
 
 def _joint_model(mover: Mover) -> Any:
@@ -164,14 +170,17 @@ _ROOT_JOINT = "root_joint"
 
 def build_from_urdf(subject: Subject) -> TreeEngine | Unsupported:
     """Pinocchio's own reading of the file that the description was read from."""
-    assembly = assemble(subject.system)
-    root = (pin.JointModelFreeFlyer(), _ROOT_JOINT) if subject.floating_base else ()
+    source = subject.urdf
+    if source is None:
+        return Unsupported("not read from a URDF file")
+    assembly = assemble(source.verbatim)
+    root = (pin.JointModelFreeFlyer(), _ROOT_JOINT) if source.floating_base else ()
     try:
-        model = pin.buildModelFromXML(subject.urdf, *root)
+        model = pin.buildModelFromXML(source.text.decode(), *root)
     except (ValueError, RuntimeError) as error:
         return Unsupported(f"its own reading of the file failed: {error}")
     model.gravity.linear = assembly.gravity
-    slots = [_slot(model, mover, subject.floating_base and mover is assembly.movers[0]) for mover in assembly.movers]
+    slots = [_slot(model, mover, source.floating_base and mover is assembly.movers[0]) for mover in assembly.movers]
     for slot in slots:
         if isinstance(slot, Unsupported):
             return slot

@@ -1,0 +1,230 @@
+"""URDF in, as Pinocchio understands it: links are bodies, joints carry them, the root is the base.
+
+What a rigid tree has no place for (shapes, damping, transmissions, mimic) is ignored, and System.notes says so.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from symofros.description.reading import Reading, in_order, read_bytes
+from symofros.description.system import WORLD, Inertia, Joint, JointKind, RigidBody, System
+from symofros.description.urdf_values import Values
+from symofros.description.xml_nodes import Element, XmlFault, parse_xml
+from symofros.errors import DescriptionError, Problem, did_you_mean
+
+MAX_BYTES = 64 << 20
+SNAP_TOL = 1e-12
+ROOT_JOINT = "root_joint"
+
+_KINDS: dict[str, JointKind] = {
+    "fixed": "fixed",
+    "revolute": "revolute",
+    "continuous": "continuous",
+    "prismatic": "prismatic",
+    "floating": "free",
+}
+_USED = frozenset({"link", "joint"})
+
+
+def read_urdf(path: str | os.PathLike[str], *, floating_base: bool = False, snap_tol: float = SNAP_TOL) -> Reading:
+    """Read a URDF file.
+
+    Args:
+        path: The file.
+        floating_base: Put the root link on a free joint; otherwise it is the base and never moves.
+        snap_tol: Angles this close to a multiple of pi/2 [rad], positions this close to 0 [m] and entries of an axis
+            this close to 0 or +-1 are taken for exact, because files carry rounded digits.
+
+    Returns:
+        The system without the links that could not be read, and every problem.
+
+    Raises:
+        ValueError: `snap_tol` is not a small number.
+    """
+    if not 0.0 <= snap_tol < 0.1:
+        raise ValueError(f"snap_tol: found {snap_tol}; rule: 0 <= snap_tol < 0.1, so that it only absorbs rounding")
+    file = os.fspath(path)
+    try:
+        root = parse_xml(read_bytes(Path(path), MAX_BYTES), file)
+    except XmlFault as error:
+        return Reading(None, (error.problem,))
+    except DescriptionError as error:
+        return Reading(None, error.problems)
+    if root.tag != "robot":
+        problem = Problem("the file is not a URDF", f"the root element is <{root.tag:.60}>",
+                          "the root element is <robot>", "", f"{file}:{root.line}")  # fmt: skip
+        return Reading(None, (problem,))
+    return _Importer(Values(file, snap_tol), root, floating_base).reading()
+
+
+@dataclass
+class _Link:
+    """A link, and the joint above it once that is known; `joint` stays None for a root or a faulty joint."""
+
+    element: Element
+    inertia: Inertia | None
+    parent: str | None = None
+    joint: Joint | None = None
+    children: list[str] = field(default_factory=list)
+
+
+class _Importer:
+    def __init__(self, values: Values, robot: Element, floating_base: bool) -> None:
+        self.values = values
+        self.robot = robot
+        self.floating_base = floating_base
+        self.links: dict[str, _Link] = {}
+        self.broken: set[str] = set()
+        self.origin: dict[tuple[str, ...], str] = {("system",): values.where(robot)}
+
+    def reading(self) -> Reading:
+        name = self.values.attribute(self.robot, "name", "the file") or ""
+        for element in self.robot.all("link"):
+            self.link(element)
+        for element in self.robot.all("joint"):
+            self.joint(element)
+        if not self.links:
+            self.values.fault(self.robot, "the robot has no links", f"{len(self.robot.children)} other elements",
+                              "a robot has at least one <link>", "expand the file's macros first (xacro)?")  # fmt: skip
+        bodies = tuple(self.bodies())
+        self.ignored()
+        problems = in_order(self.values.problems)
+        if not self.links:
+            return Reading(None, problems)
+        system = System(name, bodies, notes=self.values.notes(), origin=self.origin)
+        return Reading(system, problems, frozenset(self.broken))
+
+    def link(self, element: Element) -> None:
+        name = self.values.attribute(element, "name", "a link")
+        if name is None:
+            return
+        if name in self.links:
+            first = self.links[name].element.line
+            self.values.fault(element, f"link '{name}' appears twice", f"lines {first} and {element.line}",
+                              "names of links are unique", "rename one of them")  # fmt: skip
+            return
+        before = len(self.values.problems)
+        self.links[name] = _Link(element, self.values.inertia(element, f"link '{name}'"))
+        self.origin["body", name] = self.values.where(element)
+        if len(self.values.problems) > before:
+            self.broken.add(name)
+        if element.first("visual") or element.first("collision"):
+            self.values.remark("visual and collision shapes ignored", "link", name)
+
+    def joint(self, element: Element) -> None:
+        """Read a joint and hang its child link on it."""
+        before = len(self.values.problems)
+        name = self.values.attribute(element, "name", "a joint") or "?"
+        owner = f"joint '{name}'"
+        parent, child = self.end(element, "parent", owner), self.end(element, "child", owner)
+        joint = self.joint_noun(element, name, parent or "?")
+        if child is None:
+            return
+        link = self.links.get(child)
+        if link is None:
+            self.values.fault(element, f"{owner}: its child link '{child}' does not exist", f"child '{child}'",
+                              "a joint connects two links of the file", did_you_mean(child, self.links))  # fmt: skip
+            return
+        if link.parent is not None:
+            self.values.fault(element, f"link '{child}' has two parents", f"'{link.parent}' and '{parent}'",
+                              "each link is the child of one joint at most: links form a tree",
+                              "cut the loop by removing one of the joints")  # fmt: skip
+            return
+        link.parent = parent or "?"
+        if link.parent in self.links:
+            self.links[link.parent].children.append(child)
+        if joint is None or len(self.values.problems) > before:
+            self.broken.add(child)
+            return
+        link.joint = joint
+        self.origin["joint", name] = self.values.where(element)
+        self.remark_ignored(element, name)
+
+    def end(self, element: Element, tag: str, owner: str) -> str | None:
+        """The link at one end of a joint."""
+        inner = element.first(tag)
+        if inner is None:
+            self.values.fault(element, f"{owner}: <{tag}> is missing", "no such element",
+                              "a joint names its <parent> and its <child>", f'add <{tag} link="…"/>')  # fmt: skip
+            return None
+        return self.values.attribute(inner, "link", owner)
+
+    def joint_noun(self, element: Element, name: str, parent: str) -> Joint | None:
+        owner = f"joint '{name}'"
+        stated = self.values.attribute(element, "type", owner)
+        position, rotation = self.values.origin(element, owner)
+        kind = _KINDS.get(stated or "")
+        if kind is None:
+            if stated is not None:
+                remedy = did_you_mean(stated, _KINDS)
+                if stated == "planar":
+                    remedy = "use two prismatic joints and a continuous one, with massless links between them"
+                self.values.fault(element, f"{owner}: joints of type '{stated}' are unknown here", f"type '{stated}'",
+                                  f"one of {', '.join(_KINDS)}", remedy)  # fmt: skip
+            return None
+        if kind in ("fixed", "free"):
+            return Joint(name, kind, parent, position=position, rotation=rotation)
+        limits = self.values.limits(element, kind != "continuous", owner)
+        axis = self.values.axis(element, owner)
+        return Joint(name, kind, parent, None, position, rotation, axis, actuated=True, limits=limits)
+
+    def remark_ignored(self, element: Element, name: str) -> None:
+        dynamics = element.first("dynamics")
+        if dynamics is not None and any(self.is_nonzero(text) for text in dynamics.attributes.values()):
+            self.values.remark("damping and friction ignored", "joint", name)
+        if element.first("mimic"):
+            self.values.remark("mimic ignored, the coordinate stays independent", "joint", name)
+
+    @staticmethod
+    def is_nonzero(text: str) -> bool:
+        try:
+            return float(text) != 0.0
+        except ValueError:
+            return True
+
+    def bodies(self) -> Iterator[RigidBody]:
+        """The bodies, depth first, children in the order of the file; what no root reaches comes last."""
+        roots = [name for name, link in self.links.items() if link.parent is None]
+        # With several roots none floats: each stays a base, and that there are several is found by the topology.
+        floating = roots[0] if self.floating_base and len(roots) == 1 else None
+        if self.floating_base and roots in ([], [WORLD]):
+            found = f"the root link is '{WORLD}', which is the ground" if roots else "each link has a parent"
+            self.values.fault(self.robot, "no root link that could float", found, "a floating robot has a root link",
+                              "drop floating_base")  # fmt: skip
+            floating = None
+        done: set[str] = set()
+        for start in (*roots, *self.links):
+            stack = [start]
+            while stack:
+                name = stack.pop()
+                if name in done:
+                    continue
+                done.add(name)
+                stack.extend(reversed(self.links[name].children))
+                if name not in self.broken:
+                    yield self.body(name, name == floating)
+
+    def body(self, name: str, floating: bool) -> RigidBody:
+        link = self.links[name]
+        if floating:
+            taken = {other.joint.name for other in self.links.values() if other.joint is not None}
+            root_joint = ROOT_JOINT
+            while root_joint in taken:
+                root_joint += "_"
+            self.origin["joint", root_joint] = self.values.where(link.element)
+            return RigidBody(name, Joint(root_joint, "free", WORLD), link.inertia)
+        if link.parent is None and link.inertia is not None:
+            self.values.remark("inertia of the base dropped, it never moves", "link", name)
+            return RigidBody(name)
+        return RigidBody(name, link.joint, link.inertia)
+
+    def ignored(self) -> None:
+        """Remark on the elements that mean nothing here."""
+        for element in self.robot.children:
+            if element.tag not in _USED:
+                name = element.attributes.get("name") or element.attributes.get("reference") or f"line {element.line}"
+                self.values.remark(f"<{element.tag:.60}> ignored", "element", name)

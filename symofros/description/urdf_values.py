@@ -1,0 +1,178 @@
+"""Numbers, vectors, rotations and inertias of URDF elements; faults and remarks are collected on the way."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+
+from symofros.description.system import Inertia, Limits
+from symofros.description.values import IDENTITY, Rotation
+from symofros.description.xml_nodes import Element
+from symofros.errors import Problem
+
+Triple = tuple[float, float, float]
+
+ZERO: Triple = (0.0, 0.0, 0.0)
+EXAMPLES = 3
+
+_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\Z")
+_INFINITE = re.compile(r"[-+]?inf(?:inity)?\Z", re.IGNORECASE)
+_QUARTER = math.pi / 2
+
+# Beyond this the length of an axis is more than rounding of its digits.
+_UNIT_TOLERANCE = 1e-6
+
+
+@dataclass
+class Values:
+    """Reads attributes of elements.
+
+    Attributes:
+        file: Its name, for the problems.
+        snap_tol: Angles this close to a multiple of pi/2, lengths this close to 0 and entries of an axis this close
+            to 0 or +-1 become exact.
+        problems: Every fault met.
+        remarks: What was ignored or changed -> kind of thing and their names.
+    """
+
+    file: str
+    snap_tol: float
+    problems: list[Problem] = field(default_factory=list)
+    remarks: dict[str, tuple[str, list[str]]] = field(default_factory=dict)
+
+    def where(self, element: Element) -> str:
+        """The element's place."""
+        return f"{self.file}:{element.line}"
+
+    def fault(self, element: Element, what: str, found: str, rule: str, remedy: str = "") -> None:
+        """Note a problem."""
+        self.problems.append(Problem(what, found, rule, remedy, self.where(element)))
+
+    def remark(self, text: str, noun: str, name: str) -> None:
+        """Note that something was ignored or changed, for the thing of that name."""
+        names = self.remarks.setdefault(text, (noun, []))[1]
+        if name not in names[-1:]:
+            names.append(name)
+
+    def notes(self) -> tuple[str, ...]:
+        """The remarks, one line a kind, with the number of things and some of their names."""
+        return tuple(note(text, noun, names) for text, (noun, names) in self.remarks.items())
+
+    def attribute(self, element: Element, name: str, owner: str) -> str | None:
+        """An attribute that must be there."""
+        text = element.attributes.get(name)
+        if text is None:
+            given = ", ".join(element.attributes) or "no attributes"
+            self.fault(element, f"{owner}: <{element.tag}> lacks the attribute '{name}'", given,
+                       f"<{element.tag}> has the attribute '{name}'", f'write <{element.tag} {name}="…">')  # fmt: skip
+        return text
+
+    def numbers(self, element: Element, name: str, owner: str, count: int) -> tuple[float, ...] | None:
+        """The numbers of an attribute that must be there."""
+        text = self.attribute(element, name, owner)
+        if text is None:
+            return None
+        words = text.split()
+        numbers = tuple(float(word) if _NUMBER.match(word) else math.nan for word in words)
+        if len(numbers) != count or not all(map(math.isfinite, numbers)):
+            rule = "a finite number" if count == 1 else f"{count} finite numbers, separated by spaces"
+            remedy = "expand the file's macros first (xacro)" if "${" in text else ""
+            self.fault(element, f"{owner}: <{element.tag}> has a bad '{name}'", f"'{text:.60}'", rule, remedy)
+            return None
+        return numbers
+
+    def number(self, element: Element, name: str, owner: str) -> float:
+        """One number; NaN after a fault."""
+        numbers = self.numbers(element, name, owner, 1)
+        return numbers[0] if numbers else math.nan
+
+    def triple(self, element: Element, name: str, owner: str, default: Triple) -> Triple:
+        """Three numbers, or the default where the attribute is not given."""
+        if name not in element.attributes:
+            return default
+        numbers = self.numbers(element, name, owner, 3)
+        return (numbers[0], numbers[1], numbers[2]) if numbers else default
+
+    def origin(self, owner_element: Element, owner: str) -> tuple[Triple, Rotation]:
+        """Position and rotation of <origin>, snapped; none where there is none."""
+        element = owner_element.first("origin")
+        if element is None:
+            return ZERO, IDENTITY
+        position = self.triple(element, "xyz", owner, ZERO)
+        angles = self.triple(element, "rpy", owner, ZERO)
+        x, y, z = self.snapped(position, (0.0,), owner)
+        roll, pitch, yaw = (self.snapped((angle,), (round(angle / _QUARTER) * _QUARTER,), owner)[0] for angle in angles)
+        return (x, y, z), Rotation.rpy(roll, pitch, yaw)
+
+    def axis(self, owner_element: Element, owner: str) -> Triple:
+        """Direction of <axis>, snapped; x where there is none, as URDF has it."""
+        element = owner_element.first("axis")
+        stated = (1.0, 0.0, 0.0) if element is None else self.triple(element, "xyz", owner, (1.0, 0.0, 0.0))
+        x, y, z = self.snapped(stated, (0.0, 1.0, -1.0), owner)
+        length = math.hypot(x, y, z)
+        if length == 0.0:
+            self.fault(element or owner_element, f"{owner}: the axis has no direction", f"'{x:g} {y:g} {z:g}'",
+                       "an axis is not the zero vector", 'give a direction such as xyz="0 0 1"')  # fmt: skip
+        elif abs(length - 1.0) > _UNIT_TOLERANCE:
+            self.remark("axes that are not unit vectors are normalised", "joint", _bare(owner))
+        return x, y, z
+
+    def snapped(self, values: tuple[float, ...], exact: tuple[float, ...], owner: str) -> tuple[float, ...]:
+        """The values, each replaced by an exact one within the tolerance."""
+        result = tuple(next((e for e in exact if abs(value - e) <= self.snap_tol), value) for value in values)
+        if result != values:
+            self.remark(f"numbers within {self.snap_tol:g} of exact ones made exact", "element", _bare(owner))
+        return result
+
+    def inertia(self, link: Element, owner: str) -> Inertia | None:
+        """The inertia of a link; None for one without."""
+        element = link.first("inertial")
+        if element is None:
+            self.remark("links without <inertial> are massless", "link", _bare(owner))
+            return None
+        position, rotation = self.origin(element, owner)
+        mass, matrix = element.first("mass"), element.first("inertia")
+        for part, tag in ((mass, "mass"), (matrix, "inertia")):
+            if part is None:
+                found = ", ".join(f"<{child.tag}>" for child in element.children) or "nothing inside"
+                self.fault(element, f"{owner}: <inertial> lacks <{tag}>", found,
+                           "<inertial> holds <mass> and <inertia>", "add it, or remove <inertial>")  # fmt: skip
+        if mass is None or matrix is None:
+            return None
+        kilograms = self.number(mass, "value", owner)
+        xx, yy, zz, xy, xz, yz = (self.number(matrix, f"i{ij}", owner) for ij in ("xx", "yy", "zz", "xy", "xz", "yz"))
+        if not all(map(math.isfinite, (kilograms, xx, yy, zz, xy, xz, yz))):
+            return None
+        return Inertia(kilograms, position, (xx, yy, zz, xy, xz, yz), rotation=rotation)
+
+    def limits(self, joint: Element, bounded: bool, owner: str) -> Limits | None:
+        """The limits of a joint; a bound that is not given or infinite is none."""
+        element = joint.first("limit")
+        if element is None:
+            return None
+        velocity, effort = (self.bound(element, name, owner) for name in ("velocity", "effort"))
+        if not bounded or not {"lower", "upper"} & element.attributes.keys():
+            return Limits(velocity=velocity, effort=effort)
+        lower, upper = (
+            self.bound(element, name, owner) if name in element.attributes else 0.0 for name in ("lower", "upper")
+        )
+        return Limits(lower, upper, velocity, effort)
+
+    def bound(self, element: Element, name: str, owner: str) -> float | None:
+        """A limit that may be infinite or not given."""
+        text = element.attributes.get(name)
+        if text is None or _INFINITE.match(text.strip()):
+            return None
+        return self.number(element, name, owner)
+
+
+def note(text: str, noun: str, names: list[str]) -> str:
+    """One line: what happened, to how many things, and the names of the first few."""
+    shown = ", ".join(names[:EXAMPLES]) + (", …" if len(names) > EXAMPLES else "")
+    return f"{text}: {len(names)} {noun}{'s' * (len(names) > 1)} ({shown})"
+
+
+def _bare(owner: str) -> str:
+    """The name in "joint 'name'"."""
+    return owner.partition("'")[2].removesuffix("'")

@@ -1,0 +1,101 @@
+"""XML -> elements in which each knows its line; document types, and with them entities, are refused."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+from symofros.errors import Problem
+
+MAX_DEPTH = 100
+
+
+@dataclass(slots=True)
+class Element:
+    """One element; its text is of no interest to the formats that are read here.
+
+    Attributes:
+        tag: Its name, as written.
+        attributes: Name -> text.
+        line: Of its start, counted from 1.
+        children: In order.
+    """
+
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    children: list[Element] = field(default_factory=list)
+
+    def all(self, tag: str) -> Iterator[Element]:
+        """The children of that name."""
+        return (child for child in self.children if child.tag == tag)
+
+    def first(self, tag: str) -> Element | None:
+        """The first child of that name."""
+        return next(self.all(tag), None)
+
+
+class XmlFault(Exception):
+    """Reading can't go on."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        super().__init__(str(problem))
+
+
+def parse_xml(data: bytes, file: str) -> Element:
+    """Read an XML document.
+
+    Args:
+        data: The file's content.
+        file: Its name, for the problem.
+
+    Raises:
+        XmlFault: Not well-formed, too deep, or with a document type (the only way to define entities).
+    """
+    builder = _Builder(file)
+    try:
+        builder.parser.Parse(data, True)
+    except expat.ExpatError as error:
+        raise XmlFault(
+            Problem("the text is not well-formed XML", f"{expat.ErrorString(error.code)}, column {error.offset + 1}",
+                    "a robot file is one XML document", "mind unclosed elements and quotes near this line",
+                    f"{file}:{error.lineno}")
+        ) from None  # fmt: skip
+    except (LookupError, ValueError) as error:
+        raise XmlFault(Problem("the text's encoding is unknown", str(error), "the encoding is one that Python knows",
+                               "save the file as UTF-8", f"{file}:1")) from None  # fmt: skip
+    assert builder.root is not None  # Expat has found the document well-formed.
+    return builder.root
+
+
+class _Builder:
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.root: Element | None = None
+        self.open: list[Element] = []
+        self.parser = expat.ParserCreate()
+        self.parser.StartDoctypeDeclHandler = self.doctype
+        self.parser.StartElementHandler = self.start
+        self.parser.EndElementHandler = self.end
+
+    def fault(self, what: str, found: str, rule: str, remedy: str) -> XmlFault:
+        return XmlFault(Problem(what, found, rule, remedy, f"{self.file}:{self.parser.CurrentLineNumber}"))
+
+    def doctype(self, name: str, *_: object) -> None:
+        raise self.fault("document types are refused", f"<!DOCTYPE {name:.60}", "a robot file defines no entities",
+                         "remove the declaration")  # fmt: skip
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        if len(self.open) >= MAX_DEPTH:
+            raise self.fault(f"nested deeper than {MAX_DEPTH}", f"<{tag}>", "a robot file needs fewer than ten", "")
+        element = Element(tag, attributes, self.parser.CurrentLineNumber)
+        if self.open:
+            self.open[-1].children.append(element)
+        else:
+            self.root = element
+        self.open.append(element)
+
+    def end(self, tag: str) -> None:
+        self.open.pop()

@@ -1,0 +1,119 @@
+"""Files to systems and back: every fault of reading and of the mechanism in one error."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+from symofros.description import files
+from symofros.description.files import read_yaml, write_yaml
+from symofros.description.reading import Reading, in_order
+from symofros.description.system import System
+from symofros.description.urdf import SNAP_TOL, read_urdf
+from symofros.description.urdf_values import note
+from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.topology.graph import find_problems
+from symofros.topology.numbers import Numbers
+from symofros.topology.physics import inertia_problems
+
+_READABLE = (*files.SUFFIXES, ".urdf")
+
+
+def load(path: str | os.PathLike[str], *, floating_base: bool = False, snap_tol: float = SNAP_TOL) -> System:
+    """Read a description and check it.
+
+    Args:
+        path: Native YAML (.yaml, .yml) or URDF (.urdf).
+        floating_base: URDF only: put a free joint under the root link.
+        snap_tol: URDF only: numbers this close to exact ones are made exact (`read_urdf`).
+
+    Returns:
+        The system; its `notes` say what an importer ignored or changed.
+
+    Raises:
+        DescriptionError: With every problem of the file and of the mechanism it describes.
+    """
+    file = Path(path)
+    reading = _read(file, floating_base, snap_tol)
+    found = find_problems(reading.system, reading.broken) if reading.system is not None else []
+    if reading.problems or found or reading.system is None:
+        raise DescriptionError(in_order([*reading.problems, *found]))
+    return reading.system
+
+
+def _read(file: Path, floating_base: bool, snap_tol: float) -> Reading:
+    _refuse_suffix(file, _READABLE, "read")
+    if not file.exists():
+        raise DescriptionError(_missing(file))
+    if file.suffix.lower() == ".urdf":
+        return _accept_inertias(read_urdf(file, floating_base=floating_base, snap_tol=snap_tol))
+    if floating_base:
+        raise DescriptionError(
+            Problem("floating_base applies to URDF files only", f"'{file}'", "a native description states its joints",
+                    "give the base a joint of kind: free")
+        )  # fmt: skip
+    return read_yaml(file)
+
+
+def save(system: System, path: str | os.PathLike[str]) -> None:
+    """Write a system as native YAML; the file is there whole or not at all.
+
+    Args:
+        system: What to write.
+        path: Ends in .yaml or .yml.
+
+    Raises:
+        DescriptionError: Another suffix, or something that the format can't hold.
+        OSError: The folder can't be written to.
+    """
+    file = Path(path)
+    _refuse_suffix(file, files.SUFFIXES, "written")
+    text = write_yaml(system)
+    handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.", suffix=".tmp")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        # mkstemp's files are private; a description is as public as its owner's other files.
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(temporary, 0o666 & ~mask)
+        os.replace(temporary, file)
+    except BaseException:
+        os.unlink(temporary)
+        raise
+
+
+def _refuse_suffix(file: Path, known: tuple[str, ...], verb: str) -> None:
+    if file.suffix.lower() not in known:
+        raise DescriptionError(
+            Problem(f"'{file}' can't be {verb}: unknown format", file.suffix or "no suffix",
+                    f"the suffix is one of {', '.join(known)}", did_you_mean(file.suffix.lower(), known))
+        )  # fmt: skip
+
+
+def _missing(file: Path) -> Problem:
+    try:
+        there = sorted(other.name for other in file.parent.iterdir() if other.suffix.lower() in _READABLE)
+    except OSError:
+        return Problem(f"'{file}' does not exist", f"nor does the folder '{file.parent}'", "the file exists")
+    return Problem(f"'{file}' does not exist", f"{len(there)} descriptions in that folder", "the file exists",
+                   did_you_mean(file.name, there))  # fmt: skip
+
+
+def _accept_inertias(reading: Reading) -> Reading:
+    """Waive the check of inertias that an imported file states although no mass distribution has them.
+
+    Real robots' files have such; a model of the file as it stands is what a comparison with other engines needs.
+    """
+    system = reading.system
+    if system is None:
+        return reading
+    numbers = Numbers(system)
+    odd = [b.name for b in system.bodies if any(inertia_problems(replace(system, bodies=(b,)), numbers))]
+    if not odd:
+        return reading
+    waived = [replace(b, waive=(*b.waive, "nonphysical_inertia")) if b.name in odd else b for b in system.bodies]
+    remark = note("non-physical inertias accepted as the file states them", "link", odd)
+    return replace(reading, system=replace(system, bodies=tuple(waived), notes=(*system.notes, remark)))

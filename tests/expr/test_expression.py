@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+import pytest
+import sympy
+
+import symofros as sf
+from symofros.description.parser import parse
+from symofros.expr.expression import evaluate
+from symofros.expr.freeze import freeze
+
+a, b, x = sympy.symbols("a b x")
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        a / 2, a - b, -a * b, a**2 + b**3, 1 / a, sympy.sqrt(a), sympy.Rational(1, 3) * a, sympy.pi * a,
+        sympy.sin(a) * sympy.cos(b) - sympy.tan(a * b), sympy.atan2(a, b), sympy.exp(-a) + sympy.log(b),
+        sympy.Abs(a - b), sympy.Max(a, b, 1), sympy.Min(a, b), a**sympy.Rational(3, 2), sympy.tanh(a), sympy.E * a,
+    ],
+    ids=str,
+)  # fmt: skip
+def test_frozen_sympy_evaluates_alike(expression: sympy.Expr) -> None:
+    values = {"a": 0.7, "b": 1.3}
+    expected = float(expression.subs(values).evalf())
+    assert evaluate(freeze(expression), values) == pytest.approx(expected, rel=1e-14)
+    # And it survives being written down and read again.
+    assert evaluate(parse(str(freeze(expression))), values) == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize("expression", [sympy.I * a, sympy.Integral(a, a), sympy.gamma(a), sympy.oo])
+def test_what_c_cannot_say_is_refused(expression: sympy.Expr) -> None:
+    with pytest.raises(ValueError):
+        freeze(expression)
+
+
+def test_symbols_exclude_pi() -> None:
+    assert parse("pi*r^2 + sin(q1)").symbols() == {"r", "q1"}
+
+
+def test_evaluate_refuses_division_by_zero() -> None:
+    with pytest.raises(ArithmeticError):
+        sf.evaluate(parse("1/(a - a)"), {"a": 1.0})
+
+
+def test_sympy_enters_descriptions() -> None:
+    inertia = sf.Inertia(mass=a, center_of_mass=(a / 2, 0, sympy.pi), moments=(1, 1, 1))
+    assert str(inertia.mass) == "a"
+    assert sf.evaluate(inertia.center_of_mass[0], {"a": 3.0}) == 1.5

@@ -1,0 +1,137 @@
+"""Physics that every mechanism obeys, whatever its joints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.models import CASES, model, system
+
+STATES = 20
+# Sums of some hundred terms of size one: their rounding.
+ROUNDING = 1e-12
+# Central differences with step 1e-5 of functions of size 1 to 100: error h^2 and eps/h.
+DIFFERENCE = 1e-6
+STEP = 1e-5
+
+
+def states(case: str, rng: np.random.Generator) -> tuple[sf.Model, np.ndarray, np.ndarray]:
+    m = model(case)
+    pairs = [m.random_state(rng) for _ in range(STATES)]
+    return m, np.array([q for q, _ in pairs]), np.array([v for _, v in pairs])
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_mass_matrix_is_symmetric_and_positive(case: str, rng: np.random.Generator) -> None:
+    m, q, _ = states(case, rng)
+    M = m.mass_matrix(q)
+    assert np.array_equal(M, np.swapaxes(M, -1, -2))
+    assert np.linalg.eigvalsh(M).min() > 0.0
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_kinetic_energy_is_that_of_the_mass_matrix(case: str, rng: np.random.Generator) -> None:
+    m, q, v = states(case, rng)
+    expected = 0.5 * np.einsum("ni,nij,nj->n", v, m.mass_matrix(q), v)
+    np.testing.assert_allclose(m.kinetic_energy(q, v), expected, rtol=ROUNDING)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_energy_changes_by_the_power_of_the_inputs(case: str, rng: np.random.Generator) -> None:
+    """d(T + V)/dt = v . Q along the motion: ties M, h, Q, T, V and the manifold together."""
+    m, q, v = states(case, rng)
+    u = rng.standard_normal((STATES, m.nu))
+    a = m.forward_dynamics(q, v, u)
+
+    def energy(h: float) -> np.ndarray:
+        # On a free joint the path with constant body velocity is exact to first order, which is all this needs.
+        q_h, v_h = m.integrate(q, h * v), v + h * a
+        return m.kinetic_energy(q_h, v_h) + m.potential_energy(q_h)
+
+    power = np.sum(v * m.generalized_force(q, v, u), axis=-1)
+    rate = (energy(STEP) - energy(-STEP)) / (2 * STEP)
+    np.testing.assert_allclose(rate, power, atol=DIFFERENCE * np.abs(energy(0.0)).max())
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_gravity_is_the_gradient_of_the_potential(case: str, rng: np.random.Generator) -> None:
+    m, q, _ = states(case, rng)
+    still = np.zeros((STATES, m.nv))
+    gravity = m.bias(q, still)
+    for k in range(m.nv):
+        dq = np.zeros(m.nv)
+        dq[k] = STEP
+        slope = (m.potential_energy(m.integrate(q, dq)) - m.potential_energy(m.integrate(q, -dq))) / (2 * STEP)
+        np.testing.assert_allclose(slope, gravity[:, k], atol=DIFFERENCE * np.abs(gravity).max())
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_forward_undoes_inverse(case: str, rng: np.random.Generator) -> None:
+    m, q, v = states(case, rng)
+    u = rng.standard_normal((STATES, m.nu))
+    M, h, Q = m.dynamics(q, v, u)
+    a = m.forward_dynamics(q, v, u)
+    residual = np.einsum("nij,nj->ni", M, a) + h - Q
+    scale = np.abs(M).max() * np.abs(a).max()
+    np.testing.assert_allclose(residual, 0.0, atol=ROUNDING * scale)
+    required = m.inverse_dynamics(q, v, a)
+    np.testing.assert_allclose(required, m.generalized_force(q, v, u), atol=ROUNDING * scale)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_fused_function_returns_what_the_single_ones_do(case: str, rng: np.random.Generator) -> None:
+    m, q, v = states(case, rng)
+    u = rng.standard_normal((STATES, m.nu))
+    M, h, Q = m.dynamics(q, v, u)
+    assert np.array_equal(M, m.mass_matrix(q))
+    assert np.array_equal(h, m.bias(q, v))
+    assert np.array_equal(Q, m.generalized_force(q, v, u))
+
+
+@pytest.mark.parametrize("case", ["tree0", "tree1", "tree2"])
+def test_turning_the_world_changes_nothing(case: str, rng: np.random.Generator) -> None:
+    """The same mechanism mounted on a turned base, under turned gravity, has the same M and h."""
+    stated = system(case)
+    turn = sf.Rotation.rpy(0.3, -0.7, 1.9)
+    frame = sf.Frame("turned", (0.4, -0.2, 0.9), turn)
+    bodies = [
+        replace(body, joint=replace(body.joint, parent="carrier"))
+        if body.joint is not None and body.joint.parent == "base" and body.joint.frame is None
+        else body
+        for body in stated.bodies
+    ]
+    # What sat on the base, or on its frame, now sits on a fixed carrier that is turned and shifted.
+    base = stated.body("base")
+    bodies = [
+        replace(body, joint=replace(body.joint, parent="carrier"))
+        if body.joint is not None and body.joint.parent == "base"
+        else body
+        for body in bodies
+        if body.name != "base"
+    ]
+    carrier = sf.RigidBody("carrier", sf.Joint("weld", "fixed", "ground", "turned"), None, base.frames)
+    from symofros.topology.numbers import Numbers
+
+    R = Numbers(stated).rotation(turn)
+    gravity = tuple(R @ np.array(stated.gravity, dtype=float))
+    turned = replace(stated, bodies=(sf.RigidBody("ground", frames=[frame]), carrier, *bodies), gravity=gravity)
+    one, other = model(case), sf.compile(turned, sf.Options(backend="interpreter"))
+    _, q, v = states(case, rng)
+    scale = np.abs(one.bias(q, v)).max()
+    np.testing.assert_allclose(other.mass_matrix(q), one.mass_matrix(q), atol=ROUNDING * scale)
+    np.testing.assert_allclose(other.bias(q, v), one.bias(q, v), atol=ROUNDING * scale)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_parameters_and_constants_give_the_same_numbers(case: str, rng: np.random.Generator) -> None:
+    if not case.startswith("parametrised"):
+        return
+    m, q, v = states(case, rng)
+    constant = model(case.replace("parametrised", "tree"))
+    scale = np.abs(constant.bias(q, v)).max()
+    np.testing.assert_allclose(m.mass_matrix(q), constant.mass_matrix(q), atol=ROUNDING * scale)
+    np.testing.assert_allclose(m.bias(q, v), constant.bias(q, v), atol=ROUNDING * scale)
+    np.testing.assert_allclose(m.potential_energy(q), constant.potential_energy(q), atol=ROUNDING * scale)

@@ -1,0 +1,142 @@
+"""`python -m validation`: do independent engines agree with the generated code?"""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from enum import IntEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from validation.adapters import ROUTES
+from validation.campaign import run
+from validation.cases import Case, named, standard_set
+from validation.check import ModelResult, Settings
+from validation.console import output, progress, show
+from validation.files import write_atomically
+from validation.junit import to_junit
+from validation.record import Record, make_record, summary
+from validation.report import write_report
+from validation.sampling import DEFAULT_STATES
+
+
+class Exit(IntEnum):
+    """Exit codes."""
+
+    AGREE = 0
+    DISAGREE = 1
+    BAD_INPUT = 2
+    INTERRUPTED = 130
+
+
+app = typer.Typer(add_completion=False, no_args_is_help=False, pretty_exceptions_enable=False)
+
+States = Annotated[int, typer.Option(min=1, help="Random states a model.")]
+Seed = Annotated[int, typer.Option(min=0, help="Of the random states.")]
+Engines = Annotated[
+    list[str] | None, typer.Option("--engine", help=f"Compare with this engine only; repeatable. {', '.join(ROUTES)}.")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the verdict and every comparison as JSON, nothing else.")]
+Junit = Annotated[Path | None, typer.Option(help="Also write a JUnit file.")]
+ReportFolder = Annotated[Path, typer.Option("--report", help="Folder for check.html, check.md, check.json.")]
+Workers = Annotated[int, typer.Option(min=1, help="Models checked at the same time.")]
+FloatingBase = Annotated[bool, typer.Option("--floating-base", help="Put a free joint under the root of URDF files.")]
+
+_WORKERS = min(os.cpu_count() or 1, 4)
+_REPORTS = Path("reports")
+
+
+@app.callback(invoke_without_command=True)
+def standard(
+    context: typer.Context,
+    states: States = DEFAULT_STATES,
+    seed: Seed = 0,
+    engine: Engines = None,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    report: ReportFolder = _REPORTS,
+    workers: Workers = _WORKERS,
+) -> None:
+    """Cross-check the generated code. Without a command: the standard set of robots and reference models."""
+    if context.invoked_subcommand is None:
+        _run([], False, Settings(states, seed, _chosen(engine)), as_json, junit, report, workers)
+
+
+@app.command()
+def check(
+    models: Annotated[
+        list[str] | None, typer.Argument(help="URDF or YAML files, or names of the standard set; none: all of it.")
+    ] = None,
+    floating_base: FloatingBase = False,
+    states: States = DEFAULT_STATES,
+    seed: Seed = 0,
+    engine: Engines = None,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    report: ReportFolder = _REPORTS,
+    workers: Workers = _WORKERS,
+) -> None:
+    """Compare our C of each MODEL with every engine that can represent it. Exit code: 0 agree, 1 disagree, 2 bad input."""
+    settings = Settings(states, seed, _chosen(engine))
+    _run(models or [], floating_base, settings, as_json, junit, report, workers)
+
+
+def _chosen(engines: list[str] | None) -> tuple[str, ...] | None:
+    for name in engines or ():
+        if name not in ROUTES:
+            raise typer.BadParameter(f"no engine '{name}'; there are {', '.join(ROUTES)}", param_hint="--engine")
+    return tuple(engines) if engines else None
+
+
+def _run(
+    models: list[str], floating_base: bool, settings: Settings, as_json: bool, junit: Path | None, report: Path,
+    workers: int,
+) -> None:  # fmt: skip
+    try:
+        cases = named(models, floating_base) if models else standard_set()
+    except (LookupError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error.args[0]), param_hint="MODEL") from None
+    record, interrupted = _checked(cases, settings, workers)
+    if as_json:
+        typer.echo(json.dumps(summary(record), allow_nan=False))
+    else:
+        show(record, output())
+    if junit is not None:
+        write_atomically(junit, to_junit(record))
+    written = write_report(record, report)
+    if not as_json:
+        typer.echo(f"Report: {written}")
+    raise typer.Exit(Exit.INTERRUPTED if interrupted else verdict(record))
+
+
+def _checked(cases: list[Case], settings: Settings, workers: int) -> tuple[Record, bool]:
+    """Whatever was finished, and whether the user cut it short."""
+    start = time.perf_counter()
+    results: dict[str, ModelResult] = {}
+    interrupted = False
+    with progress(len(cases)) as show_done:
+
+        def done(result: ModelResult) -> None:
+            results[result.label] = result
+            show_done(result)
+
+        try:
+            run(cases, settings, workers, done)
+        except KeyboardInterrupt:
+            interrupted = True
+    in_order = [results[case.label] for case in cases if case.label in results]
+    return make_record(settings, in_order, time.perf_counter() - start), interrupted
+
+
+def verdict(record: Record) -> Exit:
+    """What the run comes to: a disagreement weighs more than a model that could not be read."""
+    if record.rows("disagree") or any(row.quantity not in ("load", "compile") for row in record.rows("failed")):
+        return Exit.DISAGREE
+    return Exit.AGREE if record.ok else Exit.BAD_INPUT
+
+
+if __name__ == "__main__":
+    app()

@@ -1,0 +1,103 @@
+"""Check many models, each in a process of its own: one that crashes takes no other with it."""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+import traceback
+from collections.abc import Callable, Sequence
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import BaseContext
+from typing import Any
+
+import symofros as sf
+from validation.cases import Case
+from validation.check import ModelResult, Settings, check, failed
+
+Report = Callable[[ModelResult], None]
+
+# Loaded once into the process that the workers are forked from.
+_PRELOAD = ["validation.campaign", "validation.adapters.pinocchio", "validation.adapters.mujoco"]
+
+
+def run_case(case: Case, settings: Settings) -> ModelResult:
+    """Check one model; whatever goes wrong with it becomes its result, so that the others go on."""
+    try:
+        subject = case.load()
+    except (sf.SymofrosError, OSError, UnicodeDecodeError) as error:
+        return failed(case.label, "load", str(error))
+    try:
+        return check(subject, settings)
+    except sf.SymofrosError as error:
+        return failed(case.label, "compile", str(error))
+    except Exception:  # An engine's or our own fault, of any kind: one row of the table, with its place.
+        last = traceback.format_exc(limit=-2).strip().splitlines()
+        return failed(case.label, "check", "; ".join(line.strip() for line in last[-3:]))
+
+
+def run(cases: Sequence[Case], settings: Settings, workers: int, done: Report) -> None:
+    """Check models, several at a time.
+
+    Args:
+        cases: The models.
+        settings: States, seed, engines.
+        workers: How many processes; with one, or with one model, everything happens in this process.
+        done: Gets each result as it comes; what it got before a KeyboardInterrupt stands.
+    """
+    if min(workers, len(cases)) <= 1:
+        for case in cases:
+            done(run_case(case, settings))
+    else:
+        _Workers(settings, workers, done).run(sorted(cases, key=lambda case: -case.weight))
+
+
+class _Workers:
+    def __init__(self, settings: Settings, count: int, done: Report) -> None:
+        self.settings, self.count, self.done = settings, count, done
+        self.context = _context()
+        self.active: dict[Any, tuple[Any, Case]] = {}
+
+    def run(self, cases: list[Case]) -> None:
+        waiting = cases[::-1]
+        try:
+            while waiting or self.active:
+                while waiting and len(self.active) < self.count:
+                    self._start(waiting.pop())
+                for connection in wait(list(self.active)):
+                    self._finish(connection)
+        finally:
+            for process, _ in self.active.values():
+                process.terminate()
+
+    def _start(self, case: Case) -> None:
+        receiving, sending = self.context.Pipe(duplex=False)
+        # BaseContext has no Process in the type stubs; every real context does.
+        process = self.context.Process(target=_work, args=(sending, case, self.settings))  # type: ignore[attr-defined]
+        process.start()
+        sending.close()  # So that the end of the process is the end of the pipe.
+        self.active[receiving] = (process, case)
+
+    def _finish(self, connection: Any) -> None:
+        process, case = self.active.pop(connection)
+        try:
+            result: ModelResult = connection.recv()
+        except EOFError:
+            process.join()
+            result = failed(case.label, "check", f"the process that checked it ended with code {process.exitcode}")
+        connection.close()
+        process.join()
+        self.done(result)
+
+
+def _context() -> BaseContext:
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(_PRELOAD)
+    return context
+
+
+def _work(connection: Connection, case: Case, settings: Settings) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's business; it ends us.
+    connection.send(run_case(case, settings))
+    connection.close()

@@ -1,0 +1,244 @@
+"""Cross-check one model: our C against every engine that can represent it, over the same states."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+import symofros as sf
+from validation.adapters import ROUTES, Missing, available
+from validation.adapters import compiled as our_c
+from validation.adapters.compiled import SymofrosEngine
+from validation.assembly import Assembly, assemble
+from validation.compare import Comparison, Scales, compute, judge, state_errors, typical_scales
+from validation.frames import chosen_frames
+from validation.geometry import Array
+from validation.interface import Engine, EngineFactory, States, Subject, Unsupported
+from validation.motion import MOTIONS, Motion, fall, judge_drift
+from validation.quantities import FRAME_QUANTITIES, MOTION_ENERGY, QUANTITIES, Quantity
+from validation.sampling import DEFAULT_STATES, sample
+
+Factories = dict[str, EngineFactory | Missing]
+
+# A motor, friction or contact model with a corner in it makes any integrator lose its order, and says nothing of us.
+_CORNERS = frozenset({"sign", "abs", "min", "max"})
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a check is asked to do.
+
+    Attributes:
+        states: Random states a model.
+        seed: Of the states.
+        engines: Names of the engines to compare with; None: all.
+    """
+
+    states: int = DEFAULT_STATES
+    seed: int = 0
+    engines: tuple[str, ...] | None = None
+
+    def routes(self) -> list[str]:
+        """The engines asked for, in the order of reports."""
+        return [name for name in ROUTES if self.engines is None or name in self.engines]
+
+
+@dataclass(frozen=True)
+class ModelResult:
+    """Everything found about one model.
+
+    Attributes:
+        label: What the model is called in tables.
+        comparisons: One a quantity and engine.
+        hash: Of the description; empty if it could not be read.
+        sizes: nq, nv, nu, bodies.
+        frames: Where frame quantities were compared.
+        notes: What reading the model dropped or changed.
+        versions: Engine -> version.
+        seconds: Stage or engine -> time it took.
+    """
+
+    label: str
+    comparisons: tuple[Comparison, ...]
+    hash: str = ""
+    sizes: dict[str, int] = field(default_factory=dict)
+    frames: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    versions: dict[str, str] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing disagrees or failed."""
+        return all(comparison.ok for comparison in self.comparisons)
+
+
+def failed(label: str, stage: str, reason: str) -> ModelResult:
+    """The result of a model that could not be compared."""
+    return ModelResult(label, (Comparison(label, "symofros", stage, "failed", note=reason),))
+
+
+def check(subject: Subject, settings: Settings, factories: Factories | None = None) -> ModelResult:
+    """Compare our C of a subject with every engine.
+
+    Args:
+        subject: The model.
+        settings: States, seed, engines.
+        factories: The engines to choose from; those that import here if not given.
+
+    Raises:
+        SymofrosError: Our own model can't be made.
+    """
+    return _Check(subject, settings, available() if factories is None else factories).run()
+
+
+class _Check:
+    def __init__(self, subject: Subject, settings: Settings, factories: Factories) -> None:
+        self.settings = settings
+        self.factories = factories
+        self.assembly: Assembly = assemble(subject.system)
+        self.subject = replace(subject, frames=subject.frames or chosen_frames(self.assembly))
+        self.seconds: dict[str, float] = {}
+        self.rows: list[Comparison] = []
+
+    def run(self) -> ModelResult:
+        start = time.perf_counter()
+        self.ours = our_c.build(self.subject)
+        self.seconds["symofros"] = time.perf_counter() - start
+        self.states = with_forces(self.ours, sample(self.assembly, self.ours.model.nu, self.settings.states,
+                                                    self.settings.seed))  # fmt: skip
+        self.scales = typical_scales(self.ours, self.states)
+        self.condition = worst_condition(self.ours, self.states)
+        engines = list(self._engines())
+        for quantity in self._quantities():
+            self._compare(quantity, engines)
+        self._fall(engines)
+        self._second_opinion()
+        return self._result(engines)
+
+    def _engines(self) -> Iterator[Engine]:
+        for name in self.settings.routes():
+            route = ROUTES[name]
+            if route.needs_urdf and self.subject.urdf is None:
+                continue
+            factory = self.factories[name]
+            engine = Unsupported(factory.reason) if isinstance(factory, Missing) else factory(self.subject)
+            if isinstance(engine, Unsupported):
+                self.rows.append(Comparison(self.subject.label, name, "all", "unsupported", note=engine.reason))
+            else:
+                self.seconds[name] = 0.0
+                yield engine
+
+    def _quantities(self) -> list[Quantity]:
+        return [q for q in QUANTITIES.values() if self.subject.frames or q.name not in FRAME_QUANTITIES]
+
+    def _our_side(self, engine: Engine) -> SymofrosEngine:
+        """Whom an engine is compared with: one that reads the file itself knows nothing of what we made exact."""
+        return self.verbatim if ROUTES[engine.name].needs_urdf else self.ours
+
+    @cached_property
+    def verbatim(self) -> SymofrosEngine:
+        urdf = self.subject.urdf
+        assert urdf is not None
+        return self.ours if urdf.verbatim == self.subject.system else our_c.build_verbatim(self.subject)
+
+    def _compare(self, quantity: Quantity, engines: Sequence[Engine]) -> None:
+        sides: dict[int, Array] = {}
+        for engine in engines:
+            if quantity.name not in engine.capabilities:
+                continue
+            side = self._our_side(engine)
+            if id(side) not in sides:
+                sides[id(side)] = compute(side, quantity, self.states)
+            ours = sides[id(side)]
+            row = self._judged(engine, quantity, ours, self.states, self.scales)
+            if quantity.name == "forward_dynamics":
+                row = replace(row, extra={"condition": self.condition})
+            self.rows.append(row)
+
+    def _judged(self, engine: Engine, quantity: Quantity, ours: Array, states: States, scales: Scales) -> Comparison:
+        start = time.perf_counter()
+        reference = self._value(engine, quantity, states)
+        self.seconds[engine.name] += time.perf_counter() - start
+        return judge(self.subject.label, engine.name, quantity, state_errors(quantity, ours, reference, scales))
+
+    @staticmethod
+    def _value(engine: Engine, quantity: Quantity, states: States) -> Array:
+        if quantity is not MOTION_ENERGY:
+            return compute(engine, quantity, states)
+        return sum_of_energies(engine, states)
+
+    def _fall(self, engines: Sequence[Engine]) -> None:
+        """A free motion from some of the random states: our drift, and the others' energies on the way."""
+        start = time.perf_counter()
+        first = slice(-MOTIONS, None)  # The last states: the first ones are special.
+        motion = fall(self.ours.model, self.states.q[first], self.states.v[first])
+        self.seconds["free motion"] = time.perf_counter() - start
+        self.rows.append(self._drift(motion))
+        scales = replace(self.scales, energy=motion.scale)
+        for engine in engines:
+            if {"kinetic_energy", "potential_energy"} <= engine.capabilities:
+                ours = sum_of_energies(self._our_side(engine), motion.states)
+                self.rows.append(self._judged(engine, MOTION_ENERGY, ours, motion.states, scales))
+
+    def _drift(self, motion: Motion) -> Comparison:
+        formulas = [effort for mover in self.assembly.movers for effort in mover.joint.effort]
+        corners = sorted({kind for formula in formulas for kind in kinds(formula)} & _CORNERS)
+        if corners:
+            reason = f"an effort uses {', '.join(corners)}: no integrator keeps its order across a corner"
+            return Comparison(self.subject.label, "symofros", "energy_drift", "unsupported", note=reason)
+        return judge_drift(self.subject.label, motion)
+
+    def _second_opinion(self) -> None:
+        """Agreement with nobody is no agreement."""
+        independent = {name for name in self.settings.routes() if ROUTES[name].independent}
+        compared = {row.engine for row in self.rows if row.status in ("agree", "disagree")}
+        if independent and not independent & compared:
+            reason = f"none of {', '.join(sorted(independent))} could be asked; see why above"
+            self.rows.append(Comparison(self.subject.label, "any", "all", "failed", note=reason))
+
+    def _result(self, engines: Sequence[Engine]) -> ModelResult:
+        model, system = self.ours.model, self.subject.system
+        return ModelResult(
+            self.subject.label, tuple(self.rows), description_hash(system),
+            {"nq": model.nq, "nv": model.nv, "nu": model.nu, "bodies": len(system.bodies)},
+            self.subject.frames, system.notes, {engine.name: engine.version for engine in engines}, self.seconds,
+        )  # fmt: skip
+
+
+def with_forces(engine: SymofrosEngine, states: States) -> States:
+    """The states with our Q(q, v, u) and Q(q, v, 0): engines take forces, not formulas."""
+    q, v, u = states.q, states.v, states.u
+    force = engine.model.generalized_force
+    return replace(states, applied=force(q, v, u), passive=force(q, v, 0.0 * u))
+
+
+def sum_of_energies(engine: Engine, states: States) -> Array:
+    """T + V (N,) [J]."""
+    return compute(engine, QUANTITIES["kinetic_energy"], states) + compute(
+        engine, QUANTITIES["potential_energy"], states
+    )
+
+
+def worst_condition(engine: Engine, states: States) -> float:
+    """The largest condition number of M over the states: by how much solving with it amplifies rounding."""
+    moments = np.linalg.eigvalsh(compute(engine, QUANTITIES["mass_matrix"], states))
+    smallest, largest = moments[:, 0], moments[:, -1]
+    return float(np.max(np.where(smallest > 0.0, largest / np.where(smallest > 0.0, smallest, 1.0), np.inf)))
+
+
+def kinds(formula: sf.Expression | float) -> frozenset[str]:
+    """The operations a formula uses."""
+    if not isinstance(formula, sf.Expression):
+        return frozenset()
+    return frozenset({formula.kind}).union(*(kinds(arg) for arg in formula.args))
+
+
+def description_hash(system: sf.System) -> str:
+    """Identity of a description: its dataclasses print every field in order; where it came from does not count."""
+    return hashlib.sha256(repr(replace(system, notes=(), origin={})).encode()).hexdigest()[:16]

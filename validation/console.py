@@ -1,0 +1,82 @@
+"""The terminal: progress while it runs, a table when it is done."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+from validation.campaign import Report
+from validation.check import ModelResult
+from validation.record import Record
+from validation.tables import COLUMNS, Cell, Line, by_engine, by_model, failures, headline, unsupported
+
+# Wide enough for every column when the output is not a terminal, which has a width of its own.
+PLAIN_WIDTH = 150
+
+# Up to so many models, each engine has a line of its own.
+DETAILED = 2
+
+_STYLES = {"agree": "green", "disagree": "bold red", "failed": "bold red", "unsupported": "yellow"}
+
+
+def output() -> Console:
+    """Where results go."""
+    return Console(width=None if sys.stdout.isatty() else PLAIN_WIDTH, highlight=False)
+
+
+@contextmanager
+def progress(total: int) -> Iterator[Report]:
+    """A bar on the error stream, so that the output stays clean; gives what to call with each result."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    console = Console(stderr=True)
+    # The bar is for eyes: a file or a pipe gets nothing.
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("cross-checking", total=total)
+
+        def done(result: ModelResult) -> None:
+            bar.update(task, advance=1, description=f"{escape(result.label)}: {'agrees' if result.ok else 'DISAGREES'}")
+
+        yield done
+
+
+def show(record: Record, console: Console) -> None:
+    """Print the table, what is wrong, and what could not be compared."""
+    detailed = len(record.models) <= DETAILED
+    console.print(_table(by_engine(record) if detailed else by_model(record), detailed))
+    for remark in unsupported(record):
+        console.print(Text(f"{remark.engine} has no {remark.model}: {remark.text}", style="yellow"))
+    for remark in failures(record):
+        console.print(Text(f"{remark.model}, {remark.engine}: {remark.text}", style="red"))
+    style = "bold green" if record.ok else "bold red"
+    console.print(Text(f"{headline(record)} {record.seconds:.0f} s.", style=style))
+
+
+def _table(lines: list[Line], detailed: bool) -> Table:
+    title = "Largest error over all states, relative to the largest entry"
+    table = Table(title=title + ("" if detailed else " and over all engines"), title_justify="left")
+    table.add_column("model", no_wrap=True)
+    table.add_column("nv", justify="right")
+    table.add_column("engine" if detailed else "engines", justify="left" if detailed else "right", no_wrap=True)
+    used = [k for k in range(len(COLUMNS)) if any(line.cells[k].row for line in lines)]
+    for k in used:
+        table.add_column(COLUMNS[k].title, justify="right", no_wrap=True)
+    table.add_column("verdict", no_wrap=True)
+    for line in lines:
+        who = line.engine if detailed else str(line.engines)
+        cells = [_shown(line.cells[k]) for k in used]
+        nv = "" if line.nv is None else str(line.nv)
+        table.add_row(escape(line.model), nv, who, *cells, Text(line.status, style=_STYLES[line.status]))
+    return table
+
+
+def _shown(cell: Cell) -> Text:
+    if cell.row is None:
+        return Text("")
+    return Text(cell.text, style="" if cell.row.ok else "bold red")

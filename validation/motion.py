@@ -1,0 +1,126 @@
+"""A free motion: the mechanism falls under gravity, and its energy is watched by every engine.
+
+Energy is conserved by the equations, not by an integrator. So two things are kept apart: at each state on the way, our
+T + V and another engine's agree to rounding; and our own energy drifts by what a fourth-order method may lose, which
+halving the step divides by 2^4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+import symofros as sf
+from validation.compare import Comparison
+from validation.geometry import Array
+from validation.interface import States
+
+MOTIONS = 4
+DURATION = 0.1  # [s]
+STEP = 1e-3  # [s]
+RECORDED = 50  # States kept of each motion.
+
+# Below this relative drift, rounding rules and halving the step no longer helps: some 1e3 evaluations' worth of eps.
+ROUNDING_DRIFT = 1e-11
+
+# A fourth-order method's error falls by 16 when the step is halved; a factor 2 is left for the terms of order five,
+# which are still felt at the coarser step.
+HALVING = 8.0
+
+# A drift above this says that the steps are too long for the motion, and so nothing about the order.
+RESOLVED = 1e-3
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What was integrated.
+
+    Attributes:
+        states: On the way, of all motions (N).
+        scale: The energy that moves about: largest kinetic energy and largest change of potential energy [J].
+        drift: Largest change of T + V less the work done, relative to `scale`, with STEP and with STEP / 2.
+    """
+
+    states: States
+    scale: float
+    drift: tuple[float, float]
+
+
+def fall(model: sf.Model, q: Array, v: Array) -> Motion:
+    """Let a model fall from initial states, with zero inputs, with two step lengths.
+
+    Args:
+        model: With forward_dynamics, generalized_force and the energies.
+        q: Initial coordinates (N, nq).
+        v: Initial speeds (N, nv).
+    """
+    coarse, fine = (_integrate(model, q, v, steps) for steps in (_STEPS, 2 * _STEPS))
+    scale = max(float(np.ptp(fine.potential, axis=0).max()), float(fine.kinetic.max())) or 1.0
+    drift = (float(coarse.drift.max()) / scale, float(fine.drift.max()) / scale)
+    return Motion(fine.states, scale, drift)
+
+
+_STEPS = round(DURATION / STEP)
+
+
+@dataclass(frozen=True)
+class _Run:
+    states: States
+    kinetic: Array
+    potential: Array
+    drift: Array
+
+
+def _integrate(model: sf.Model, q: Array, v: Array, steps: int) -> _Run:
+    h = DURATION / steps
+    u = np.zeros((len(q), model.nu))
+    work = np.zeros(len(q))
+    kept = [(q, v, work)]
+    for k in range(steps):
+        q, v, done = step(model, q, v, u, h)
+        work = work + done
+        if (k + 1) % (steps // RECORDED) == 0:
+            kept.append((q, v, work))
+    qs, vs = np.array([state[0] for state in kept]), np.array([state[1] for state in kept])
+    kinetic, potential = model.kinetic_energy(qs, vs), model.potential_energy(qs)
+    balance = kinetic + potential - np.array([state[2] for state in kept])
+    zero = np.zeros((qs.shape[0] * qs.shape[1], model.nv))
+    states = States(qs.reshape(-1, model.nq), vs.reshape(-1, model.nv), zero, np.zeros((len(zero), model.nu)), zero, zero)
+    return _Run(states, kinetic, potential, np.abs(balance - balance[0]))
+
+
+def step(model: sf.Model, q: Array, v: Array, u: Array, h: float) -> tuple[Array, Array, Array]:
+    """One step of the classical fourth-order method on a manifold.
+
+    Commutator-free, after Celledoni, Marthinsen, Owren, Commutator-free Lie group methods, FGCS 19 (2003) 341-352.
+    Weighting the stages' velocities once, as in flat space, would be of second order on rotations.
+
+    Returns:
+        q, v after h seconds, and the work that Q did in them.
+    """
+
+    def rates(q: Array, v: Array) -> tuple[Array, Array, Array]:
+        power = np.sum(model.generalized_force(q, v, u) * v, axis=-1)
+        return v, model.forward_dynamics(q, v, u), power
+
+    v1, a1, p1 = rates(q, v)
+    q2 = model.integrate(q, h / 2 * v1)
+    v2, a2, p2 = rates(q2, v + h / 2 * a1)
+    v3, a3, p3 = rates(model.integrate(q, h / 2 * v2), v + h / 2 * a2)
+    v4, a4, p4 = rates(model.integrate(q2, h * v3 - h / 2 * v1), v + h * a3)
+    q_half = model.integrate(q, h / 12 * (3 * v1 + 2 * v2 + 2 * v3 - v4))
+    q_next = model.integrate(q_half, h / 12 * (-v1 + 2 * v2 + 2 * v3 + 3 * v4))
+    return q_next, v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4), h / 6 * (p1 + 2 * p2 + 2 * p3 + p4)
+
+
+def judge_drift(label: str, motion: Motion) -> Comparison:
+    """Whether our energy drifts as a fourth-order method's does and no faster."""
+    coarse, fine = motion.drift
+    tolerance = min(max(coarse / HALVING, ROUNDING_DRIFT), RESOLVED)
+    agrees = bool(fine <= tolerance)
+    return Comparison(
+        label, "symofros", "energy_drift", "agree" if agrees else "disagree", len(motion.states), fine, tolerance,
+        note=f"steps of {STEP:g} and {STEP / 2:g} s drift by {coarse:.1e} and {fine:.1e}",
+        extra={"drift_coarse": coarse, "drift_fine": fine},
+    )  # fmt: skip
