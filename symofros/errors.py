@@ -82,7 +82,7 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
         "did you mean 'tip'?", or "use one of: …", or "" when nothing is known.
     """
     known = list(known)
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     if near:
         return f"did you mean '{near[0]}'?"
     if not known:

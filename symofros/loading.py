@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 
+from symofros.atomic import write_atomically
 from symofros.description import files
 from symofros.description.files import read_yaml, write_yaml
 from symofros.description.reading import Reading, in_order
@@ -70,19 +70,7 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
     """
     file = Path(path)
     _refuse_suffix(file, files.SUFFIXES, "written")
-    text = write_yaml(system)
-    handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.", suffix=".tmp")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        # mkstemp's files are private; a description is as public as its owner's other files.
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(temporary, 0o666 & ~mask)
-        os.replace(temporary, file)
-    except BaseException:
-        os.unlink(temporary)
-        raise
+    write_atomically(file, write_yaml(system))
 
 
 def _refuse_suffix(file: Path, known: tuple[str, ...], verb: str) -> None:

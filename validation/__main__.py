@@ -11,12 +11,12 @@ from typing import Annotated
 
 import typer
 
+from symofros.atomic import write_atomically
 from validation.adapters import ROUTES
 from validation.campaign import run
 from validation.cases import Case, named, standard_set
 from validation.check import ModelResult, Settings
 from validation.console import output, progress, show
-from validation.files import write_atomically
 from validation.junit import to_junit
 from validation.record import Record, make_record, summary
 from validation.report import write_report
@@ -105,6 +105,7 @@ def _run(
     else:
         show(record, output())
     if junit is not None:
+        junit.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(junit, to_junit(record))
     written = write_report(record, report)
     if not as_json:

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
@@ -15,10 +16,10 @@ from rich.text import Text
 from validation.campaign import Report
 from validation.check import ModelResult
 from validation.record import Record
-from validation.tables import COLUMNS, Cell, Line, by_engine, by_model, failures, headline, unsupported
+from validation.tables import BRIEF, Cell, Line, by_engine, by_model, failures, headline, unsupported
 
 # Wide enough for every column when the output is not a terminal, which has a width of its own.
-PLAIN_WIDTH = 150
+PLAIN_WIDTH = 120
 
 # Up to so many models, each engine has a line of its own.
 DETAILED = 2
@@ -49,7 +50,7 @@ def progress(total: int) -> Iterator[Report]:
 def show(record: Record, console: Console) -> None:
     """Print the table, what is wrong, and what could not be compared."""
     detailed = len(record.models) <= DETAILED
-    console.print(_table(by_engine(record) if detailed else by_model(record), detailed))
+    console.print(_table(by_engine(record, BRIEF) if detailed else by_model(record, BRIEF), detailed))
     for remark in unsupported(record):
         console.print(Text(f"{remark.engine} has no {remark.model}: {remark.text}", style="yellow"))
     for remark in failures(record):
@@ -60,13 +61,13 @@ def show(record: Record, console: Console) -> None:
 
 def _table(lines: list[Line], detailed: bool) -> Table:
     title = "Largest error over all states, relative to the largest entry"
-    table = Table(title=title + ("" if detailed else " and over all engines"), title_justify="left")
+    table = Table(title=title + ("" if detailed else " and over all engines"), title_justify="left", box=SIMPLE_HEAD, padding=(0, 1))
     table.add_column("model", no_wrap=True)
     table.add_column("nv", justify="right")
     table.add_column("engine" if detailed else "engines", justify="left" if detailed else "right", no_wrap=True)
-    used = [k for k in range(len(COLUMNS)) if any(line.cells[k].row for line in lines)]
+    used = [k for k in range(len(BRIEF)) if any(line.cells[k].row for line in lines)]
     for k in used:
-        table.add_column(COLUMNS[k].title, justify="right", no_wrap=True)
+        table.add_column(BRIEF[k].title, justify="right", no_wrap=True)
     table.add_column("verdict", no_wrap=True)
     for line in lines:
         who = line.engine if detailed else str(line.engines)

@@ -9,7 +9,11 @@ from dataclasses import dataclass
 from validation.adapters import ROUTES
 from validation.check import ModelResult
 from validation.compare import Comparison
+from validation.quantities import FRAME_QUANTITIES
 from validation.record import Record
+
+# Engines of rows that no other engine is behind: our own drift, and what was asked of any of them.
+OURS = ("symofros", "any")
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,20 @@ COLUMNS = (
     Column("twists", ("frame_velocity", "frame_acceleration")),
     Column("J, dJ/dt", ("frame_jacobian", "frame_jacobian_rate")),
     Column("motion", ("motion_energy",)),
+    Column("drift", ("energy_drift",)),
+)
+
+
+# The same with fewer columns, for a terminal.
+BRIEF = (
+    Column("M", ("mass_matrix",)),
+    Column("h", ("bias",)),
+    Column("gravity", ("gravity",)),
+    Column("Q", ("generalized_force",)),
+    Column("energy", ("kinetic_energy", "potential_energy", "motion_energy")),
+    Column("inverse", ("inverse_dynamics",)),
+    Column("forward", ("forward_dynamics",)),
+    Column("frames", tuple(sorted(FRAME_QUANTITIES))),
     Column("drift", ("energy_drift",)),
 )
 
@@ -109,26 +127,28 @@ def worst(rows: Iterable[Comparison]) -> Comparison | None:
     return max((row for row in rows if row.status in ("agree", "disagree")), key=badness, default=None)
 
 
-def by_model(record: Record) -> list[Line]:
+Columns = Sequence[Column]
+
+
+def by_model(record: Record, columns: Columns = COLUMNS) -> list[Line]:
     """One line a model, the worst over all engines in each cell."""
-    return [_line(model, "", model.comparisons) for model in record.models]
+    return [_line(model, "", model.comparisons, columns) for model in record.models]
 
 
-def by_engine(record: Record, engines: Sequence[str] | None = None) -> list[Line]:
-    """One line for each engine of each model."""
-    wanted = (*ROUTES, "symofros", "any") if engines is None else engines
-    return [line for model in record.models for line in _engine_lines(model, wanted)]
+def by_engine(record: Record, columns: Columns = COLUMNS, engines: Sequence[str] = (*ROUTES, *OURS)) -> list[Line]:
+    """One line for each engine of each model that it has something to say of."""
+    return [line for model in record.models for line in _engine_lines(model, columns, engines)]
 
 
-def _engine_lines(model: ModelResult, engines: Sequence[str]) -> Iterator[Line]:
+def _engine_lines(model: ModelResult, columns: Columns, engines: Sequence[str]) -> Iterator[Line]:
     for engine in engines:
         rows = [row for row in model.comparisons if row.engine == engine]
         if rows:
-            yield _line(model, engine, rows)
+            yield _line(model, engine, rows, columns)
 
 
-def _line(model: ModelResult, engine: str, rows: Sequence[Comparison]) -> Line:
-    cells = tuple(Cell(worst(row for row in rows if row.quantity in column.quantities)) for column in COLUMNS)
+def _line(model: ModelResult, engine: str, rows: Sequence[Comparison], columns: Columns) -> Line:
+    cells = tuple(Cell(worst(row for row in rows if row.quantity in column.quantities)) for column in columns)
     found = {row.status for row in rows}
     status = next((status for status in ("failed", "disagree", "agree") if status in found), "unsupported")
     compared = {row.engine for row in rows if row.status in ("agree", "disagree")} - {"symofros"}

@@ -52,6 +52,7 @@ def build_library(source: str, header: str, toolchain: Toolchain, flags: Sequenc
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=f".{key[:8]}-", dir=folder) as private:
             _compile(Path(private), source, header, toolchain, chosen)
+            _flush(Path(private) / f"model{_SUFFIX}")
             os.replace(Path(private) / "model.c", folder / f"{key}.c")
             os.replace(Path(private) / f"model{_SUFFIX}", library)
     except OSError as error:
@@ -61,6 +62,12 @@ def build_library(source: str, header: str, toolchain: Toolchain, flags: Sequenc
             "  remedy: set SYMOFROS_CACHE to such a folder"
         ) from error
     return library
+
+
+def _flush(path: Path) -> None:
+    """Bring a file to the disk: a crash after the renaming must not leave a truncated library under its name."""
+    with open(path, "rb+") as stream:
+        os.fsync(stream.fileno())
 
 
 def _compile(private: Path, source: str, header: str, toolchain: Toolchain, flags: tuple[str, ...]) -> None:

@@ -1,0 +1,81 @@
+"""Record -> check.html (one self-contained page), check.md (a summary), check.json (everything)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import jinja2
+from markupsafe import Markup
+
+from symofros.atomic import write_atomically
+from validation.adapters import ROUTES
+from validation.compare import Comparison
+from validation.conventions import DIFFERENCES
+from validation.figures import error_against_condition, error_distributions
+from validation.quantities import MOTION_ENERGY, QUANTITIES, ROUNDING, SMALL, SOLVE
+from validation.record import Record, to_json
+from validation.tables import COLUMNS, by_engine, by_model, failures, headline, short, unsupported, worst
+
+
+def write_report(record: Record, folder: Path) -> Path:
+    """Write the three files.
+
+    Returns:
+        The page.
+
+    Raises:
+        OSError: The folder can't be written to.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    write_atomically(folder / "check.json", to_json(record))
+    write_atomically(folder / "check.md", to_markdown(record))
+    write_atomically(folder / "check.html", to_html(record))
+    return folder / "check.html"
+
+
+def to_html(record: Record) -> str:
+    """The page: figures and tables inside, nothing from outside."""
+    engines = [name for name in ROUTES if any(row.engine == name for row in record.compared)]
+    return _render(
+        "check.html.j2", record,
+        distributions=Markup(error_distributions(record)),
+        conditions=Markup(error_against_condition(record)),
+        engines=engines,
+        independent=[name for name in engines if ROUTES[name].independent],
+        lines_of={name: by_engine(record, engines=(name,)) for name in engines},
+        drifts=[row for row in record.comparisons if row.quantity == "energy_drift"],
+        quantities=[*QUANTITIES.values(), MOTION_ENERGY],
+        differences=DIFFERENCES,
+    )  # fmt: skip
+
+
+def to_markdown(record: Record) -> str:
+    """The summary: verdict, one line a model, what is wrong, what could not be compared."""
+    return _render("check.md.j2", record)
+
+
+def _render(template: str, record: Record, **more: object) -> str:
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("validation"), undefined=jinja2.StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True, autoescape=jinja2.select_autoescape(["html.j2"]),
+    )  # fmt: skip
+    environment.filters |= {"short": _short, "cell": _markdown_cell}
+    return environment.get_template(template).render(
+        record=record, headline=headline(record), columns=COLUMNS, models=by_model(record), failures=failures(record),
+        unsupported=unsupported(record), rounding=_worst_of(record, ROUNDING), solve=_worst_of(record, SOLVE),
+        ROUNDING=ROUNDING, SOLVE=SOLVE, SMALL=SMALL, **more,
+    )  # fmt: skip
+
+
+def _worst_of(record: Record, tolerance: float) -> Comparison | None:
+    """The worst comparison among those of one tolerance."""
+    return worst(row for row in record.compared if row.tolerance == tolerance and row.quantity != "energy_drift")
+
+
+def _short(number: float | None) -> str:
+    return "NaN" if number is None else short(number)
+
+
+def _markdown_cell(text: object) -> str:
+    """A text that can't end the cell it stands in."""
+    return " ".join(str(text).replace("|", "\\|").split())
