@@ -52,7 +52,7 @@ def show(record: Record, console: Console) -> None:
     detailed = len(record.models) <= DETAILED
     console.print(_table(by_engine(record, BRIEF) if detailed else by_model(record, BRIEF), detailed))
     for remark in unsupported(record):
-        console.print(Text(f"{remark.engine} has no {remark.model}: {remark.text}", style="yellow"))
+        console.print(Text(f"not compared: {remark.model}, {remark.engine}: {remark.text}", style="yellow"))
     for remark in failures(record):
         console.print(Text(f"{remark.model}, {remark.engine}: {remark.text}", style="red"))
     style = "bold green" if record.ok else "bold red"
@@ -61,7 +61,7 @@ def show(record: Record, console: Console) -> None:
 
 def _table(lines: list[Line], detailed: bool) -> Table:
     title = "Largest error over all states, relative to the largest entry"
-    table = Table(title=title + ("" if detailed else " and over all engines"), title_justify="left", box=SIMPLE_HEAD, padding=(0, 1))
+    table = Table(title=title + ("" if detailed else " and over all engines"), title_justify="left", box=SIMPLE_HEAD, padding=(0, 2, 0, 0), pad_edge=False)
     table.add_column("model", no_wrap=True)
     table.add_column("nv", justify="right")
     table.add_column("engine" if detailed else "engines", justify="left" if detailed else "right", no_wrap=True)
@@ -80,4 +80,5 @@ def _table(lines: list[Line], detailed: bool) -> Table:
 def _shown(cell: Cell) -> Text:
     if cell.row is None:
         return Text("")
-    return Text(cell.text, style="" if cell.row.ok else "bold red")
+    number = "NaN" if cell.row.error is None else f"{cell.row.error:.0e}"
+    return Text("0" if cell.row.error == 0.0 else number, style="" if cell.row.ok else "bold red")

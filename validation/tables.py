@@ -185,10 +185,19 @@ def _failure(row: Comparison) -> str:
 
 def unsupported(record: Record) -> list[Remark]:
     """Who could not represent what, with the same reason told once."""
-    grouped: dict[tuple[str, str], list[str]] = {}
+    grouped: dict[tuple[str, str], list[Comparison]] = {}
     for row in record.rows("unsupported"):
-        grouped.setdefault((row.engine, row.note), []).append(row.model)
-    return [Remark(", ".join(models), engine, reason) for (engine, reason), models in grouped.items()]
+        grouped.setdefault((row.engine, row.note), []).append(row)
+    return [
+        Remark(", ".join(dict.fromkeys(row.model for row in rows)), engine, _quantities(rows) + reason)
+        for (engine, reason), rows in grouped.items()
+    ]
+
+
+def _quantities(rows: Sequence[Comparison]) -> str:
+    """Which quantities, where it is not all."""
+    names = dict.fromkeys(row.quantity for row in rows if row.quantity != "all")
+    return f"{', '.join(names)}: " if names else ""
 
 
 def headline(record: Record) -> str:
