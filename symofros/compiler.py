@@ -34,6 +34,7 @@ from symofros.runtime.library import CompiledUnit
 from symofros.runtime.model import Key, Model
 from symofros.runtime.record import ModelRecord, Segment, SegmentKind
 from symofros.runtime.toolchain import Toolchain, find_toolchain
+from symofros.topology.coordinates import angles
 from symofros.topology.graph import check
 from symofros.topology.tree import SpanningTree, build_tree
 
@@ -156,8 +157,8 @@ def describe(tree: SpanningTree, options: Options) -> ModelRecord:
         limits, n = link.joint.limits, link.q[1]
         lower += [-float("inf") if limits is None or limits.lower is None else limits.lower] * n
         upper += [float("inf") if limits is None or limits.upper is None else limits.upper] * n
-        neutral += neutral_coordinates(link.joint)
-        periodic += [link.joint.kind in ("revolute", "continuous")] * n
+        neutral += neutral_coordinates(link.joint, n)
+        periodic += angles(link.joint)
     return ModelRecord(
         name=tree.system.name,
         hash=_hash(tree.system, options),

@@ -9,13 +9,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
-JointKind = Literal["fixed", "revolute", "continuous", "prismatic", "ball", "free"]
-JOINT_KINDS: tuple[JointKind, ...] = ("fixed", "revolute", "continuous", "prismatic", "ball", "free")
+JointKind = Literal[
+    "fixed", "revolute", "continuous", "prismatic", "screw", "cylindrical", "universal", "planar", "ball", "free",
+    "general",
+]  # fmt: skip
+JOINT_KINDS: tuple[JointKind, ...] = get_args(JointKind)
 WORLD = "world"
 
 # The checks a body may waive, each with what it lets pass.
@@ -137,8 +140,11 @@ class Joint:
 
     Attributes:
         name: Unique; the coordinate and speed of a one-coordinate joint bear it.
-        kind: "fixed", "revolute", "continuous" (revolute without limits), "prismatic", "ball" (quaternion x, y, z, w;
-            angular velocity in D) or "free" (position in P, quaternion; linear and angular velocity in D).
+        kind: "fixed", "revolute", "continuous" (revolute without limits), "prismatic", "screw" (angle; slides by pitch
+            times it), "cylindrical" (angle, then length, along one axis), "universal" (a turn about axis, then one
+            about axis2), "planar" (x, y in P, then the angle about z), "ball" (quaternion x, y, z, w; angular velocity
+            in D), "free" (position in P, quaternion; linear and angular velocity in D) or "general" (the user's own
+            R_PD, p_PD). All but ball and free have v = q'.
         parent: The parent body; "world" for the ground.
         frame: The parent's extremity frame that P is placed in; None for its body frame.
         position: From that frame's origin to Po, in that frame [m].
@@ -147,6 +153,11 @@ class Joint:
         actuated: Adds one input a speed, named like the speed: an effort on the joint [N m or N].
         effort: Formulas, one a speed, of inputs, parameters, coordinates, speeds (d + coordinate name) and t.
         limits: Bounds of the coordinate, if any.
+        axis2: Second axis of a universal joint, in the frame after the first turn.
+        pitch: Of a screw joint [m/rad].
+        coordinates: Names of the coordinates of a general joint, one to six.
+        moving_position: p_PD of a general joint: formulas of its coordinates and of parameters.
+        moving_rotation: R_PD of a general joint, likewise.
     """
 
     name: str
@@ -159,6 +170,11 @@ class Joint:
     actuated: bool = False
     effort: tuple[Value, ...] = ()
     limits: Limits | None = None
+    axis2: Vector = (0.0, 1.0, 0.0)
+    pitch: Value = 0.0
+    coordinates: tuple[str, ...] = ()
+    moving_position: Vector = ORIGIN
+    moving_rotation: Rotation = IDENTITY
 
     def __post_init__(self) -> None:
         """Convert numbers and check the kind."""
@@ -170,6 +186,10 @@ class Joint:
             )  # fmt: skip
         object.__setattr__(self, "position", as_vector(self.position, f"{what}: position"))
         object.__setattr__(self, "axis", as_vector(self.axis, f"{what}: axis"))
+        object.__setattr__(self, "axis2", as_vector(self.axis2, f"{what}: axis2"))
+        object.__setattr__(self, "pitch", as_value(self.pitch, f"{what}: pitch"))
+        object.__setattr__(self, "coordinates", tuple(self.coordinates))
+        object.__setattr__(self, "moving_position", as_vector(self.moving_position, f"{what}: moving_position"))
         effort = self.effort if isinstance(self.effort, (tuple, list)) else (self.effort,)
         object.__setattr__(self, "effort", tuple(as_value(e, f"{what}: effort[{i}]") for i, e in enumerate(effort)))
 

@@ -138,14 +138,16 @@ def _split(link: MovingLink, inertia: LinkInertia) -> tuple[LinkInertia, LinkIne
     """What a link keeps, and what its parent may carry instead (eqs. 16-18)."""
     g, S, J = inertia.S.g, inertia.S, inertia.J
     if link.axis is not None:
-        # A rod along the axis: all the mass, the first moment along it, one transverse moment.
+        # A rod along the axis: one transverse moment and, if it can't slide, the mass and the moment along it.
         k, i = link.axis, (link.axis + 1) % 3
         full = J.matrix()
         b = full.at((i + 1) % 3, (i + 1) % 3)
-        give_S = [S.x if k == 0 else ZERO, S.y if k == 1 else ZERO, S.z if k == 2 else ZERO]
         give_J = [ZERO if axis == k else b for axis in range(3)]
-        give = LinkInertia(inertia.m, Vec3(g, *give_S), Sym3(g, *give_J))
-        return LinkInertia(ZERO, S - give.S, J + -give.J), give
+        give = replace(no_inertia(g), J=Sym3(g, *give_J))
+        if link.fixed_origin:
+            along = [edge if axis == k else ZERO for axis, edge in enumerate(S)]
+            give = replace(give, m=inertia.m, S=Vec3(g, *along))
+        return LinkInertia(g.sub(inertia.m, give.m), S - give.S, J + -give.J), give
     if link.fixed_origin:
         return replace(inertia, m=ZERO), replace(no_inertia(g), m=inertia.m)
     if not any(not column.w.is_zero for column in link.columns):

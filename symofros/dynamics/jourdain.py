@@ -83,7 +83,8 @@ def _across(
     for k, column in enumerate(link.columns):
         speed, rate = g.input("v", link.v + k), v_rate[link.v + k]
         w_AL, v_AL = w_AL + column.w.scaled(speed), v_AL + column.v.scaled(speed)
-        w_rate, v_rel_rate = w_rate + column.w.scaled(rate), v_rel_rate + column.v.scaled(rate)
+        w_rate = w_rate + (column.w.scaled(rate) + column.w_rate.scaled(speed))
+        v_rel_rate = v_rel_rate + (column.v.scaled(rate) + column.v_rate.scaled(speed))
     w_WA = link.R_AL.apply_inverse(parent.w)
     w = (w_WA + w_AL).named(f"w_WL_L[{link.name}]")
     alpha = link.R_AL.apply_inverse(alpha_A) + (w_rate + w_WA.cross(w_AL))

@@ -29,6 +29,7 @@ class Op:
         arity: Number of operands.
         rule: NumPy arrays in, NumPy array out; IEEE semantics, no exceptions.
         c: C text with holes {0}, {1}.
+        derivative: (graph, operands, result, i) -> partial derivative by operand i, as edges.
         cost: What the operation counter books it as.
         parity: How a sign on the only operand moves outside: f(-x) = -f(x) or f(x).
         is_function: Callable by this name in expressions.
@@ -38,6 +39,7 @@ class Op:
     arity: int
     rule: Callable[..., Any]
     c: str
+    derivative: Callable[[Any, tuple[int, ...], int, int], int]
     cost: Cost = "call"
     parity: Parity = ""
     is_function: bool = True
@@ -92,31 +94,72 @@ def _mul(x: Any, y: Any) -> Any:
 
 ADD, MUL, DIV = "add", "mul", "div"
 
+# Derivative rules: (graph, operand edges, edge of the result, i) -> partial derivative by operand i. Edges are ints;
+# the graph is passed in, because it is itself built on this table.
+
+
+def _d_product(g: Any, x: tuple[int, ...], y: int, i: int) -> int:
+    return x[1 - i]
+
+
+def _d_quotient(g: Any, x: tuple[int, ...], y: int, i: int) -> int:
+    return int(g.div(1, x[1])) if i == 0 else -int(g.div(y, x[1]))
+
+
+def _d_power(g: Any, x: tuple[int, ...], y: int, i: int) -> int:
+    base, exponent = x
+    if i == 0:
+        return int(g.mul(exponent, g.power(base, g.sub(exponent, 1))))
+    return int(g.mul(y, g.call("log", base)))
+
+
+def _d_atan2(g: Any, x: tuple[int, ...], y: int, i: int) -> int:
+    length2 = g.add(g.mul(x[0], x[0]), g.mul(x[1], x[1]))
+    return int(g.div(x[1], length2)) if i == 0 else -int(g.div(x[0], length2))
+
+
+def _d_choice(sign: int) -> Callable[[Any, tuple[int, ...], int, int], int]:
+    """Of min (sign 1) and max (sign -1): one for the chosen operand, half for each on a tie."""
+
+    def rule(g: Any, x: tuple[int, ...], y: int, i: int) -> int:
+        larger = sign * g.call("sign", g.sub(x[1 - i], x[i]))
+        return int(g.mul(g.constant(0.5), g.add(1, larger)))
+
+    return rule
+
+
+def _one_minus_square(g: Any, x: int) -> int:
+    return int(g.sub(1, g.mul(x, x)))
+
+
 OPS: dict[str, Op] = {
     op.name: op
     for op in (
-        Op(ADD, 2, _add, "{0} + {1}", "add", is_function=False),
-        Op(MUL, 2, _mul, "{0} * {1}", "mul", is_function=False),
-        Op(DIV, 2, _div, "{0} / {1}", "div", is_function=False),
-        Op("pow", 2, _libm(math.pow), "pow({0}, {1})"),
-        Op("sqrt", 1, _sqrt, "sqrt({0})", "div"),
-        Op("exp", 1, _libm(math.exp), "exp({0})"),
-        Op("log", 1, _libm(_log), "log({0})"),
-        Op("sin", 1, _libm(math.sin), "sin({0})", parity="odd"),
-        Op("cos", 1, _libm(math.cos), "cos({0})", parity="even"),
-        Op("tan", 1, _libm(math.tan), "tan({0})", parity="odd"),
-        Op("asin", 1, _libm(math.asin), "asin({0})", parity="odd"),
-        Op("acos", 1, _libm(math.acos), "acos({0})"),
-        Op("atan", 1, _libm(math.atan), "atan({0})", parity="odd"),
-        Op("atan2", 2, _libm(math.atan2), "atan2({0}, {1})"),
-        Op("sinh", 1, _libm(_sinh), "sinh({0})", parity="odd"),
-        Op("cosh", 1, _libm(math.cosh), "cosh({0})", parity="even"),
-        Op("tanh", 1, _libm(math.tanh), "tanh({0})", parity="odd"),
-        Op("abs", 1, np.fabs, "fabs({0})", "add", parity="even"),
-        Op("sign", 1, np.sign, "sym_sign({0})", "add", parity="odd"),
-        Op("min", 2, np.fmin, "fmin({0}, {1})", "add"),
-        Op("max", 2, np.fmax, "fmax({0}, {1})", "add"),
+        Op(ADD, 2, _add, "{0} + {1}", lambda g, x, y, i: 1, "add", is_function=False),
+        Op(MUL, 2, _mul, "{0} * {1}", _d_product, "mul", is_function=False),
+        Op(DIV, 2, _div, "{0} / {1}", _d_quotient, "div", is_function=False),
+        Op("pow", 2, _libm(math.pow), "pow({0}, {1})", _d_power),
+        Op("sqrt", 1, _sqrt, "sqrt({0})", lambda g, x, y, i: g.div(g.constant(0.5), y), "div"),
+        Op("exp", 1, _libm(math.exp), "exp({0})", lambda g, x, y, i: y),
+        Op("log", 1, _libm(_log), "log({0})", lambda g, x, y, i: g.div(1, x[0])),
+        Op("sin", 1, _libm(math.sin), "sin({0})", lambda g, x, y, i: g.call("cos", x[0]), parity="odd"),
+        Op("cos", 1, _libm(math.cos), "cos({0})", lambda g, x, y, i: -g.call("sin", x[0]), parity="even"),
+        Op("tan", 1, _libm(math.tan), "tan({0})", lambda g, x, y, i: g.add(1, g.mul(y, y)), parity="odd"),
+        Op("asin", 1, _libm(math.asin), "asin({0})",
+           lambda g, x, y, i: g.div(1, g.sqrt(_one_minus_square(g, x[0]))), parity="odd"),
+        Op("acos", 1, _libm(math.acos), "acos({0})",
+           lambda g, x, y, i: -g.div(1, g.sqrt(_one_minus_square(g, x[0])))),
+        Op("atan", 1, _libm(math.atan), "atan({0})",
+           lambda g, x, y, i: g.div(1, g.add(1, g.mul(x[0], x[0]))), parity="odd"),
+        Op("atan2", 2, _libm(math.atan2), "atan2({0}, {1})", _d_atan2),
+        Op("sinh", 1, _libm(_sinh), "sinh({0})", lambda g, x, y, i: g.call("cosh", x[0]), parity="odd"),
+        Op("cosh", 1, _libm(math.cosh), "cosh({0})", lambda g, x, y, i: g.call("sinh", x[0]), parity="even"),
+        Op("tanh", 1, _libm(math.tanh), "tanh({0})", lambda g, x, y, i: _one_minus_square(g, y), parity="odd"),
+        Op("abs", 1, np.fabs, "fabs({0})", lambda g, x, y, i: g.call("sign", x[0]), "add", parity="even"),
+        Op("sign", 1, np.sign, "sym_sign({0})", lambda g, x, y, i: 0, "add", parity="odd"),
+        Op("min", 2, np.fmin, "fmin({0}, {1})", _d_choice(1), "add"),
+        Op("max", 2, np.fmax, "fmax({0}, {1})", _d_choice(-1), "add"),
     )
-}
+}  # fmt: skip
 
 FUNCTIONS: dict[str, Op] = {name: op for name, op in OPS.items() if op.is_function}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from symofros.expr.graph import ZERO, Edge
 from symofros.expr.vector import Mat3, Vec3
+from symofros.kinematics.joint import Column
 from symofros.kinematics.links import Motion
 from symofros.topology.tree import BASE, NamedFrame
 
@@ -56,10 +57,13 @@ class FrameKinematics:
     def _in_link(self, frame: NamedFrame) -> tuple[Mat3, Vec3]:
         return self.motion.lowering.placement(frame.placement, self.motion.in_link(frame.link))
 
-    def _partials(self, index: int) -> list[tuple[Vec3, Vec3]]:
-        """Angular and linear partial velocity of a link's own joint, in the world."""
+    def _partials(self, index: int) -> list[Column]:
+        """Partial velocities of a link's own joint in world axes; their rates are those seen in the link."""
         R = self.link_pose(index).R
-        return [(R.times(column.w), R.times(column.v)) for column in self.motion.links[index].columns]
+        return [
+            Column(*map(R.times, (column.w, column.v, column.w_rate, column.v_rate)))
+            for column in self.motion.links[index].columns
+        ]
 
     def _link_rates(self, frame: NamedFrame, v_rate: Sequence[Edge] | None) -> dict[int, Rates]:
         """Rates of every link on the way to a frame (eqs. 28, 29); without v', accelerations are left zero."""
@@ -71,11 +75,12 @@ class FrameKinematics:
             parent = rates[link.parent]
             r = self.link_pose(i).p - self.link_pose(link.parent).p
             w_AL, v_AL, w_rate, v_rate_rel = zero, zero, zero, zero
-            for k, (w_k, v_k) in enumerate(self._partials(i)):
+            for k, partial in enumerate(self._partials(i)):
                 speed = g.input("v", link.v + k)
                 rate = ZERO if v_rate is None else v_rate[link.v + k]
-                w_AL, v_AL = w_AL + w_k.scaled(speed), v_AL + v_k.scaled(speed)
-                w_rate, v_rate_rel = w_rate + w_k.scaled(rate), v_rate_rel + v_k.scaled(rate)
+                w_AL, v_AL = w_AL + partial.w.scaled(speed), v_AL + partial.v.scaled(speed)
+                w_rate = w_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
+                v_rate_rel = v_rate_rel + (partial.v.scaled(rate) + partial.v_rate.scaled(speed))
             w_r = parent.w.cross(r)
             alpha = parent.alpha + (w_rate + parent.w.cross(w_AL))
             a = parent.a + (parent.alpha.cross(r) + parent.w.cross(w_r))
@@ -105,8 +110,8 @@ class FrameKinematics:
         rows = self._empty()
         for i in self.motion.tree.ancestors(frame.link):
             r = p - self.link_pose(i).p
-            for k, (w_k, v_k) in enumerate(self._partials(i)):
-                self._fill(rows, self.motion.links[i].v + k, v_k + w_k.cross(r), w_k)
+            for k, partial in enumerate(self._partials(i)):
+                self._fill(rows, self.motion.links[i].v + k, partial.v + partial.w.cross(r), partial.w)
         return rows
 
     def jacobian_rate(self, frame: NamedFrame) -> list[list[Edge]]:
@@ -117,10 +122,11 @@ class FrameKinematics:
         rows = self._empty()
         for i in self.motion.tree.ancestors(frame.link):
             r, r_rate = p - self.link_pose(i).p, v_F - rates[i].v
-            for k, (w_k, v_k) in enumerate(self._partials(i)):
-                # Partial velocities are constant in the link, so they turn with it.
-                w_k_rate, v_k_rate = rates[i].w.cross(w_k), rates[i].w.cross(v_k)
-                linear = v_k_rate + (w_k_rate.cross(r) + w_k.cross(r_rate))
+            for k, partial in enumerate(self._partials(i)):
+                # Partial velocities turn with the link, on top of what they change in it.
+                w_k_rate = partial.w_rate + rates[i].w.cross(partial.w)
+                v_k_rate = partial.v_rate + rates[i].w.cross(partial.v)
+                linear = v_k_rate + (w_k_rate.cross(r) + partial.w.cross(r_rate))
                 self._fill(rows, self.motion.links[i].v + k, linear, w_k_rate)
         return rows
 

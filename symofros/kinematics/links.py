@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
-from symofros.kinematics.joint import Column, across_joint
+from symofros.kinematics.joint import Axis, Column, across_joint
 from symofros.kinematics.lowering import Lowering
 from symofros.kinematics.rotations import Turn, constant_turn, frame_with_axis, snapped, unit_vector
-from symofros.topology.tree import BASE, SpanningTree
+from symofros.topology.tree import BASE, Link, SpanningTree
 
 
 @dataclass(frozen=True)
@@ -83,21 +83,44 @@ def set_in_motion(g: Graph, tree: SpanningTree) -> Motion:
         R_LB_parent = Mat3.identity(g) if link.parent == BASE else links[link.parent].R_LB
         R_AP, p_AP = lowering.placement(link.placement, R_LB_parent)
         # P and D are turned alike by A, so that the axis lies along a coordinate axis of both.
-        A, axis, k, negative = Mat3.identity(g), Vec3.unit(g, 2), 2, False
-        if link.joint.kind in ("revolute", "continuous", "prismatic"):
-            axis = unit_vector(lowering.vector(link.joint.axis))
-            aligned = frame_with_axis(axis)
-            if aligned is not None:
-                A, k, negative = aligned
-                axis = -Vec3.unit(g, k) if negative else Vec3.unit(g, k)
-        is_turn = link.joint.kind in ("revolute", "continuous")
-        along = k if axis.is_constant else None
+        A, axis = _aligned(lowering, link)
         start, size = link.q
         q = tuple(g.input("q", i) for i in range(start, start + size))
-        across = across_joint(g, link.joint, q, axis, along, negative)
+        speeds = [g.input("v", link.v[0] + k) for k in range(link.v[1])]
+        across = across_joint(lowering, link.joint, q, speeds, axis)
         constant = constant_turn(snapped(R_AP @ A))
-        links.append(MovingLink(
-            link.name, link.parent, constant @ across.R_PD, p_AP + constant.apply(across.p_PD), across.columns,
-            link.v[0], A.T, across.p_PD.is_zero, along if is_turn else None,
-        ))  # fmt: skip
+        links.append(
+            MovingLink(
+                name=link.name,
+                parent=link.parent,
+                R_AL=constant @ across.R_PD,
+                p_AL=p_AP + constant.apply(across.p_PD),
+                columns=across.columns,
+                v=link.v[0],
+                R_LB=A.T,
+                fixed_origin=across.p_PD.is_zero,
+                axis=axis.k if link.joint.kind in _TURN_ABOUT_AXIS else None,
+            )
+        )
     return Motion(g, lowering, tree, tuple(links), len(tree.coordinates.v))
+
+
+# Joints with a main axis that any constant direction is turned into a coordinate axis for.
+_ALIGNED = ("revolute", "continuous", "prismatic", "screw", "cylindrical")
+# Joints whose only turn is about their main axis.
+_TURN_ABOUT_AXIS = ("revolute", "continuous", "screw", "cylindrical", "planar")
+
+
+def _aligned(lowering: Lowering, link: Link) -> tuple[Mat3, Axis]:
+    """The rotation A of a link's frame, and the joint's axis seen in the turned frames."""
+    g, joint = lowering.g, link.joint
+    if joint.kind == "universal":
+        return Mat3.identity(g), Axis(unit_vector(lowering.vector(joint.axis)), None, False)
+    if joint.kind not in _ALIGNED:
+        return Mat3.identity(g), Axis(Vec3.unit(g, 2), 2, False)
+    n = unit_vector(lowering.vector(joint.axis))
+    found = frame_with_axis(n)
+    if found is None:
+        return Mat3.identity(g), Axis(n, None, False)
+    A, k, negative = found
+    return A, Axis(-Vec3.unit(g, k) if negative else Vec3.unit(g, k), k, negative)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import re
 import threading
 from functools import cache
@@ -44,12 +45,10 @@ class CompiledUnit:
     def __init__(self, path: Path, symbol: str, header: str, expected_hash: str) -> None:
         self.ffi = _interface(header)
         try:
-            # A declaration a symbol: the interface itself is shared by all models.
-            declared = cffi.FFI()
-            declared.include(self.ffi)
-            declared.cdef(f"const sym_model *{symbol}(void);")
-            self._library = declared.dlopen(str(path))
-            self.model = getattr(self._library, symbol)()
+            # ctypes finds the symbol, whose name differs from model to model; cffi makes the calls, by one interface.
+            self._library = ctypes.CDLL(str(path))
+            address = ctypes.cast(self._library[symbol], ctypes.c_void_p).value
+            self.model = self.ffi.cast("const sym_model *(*)(void)", address)()
         except (OSError, AttributeError) as error:
             raise CompileError(
                 f"the compiled model does not load: {error}\n  remedy: delete {path.name} from the cache folder"

@@ -8,26 +8,51 @@ from dataclasses import dataclass
 from symofros.description.system import Joint, System
 from symofros.expr.graph import Slot
 
-# Joint kind -> (nq, nv).
-JOINT_SIZES: dict[str, tuple[int, int]] = {
+# Joint kind -> (nq, nv); a general joint has as many as it names.
+_SIZES: dict[str, tuple[int, int]] = {
     "fixed": (0, 0),
     "revolute": (1, 1),
     "continuous": (1, 1),
     "prismatic": (1, 1),
+    "screw": (1, 1),
+    "cylindrical": (2, 2),
+    "universal": (2, 2),
+    "planar": (3, 3),
     "ball": (4, 3),
     "free": (7, 6),
 }
 
 _QUATERNION = ("qx", "qy", "qz", "qw")
-_SUFFIXES_Q: dict[str, tuple[str, ...]] = {"ball": _QUATERNION, "free": ("px", "py", "pz", *_QUATERNION)}
-_SUFFIXES_V: dict[str, tuple[str, ...]] = {
+_SUFFIXES_Q: dict[str, tuple[str, ...]] = {
+    "ball": _QUATERNION,
+    "free": ("px", "py", "pz", *_QUATERNION),
+    "cylindrical": ("angle", "length"),
+    "universal": ("angle1", "angle2"),
+    "planar": ("x", "y", "angle"),
+}
+_SUFFIXES_V: dict[str, tuple[str, ...]] = _SUFFIXES_Q | {
     "ball": ("wx", "wy", "wz"),
     "free": ("vx", "vy", "vz", "wx", "wy", "wz"),
 }
+# Joints whose speeds are not the rates of their coordinates.
+QUASI_VELOCITIES = ("ball", "free")
+
+
+def joint_sizes(joint: Joint) -> tuple[int, int]:
+    """Number of coordinates and of speeds of a joint."""
+    if joint.kind == "general":
+        return len(joint.coordinates), len(joint.coordinates)
+    return _SIZES[joint.kind]
+
+
+def angles(joint: Joint) -> list[bool]:
+    """Which coordinates of a joint come around after one turn."""
+    stated = {"cylindrical": [True, False], "universal": [True, True], "planar": [False, False, True]}
+    return stated.get(joint.kind) or [joint.kind in ("revolute", "continuous", "screw")] * joint_sizes(joint)[0]
 
 
 def coordinate_names(joint: Joint) -> tuple[str, ...]:
-    """Names of a joint's coordinates: its own name if there is one, otherwise name.qx and so on."""
+    """Names of a joint's coordinates: its own name if there is one, its own names, or name.qx and so on."""
     return _names(joint, _SUFFIXES_Q)
 
 
@@ -37,14 +62,18 @@ def speed_names(joint: Joint) -> tuple[str, ...]:
 
 
 def _names(joint: Joint, suffixes: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
+    if joint.kind == "general":
+        return joint.coordinates
     if joint.kind in suffixes:
         return tuple(f"{joint.name}.{suffix}" for suffix in suffixes[joint.kind])
-    return (joint.name,) if JOINT_SIZES[joint.kind][0] else ()
+    return (joint.name,) if joint_sizes(joint)[0] else ()
 
 
 def speed_symbols(joint: Joint) -> tuple[str, ...]:
     """What formulas call a joint's speeds: d + coordinate where the speed is its rate, otherwise the speed's name."""
-    return tuple(f"d{n}" for n in speed_names(joint)) if joint.kind not in _SUFFIXES_V else speed_names(joint)
+    if joint.kind in QUASI_VELOCITIES:
+        return speed_names(joint)
+    return tuple(f"d{name}" for name in coordinate_names(joint))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from symofros.description.values import Value, symbols
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.expr.expression import CONSTANTS
 from symofros.expr.ops import FUNCTIONS
-from symofros.topology.coordinates import JOINT_SIZES, coordinate_names, speed_symbols
+from symofros.topology.coordinates import coordinate_names, joint_sizes, speed_symbols
 from symofros.topology.numbers import Numbers
 from symofros.topology.physics import inertia_problems, massless_tip_problems
 
@@ -171,7 +171,7 @@ class _Checker:
                 ", ".join(frames) or "no frames", "a joint sits in a named frame of its parent, or in its body frame",
                 did_you_mean(joint.frame, frames) or "add the frame, or drop the entry", where,
             )  # fmt: skip
-        nv = JOINT_SIZES[joint.kind][1]
+        nv = joint_sizes(joint)[1]
         if joint.effort and len(joint.effort) != nv:
             yield Problem(
                 f"joint '{joint.name}': wrong number of efforts", f"{len(joint.effort)} efforts",

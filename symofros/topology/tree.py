@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from symofros.description.system import WORLD, Inertia, Joint, RigidBody, System
 from symofros.description.values import Rotation, Vector
-from symofros.topology.coordinates import JOINT_SIZES, CoordinateMap, map_coordinates
+from symofros.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates
 
 BASE = -1
 
@@ -157,7 +157,7 @@ class _Builder:
             stack.extend(reversed(carried))
 
     def _add_link(self, body: RigidBody, joint: Joint, parent: int, placement: Placement) -> int:
-        nq, nv = JOINT_SIZES[joint.kind]
+        nq, nv = joint_sizes(joint)
         self.links.append(_Draft(body.name, joint, parent, placement, (self.nq, nq), (self.nv, nv)))
         self.inertias.append([])
         self.nq, self.nv = self.nq + nq, self.nv + nv
