@@ -5,14 +5,16 @@ from __future__ import annotations
 from functools import cache
 
 import symofros as sf
-from tests.trees import parametrised, random_tree
+from tests.trees import KINDS, MORE_KINDS, parametrised, random_tree
 
-CASES = {f"tree{seed}": seed for seed in range(8)} | {f"parametrised{seed}": seed for seed in range(3)}
+CASES = {f"tree{seed}": seed for seed in range(8)}
+CASES |= {f"parametrised{seed}": seed for seed in range(3)}
+CASES |= {f"joints{seed}": 100 + seed for seed in range(8)}
 
 
 @cache
 def system(case: str) -> sf.System:
-    tree = random_tree(CASES[case])
+    tree = random_tree(CASES[case], kinds=MORE_KINDS if case.startswith("joints") else KINDS)
     return parametrised(tree) if case.startswith("parametrised") else tree
 
 

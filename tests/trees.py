@@ -7,6 +7,28 @@ import numpy as np
 import symofros as sf
 
 KINDS = ("revolute", "prismatic", "ball", "continuous", "fixed", "free")
+# Joints whose partial velocities depend on q, and those that slide along the axis they turn about.
+MORE_KINDS = (*KINDS, "screw", "cylindrical", "universal", "planar", "general")
+
+
+def general_joint(rng: np.random.Generator, i: int) -> dict[str, object]:
+    """The user's own R_PD(q), p_PD(q) in one of several forms."""
+    a, b, c = (f"x{i}", f"y{i}", f"z{i}")
+    forms: list[dict[str, object]] = [
+        # Euler angles and a translation: six coordinates.
+        {"coordinates": (a, b, c, f"a{i}", f"b{i}", f"c{i}"), "moving_position": (a, b, c),
+         "moving_rotation": sf.Rotation.rpy(f"a{i}", f"b{i}", f"c{i}")},
+        # A point on a helix, turned by a matrix.
+        {"coordinates": (a,), "moving_position": (f"0.3*cos({a})", f"0.3*sin({a})", f"0.1*{a}"),
+         "moving_rotation": sf.Rotation.matrix([[f"cos(2*{a})", f"-sin(2*{a})", 0],
+                                                [f"sin(2*{a})", f"cos(2*{a})", 0], [0, 0, 1]])},
+        # A turn about an axis that is not a coordinate axis, coupled to a slide.
+        {"coordinates": (a, b), "moving_position": (0, f"{a}*{b}", f"{b}^2"),
+         "moving_rotation": sf.Rotation.axis_angle((1, 2, -1), f"{a} + sin({b})")},
+        # No turn at all.
+        {"coordinates": (a, b), "moving_position": (f"sin({a})", f"{b}", f"{a}*{b}")},
+    ]  # fmt: skip
+    return forms[int(rng.integers(len(forms)))]
 
 
 def random_rotation(rng: np.random.Generator) -> sf.Rotation:
@@ -53,9 +75,12 @@ def random_tree(seed: int, n: int = 6, kinds: tuple[str, ...] = KINDS) -> sf.Sys
         parent = bodies[int(rng.integers(max(0, i - 1), i + 1))]
         kind = kinds[int(rng.integers(len(kinds)))] if i else next(k for k in kinds if k != "fixed")
         frame = parent.frames[int(rng.integers(len(parent.frames)))].name if rng.random() < 0.5 else None
+        more = general_joint(rng, i) if kind == "general" else {}
+        more |= {"axis2": tuple(rng.standard_normal(3))} if kind == "universal" else {}
+        more |= {"pitch": 0.2} if kind == "screw" else {}
         joint = sf.Joint(
             f"q{i}", kind, parent.name, frame, rng.uniform(-0.5, 0.5, 3), random_rotation(rng), random_axis(rng),
-            actuated=kind != "fixed" and bool(rng.random() < 0.5),
+            actuated=kind != "fixed" and bool(rng.random() < 0.5), **more,
         )  # fmt: skip
         frames = [sf.Frame("tip", rng.uniform(-0.5, 0.5, 3), random_rotation(rng))]
         bodies.append(sf.RigidBody(f"b{i}", joint, random_inertia(rng), frames))

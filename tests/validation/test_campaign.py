@@ -1,0 +1,65 @@
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from tests.validation.subjects import URDF
+from validation.campaign import run, run_case
+from validation.cases import Case
+from validation.check import ModelResult, Settings
+from validation.interface import Subject
+
+FEW = Settings(states=10, engines=("pinocchio",))
+
+
+@dataclass(frozen=True)
+class Dying(Case):
+    def load(self) -> Subject:
+        os._exit(9)
+
+
+@dataclass(frozen=True)
+class Faulty(Case):
+    def load(self) -> Subject:
+        raise ZeroDivisionError("a fault of ours")
+
+
+def arm(tmp_path: Path) -> Case:
+    path = tmp_path / "arm.urdf"
+    path.write_text(URDF)
+    return Case("arm", path)
+
+
+def test_a_model_that_does_not_load_is_a_failed_row(tmp_path: Path) -> None:
+    result = run_case(Case("nowhere", tmp_path / "nowhere.urdf"), FEW)
+    (row,) = result.comparisons
+    assert row.status == "failed" and row.quantity == "load" and "nowhere" in row.note and not result.ok
+
+
+def test_a_fault_of_ours_is_a_failed_row_with_its_place() -> None:
+    (row,) = run_case(Faulty("bad"), FEW).comparisons
+    assert row.status == "failed" and row.quantity == "check" and "a fault of ours" in row.note
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_bad_model_does_not_stop_the_others(tmp_path: Path, workers: int) -> None:
+    results: dict[str, ModelResult] = {}
+    cases = [arm(tmp_path), Faulty("bad"), *([Dying("dead")] if workers > 1 else [])]
+    run(cases, FEW, workers, lambda result: results.update({result.label: result}))
+    assert set(results) == {case.label for case in cases}
+    assert results["arm"].ok and not results["bad"].ok
+    if workers > 1:
+        assert "ended with code 9" in results["dead"].comparisons[0].note
+
+
+def test_an_interrupt_keeps_what_is_finished(tmp_path: Path) -> None:
+    results: list[ModelResult] = []
+
+    def done(result: ModelResult) -> None:
+        results.append(result)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run([arm(tmp_path), Faulty("bad"), Faulty("worse")], FEW, 2, done)
+    assert len(results) == 1

@@ -1,0 +1,116 @@
+import json
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from tests.validation.subjects import URDF
+from validation.__main__ import app
+from validation.adapters import available, pinocchio
+from validation.check import failed
+from validation.interface import Subject
+
+KEYS = {"model", "engine", "quantity", "states", "error", "tolerance", "ok"}
+
+
+@pytest.fixture
+def arm(tmp_path: Path) -> Path:
+    path = tmp_path / "arm.urdf"
+    path.write_text(URDF)
+    return path
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Any:
+    def invoke(*arguments: object) -> Result:
+        common = ["--states", "10", "--report", str(tmp_path / "reports")]
+        return CliRunner().invoke(app, ["check", *map(str, arguments), *common])
+
+    return invoke
+
+
+def test_agreement(run: Any, arm: Path, tmp_path: Path) -> None:
+    result = run(arm)
+    assert result.exit_code == 0, result.output
+    assert "pinocchio-urdf" in result.stdout and "agree" in result.stdout
+    for name in ("check.html", "check.md", "check.json"):
+        assert (tmp_path / "reports" / name).stat().st_size > 500
+
+
+def test_json_is_all_there_is_on_stdout(run: Any, arm: Path) -> None:
+    result = run(arm, "--json")
+    content = json.loads(result.stdout)
+    assert content["ok"] is True and result.exit_code == 0
+    assert all(row.keys() >= KEYS and row["ok"] and row["error"] <= row["tolerance"] for row in content["comparisons"])
+    engines = {row["engine"] for row in content["comparisons"]}
+    assert engines >= {"pinocchio", "mujoco", "pinocchio-urdf", "mujoco-urdf", "interpreted"}
+    assert {row["states"] for row in content["comparisons"] if row["engine"] == "mujoco-urdf"} >= {10}
+
+
+def test_floating_base(run: Any, arm: Path) -> None:
+    content = json.loads(run(arm, "--json", "--floating-base").stdout)
+    assert content["ok"] and any(row["engine"] == "pinocchio-urdf" for row in content["comparisons"])
+    # The root has no mass, and now it moves.
+    assert {row["engine"] for row in content["unsupported"]} == {"mujoco", "mujoco-urdf"}
+
+
+def test_one_engine(run: Any, arm: Path) -> None:
+    content = json.loads(run(arm, "--json", "--engine", "mujoco").stdout)
+    assert {row["engine"] for row in content["comparisons"]} == {"mujoco", "symofros"}
+
+
+def test_junit(run: Any, arm: Path, tmp_path: Path) -> None:
+    run(arm, tmp_path / "gone.urdf", "--junit", tmp_path / "new" / "junit.xml", "--workers", 1)
+    suites = ElementTree.parse(tmp_path / "new" / "junit.xml").getroot()
+    good, bad = suites
+    assert good.get("name") == "arm" and good.get("failures") == "0" and int(good.get("tests", "0")) > 30
+    assert bad.get("errors") == "1" and "gone" in (bad.find("testcase/error").get("message") or "")  # type: ignore[union-attr]
+
+
+def test_a_file_that_does_not_load(run: Any, arm: Path, tmp_path: Path) -> None:
+    broken = tmp_path / "broken.urdf"
+    broken.write_text("<robot name='x'><link")
+    result = run(broken, arm, "--json", "--workers", 1)
+    content = json.loads(result.stdout)
+    assert result.exit_code == 2 and content["ok"] is False
+    (row,) = (row for row in content["comparisons"] if not row["ok"])
+    assert row["model"] == "broken" and row["quantity"] == "load" and row["error"] is None
+    assert any(row["model"] == "arm" and row["ok"] for row in content["comparisons"])
+
+
+def test_bad_input(run: Any) -> None:
+    for arguments in (["no_such_robot"], ["ur5", "--engine", "exodyn"], ["ur5", "--seed", "-1"]):
+        assert run(*arguments).exit_code == 2
+
+
+def test_disagreement(run: Any, arm: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A gravity that is one part in a billion off."""
+
+    def build(subject: Subject) -> Any:
+        engine = pinocchio.build(subject)
+        engine.model.gravity.linear = engine.model.gravity.linear * (1 + 1e-9)
+        return engine
+
+    monkeypatch.setattr("validation.check.available", lambda: {**available(), "pinocchio": build})
+    result = run(arm)
+    assert result.exit_code == 1
+    assert "arm, pinocchio: gravity: error 1.0e-09" in result.stdout and "disagree" in result.stdout
+
+
+def test_interrupted(arm: Path, run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(cases: Any, settings: Any, workers: Any, done: Any) -> None:
+        done(failed(cases[0].label, "load", "x"))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("validation.__main__.run", interrupt)
+    result = run(arm, "ur5")
+    assert result.exit_code == 130 and "Interrupted: 1 model not checked" in result.stdout
+
+
+def test_no_word_is_the_standard_set(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr("validation.__main__.run", lambda cases, *rest: asked.extend(case.label for case in cases))
+    CliRunner().invoke(app, ["--report", str(tmp_path)])
+    assert {"ur5", "talos"} < set(asked)

@@ -1,0 +1,109 @@
+"""A harness that can't fail proves nothing: single faults are planted in an engine, and must be found."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.validation.subjects import floating_arm
+from validation.adapters import available, pinocchio
+from validation.check import ModelResult, Settings, check
+from validation.interface import States, Subject
+from validation.quantities import EVERYTHING, QUANTITIES
+
+SUBJECT = floating_arm()
+SETTINGS = Settings(states=40, engines=("pinocchio",))
+
+
+@dataclass(frozen=True)
+class Faulty:
+    """An engine with one wrong method."""
+
+    engine: Any
+    method: str
+    fault: Callable[[np.ndarray], np.ndarray]
+
+    def __getattr__(self, name: str) -> Any:
+        right = getattr(self.engine, name)
+        return right if name != self.method else lambda states: self.fault(right(states))
+
+
+def checked(build: Callable[[Subject], Any]) -> ModelResult:
+    return check(SUBJECT, SETTINGS, {**available(), "pinocchio": build})
+
+
+def disagreeing(result: ModelResult) -> set[str]:
+    return {row.quantity for row in result.comparisons if row.status == "disagree"}
+
+
+def one_entry(result: np.ndarray) -> np.ndarray:
+    """Ten times the tolerance, in the largest entry of one state."""
+    wrong = result.copy()
+    state = wrong[17]
+    at = np.unravel_index(np.abs(state).argmax(), state.shape)
+    state_value = state[at] * (1 + 1e-11)
+    wrong[(17, *at)] = state_value
+    return wrong
+
+
+def test_the_right_engine_passes() -> None:
+    assert checked(pinocchio.build).ok
+
+
+@pytest.mark.parametrize("quantity", sorted(EVERYTHING - {"gravity", "forward_dynamics"}))
+def test_one_entry_off_by_ten_tolerances_is_found(quantity: str) -> None:
+    result = checked(lambda subject: Faulty(pinocchio.build(subject), quantity, one_entry))
+    found = disagreeing(result) - {"motion_energy"}
+    assert quantity in found and found <= {quantity, "gravity"}
+    row = next(row for row in result.comparisons if row.quantity == quantity)
+    assert row.worst_state == 17
+
+
+@pytest.mark.parametrize(
+    ("method", "fault", "found"),
+    [
+        ("bias", lambda h: -h, {"bias", "gravity"}),
+        ("forward_dynamics", lambda a: a * (1 + 1e-8), {"forward_dynamics"}),
+        ("mass_matrix", lambda M: np.roll(M, 1, axis=2), {"mass_matrix"}),
+        ("potential_energy", lambda V: V + 1e-9 * np.abs(V).max(), {"potential_energy", "motion_energy"}),
+        ("frame_velocity", lambda V: np.roll(V, 3, axis=-1), {"frame_velocity"}),
+        ("kinetic_energy", lambda T: np.full_like(T, np.nan), {"kinetic_energy", "motion_energy"}),
+    ],
+)  # fmt: skip
+def test_planted_faults(method: str, fault: Callable[[np.ndarray], np.ndarray], found: set[str]) -> None:
+    assert disagreeing(checked(lambda subject: Faulty(pinocchio.build(subject), method, fault))) == found
+
+
+def test_classical_and_spatial_acceleration_differ() -> None:
+    """Were w x v forgotten, it would show."""
+
+    def forget(engine: Any, states: States) -> np.ndarray:
+        velocity = engine.frame_velocity(states)
+        wrong = engine.frame_acceleration(states)
+        wrong[..., :3] -= np.cross(velocity[..., 3:], velocity[..., :3])
+        return np.asarray(wrong)
+
+    class Spatial(Faulty):
+        def __getattr__(self, name: str) -> Any:
+            if name == "frame_acceleration":
+                return lambda states: forget(self.engine, states)
+            return getattr(self.engine, name)
+
+    assert disagreeing(checked(lambda s: Spatial(pinocchio.build(s), "", lambda x: x))) == {"frame_acceleration"}
+
+
+def test_another_mechanism_is_found() -> None:
+    """An engine built from a description whose last body is one part in a billion heavier."""
+
+    def heavier(subject: Subject) -> Any:
+        *bodies, last = subject.system.bodies
+        assert last.inertia is not None
+        inertia = replace(last.inertia, mass=float(last.inertia.mass) * (1 + 1e-9))
+        system = replace(subject.system, bodies=(*bodies, replace(last, inertia=inertia)))
+        return pinocchio.build(replace(subject, system=system))
+
+    found = disagreeing(checked(heavier))
+    assert {"mass_matrix", "bias", "gravity", "kinetic_energy", "potential_energy", "inverse_dynamics"} <= found
+    assert not found & {name for name in QUANTITIES if name.startswith("frame_")}
