@@ -34,7 +34,7 @@ from symofros.runtime.library import CompiledUnit
 from symofros.runtime.model import Key, Model
 from symofros.runtime.record import ModelRecord, Segment, SegmentKind
 from symofros.runtime.toolchain import Toolchain, find_toolchain
-from symofros.topology.coordinates import angles
+from symofros.topology.coordinates import angles, joint_sizes
 from symofros.topology.graph import check
 from symofros.topology.tree import SpanningTree, build_tree
 
@@ -153,8 +153,13 @@ def describe(tree: SpanningTree, options: Options) -> ModelRecord:
     upper: list[float] = []
     neutral: list[float] = []
     periodic: list[bool] = []
+    driven: list[float] = []
     for link in tree.links:
         limits, n = link.joint.limits, link.q[1]
+        if link.joint.prescribed:
+            nq, nv = joint_sizes(link.joint)
+            driven += (*neutral_coordinates(link.joint, nq), *(0.0,) * (2 * nv))
+            continue
         lower += [-float("inf") if limits is None or limits.lower is None else limits.lower] * n
         upper += [float("inf") if limits is None or limits.upper is None else limits.upper] * n
         neutral += neutral_coordinates(link.joint, n)
@@ -165,6 +170,7 @@ def describe(tree: SpanningTree, options: Options) -> ModelRecord:
         q_names=names.q, v_names=names.v, u_names=names.u, par_names=names.par,
         frame_names=tuple(frame.name for frame in tree.frames),
         frame_aliases={frame.qualified: frame.name for frame in tree.frames},
+        u_default=(0.0,) * names.efforts + tuple(driven),
         par_default=names.par_default,
         q_neutral=tuple(neutral), q_lower=tuple(lower), q_upper=tuple(upper),
         segments=_segments(tree), periodic=tuple(periodic),
@@ -175,6 +181,8 @@ def _segments(tree: SpanningTree) -> tuple[Segment, ...]:
     kinds: dict[str, SegmentKind] = {"ball": "quaternion", "free": "pose"}
     segments: list[Segment] = []
     for link in tree.links:
+        if link.joint.prescribed:
+            continue
         kind = kinds.get(link.joint.kind, "linear")
         if kind == "linear" and segments and segments[-1].kind == "linear":
             segments[-1] = segments[-1]._replace(size=segments[-1].size + link.q[1])

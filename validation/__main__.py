@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import time
@@ -79,7 +80,10 @@ def check(
     report: ReportFolder = _REPORTS,
     workers: Workers = _WORKERS,
 ) -> None:
-    """Compare our C of each MODEL with every engine that can represent it. Exit code: 0 agree, 1 disagree, 2 bad input."""
+    """Compare our C of each MODEL with every engine that can represent it.
+
+    Exit code: 0 all agree, 1 something disagrees, 2 bad input.
+    """
     settings = Settings(states, seed, _chosen(engine))
     _run(models or [], floating_base, settings, as_json, junit, report, workers)
 
@@ -99,7 +103,7 @@ def _run(
         cases = named(models, floating_base) if models else standard_set()
     except (LookupError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error.args[0]), param_hint="MODEL") from None
-    record, interrupted = _checked(cases, settings, workers)
+    record = _checked(cases, settings, workers)
     if as_json:
         typer.echo(json.dumps(summary(record), allow_nan=False))
     else:
@@ -110,32 +114,32 @@ def _run(
     written = write_report(record, report)
     if not as_json:
         typer.echo(f"Report: {written}")
-    raise typer.Exit(Exit.INTERRUPTED if interrupted else verdict(record))
+    raise typer.Exit(verdict(record))
 
 
-def _checked(cases: list[Case], settings: Settings, workers: int) -> tuple[Record, bool]:
-    """Whatever was finished, and whether the user cut it short."""
+def _checked(cases: list[Case], settings: Settings, workers: int) -> Record:
+    """Whatever was finished; Ctrl-C cuts the rest."""
     start = time.perf_counter()
     results: dict[str, ModelResult] = {}
-    interrupted = False
     with progress(len(cases)) as show_done:
 
         def done(result: ModelResult) -> None:
             results[result.label] = result
             show_done(result)
 
-        try:
+        with contextlib.suppress(KeyboardInterrupt):
             run(cases, settings, workers, done)
-        except KeyboardInterrupt:
-            interrupted = True
-    in_order = [results[case.label] for case in cases if case.label in results]
-    return make_record(settings, in_order, time.perf_counter() - start), interrupted
+    finished = [results[case.label] for case in cases if case.label in results]
+    unfinished = [case.label for case in cases if case.label not in results]
+    return make_record(settings, finished, time.perf_counter() - start, unfinished)
 
 
 def verdict(record: Record) -> Exit:
     """What the run comes to: a disagreement weighs more than a model that could not be read."""
     if record.rows("disagree") or any(row.quantity not in ("load", "compile") for row in record.rows("failed")):
         return Exit.DISAGREE
+    if record.unfinished:
+        return Exit.INTERRUPTED
     return Exit.AGREE if record.ok else Exit.BAD_INPUT
 
 

@@ -3,36 +3,44 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import signal
 import traceback
 from collections.abc import Callable, Sequence
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import BaseContext
+from pathlib import Path
 from typing import Any
 
 import symofros as sf
+from validation.adapters import ROUTES
 from validation.cases import Case
 from validation.check import ModelResult, Settings, check, failed
 
 Report = Callable[[ModelResult], None]
 
 # Loaded once into the process that the workers are forked from.
-_PRELOAD = ["validation.campaign", "validation.adapters.pinocchio", "validation.adapters.mujoco"]
+_PRELOAD = ["validation.campaign", *(route.module for route in ROUTES.values())]
 
 
 def run_case(case: Case, settings: Settings) -> ModelResult:
     """Check one model; whatever goes wrong with it becomes its result, so that the others go on."""
+    stage = "load"
     try:
         subject = case.load()
-    except (sf.SymofrosError, OSError, UnicodeDecodeError) as error:
-        return failed(case.label, "load", str(error))
-    try:
+        stage = "compile"
         return check(subject, settings)
-    except sf.SymofrosError as error:
-        return failed(case.label, "compile", str(error))
-    except Exception:  # An engine's or our own fault, of any kind: one row of the table, with its place.
-        last = traceback.format_exc(limit=-2).strip().splitlines()
-        return failed(case.label, "check", "; ".join(line.strip() for line in last[-3:]))
+    except (sf.SymofrosError, OSError, UnicodeDecodeError) as error:
+        return failed(case.label, stage, without_folder(str(error), case.path))
+    except Exception as error:  # An engine's or our own fault, of any kind: one row of the table, with its place.
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        where = f"{Path(place.filename).name}:{place.lineno}, in {place.name}"
+        return failed(case.label, "check", f"{type(error).__name__}: {error} ({where})")
+
+
+def without_folder(text: str, path: Path | None) -> str:
+    """A message about a file, fit for a report that others read: where the file lay is nobody's business."""
+    return text if path is None else text.replace(f"{path.parent}{os.sep}", "")
 
 
 def run(cases: Sequence[Case], settings: Settings, workers: int, done: Report) -> None:

@@ -69,7 +69,7 @@ ROBOTS: dict[str, Robot] = {
     "panda": Robot("panda_description/urdf/panda.urdf", False, "arm with a gripper of two prismatic joints"),
     "kinova": Robot("kinova_description/robots/kinova.urdf", False, "arm with continuous joints"),
     "xarm7": Robot("xarm_description/urdf/xarm7.urdf", False, "arm"),
-    "allegro_hand": Robot("allegro_hand_description/urdf/allegro_right_hand.urdf", False, "hand, four fingers of grams"),
+    "allegro_hand": Robot("allegro_hand_description/urdf/allegro_right_hand.urdf", False, "hand, fingers of grams"),
     "baxter": Robot("baxter_description/urdf/baxter.urdf", False, "two arms and a head"),
     "anymal": Robot("anymal_b_simple_description/robots/anymal.urdf", True, "quadruped"),
     "solo12": Robot("solo_description/robots/solo12.urdf", True, "quadruped"),
@@ -122,7 +122,7 @@ def named(names: list[str], floating_base: bool) -> list[Case]:
         LookupError: A name is neither.
         FileNotFoundError: A robot's package is not installed.
     """
-    cases = [_named(name, floating_base) for name in names]
+    cases = list(dict.fromkeys(_named(name, floating_base) for name in names))
     labels = [case.label for case in cases]
     return [
         case if labels.count(case.label) == 1 or case.path is None

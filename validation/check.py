@@ -123,8 +123,8 @@ class _Check:
         engines = list(self._engines())
         if not self._can_be_solved():
             reason = "M is not positive definite in some state, so v' is not determined; are the inertias physical?"
-            for quantity in (FORWARD, MOTION_ENERGY.name):
-                self.rows.append(Comparison(self.subject.label, "symofros", quantity, "unsupported", note=reason))
+            for name in (FORWARD, MOTION_ENERGY.name):
+                self.rows.append(Comparison(self.subject.label, "symofros", name, "unsupported", note=reason))
         for quantity in self._quantities():
             self._compare(quantity, engines)
         if self._can_be_solved():

@@ -17,8 +17,7 @@ Status = Literal["agree", "disagree", "unsupported", "failed"]
 BINS_PER_DECADE = 4
 LOWEST_DECADE, HIGHEST_DECADE = -18, 0
 BIN_EDGES = tuple(
-    10.0 ** (k / BINS_PER_DECADE)
-    for k in range(LOWEST_DECADE * BINS_PER_DECADE, HIGHEST_DECADE * BINS_PER_DECADE + 1)
+    10.0 ** (k / BINS_PER_DECADE) for k in range(LOWEST_DECADE * BINS_PER_DECADE, HIGHEST_DECADE * BINS_PER_DECADE + 1)
 )
 
 

@@ -50,7 +50,8 @@ def progress(total: int) -> Iterator[Report]:
 def show(record: Record, console: Console) -> None:
     """Print the table, what is wrong, and what could not be compared."""
     detailed = len(record.models) <= DETAILED
-    console.print(_table(by_engine(record, BRIEF) if detailed else by_model(record, BRIEF), detailed))
+    if record.models:
+        console.print(_table(by_engine(record, BRIEF) if detailed else by_model(record, BRIEF), detailed))
     for remark in unsupported(record):
         console.print(Text(f"not compared: {remark.model}, {remark.engine}: {remark.text}", style="yellow"))
     for remark in failures(record):
@@ -60,8 +61,8 @@ def show(record: Record, console: Console) -> None:
 
 
 def _table(lines: list[Line], detailed: bool) -> Table:
-    title = "Largest error over all states, relative to the largest entry"
-    table = Table(title=title + ("" if detailed else " and over all engines"), title_justify="left", box=SIMPLE_HEAD, padding=(0, 2, 0, 0), pad_edge=False)
+    title = "Largest error over all states" + ("" if detailed else " and engines") + ", relative to the largest entry"
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=(0, 2, 0, 0), pad_edge=False)
     table.add_column("model", no_wrap=True)
     table.add_column("nv", justify="right")
     table.add_column("engine" if detailed else "engines", justify="left" if detailed else "right", no_wrap=True)

@@ -3,7 +3,7 @@
 `DIFFERENCES` says them in words (reports print it); `Chart` does them. An engine's speeds are linear in ours,
 v_e = T(q) v, with T a permutation of blocks times rotations of the free joints' linear speeds, so T is orthogonal and
 
-    a_e = T a + T' v,    M = T^T M_e T,    h = T^T (h_e + M_e T' v),    Q_e = T Q,    J = J_e T,    J' = J_e' T + J_e T'.
+    a_e = T a + T' v,   M = T^T M_e T,   h = T^T (h_e + M_e T' v),   Q_e = T Q,   J = J_e T,   J' = J_e' T + J_e T'.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from validation.assembly import BASE, Assembly, Mover
+from validation.assembly import Assembly, Mover
 from validation.geometry import Array, Placement, matrix_quaternion, quaternion_matrix, quaternion_product, skew
 
 
@@ -181,11 +181,6 @@ class Chart:
     def jacobian_rate(self, q: Array, v: Array, J_e: Array, J_e_rate: Array) -> Array:
         """J' from the engine's J and J'."""
         return J_e_rate @ self.transform(q)[:, None] + J_e @ self.transform_rate(q, v)[:, None]
-
-
-def on_ground(mover: Mover) -> bool:
-    """Whether a joint sits on the base, where an engine's world joints apply."""
-    return mover.parent == BASE
 
 
 def angular_first_to_linear_first(spatial: Array) -> Array:

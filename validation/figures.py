@@ -55,7 +55,8 @@ def error_distributions(record: Record) -> str:
         parts.append(_tolerance_mark(quantity, x, base))
     bottom = height - _BOTTOM
     parts.append(_label(_LEFT + 18, bottom + 17, "exact", "middle", "tick"))
-    parts.append(_label((x.start + x.end) / 2, bottom + 38, "relative error of a state", "middle", "name"))
+    title = "relative error of a state; height: share of the states"
+    parts.append(_label((x.start + x.end) / 2, bottom + 38, title, "middle", "name"))
     parts.append(_legend(engines, x.start, 14))
     return _svg(height, "Distribution of relative errors for each quantity and engine", parts)
 
@@ -83,11 +84,12 @@ def _curve(engine: str, group: Sequence[Comparison], x: Scale, base: float) -> s
         return ""
     fullest = max(max(counts[1:]), 1)
     room = _ROW - 10
-    points = [f"{x.at(math.log10(BIN_EDGES[0])):.1f},{base}"]
-    for k, count in enumerate(counts[1:-1]):
-        y = base - room * count / fullest
+    filled = [k for k, count in enumerate(counts[1:-1]) if count] or [0]
+    points = []
+    for k in range(filled[0], filled[-1] + 1):
+        y = base - room * counts[k + 1] / fullest
         points += [f"{x.at(math.log10(edge)):.1f},{y:.1f}" for edge in BIN_EDGES[k : k + 2]]
-    points.append(f"{x.at(math.log10(BIN_EDGES[-1])):.1f},{base}")
+    points = [_foot(points[0], base), *points, _foot(points[-1], base)]
     exact = counts[0] / total
     index = list(ROUTES).index(engine)
     width = 36 / len(ROUTES)
@@ -97,6 +99,10 @@ def _curve(engine: str, group: Sequence[Comparison], x: Scale, base: float) -> s
     )
     title = f"<title>{escape(engine)}: {total} states</title>"
     return f'{bar}<polygon class="curve e{index}" points="{" ".join(points)}">{title}</polygon>'
+
+
+def _foot(point: str, base: float) -> str:
+    return f"{point.partition(',')[0]},{base}"
 
 
 def _tolerance_mark(quantity: Quantity, x: Scale, base: float) -> str:
@@ -156,7 +162,8 @@ def _decade_grid(x: Scale, top: float, bottom: float, step: int) -> str:
 def _legend(engines: Iterable[str], left: float, y: float) -> str:
     parts, x = [], left
     for engine in engines:
-        parts.append(f'<rect class="swatch e{list(ROUTES).index(engine)}" x="{x:.0f}" y="{y - 9}" width="12" height="10"/>')
+        color = f"e{list(ROUTES).index(engine)}"
+        parts.append(f'<rect class="swatch {color}" x="{x:.0f}" y="{y - 9}" width="12" height="10"/>')
         parts.append(_label(x + 17, y, engine, "start", "tick"))
         x += 34 + 7.2 * len(engine)
     return "".join(parts)

@@ -9,7 +9,6 @@ from validation.check import ModelResult
 from validation.compare import Comparison
 from validation.record import Record
 
-
 # What XML 1.0 has no way to write; messages may quote anything.
 _ILLEGAL = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 

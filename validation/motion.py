@@ -88,8 +88,9 @@ def _integrate(model: sf.Model, q: Array, v: Array, steps: int) -> _Run:
     qs, vs = np.array([state[0] for state in kept]), np.array([state[1] for state in kept])
     kinetic, potential = model.kinetic_energy(qs, vs), model.potential_energy(qs)
     balance = kinetic + potential - np.array([state[2] for state in kept])
-    zero = np.zeros((qs.shape[0] * qs.shape[1], model.nv))
-    states = States(qs.reshape(-1, model.nq), vs.reshape(-1, model.nv), zero, np.zeros((len(zero), model.nu)), zero, zero)
+    zero = np.zeros((len(qs) * len(q), model.nv))
+    no_inputs = np.zeros((len(zero), model.nu))
+    states = States(qs.reshape(-1, model.nq), vs.reshape(-1, model.nv), zero, no_inputs, zero, zero)
     return _Run(states, kinetic, potential, np.abs(balance - balance[0]))
 
 

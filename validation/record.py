@@ -33,6 +33,7 @@ class Record:
         date: When it ended (UTC).
         versions: Package -> version.
         machine: What it ran on.
+        unfinished: Models that were asked for, but the run was interrupted before.
     """
 
     settings: Settings
@@ -41,11 +42,12 @@ class Record:
     date: str
     versions: dict[str, str]
     machine: dict[str, str]
+    unfinished: tuple[str, ...] = ()
 
     @property
     def ok(self) -> bool:
-        """Whether anything was compared, and nothing disagrees or failed."""
-        return bool(self.compared) and all(model.ok for model in self.models)
+        """Whether all that was asked for was compared, and nothing disagrees or failed."""
+        return bool(self.compared) and all(model.ok for model in self.models) and not self.unfinished
 
     @property
     def comparisons(self) -> list[Comparison]:
@@ -62,7 +64,9 @@ class Record:
         return [row for row in self.comparisons if row.status in status]
 
 
-def make_record(settings: Settings, models: Sequence[ModelResult], seconds: float) -> Record:
+def make_record(
+    settings: Settings, models: Sequence[ModelResult], seconds: float, unfinished: Sequence[str] = ()
+) -> Record:
     """Add to results what is needed to judge them later."""
     versions = {"symofros": sf.__version__, "python": platform.python_version(), "numpy": np.__version__}
     for model in models:
@@ -71,7 +75,7 @@ def make_record(settings: Settings, models: Sequence[ModelResult], seconds: floa
     if robots:
         versions["example-robot-data"] = robots
     now = datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")
-    return Record(settings, tuple(models), seconds, now, versions, machine())
+    return Record(settings, tuple(models), seconds, now, versions, machine(), tuple(unfinished))
 
 
 _OURS = frozenset({"interpreted", "description"})
@@ -89,7 +93,7 @@ def machine() -> dict[str, str]:
     return {
         "processor": _processor(),
         "cores": str(os.cpu_count()),
-        "system": f"{platform.system()} {platform.machine()}, {platform.libc_ver()[0]} {platform.libc_ver()[1]}".strip(),
+        "system": " ".join(filter(None, [platform.system(), platform.machine(), *platform.libc_ver()])),
     }
 
 
@@ -130,6 +134,7 @@ def to_json(record: Record) -> str:
     content = {
         "schema": SCHEMA,
         **summary(record),
+        "unfinished": record.unfinished,
         "date": record.date,
         "seconds": round(record.seconds, 1),
         "settings": asdict(record.settings),

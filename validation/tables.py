@@ -201,15 +201,15 @@ def _quantities(rows: Sequence[Comparison]) -> str:
 
 
 def headline(record: Record) -> str:
-    """The verdict in one sentence."""
-    rows, failed = record.compared, record.rows("failed")
-    disagreeing = sum(row.status == "disagree" for row in rows)
-    what = f"{len(rows)} comparisons on {_count(len(record.models), 'model')}"
-    if record.ok:
-        return f"All {what} agree."
-    parts = [f"{disagreeing} of {what} disagree"] if disagreeing or not failed else []
-    parts += [f"{_count(len({row.model for row in failed}), 'model')} failed"] if failed else []
-    return ", ".join(parts) + "." if rows or failed else "Nothing was compared."
+    """The verdict in one sentence, or two."""
+    what = f"{len(record.compared)} comparisons on {_count(len(record.models), 'model')}"
+    disagreeing = len(record.rows("disagree"))
+    failed = len({row.model for row in record.rows("failed")})
+    parts = [f"{disagreeing} of {what} disagree" if disagreeing else f"all {what} agree"] if record.compared else []
+    parts += [f"{_count(failed, 'model')} failed"] if failed else []
+    said = ", ".join(parts) or "nothing was compared"
+    cut = f" Interrupted: {_count(len(record.unfinished), 'model')} not checked." if record.unfinished else ""
+    return f"{said[0].upper()}{said[1:]}.{cut}"
 
 
 def _count(n: int, what: str) -> str:

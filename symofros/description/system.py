@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
+from symofros.description.forces import Connection, JointElement, Load, Potential, Rotor, VirtualPower
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
@@ -158,6 +159,10 @@ class Joint:
         coordinates: Names of the coordinates of a general joint, one to six.
         moving_position: p_PD of a general joint: formulas of its coordinates and of parameters.
         moving_rotation: R_PD of a general joint, likewise.
+        prescribed: The motion is given: coordinates, speeds and their rates are inputs (q1, dq1, ddq1).
+        elements: Springs, dampers, stops and friction on its coordinates.
+        armature: Inertia added to each speed, of a rotor whose gyroscopic effect is neglected.
+        rotors: Rotors that its speeds drive, with their full effect.
     """
 
     name: str
@@ -175,6 +180,10 @@ class Joint:
     coordinates: tuple[str, ...] = ()
     moving_position: Vector = ORIGIN
     moving_rotation: Rotation = IDENTITY
+    prescribed: bool = False
+    elements: tuple[JointElement, ...] = ()
+    armature: Value = 0.0
+    rotors: tuple[Rotor, ...] = ()
 
     def __post_init__(self) -> None:
         """Convert numbers and check the kind."""
@@ -188,7 +197,9 @@ class Joint:
         object.__setattr__(self, "axis", as_vector(self.axis, f"{what}: axis"))
         object.__setattr__(self, "axis2", as_vector(self.axis2, f"{what}: axis2"))
         object.__setattr__(self, "pitch", as_value(self.pitch, f"{what}: pitch"))
-        object.__setattr__(self, "coordinates", tuple(self.coordinates))
+        object.__setattr__(self, "armature", as_value(self.armature, f"{what}: armature"))
+        for name in ("coordinates", "elements", "rotors"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
         object.__setattr__(self, "moving_position", as_vector(self.moving_position, f"{what}: moving_position"))
         effort = self.effort if isinstance(self.effort, (tuple, list)) else (self.effort,)
         object.__setattr__(self, "effort", tuple(as_value(e, f"{what}: effort[{i}]") for i, e in enumerate(effort)))
@@ -203,6 +214,7 @@ class RigidBody:
         joint: How it moves on its parent; None for the base.
         inertia: None for a massless body.
         frames: Its extremity frames.
+        loads: Forces and torques on it.
         waive: Names of checks this body is allowed to fail (see WAIVERS).
     """
 
@@ -211,10 +223,12 @@ class RigidBody:
     inertia: Inertia | None = None
     frames: tuple[Frame, ...] = ()
     waive: tuple[str, ...] = ()
+    loads: tuple[Load, ...] = ()
 
     def __post_init__(self) -> None:
         """Freeze the collections and check the waivers."""
         object.__setattr__(self, "frames", tuple(self.frames))
+        object.__setattr__(self, "loads", tuple(self.loads))
         object.__setattr__(self, "waive", tuple(sorted(set(self.waive))))
         for unknown in sorted(set(self.waive) - WAIVERS.keys()):
             raise DescriptionError(
@@ -233,6 +247,9 @@ class System:
         parameters: Run-time parameters and constants.
         inputs: Named inputs, in order; actuated joints add theirs after these.
         gravity: Acceleration of gravity in the world frame [m/s^2].
+        connections: Springs and dampers between frames.
+        virtual_power: Internal forces by their virtual power.
+        potentials: Potential energies by formula.
         notes: What an importer dropped or changed, in words.
         origin: "file:line" of objects, keyed by ("body", name), ("joint", name), …; not part of equality.
     """
@@ -242,12 +259,15 @@ class System:
     parameters: tuple[Parameter, ...] = ()
     inputs: tuple[Input, ...] = ()
     gravity: Vector = (0.0, 0.0, -9.81)
+    connections: tuple[Connection, ...] = ()
+    virtual_power: tuple[VirtualPower, ...] = ()
+    potentials: tuple[Potential, ...] = ()
     notes: tuple[str, ...] = field(default=(), compare=False, repr=False)
     origin: Mapping[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         """Freeze the collections and convert the gravity."""
-        for name in ("bodies", "parameters", "inputs", "notes"):
+        for name in ("bodies", "parameters", "inputs", "connections", "virtual_power", "potentials", "notes"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         object.__setattr__(self, "gravity", as_vector(self.gravity, f"system '{self.name}': gravity"))
         object.__setattr__(self, "origin", MappingProxyType(dict(self.origin)))
@@ -255,7 +275,8 @@ class System:
     def __reduce__(self) -> Any:
         """Pickle without the read-only view, which can't be pickled."""
         return System, (
-            self.name, self.bodies, self.parameters, self.inputs, self.gravity, self.notes, dict(self.origin)
+            self.name, self.bodies, self.parameters, self.inputs, self.gravity, self.connections, self.virtual_power,
+            self.potentials, self.notes, dict(self.origin),
         )  # fmt: skip
 
     def body(self, name: str) -> RigidBody:

@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 from symofros.dynamics.inertia import LinkInertia
+from symofros.dynamics.rotors import MovingRotor
 from symofros.expr.graph import ZERO, Edge
 from symofros.expr.vector import Vec3
 from symofros.kinematics.links import Motion
 from symofros.topology.tree import BASE
 
 
-def kinetic_energy(motion: Motion, inertias: list[LinkInertia]) -> Edge:
-    """1/2 sum (m v.v + 2 v.(w x S) + w.J w), each link about its own origin (eq. 24)."""
+def kinetic_energy(motion: Motion, inertias: list[LinkInertia], rotors: list[MovingRotor]) -> Edge:
+    """1/2 sum (m v.v + 2 v.(w x S) + w.J w), each link about its own origin, and the rotors' (eqs. 24, 35)."""
     g = motion.g
     speeds: list[tuple[Vec3, Vec3]] = []
     twice = ZERO
     for link, body in zip(motion.links, inertias, strict=True):
         w_A, v_A = (Vec3(g), Vec3(g)) if link.parent == BASE else speeds[link.parent]
         w, v = link.R_AL.apply_inverse(w_A), link.R_AL.apply_inverse(v_A + w_A.cross(link.p_AL))
-        for k, column in enumerate(link.columns):
-            speed = g.input("v", link.v + k)
+        for column, speed in zip(link.columns, link.speeds, strict=True):
             w, v = w + column.w.scaled(speed), v + column.v.scaled(speed)
         speeds.append((w, v))
         momentum = v.scaled(body.m) + w.cross(body.S) + w.cross(body.S)
         twice = g.add(twice, g.add(v.dot(momentum), w.dot(body.J.times(w))))
+    for rotor in rotors:
+        spin = rotor.spin(motion)
+        turning = ZERO if rotor.carrier == BASE else speeds[rotor.carrier][0].dot(rotor.axis)
+        twice = g.add(twice, g.mul(g.mul(rotor.inertia, spin), g.add(spin, g.add(turning, turning))))
     return g.mul(g.constant(0.5), twice)
 
 

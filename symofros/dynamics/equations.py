@@ -7,13 +7,15 @@ from functools import cached_property
 from typing import NamedTuple
 
 from symofros.dynamics.energy import kinetic_energy, potential_energy
-from symofros.dynamics.forces import joint_efforts
+from symofros.dynamics.forces import generalized_forces, stored_energy
 from symofros.dynamics.forward import solve
 from symofros.dynamics.inertia import LinkInertia, link_inertias
 from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
+from symofros.dynamics.rotors import MovingRotor, rotors_of
 from symofros.expr.graph import ZERO, Edge, Graph
 from symofros.expr.program import Function, Output, Program
+from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.kinematics.frames import FrameKinematics
 from symofros.kinematics.links import Motion, set_in_motion
@@ -37,6 +39,9 @@ class Equations:
         self.tree = tree
         self.g = Graph()
         self.nv = len(tree.coordinates.v)
+        self.efforts = tree.coordinates.efforts
+        # Prescribed motions are inputs that every function may depend on.
+        self.always = ("u",) if len(tree.coordinates.u) > self.efforts else ()
 
     @cached_property
     def motion(self) -> Motion:
@@ -48,6 +53,11 @@ class Equations:
         return link_inertias(self.motion)
 
     @cached_property
+    def rotors(self) -> list[MovingRotor]:
+        """Rotors and armatures."""
+        return rotors_of(self.motion)
+
+    @cached_property
     def gravity(self) -> Vec3:
         """Acceleration of gravity in the world."""
         return self.motion.lowering.vector(self.tree.system.gravity)
@@ -55,17 +65,17 @@ class Equations:
     @cached_property
     def M(self) -> Matrix:
         """Mass matrix (nv x nv)."""
-        return mass_matrix(self.motion, self._inertias[0])
+        return mass_matrix(self.motion, self._inertias[0], self.rotors)
 
     @cached_property
     def h(self) -> list[Edge]:
         """Coriolis, centrifugal and gravity terms (nv)."""
-        return inertia_forces(self.motion, self._inertias[0], [ZERO] * self.nv, self.gravity)
+        return inertia_forces(self.motion, self._inertias[0], self.rotors, [ZERO] * self.nv, self.gravity)
 
     @cached_property
     def Q(self) -> list[Edge]:
         """Generalized forces (nv)."""
-        return joint_efforts(self.motion, with_inputs=True)
+        return generalized_forces(self.motion, self.frames)
 
     @cached_property
     def v_rate(self) -> list[Edge]:
@@ -80,19 +90,20 @@ class Equations:
     @cached_property
     def required(self) -> list[Edge]:
         """M a + h - Q(q, v, 0): what the inputs must supply for an acceleration a."""
-        total = inertia_forces(self.motion, self._inertias[0], self.v_rate, self.gravity)
-        passive = joint_efforts(self.motion, with_inputs=False)
+        total = inertia_forces(self.motion, self._inertias[0], self.rotors, self.v_rate, self.gravity)
+        passive = substitute(self.g, self.Q, {self.g.input("u", i): ZERO for i in range(self.efforts)})
         return [self.g.sub(needed, given) for needed, given in zip(total, passive, strict=True)]
 
     @cached_property
     def T(self) -> Edge:
         """Kinetic energy."""
-        return kinetic_energy(self.motion, self._inertias[0])
+        return kinetic_energy(self.motion, self._inertias[0], self.rotors)
 
     @cached_property
     def V(self) -> Edge:
-        """Potential energy."""
-        return potential_energy(self.motion, *self._inertias, self.gravity)
+        """Potential energy: of the weight, and what forces store."""
+        weight = potential_energy(self.motion, *self._inertias, self.gravity)
+        return self.g.add(weight, stored_energy(self.motion, self.frames))
 
     @cached_property
     def frames(self) -> FrameKinematics:
@@ -109,7 +120,8 @@ class Equations:
             inputs, outputs = _FRAME_FUNCTIONS[request.name](self, self.tree.frame(request.frame))
         else:
             inputs, outputs = _FUNCTIONS[request.name](self)
-        return Function(request.name, request.frame, inputs, outputs)
+        more = tuple(name for name in self.always if name not in inputs)
+        return Function(request.name, request.frame, (*inputs, *more), outputs)
 
 
 _Parts = tuple[tuple[str, ...], tuple[Output, ...]]
@@ -135,7 +147,7 @@ _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "forward_dynamics": lambda e: (("q", "v", "u", "t"), (_vector("a", e.acceleration),)),
     "inverse_dynamics": lambda e: (("q", "v", "a", "t"), (_vector("tau", e.required),)),
     "kinetic_energy": lambda e: (("q", "v"), (Output("T", (), (e.T,)),)),
-    "potential_energy": lambda e: (("q",), (Output("V", (), (e.V,)),)),
+    "potential_energy": lambda e: (("q", "t"), (Output("V", (), (e.V,)),)),
 }
 
 

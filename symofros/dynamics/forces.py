@@ -1,37 +1,129 @@
-"""Generalized forces of joint efforts: motors as inputs, and formulas of the description."""
+"""Generalized forces Q and the potential energy of everything that is a force (docs/theory/rigid.md, section 10)."""
 
 from __future__ import annotations
 
-from symofros.description.values import symbols
-from symofros.expr.graph import ZERO, Edge
+from collections.abc import Callable
+
+from symofros.dynamics.elements import element_energy, element_force
+from symofros.dynamics.jourdain import virtual_power
+from symofros.dynamics.loads import connection_energy, wrenches
+from symofros.expr.derivative import directional
+from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.kinematics.frames import FrameKinematics
 from symofros.kinematics.links import Motion
+from symofros.kinematics.lowering import Lowering
+from symofros.kinematics.rotations import quaternion_matrix
+from symofros.topology.coordinates import coordinate_names, speed_symbols
+from symofros.topology.tree import Link
 
 
-def joint_efforts(motion: Motion, with_inputs: bool) -> list[Edge]:
-    """Q of the joints: an effort's virtual power on its own speed is the effort (docs/theory/rigid.md, eq. 23).
+def generalized_forces(motion: Motion, frames: FrameKinematics) -> list[Edge]:
+    """Q: joint efforts and elements, virtual power by formula, potentials, loads and connections.
 
     Args:
         motion: The tree.
-        with_inputs: False sets every input to zero.
+        frames: Its frames, where loads and connections act.
 
     Returns:
         One edge a speed.
     """
-    g, tree = motion.g, motion.tree
+    g, system = motion.g, motion.tree.system
+    total = _joint_forces(motion)
+    index = {name: motion.lowering.coordinates.symbols[name].index for name in _free_speeds(motion)}
+    for power in system.virtual_power:
+        for speed, formula in power.forces:
+            total[index[speed]] = g.add(total[index[speed]], motion.lowering.value(formula))
+    potentials = [motion.lowering.value(potential.energy) for potential in system.potentials]
+    if potentials:
+        total = [g.sub(force, slope) for force, slope in zip(total, _gradient(motion, g.sum(potentials)), strict=True)]
+    acting = wrenches(motion, frames)
+    if acting is not None:
+        total = [g.add(a, b) for a, b in zip(total, virtual_power(motion, acting), strict=True)]
+    return total
+
+
+def stored_energy(motion: Motion, frames: FrameKinematics) -> Edge:
+    """The potential energy of joint elements, connections and formulas; gravity's is another function's."""
+    g, lowering = motion.g, motion.lowering
+    parts = [lowering.value(potential.energy) for potential in motion.tree.system.potentials]
+    for link in motion.tree.links:
+        for element in link.joint.elements:
+            parts.append(element_energy(lowering, element, _coordinate(lowering, link, element.coordinate)))
+    return g.sum([*parts, connection_energy(motion, frames)])
+
+
+def _free_speeds(motion: Motion) -> list[str]:
+    return [name for link in motion.tree.links if not link.joint.prescribed for name in speed_symbols(link.joint)]
+
+
+def _coordinate(lowering: Lowering, link: Link, index: int) -> Edge:
+    """The coordinate an element acts on; the zero where the joint has fewer (dampers do without)."""
+    names = coordinate_names(link.joint)
+    return lowering.symbol(names[index]) if index < len(names) else ZERO
+
+
+def _joint_forces(motion: Motion) -> list[Edge]:
+    """Efforts, motors and elements: their virtual power on their own speed is the force itself (eq. 23)."""
+    g, lowering, tree = motion.g, motion.lowering, motion.tree
     total: list[Edge] = [ZERO] * motion.nv
     motor = len(tree.system.inputs)
-    stated = {item.name for item in tree.system.inputs}
+
+    def add(k: int, edge: Edge) -> None:
+        total[k] = g.add(total[k], edge)
+
     for link in tree.links:
         start, size = link.v
+        if size == 0:
+            continue  # Forces on a prescribed motion do no virtual power.
+        speeds = [lowering.symbol(name) for name in speed_symbols(link.joint)]
         for k, value in enumerate(link.joint.effort):
-            if not with_inputs and symbols(value) & stated:
-                edge = motion.lowering.value_without(value, stated)
-            else:
-                edge = motion.lowering.value(value)
-            total[start + k] = edge
+            add(start + k, lowering.value(value))
+        for element in link.joint.elements:
+            k = element.coordinate
+            add(start + k, element_force(lowering, element, _coordinate(lowering, link, k), speeds[k]))
         if link.joint.actuated:
             for k in range(size):
-                effort = g.input("u", motor + k) if with_inputs else ZERO
-                total[start + k] = g.add(total[start + k], effort)
+                add(start + k, g.input("u", motor + k))
             motor += size
     return total
+
+
+def _gradient(motion: Motion, energy: Edge) -> list[Edge]:
+    """The rate of an energy per unit of each speed: its gradient through q' = N v (eq. 38)."""
+    g, lowering = motion.g, motion.lowering
+    slopes: list[Edge] = [ZERO] * motion.nv
+    for link in motion.tree.links:
+        start, size = link.v
+        names = coordinate_names(link.joint)
+        for k in range(size):
+            seeds = _RATES.get(link.joint.kind, _own_rate)(lowering, names, k)
+            slopes[start + k] = directional(g, [energy], seeds)[0]
+    return slopes
+
+
+def _own_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
+    return {lowering.symbol(names[k]): ONE}
+
+
+def _ball_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
+    """Rates of a quaternion per unit angular velocity along axis k of D: half the product with that axis."""
+    g = lowering.g
+    e, s = [lowering.symbol(name) for name in names[:3]], lowering.symbol(names[3])
+    half = g.constant(0.5)
+    i, j = (k + 1) % 3, (k + 2) % 3
+    rates = {e[k]: s, e[i]: e[j], e[j]: -e[i], s: -e[k]}
+    return {edge: g.mul(half, rate) for edge, rate in rates.items()}
+
+
+def _free_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
+    """Rates of position and quaternion per unit body velocity: the position moves along column k of R_PD."""
+    if k >= 3:
+        return _ball_rate(lowering, names[3:], k - 3)
+    from_quaternion = quaternion_matrix(lowering.g, *(lowering.symbol(name) for name in names[3:]))
+    return {lowering.symbol(name): edge for name, edge in zip(names[:3], from_quaternion.column(k), strict=True)}
+
+
+_RATES: dict[str, Callable[[Lowering, tuple[str, ...], int], dict[Edge, Edge]]] = {
+    "ball": _ball_rate,
+    "free": _free_rate,
+}

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from symofros.dynamics.inertia import LinkInertia
+from symofros.dynamics.rotors import MovingRotor
 from symofros.expr.graph import ZERO, Edge, Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
 from symofros.kinematics.links import Motion, MovingLink
@@ -22,77 +23,125 @@ class LinkMotion:
 
     Attributes:
         w: w_WL_L.
+        alpha: alpha_WL_L.
         a: a_WLo_L, with gravity as an acceleration of the base.
         U: [alpha] + [w][w], the matrix that takes a point's position to its relative acceleration.
         ww: The products wx wx, wy wy, wz wz.
     """
 
     w: Vec3
+    alpha: Vec3
     a: Vec3
     U: Mat3
     ww: tuple[Edge, Edge, Edge]
 
 
-def inertia_forces(motion: Motion, inertias: list[LinkInertia], v_rate: Sequence[Edge], gravity: Vec3) -> list[Edge]:
+@dataclass(frozen=True)
+class Wrench:
+    """Force and moment about a link's origin, in the link frame."""
+
+    f: Vec3
+    n: Vec3
+
+    def __add__(self, other: Wrench) -> Wrench:
+        return Wrench(self.f + other.f, self.n + other.n)
+
+
+def no_wrench(g: Graph) -> Wrench:
+    """The wrench of nothing."""
+    return Wrench(Vec3(g), Vec3(g))
+
+
+def inertia_forces(
+    motion: Motion,
+    inertias: list[LinkInertia],
+    rotors: list[MovingRotor],
+    v_rate: Sequence[Edge],
+    gravity: Vec3,
+) -> list[Edge]:
     """M v' + h: what the inertia and the weight of all links ask of each speed (eqs. 6-11).
 
     Args:
         motion: The tree.
         inertias: Of its links.
+        rotors: That spin in its links.
         v_rate: v' (nv); zeros give the bias h alone.
         gravity: Acceleration of gravity in the world.
 
     Returns:
         One edge a speed.
     """
-    moving = _base_to_tip(motion, v_rate, gravity)
-    force = [Vec3(motion.g)] * len(motion.links)
-    moment = [Vec3(motion.g)] * len(motion.links)
+    g = motion.g
+    moving = base_to_tip(motion, v_rate, gravity)
+    wrenches = [_wrench(body, state) for body, state in zip(inertias, moving, strict=True)]
+    total: list[Edge] = [ZERO] * motion.nv
+    for rotor in rotors:
+        rate = rotor.rate(motion, v_rate)
+        spin_rate = g.mul(rotor.ratio, rate)
+        if rotor.carrier != BASE:
+            state = moving[rotor.carrier]
+            n = rotor.axis.scaled(g.mul(rotor.inertia, spin_rate))
+            n = n + state.w.cross(rotor.axis).scaled(g.mul(rotor.inertia, rotor.spin(motion)))
+            wrenches[rotor.carrier] = wrenches[rotor.carrier] + Wrench(Vec3(g), n)
+            spin_rate = g.add(spin_rate, state.alpha.dot(rotor.axis))
+        if rotor.k is not None:
+            reaction = g.mul(g.mul(rotor.ratio, rotor.inertia), spin_rate)
+            total[rotor.k] = g.add(total[rotor.k], reaction)
+    powers = virtual_power(motion, wrenches)
+    return [g.add(a, b) for a, b in zip(powers, total, strict=True)]
+
+
+def virtual_power(motion: Motion, wrenches: Sequence[Wrench]) -> list[Edge]:
+    """The virtual power of one wrench a link on every speed: accumulated tip to base, projected once (eqs. 5, 11).
+
+    Args:
+        motion: The tree.
+        wrenches: On its links.
+
+    Returns:
+        One edge a speed.
+    """
+    g = motion.g
+    beyond = list(wrenches)
     total: list[Edge] = [ZERO] * motion.nv
     for i, link in reversed(list(enumerate(motion.links))):
-        f_own, n_own = _wrench(inertias[i], moving[i])
-        f, n = (force[i] + f_own).named(f"f[{link.name}]"), (moment[i] + n_own).named(f"n[{link.name}]")
-        for k, column in enumerate(link.columns):
-            total[link.v + k] = motion.g.add(column.w.dot(n), column.v.dot(f))
+        f, n = beyond[i].f.named(f"f[{link.name}]"), beyond[i].n.named(f"n[{link.name}]")
+        for k, column in enumerate(link.free_columns):
+            total[link.v + k] = g.add(column.w.dot(n), column.v.dot(f))
         if link.parent != BASE:
             f_A = link.R_AL.apply(f)
-            force[link.parent] = force[link.parent] + f_A
-            moment[link.parent] = moment[link.parent] + (link.R_AL.apply(n) + link.p_AL.cross(f_A))
+            carried = Wrench(f_A, link.R_AL.apply(n) + link.p_AL.cross(f_A))
+            beyond[link.parent] = beyond[link.parent] + carried
     return total
 
 
-def _base_to_tip(motion: Motion, v_rate: Sequence[Edge], gravity: Vec3) -> list[LinkMotion]:
+def base_to_tip(motion: Motion, v_rate: Sequence[Edge], gravity: Vec3) -> list[LinkMotion]:
+    """Velocity and acceleration of every link (eqs. 6-8)."""
     g = motion.g
     still = Vec3(g)
-    base = LinkMotion(still, -gravity, Mat3(g, (ZERO,) * 9), (ZERO,) * 3)
+    base = LinkMotion(still, still, -gravity, Mat3(g, (ZERO,) * 9), (ZERO,) * 3)
     moving: list[LinkMotion] = []
-    alphas: list[Vec3] = []
     for link in motion.links:
-        parent, alpha_A = (base, still) if link.parent == BASE else (moving[link.parent], alphas[link.parent])
-        state, alpha = _across(g, link, parent, alpha_A, v_rate)
-        moving.append(state)
-        alphas.append(alpha)
+        parent = base if link.parent == BASE else moving[link.parent]
+        moving.append(_across(g, link, parent, link.rates_given(v_rate)))
     return moving
 
 
-def _across(
-    g: Graph, link: MovingLink, parent: LinkMotion, alpha_A: Vec3, v_rate: Sequence[Edge]
-) -> tuple[LinkMotion, Vec3]:
-    """From the parent's motion to the link's (eqs. 6-8)."""
+def _across(g: Graph, link: MovingLink, parent: LinkMotion, rates: Sequence[Edge]) -> LinkMotion:
+    """From the parent's motion to the link's."""
     w_AL, v_AL, w_rate, v_rel_rate = Vec3(g), Vec3(g), Vec3(g), Vec3(g)
-    for k, column in enumerate(link.columns):
-        speed, rate = g.input("v", link.v + k), v_rate[link.v + k]
+    for column, speed, rate in zip(link.columns, link.speeds, rates, strict=True):
         w_AL, v_AL = w_AL + column.w.scaled(speed), v_AL + column.v.scaled(speed)
         w_rate = w_rate + (column.w.scaled(rate) + column.w_rate.scaled(speed))
         v_rel_rate = v_rel_rate + (column.v.scaled(rate) + column.v_rate.scaled(speed))
     w_WA = link.R_AL.apply_inverse(parent.w)
     w = (w_WA + w_AL).named(f"w_WL_L[{link.name}]")
-    alpha = link.R_AL.apply_inverse(alpha_A) + (w_rate + w_WA.cross(w_AL))
+    alpha = link.R_AL.apply_inverse(parent.alpha) + (w_rate + w_WA.cross(w_AL))
     alpha.named(f"alpha_WL_L[{link.name}]")
     a = link.R_AL.apply_inverse(parent.a + parent.U.times(link.p_AL)) + (v_rel_rate + (w_WA + w).cross(v_AL))
     a.named(f"a_WLo_L[{link.name}]")
     U, ww = _relative_acceleration(w, alpha)
-    return LinkMotion(w, a, U, ww), alpha
+    return LinkMotion(w, alpha, a, U, ww)
 
 
 def _relative_acceleration(w: Vec3, alpha: Vec3) -> tuple[Mat3, tuple[Edge, Edge, Edge]]:
@@ -108,11 +157,11 @@ def _relative_acceleration(w: Vec3, alpha: Vec3) -> tuple[Mat3, tuple[Edge, Edge
     return U, (xx, yy, zz)
 
 
-def _wrench(body: LinkInertia, moving: LinkMotion) -> tuple[Vec3, Vec3]:
+def _wrench(body: LinkInertia, moving: LinkMotion) -> Wrench:
     """Force and moment about Lo that the link's acceleration takes (eqs. 9, 10)."""
     f = moving.a.scaled(body.m) + moving.U.times(body.S)
     n = _moment(body.second_moment(), moving) + body.S.cross(moving.a)
-    return f, n
+    return Wrench(f, n)
 
 
 def _moment(E: Sym3, moving: LinkMotion) -> Vec3:

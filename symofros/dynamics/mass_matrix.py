@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symofros.dynamics.inertia import LinkInertia, carried_to_parent
+from symofros.dynamics.rotors import MovingRotor
 from symofros.expr.graph import ZERO, Edge
 from symofros.expr.vector import Vec3
 from symofros.kinematics.joint import Column
@@ -12,7 +13,7 @@ from symofros.topology.tree import BASE
 Matrix = list[list[Edge]]
 
 
-def mass_matrix(motion: Motion, inertias: list[LinkInertia]) -> Matrix:
+def mass_matrix(motion: Motion, inertias: list[LinkInertia], rotors: list[MovingRotor]) -> Matrix:
     """M, from the inertia of everything beyond each joint.
 
     Column by column: a unit rate of speed k gives the composite body beyond its joint a momentum; M[j][k] is that
@@ -21,6 +22,7 @@ def mass_matrix(motion: Motion, inertias: list[LinkInertia]) -> Matrix:
     Args:
         motion: The tree.
         inertias: Of its links; not changed.
+        rotors: That spin in its links.
 
     Returns:
         nv rows of nv edges, symmetric.
@@ -31,14 +33,33 @@ def mass_matrix(motion: Motion, inertias: list[LinkInertia]) -> Matrix:
         whole = composite[i]
         whole.S.named(f"composite_mp_LC[{link.name}]")
         whole.J.named(f"composite_I_LLo[{link.name}]")
-        for k, column in enumerate(link.columns):
+        for k, column in enumerate(link.free_columns):
             f, n = _momentum(whole, column)
             for j in range(k + 1):
                 _set(M, link.v + j, link.v + k, _virtual_power(link.columns[j], f, n))
             _project_down(motion, M, i, link.v + k, f, n)
         if link.parent != BASE:
             composite[link.parent] = composite[link.parent] + carried_to_parent(link, whole)
+    for rotor in rotors:
+        if rotor.k is not None:
+            _add_rotor(motion, M, rotor, rotor.k)
     return M
+
+
+def _add_rotor(motion: Motion, M: Matrix, rotor: MovingRotor, k: int) -> None:
+    """What a rotor's spin adds: inertia on its speed, coupling to every speed that turns its carrier (eq. 36)."""
+    g = motion.g
+    per_spin = g.mul(rotor.inertia, rotor.ratio)
+    M[k][k] = g.add(M[k][k], g.mul(per_spin, rotor.ratio))
+    n, i = rotor.axis.scaled(per_spin), rotor.carrier
+    while i != BASE:
+        link = motion.links[i]
+        for j, column in enumerate(link.free_columns):
+            row, power = link.v + j, column.w.dot(n)
+            if row == k:  # The driven speed turns its own carrier: both halves of the product fall on one entry.
+                power = g.add(power, power)
+            _set(M, row, k, g.add(M[row][k], power))
+        n, i = link.R_AL.apply(n), link.parent
 
 
 def _momentum(body: LinkInertia, column: Column) -> tuple[Vec3, Vec3]:
@@ -59,7 +80,7 @@ def _project_down(motion: Motion, M: Matrix, i: int, k: int, f: Vec3, n: Vec3) -
         f, n = link.R_AL.apply(f), link.R_AL.apply(n)
         n = n + link.p_AL.cross(f)
         link = motion.links[link.parent]
-        for j, column in enumerate(link.columns):
+        for j, column in enumerate(link.free_columns):
             _set(M, link.v + j, k, _virtual_power(column, f, n))
 
 

@@ -67,17 +67,15 @@ class FrameKinematics:
 
     def _link_rates(self, frame: NamedFrame, v_rate: Sequence[Edge] | None) -> dict[int, Rates]:
         """Rates of every link on the way to a frame (eqs. 28, 29); without v', accelerations are left zero."""
-        g = self.g
-        zero = Vec3(g)
+        zero = Vec3(self.g)
         rates = {BASE: Rates(zero, zero, zero, zero)}
         for i in reversed(self.motion.tree.ancestors(frame.link)):
             link = self.motion.links[i]
             parent = rates[link.parent]
             r = self.link_pose(i).p - self.link_pose(link.parent).p
             w_AL, v_AL, w_rate, v_rate_rel = zero, zero, zero, zero
-            for k, partial in enumerate(self._partials(i)):
-                speed = g.input("v", link.v + k)
-                rate = ZERO if v_rate is None else v_rate[link.v + k]
+            given = [ZERO] * len(link.columns) if v_rate is None else link.rates_given(v_rate)
+            for partial, speed, rate in zip(self._partials(i), link.speeds, given, strict=True):
                 w_AL, v_AL = w_AL + partial.w.scaled(speed), v_AL + partial.v.scaled(speed)
                 w_rate = w_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
                 v_rate_rel = v_rate_rel + (partial.v.scaled(rate) + partial.v_rate.scaled(speed))
@@ -108,7 +106,7 @@ class FrameKinematics:
         """The partial velocities of the frame: 6 rows of nv edges (eq. 30)."""
         p = self.pose(frame).p
         rows = self._empty()
-        for i in self.motion.tree.ancestors(frame.link):
+        for i in self._free(frame):
             r = p - self.link_pose(i).p
             for k, partial in enumerate(self._partials(i)):
                 self._fill(rows, self.motion.links[i].v + k, partial.v + partial.w.cross(r), partial.w)
@@ -120,7 +118,7 @@ class FrameKinematics:
         v_F = self._rates(frame, None).v
         p = self.pose(frame).p
         rows = self._empty()
-        for i in self.motion.tree.ancestors(frame.link):
+        for i in self._free(frame):
             r, r_rate = p - self.link_pose(i).p, v_F - rates[i].v
             for k, partial in enumerate(self._partials(i)):
                 # Partial velocities turn with the link, on top of what they change in it.
@@ -129,6 +127,10 @@ class FrameKinematics:
                 linear = v_k_rate + (w_k_rate.cross(r) + partial.w.cross(r_rate))
                 self._fill(rows, self.motion.links[i].v + k, linear, w_k_rate)
         return rows
+
+    def _free(self, frame: NamedFrame) -> list[int]:
+        """Links on the way to a frame whose motion is not prescribed."""
+        return [i for i in self.motion.tree.ancestors(frame.link) if self.motion.links[i].rates is None]
 
     def _empty(self) -> list[list[Edge]]:
         return [[ZERO] * self.motion.nv for _ in range(6)]

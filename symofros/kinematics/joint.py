@@ -151,9 +151,7 @@ def _stated_turns(lowering: Lowering, joint: Joint) -> list[_Turn]:
     return [_Turn(MatrixTurn(lowering.rotation(rotation)))]
 
 
-def _differentiated(
-    g: Graph, q: tuple[Edge, ...], p_PD: Vec3, R: Turn, turns: list[_Turn]
-) -> list[tuple[Vec3, Vec3]]:
+def _differentiated(g: Graph, q: tuple[Edge, ...], p_PD: Vec3, R: Turn, turns: list[_Turn]) -> list[tuple[Vec3, Vec3]]:
     """Partial velocities w and v of v = q', in D (eqs. 32, 33)."""
     columns = []
     for coordinate in q:

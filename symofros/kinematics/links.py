@@ -6,13 +6,15 @@ coordinate axis: a joint about any constant axis then costs what a joint about z
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symofros.expr.graph import Graph
+from symofros.expr.graph import Edge, Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.kinematics.joint import Axis, Column, across_joint
 from symofros.kinematics.lowering import Lowering
 from symofros.kinematics.rotations import Turn, constant_turn, frame_with_axis, snapped, unit_vector
+from symofros.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
 from symofros.topology.tree import BASE, Link, SpanningTree
 
 
@@ -26,7 +28,9 @@ class MovingLink:
         R_AL: Rotation from link to parent.
         p_AL: From Ao to Lo, in A [m].
         columns: Partial velocities of L in A, in L.
-        v: Index of the first speed.
+        speeds: Edge of each column's speed.
+        rates: Edge of each speed's rate where the motion is prescribed; None where it is free.
+        v: Index of the first speed, where the motion is free.
         R_LB: The body frame in the link frame.
         fixed_origin: Whether Lo is fixed in A, so that mass at Lo may be booked on A.
         axis: The coordinate axis of L that the joint turns about; None if it is not a turn about one.
@@ -37,10 +41,21 @@ class MovingLink:
     R_AL: Turn
     p_AL: Vec3
     columns: tuple[Column, ...]
+    speeds: tuple[Edge, ...]
+    rates: tuple[Edge, ...] | None
     v: int
     R_LB: Mat3
     fixed_origin: bool
     axis: int | None
+
+    @property
+    def free_columns(self) -> tuple[Column, ...]:
+        """The columns that have a speed among v."""
+        return self.columns if self.rates is None else ()
+
+    def rates_given(self, v_rate: Sequence[Edge]) -> Sequence[Edge]:
+        """Rates of the speeds: prescribed, or this link's part of v'."""
+        return v_rate[self.v : self.v + len(self.columns)] if self.rates is None else self.rates
 
 
 @dataclass(frozen=True)
@@ -61,10 +76,6 @@ class Motion:
     links: tuple[MovingLink, ...]
     nv: int
 
-    def columns(self) -> list[tuple[int, Column]]:
-        """Each speed's link and partial velocity, in the order of v."""
-        return [(i, column) for i, link in enumerate(self.links) for column in link.columns]
-
     def in_link(self, index: int) -> Mat3:
         """R_LB of a link; the identity for the base."""
         return Mat3.identity(self.g) if index == BASE else self.links[index].R_LB
@@ -84,9 +95,9 @@ def set_in_motion(g: Graph, tree: SpanningTree) -> Motion:
         R_AP, p_AP = lowering.placement(link.placement, R_LB_parent)
         # P and D are turned alike by A, so that the axis lies along a coordinate axis of both.
         A, axis = _aligned(lowering, link)
-        start, size = link.q
-        q = tuple(g.input("q", i) for i in range(start, start + size))
-        speeds = [g.input("v", link.v[0] + k) for k in range(link.v[1])]
+        q = tuple(lowering.symbol(name) for name in coordinate_names(link.joint))
+        speeds = tuple(lowering.symbol(name) for name in speed_symbols(link.joint))
+        rates = tuple(lowering.symbol(name) for name in rate_symbols(link.joint)) if link.joint.prescribed else None
         across = across_joint(lowering, link.joint, q, speeds, axis)
         constant = constant_turn(snapped(R_AP @ A))
         links.append(
@@ -96,6 +107,8 @@ def set_in_motion(g: Graph, tree: SpanningTree) -> Motion:
                 R_AL=constant @ across.R_PD,
                 p_AL=p_AP + constant.apply(across.p_PD),
                 columns=across.columns,
+                speeds=speeds,
+                rates=rates,
                 v=link.v[0],
                 R_LB=A.T,
                 fixed_origin=across.p_PD.is_zero,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symofros.description.values import Rotation, Value, Vector
 from symofros.expr.expression import Expression, lower
-from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.graph import Edge, Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.kinematics.rotations import snapped, stated_rotation
 from symofros.topology.coordinates import CoordinateMap
@@ -28,19 +28,16 @@ class Lowering:
         """The edge of one value."""
         if not isinstance(value, Expression):
             return self.g.constant(value)
-        for name in value.symbols() - self._bindings.keys():
-            self._bindings[name] = self._input(name)
+        for name in value.symbols():
+            self.symbol(name)
         return lower(value, self.g, self._bindings)
 
-    def _input(self, name: str) -> Edge:
-        slot = self.coordinates.symbols[name]
-        return self.g.input(slot.group, slot.index)
-
-    def value_without(self, value: Value, inputs: set[str]) -> Edge:
-        """The edge of one value with these inputs set to zero."""
-        self.value(value)  # Binds its symbols.
-        assert isinstance(value, Expression)
-        return lower(value, self.g, {**self._bindings, **dict.fromkeys(inputs, ZERO)})
+    def symbol(self, name: str) -> Edge:
+        """The edge of a coordinate, speed, input, parameter or of t."""
+        if name not in self._bindings:
+            slot = self.coordinates.symbols[name]
+            self._bindings[name] = self.g.input(slot.group, slot.index)
+        return self._bindings[name]
 
     def vector(self, vector: Vector) -> Vec3:
         """The edges of a vector."""

@@ -34,7 +34,8 @@ class Model:
     """The equations of one mechanism, ready to be evaluated.
 
     Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays.
-    `par=` overrides the run-time parameters (..., npar), `t=` gives the time (...,) to models that depend on it.
+    `par=` overrides the run-time parameters (..., npar), `t=` gives the time (...,) to models that depend on it; `u=`
+    matters where a motion is prescribed, because its coordinates, speeds and their rates are inputs.
     NaN in an argument propagates to what depends on it, so that one bad state does not spoil its batch.
     Methods raise ShapeError where an array does not fit and UnknownNameError for a name that is not in the model.
     Functions may be called from several threads; C runs without the interpreter lock.
@@ -136,13 +137,13 @@ class Model:
 
     # Dynamics: M(q) v' + h(q, v) = Q(q, v, u).
 
-    def mass_matrix(self, q: Given, *, par: Given | None = None) -> Array:
+    def mass_matrix(self, q: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
         """M(q) (..., nv, nv)."""
-        return self._one("mass_matrix", {"q": q}, par)
+        return self._one("mass_matrix", {"q": q, "u": u}, par)
 
-    def bias(self, q: Given, v: Given, *, par: Given | None = None) -> Array:
+    def bias(self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
         """h(q, v) (..., nv): Coriolis, centrifugal and gravity terms."""
-        return self._one("bias", {"q": q, "v": v}, par)
+        return self._one("bias", {"q": q, "v": v, "u": u}, par)
 
     def generalized_force(self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0) -> Array:
         """Q(q, v, u) (..., nv): applied and joint forces."""
@@ -159,40 +160,50 @@ class Model:
         """The v' (..., nv) that the forces produce."""
         return self._one("forward_dynamics", {"q": q, "v": v, "u": u, "t": t}, par)
 
-    def inverse_dynamics(self, q: Given, v: Given, a: Given, *, par: Given | None = None, t: Given = 0.0) -> Array:
-        """M a + h - Q(q, v, 0) (..., nv): what the inputs must supply for v' = a."""
-        return self._one("inverse_dynamics", {"q": q, "v": v, "a": a, "t": t}, par)
+    def inverse_dynamics(
+        self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+    ) -> Array:
+        """M a + h - Q(q, v, 0) (..., nv): what the inputs must supply for v' = a; of u, only motions count."""
+        return self._one("inverse_dynamics", {"q": q, "v": v, "a": a, "u": u, "t": t}, par)
 
-    def kinetic_energy(self, q: Given, v: Given, *, par: Given | None = None) -> Array:
+    def kinetic_energy(self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
         """Kinetic energy (...,) [J]."""
-        return self._one("kinetic_energy", {"q": q, "v": v}, par)
+        return self._one("kinetic_energy", {"q": q, "v": v, "u": u}, par)
 
-    def potential_energy(self, q: Given, *, par: Given | None = None) -> Array:
-        """Potential energy (...,) [J], zero for mass at the world origin."""
-        return self._one("potential_energy", {"q": q}, par)
+    def potential_energy(self, q: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0) -> Array:
+        """Potential energy (...,) [J]: of the weight, zero for mass at the world origin, and of springs."""
+        return self._one("potential_energy", {"q": q, "u": u, "t": t}, par)
 
     # Frames, in world axes; linear part first.
 
-    def frame_pose(self, frame: str, q: Given, *, par: Given | None = None) -> tuple[Array, Array]:
+    def frame_pose(
+        self, frame: str, q: Given, *, u: Given | None = None, par: Given | None = None
+    ) -> tuple[Array, Array]:
         """p_WF (..., 3) and R_WF (..., 3, 3)."""
-        p, R = self._call("frame_pose", self._frame(frame), {"q": q}, par)
+        p, R = self._call("frame_pose", self._frame(frame), {"q": q, "u": u}, par)
         return p, R
 
-    def frame_velocity(self, frame: str, q: Given, v: Given, *, par: Given | None = None) -> Array:
+    def frame_velocity(
+        self, frame: str, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None
+    ) -> Array:
         """Velocity of the frame's origin and angular velocity (..., 6)."""
-        return self._one("frame_velocity", {"q": q, "v": v}, par, frame)
+        return self._one("frame_velocity", {"q": q, "v": v, "u": u}, par, frame)
 
-    def frame_acceleration(self, frame: str, q: Given, v: Given, a: Given, *, par: Given | None = None) -> Array:
+    def frame_acceleration(
+        self, frame: str, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None
+    ) -> Array:
         """The rate of `frame_velocity` when v' = a (..., 6)."""
-        return self._one("frame_acceleration", {"q": q, "v": v, "a": a}, par, frame)
+        return self._one("frame_acceleration", {"q": q, "v": v, "a": a, "u": u}, par, frame)
 
-    def frame_jacobian(self, frame: str, q: Given, *, par: Given | None = None) -> Array:
+    def frame_jacobian(self, frame: str, q: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
         """J (..., 6, nv) with frame_velocity = J v."""
-        return self._one("frame_jacobian", {"q": q}, par, frame)
+        return self._one("frame_jacobian", {"q": q, "u": u}, par, frame)
 
-    def frame_jacobian_rate(self, frame: str, q: Given, v: Given, *, par: Given | None = None) -> Array:
+    def frame_jacobian_rate(
+        self, frame: str, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None
+    ) -> Array:
         """dJ/dt (..., 6, nv), so that frame_acceleration = J a + dJ/dt v."""
-        return self._one("frame_jacobian_rate", {"q": q, "v": v}, par, frame)
+        return self._one("frame_jacobian_rate", {"q": q, "v": v, "u": u}, par, frame)
 
     # How a call is made.
 
@@ -204,12 +215,12 @@ class Model:
         remedy = did_you_mean(frame, self.record.frame_names)
         raise UnknownNameError(f"model '{self.record.name}': no frame '{frame}'\n  remedy: {remedy}")
 
-    def _one(self, name: str, given: Mapping[str, Given], par: Given | None, frame: str = "") -> Array:
+    def _one(self, name: str, given: Mapping[str, Given | None], par: Given | None, frame: str = "") -> Array:
         return self._call(name, self._frame(frame) if frame else "", given, par)[0]
 
-    def _call(self, name: str, frame: str, given: Mapping[str, Given], par: Given | None) -> list[Array]:
+    def _call(self, name: str, frame: str, given: Mapping[str, Given | None], par: Given | None) -> list[Array]:
         kernel = self._kernels.get((name, frame)) or self._make(name, frame)
-        arrays = [self._array(group, given[group], size) for group, size in kernel.signature.inputs]
+        arrays = [self._array(group, self._given(given[group]), size) for group, size in kernel.signature.inputs]
         shapes = [array.shape[:-1] for array in arrays]
         par_array = None
         if par is not None:
@@ -222,6 +233,10 @@ class Model:
         shaped = zip(outputs, kernel.signature.outputs, strict=True)
         return [output.reshape(batch + shape) for output, (_, shape) in shaped]
 
+    def _given(self, values: Given | None) -> Given:
+        """What was given; the default inputs where nothing was."""
+        return self.record.u_default if values is None else values
+
     def _pre(self, kernel: Kernel, key: Key, par: Array | None, batch: tuple[int, ...]) -> Array:
         if par is not None:
             flat = _flat(par, batch)
@@ -230,11 +245,13 @@ class Model:
             self._prepared[key] = kernel.prepare(self._par.reshape(1, -1))
         return self._prepared[key]
 
-    def _batch_shape(self, name: str, shapes: list[tuple[int, ...]], given: Mapping[str, Given]) -> tuple[int, ...]:
+    def _batch_shape(
+        self, name: str, shapes: list[tuple[int, ...]], given: Mapping[str, Given | None]
+    ) -> tuple[int, ...]:
         try:
             return np.broadcast_shapes(*shapes)
         except ValueError:
-            shown = ", ".join(f"{group} {np.shape(x)}" for group, x in given.items())
+            shown = ", ".join(f"{group} {np.shape(x)}" for group, x in given.items() if x is not None)
             raise ShapeError(
                 f"{name}: batch dimensions do not broadcast\n  found:  {shown}\n"
                 "  rule:   all but the last dimension of each array broadcast together"

@@ -34,6 +34,7 @@ class ModelRecord:
         hash: Of description, options and generator.
         q_names: Coordinates; likewise speeds, inputs, run-time parameters, frames.
         frame_aliases: Qualified name -> public name of a frame.
+        u_default: Inputs where none are given: zeros, and prescribed quaternions of no rotation.
         par_default: Values of the run-time parameters.
         q_neutral: A configuration on the manifold.
         q_lower: Bounds to sample within (nq); infinite where there are none.
@@ -51,6 +52,7 @@ class ModelRecord:
     par_names: tuple[str, ...]
     frame_names: tuple[str, ...]
     frame_aliases: dict[str, str]
+    u_default: tuple[float, ...]
     par_default: tuple[float, ...]
     q_neutral: tuple[float, ...]
     q_lower: tuple[float, ...]

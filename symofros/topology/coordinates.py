@@ -51,6 +51,11 @@ def angles(joint: Joint) -> list[bool]:
     return stated.get(joint.kind) or [joint.kind in ("revolute", "continuous", "screw")] * joint_sizes(joint)[0]
 
 
+def rate_symbols(joint: Joint) -> tuple[str, ...]:
+    """What formulas and inputs call the rates of a prescribed joint's speeds."""
+    return tuple(f"d{name}" for name in speed_symbols(joint))
+
+
 def coordinate_names(joint: Joint) -> tuple[str, ...]:
     """Names of a joint's coordinates: its own name if there is one, its own names, or name.qx and so on."""
     return _names(joint, _SUFFIXES_Q)
@@ -82,6 +87,7 @@ class CoordinateMap:
 
     Attributes:
         q: Coordinate names, in order; likewise the speeds v, the inputs u and the run-time parameters par.
+        efforts: How many of the inputs are forces; the rest prescribe motion.
         par_default: Values of the run-time parameters.
         constants: Values of the constant parameters, by name.
         symbols: What formulas may use -> its slot; constants are not among them.
@@ -90,6 +96,7 @@ class CoordinateMap:
     q: tuple[str, ...]
     v: tuple[str, ...]
     u: tuple[str, ...]
+    efforts: int
     par: tuple[str, ...]
     par_default: tuple[float, ...]
     constants: dict[str, float]
@@ -103,18 +110,27 @@ def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
         system: For its parameters and inputs.
         joints: The moving joints, in the order of the links.
     """
-    q = tuple(name for joint in joints for name in coordinate_names(joint))
-    v = tuple(name for joint in joints for name in speed_names(joint))
-    motors = tuple(name for joint in joints if joint.actuated for name in speed_names(joint))
+    free = [joint for joint in joints if not joint.prescribed]
+    q = tuple(name for joint in free for name in coordinate_names(joint))
+    v = tuple(name for joint in free for name in speed_names(joint))
+    motors = tuple(name for joint in free if joint.actuated for name in speed_names(joint))
     stated = tuple(item.name for item in system.inputs)
+    driven = tuple(
+        name
+        for joint in joints
+        if joint.prescribed
+        for name in (*coordinate_names(joint), *speed_symbols(joint), *rate_symbols(joint))
+    )
     run_time = [parameter for parameter in system.parameters if not parameter.constant]
     symbols = {name: Slot("q", i) for i, name in enumerate(q)}
-    symbols |= {name: Slot("v", i) for i, name in enumerate(s for joint in joints for s in speed_symbols(joint))}
+    symbols |= {name: Slot("v", i) for i, name in enumerate(s for joint in free for s in speed_symbols(joint))}
     symbols |= {name: Slot("u", i) for i, name in enumerate(stated)}
+    efforts = len(stated) + len(motors)
+    symbols |= {name: Slot("u", efforts + i) for i, name in enumerate(driven)}
     symbols |= {parameter.name: Slot("par", i) for i, parameter in enumerate(run_time)}
     symbols["t"] = Slot("t", 0)
     return CoordinateMap(
-        q, v, stated + motors,
+        q, v, stated + motors + driven, efforts,
         tuple(parameter.name for parameter in run_time),
         tuple(float(parameter.value) for parameter in run_time),
         {parameter.name: float(parameter.value) for parameter in system.parameters if parameter.constant},

@@ -32,8 +32,8 @@ class Link:
         parent: Index of the parent link, or BASE.
         placement: From the parent's frame to the joint's proximal frame P.
         inertias: Of the body and of the bodies fixed to it, each with where it sits.
-        q: Its slice of q, as (start, size).
-        v: Its slice of v, as (start, size).
+        q: Its slice of q, as (start, size); empty where the motion is prescribed.
+        v: Its slice of v, alike.
     """
 
     name: str
@@ -157,7 +157,7 @@ class _Builder:
             stack.extend(reversed(carried))
 
     def _add_link(self, body: RigidBody, joint: Joint, parent: int, placement: Placement) -> int:
-        nq, nv = joint_sizes(joint)
+        nq, nv = (0, 0) if joint.prescribed else joint_sizes(joint)
         self.links.append(_Draft(body.name, joint, parent, placement, (self.nq, nq), (self.nv, nv)))
         self.inertias.append([])
         self.nq, self.nv = self.nq + nq, self.nv + nv

@@ -28,9 +28,9 @@ def evaluated(case: str, regrouped: bool, q: np.ndarray, v: np.ndarray) -> list[
     else:
         inertias, base = [_stated(motion, i) for i in range(len(motion.links))], no_inertia(g)
     gravity = motion.lowering.vector(tree.system.gravity)
-    M = mass_matrix(motion, inertias)
-    h = inertia_forces(motion, inertias, [ZERO] * motion.nv, gravity)
-    T, V = kinetic_energy(motion, inertias), potential_energy(motion, inertias, base, gravity)
+    M = mass_matrix(motion, inertias, [])
+    h = inertia_forces(motion, inertias, [], [ZERO] * motion.nv, gravity)
+    T, V = kinetic_energy(motion, inertias, []), potential_energy(motion, inertias, base, gravity)
     edges = (*(edge for row in M for edge in row), *h, T, V)
     function = Function("all", "", ("q", "v"), (Output("x", (len(edges),), edges),))
     program = Program("p", g, {}, (function,))

@@ -1,4 +1,4 @@
-"""The engines: one file each, the only one that imports the engine's package."""
+"""The engines: one file a route, and no other file imports the engine's package."""
 
 from __future__ import annotations
 
@@ -14,14 +14,12 @@ class Route:
     """One way to a second opinion.
 
     Attributes:
-        module: The adapter.
-        build: Its factory.
+        module: The adapter; its `build` is the factory.
         needs_urdf: It reads a URDF file by itself, and has nothing to say of other models.
         independent: It shares no equations with us; agreement with it is evidence.
     """
 
     module: str
-    build: str = "build"
     needs_urdf: bool = False
     independent: bool = True
 
@@ -30,8 +28,8 @@ class Route:
 ROUTES: dict[str, Route] = {
     "pinocchio": Route("validation.adapters.pinocchio"),
     "mujoco": Route("validation.adapters.mujoco"),
-    "pinocchio-urdf": Route("validation.adapters.pinocchio", "build_from_urdf", needs_urdf=True),
-    "mujoco-urdf": Route("validation.adapters.mujoco", "build_from_urdf", needs_urdf=True),
+    "pinocchio-urdf": Route("validation.adapters.pinocchio_urdf", needs_urdf=True),
+    "mujoco-urdf": Route("validation.adapters.mujoco_urdf", needs_urdf=True),
     "interpreted": Route("validation.adapters.interpreted", independent=False),
     "description": Route("validation.adapters.description", independent=False),
 }
@@ -56,7 +54,7 @@ def available() -> dict[str, EngineFactory | Missing]:
 
 def _factory(route: Route) -> EngineFactory | Missing:
     try:
-        factory: EngineFactory = getattr(import_module(route.module), route.build)
+        factory: EngineFactory = import_module(route.module).build
     except ImportError as error:
         return Missing(f"{error}; pip install 'symofros[validation]'")
     return factory

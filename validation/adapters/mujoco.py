@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -15,7 +14,7 @@ from validation.assembly import BASE, Assembly, Mover, assemble
 from validation.conventions import Chart, Encoding, Slot, angular_first_to_linear_first, xyzw_to_wxyz
 from validation.geometry import Array, Placement, matrix_quaternion
 from validation.interface import States, Subject, TreeEngine, Unsupported
-from validation.quantities import EVERYTHING, SECOND_ROUTE
+from validation.quantities import EVERYTHING
 
 NAME = "mujoco"
 VERSION: str = mujoco.__version__
@@ -116,7 +115,7 @@ class MujocoEngine:
             net = next(forces) - self._newton_euler(d, with_acceleration=False)
             mujoco.mj_factorM(self.model, d)
             mujoco.mj_solveM(self.model, d, a, net[None])
-            return a[0]
+            return np.asarray(a[0])
 
         return self.chart.our_accelerations(states.q, states.v, self._each(states, result))
 
@@ -136,7 +135,7 @@ class MujocoEngine:
 
     def frame_acceleration(self, states: States) -> Array:
         """Of sites; MuJoCo accelerates the world by -gravity, which is taken out again."""
-        gravity = np.append(self.model.opt.gravity, np.zeros(3))
+        gravity: Array = np.append(self.model.opt.gravity, np.zeros(3))
         a = iter(self.chart.accelerations(states.q, states.v, states.a))
 
         def one(d: Any, site: int) -> Array:
@@ -265,49 +264,3 @@ def _slot(model: Any, mover: Mover, name: str) -> Slot:
     elif mover.kind == "ball":
         encoding = "wxyz"
     return Slot(mover, int(joint.qposadr[0]), int(joint.dofadr[0]), encoding)
-
-
-URDF_NAME = "mujoco-urdf"
-_ROOT_JOINT = "root_joint"
-
-
-def build_from_urdf(subject: Subject) -> TreeEngine | Unsupported:
-    """MuJoCo's own reading of the file that the description was read from."""
-    source = subject.urdf
-    if source is None:
-        return Unsupported("not read from a URDF file")
-    assembly = assemble(source.verbatim)
-    for part in (part for mover in assembly.movers for part in mover.masses):
-        if part.mass == 0.0 and np.any(part.J_BC):
-            return Unsupported(f"body '{part.body}': inertia without mass, which MuJoCo drops when it fuses bodies")
-    try:
-        spec = mujoco.MjSpec.from_string(_bare(source.text))
-    except ValueError as error:
-        return Unsupported(f"its own reading of the file failed: {explain(str(error))}")
-    spec.option.gravity = assembly.gravity
-    names = {mover.joint.name: mover.joint.name for mover in assembly.movers}
-    if source.floating_base:
-        spec.worldbody.first_body().add_freejoint(name=_ROOT_JOINT)
-        names[assembly.movers[0].joint.name] = _ROOT_JOINT
-    model = compiled(spec)
-    if isinstance(model, Unsupported):
-        return Unsupported(f"its own reading of the file failed: {model.reason}")
-    try:
-        chart = chart_of(model, assembly, names)
-    except KeyError as error:
-        return Unsupported(f"its own reading of the file lacks a joint: {error.args[0]}")
-    if model.nv != assembly.nv:
-        return Unsupported(f"its own reading of the file has {model.nv} speeds, ours {assembly.nv}")
-    return MujocoEngine(URDF_NAME, model, chart, capabilities=SECOND_ROUTE)
-
-
-def _bare(urdf: bytes) -> str:
-    """The file without shapes, whose meshes need not be at hand, and with MuJoCo's own section: radians."""
-    root = ElementTree.fromstring(urdf)
-    for link in root.iter("link"):
-        for shape in [*link.findall("visual"), *link.findall("collision")]:
-            link.remove(shape)
-    for own in root.findall("mujoco"):
-        root.remove(own)
-    ElementTree.SubElement(ElementTree.SubElement(root, "mujoco"), "compiler", fusestatic="true", angle="radian")
-    return ElementTree.tostring(root, encoding="unicode")

@@ -10,10 +10,10 @@ import numpy as np
 import pinocchio as pin
 
 from validation.assembly import FrameSite, Mass, Mover, assemble
-from validation.conventions import Chart, Slot
+from validation.conventions import Chart
 from validation.geometry import Array, Placement
 from validation.interface import States, Subject, TreeEngine, Unsupported
-from validation.quantities import EVERYTHING, SECOND_ROUTE
+from validation.quantities import EVERYTHING
 
 NAME = "pinocchio"
 VERSION: str = pin.__version__
@@ -46,9 +46,13 @@ class PinocchioEngine:
         a, forces = chart.accelerations(states.q, states.v, states.a), chart.forces(states.q, states.applied)
         return np.array([np.array(result(data, *state)) for state in zip(q, v, a, forces, strict=True)])
 
+    def _matrix(self, matrix: Any) -> Array:
+        """A copy with nv columns: the binding turns a matrix of one column into a vector."""
+        return np.array(matrix).reshape(-1, self.model.nv)
+
     def mass_matrix(self, states: States) -> Array:
         """Composite rigid bodies."""
-        M = self._each(states, lambda data, q, v, a, f: pin.crba(self.model, data, q))
+        M = self._each(states, lambda data, q, v, a, f: self._matrix(pin.crba(self.model, data, q)))
         return self.chart.mass_matrix(states.q, M)
 
     def bias(self, states: States) -> Array:
@@ -109,7 +113,8 @@ class PinocchioEngine:
         def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
             pin.computeJointJacobians(self.model, data, q)
             pin.updateFramePlacements(self.model, data)
-            return [np.array(pin.getFrameJacobian(self.model, data, frame, _WORLD_AXES)) for frame in self.frames]
+            get = pin.getFrameJacobian
+            return [self._matrix(get(self.model, data, frame, _WORLD_AXES)) for frame in self.frames]
 
         return self.chart.jacobian(states.q, self._each(states, result))
 
@@ -120,7 +125,7 @@ class PinocchioEngine:
             pin.computeJointJacobiansTimeVariation(self.model, data, q, v)
             pin.updateFramePlacements(self.model, data)
             get = pin.getFrameJacobianTimeVariation
-            return [np.array(get(self.model, data, frame, _WORLD_AXES)) for frame in self.frames]
+            return [self._matrix(get(self.model, data, frame, _WORLD_AXES)) for frame in self.frames]
 
         return self.chart.jacobian(states.q, self._each(states, result))
 
@@ -162,38 +167,3 @@ def _joint_model(mover: Mover) -> Any:
 def _add_frame(model: Any, ids: list[int], frame: FrameSite, name: str) -> int:
     placed = pin.Frame(name, ids[frame.mover + 1], 0, _se3(frame.X_BF), pin.FrameType.OP_FRAME)
     return int(model.addFrame(placed))
-
-
-URDF_NAME = "pinocchio-urdf"
-_ROOT_JOINT = "root_joint"
-
-
-def build_from_urdf(subject: Subject) -> TreeEngine | Unsupported:
-    """Pinocchio's own reading of the file that the description was read from."""
-    source = subject.urdf
-    if source is None:
-        return Unsupported("not read from a URDF file")
-    assembly = assemble(source.verbatim)
-    root = (pin.JointModelFreeFlyer(), _ROOT_JOINT) if source.floating_base else ()
-    try:
-        model = pin.buildModelFromXML(source.text.decode(), *root)
-    except (ValueError, RuntimeError) as error:
-        return Unsupported(f"its own reading of the file failed: {error}")
-    model.gravity.linear = assembly.gravity
-    slots = [_slot(model, mover, source.floating_base and mover is assembly.movers[0]) for mover in assembly.movers]
-    for slot in slots:
-        if isinstance(slot, Unsupported):
-            return slot
-    chart = Chart(tuple(slot for slot in slots if isinstance(slot, Slot)), model.nq, model.nv)
-    if model.nv != assembly.nv:
-        return Unsupported(f"its own reading of the file has {model.nv} speeds, ours {assembly.nv}")
-    return PinocchioEngine(URDF_NAME, model, chart, capabilities=SECOND_ROUTE)
-
-
-def _slot(model: Any, mover: Mover, is_root: bool) -> Slot | Unsupported:
-    name = _ROOT_JOINT if is_root else mover.joint.name
-    if not model.existJointName(name):
-        return Unsupported(f"joint '{name}': not in its own reading of the file")
-    joint = model.joints[model.getJointId(name)]
-    turns = mover.kind == "revolute" and joint.nq == 2
-    return Slot(mover, joint.idx_q, joint.idx_v, "cos_sin" if turns else "same")

@@ -1,0 +1,205 @@
+"""What acts on a mechanism: joint elements, rotors, loads on bodies, connections, virtual power, potentials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Literal
+
+from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
+from symofros.errors import DescriptionError, Problem
+
+
+class _Values:
+    """Converts every numeric field of a dataclass at its construction."""
+
+    def __post_init__(self) -> None:
+        for item in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, item.name)
+            if item.name != "coordinate" and value is not None:
+                object.__setattr__(self, item.name, as_value(value, f"{type(self).__name__.lower()}: {item.name}"))
+
+
+@dataclass(frozen=True)
+class Spring(_Values):
+    """F = -(stiffness x + cubic x^3), x = q - rest; its energy is potential energy.
+
+    Attributes:
+        stiffness: [N m/rad or N/m].
+        rest: Coordinate at rest.
+        cubic: Of a spring that hardens (positive) or softens.
+        coordinate: Which coordinate of the joint.
+    """
+
+    stiffness: Value
+    rest: Value = 0.0
+    cubic: Value = 0.0
+    coordinate: int = 0
+
+
+@dataclass(frozen=True)
+class Damper(_Values):
+    """F = -(coefficient v + quadratic v |v|)."""
+
+    coefficient: Value
+    quadratic: Value = 0.0
+    coordinate: int = 0
+
+
+@dataclass(frozen=True)
+class Stop(_Values):
+    """A limit as penalty: a spring and damper that act only beyond it; the spring's energy is potential energy.
+
+    Attributes:
+        stiffness: Beyond the limit [N m/rad or N/m].
+        damping: Of motion further into the limit; motion out of it is not held back.
+        lower: None for no lower limit.
+        upper: None for no upper limit.
+        coordinate: Which coordinate of the joint.
+    """
+
+    stiffness: Value
+    damping: Value = 0.0
+    lower: Value | None = None
+    upper: Value | None = None
+    coordinate: int = 0
+
+
+@dataclass(frozen=True)
+class Friction(_Values):
+    """Coulomb, Stribeck and viscous friction, smooth through zero speed.
+
+    F = -[dynamic + (static - dynamic) exp(-(v / stribeck_velocity)^2)] tanh(v / minimum_velocity) - viscous v
+
+    Attributes:
+        dynamic: Coulomb friction at speed [N m or N].
+        static: At the onset of motion; equal to dynamic if not given.
+        minimum_velocity: Speed below which the sign of the speed is smoothed [rad/s or m/s].
+        viscous: [N m s/rad or N s/m].
+        stribeck_velocity: Speed over which static falls to dynamic; ten times the minimum velocity if not given.
+        coordinate: Which speed of the joint.
+    """
+
+    dynamic: Value
+    static: Value | None = None
+    minimum_velocity: Value = 0.001
+    viscous: Value = 0.0
+    stribeck_velocity: Value | None = None
+    coordinate: int = 0
+
+
+JointElement = Spring | Damper | Stop | Friction
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """A motor's rotor that spins `ratio` times as fast as a joint speed, about an axis fixed in its carrier.
+
+    Its mass, and its inertia as if it were locked, belong to the carrier's own inertia; this adds what the spin brings:
+    inertia on the joint, coupling to the carrier's rotation, and the gyroscopic moments.
+
+    Attributes:
+        inertia: About the spin axis [kg m^2].
+        ratio: Spin relative to the carrier per joint speed.
+        axis: In the carrier's body frame; None for the joint's own axis, which then needs the default carrier.
+        carrier: Body that bears the rotor; None for the joint's parent.
+        coordinate: Which speed of the joint drives it.
+    """
+
+    inertia: Value
+    ratio: Value = 1.0
+    axis: Vector | None = None
+    carrier: str | None = None
+    coordinate: int = 0
+
+    def __post_init__(self) -> None:
+        """Convert the numbers."""
+        object.__setattr__(self, "inertia", as_value(self.inertia, "rotor: inertia"))
+        object.__setattr__(self, "ratio", as_value(self.ratio, "rotor: ratio"))
+        if self.axis is not None:
+            object.__setattr__(self, "axis", as_vector(self.axis, "rotor: axis"))
+
+
+@dataclass(frozen=True)
+class Load:
+    """A force and a torque on a body, by formulas of inputs, parameters, coordinates, speeds and t.
+
+    Attributes:
+        force: [N].
+        torque: [N m].
+        at: Where the force acts: "body" (the body frame's origin), "center_of_mass", or a frame of the body.
+        axes: The axes of the components: "body" (those of that frame for an extremity frame), or "world".
+    """
+
+    force: Vector = ORIGIN
+    torque: Vector = ORIGIN
+    at: str = "body"
+    axes: Literal["body", "world"] = "body"
+
+    def __post_init__(self) -> None:
+        """Convert the components."""
+        object.__setattr__(self, "force", as_vector(self.force, "load: force"))
+        object.__setattr__(self, "torque", as_vector(self.torque, "load: torque"))
+        if self.axes not in ("body", "world"):
+            raise DescriptionError(Problem(f"load: axes '{self.axes}'", str(self.axes), "axes are 'body' or 'world'"))
+
+
+Anchor = tuple[str, str | None]
+
+
+@dataclass(frozen=True)
+class Connection:
+    """A spring and damper along the line between two frames.
+
+    Attributes:
+        name: Unique.
+        first: (body, frame), frame None for the body frame; "world" for the ground.
+        second: Likewise.
+        stiffness: [N/m].
+        length: At rest [m]. With a length of zero the direction does not matter, and the ends may meet.
+        damping: [N s/m].
+    """
+
+    name: str
+    first: Anchor
+    second: Anchor
+    stiffness: Value = 0.0
+    length: Value = 0.0
+    damping: Value = 0.0
+
+    def __post_init__(self) -> None:
+        """Convert the numbers."""
+        for label in ("stiffness", "length", "damping"):
+            object.__setattr__(self, label, as_value(getattr(self, label), f"connection '{self.name}': {label}"))
+
+
+@dataclass(frozen=True)
+class VirtualPower:
+    """Internal forces by their virtual power, the sum of force_k times the virtual change of speed k.
+
+    Attributes:
+        name: Unique.
+        forces: Speed, as formulas call it (dq1) -> formula of coordinates, speeds, inputs, parameters and t.
+    """
+
+    name: str
+    forces: tuple[tuple[str, Value], ...]
+
+    def __post_init__(self) -> None:
+        """Accept a mapping, and convert the formulas."""
+        given: Any = self.forces
+        pairs = given.items() if isinstance(given, Mapping) else given
+        what = f"virtual power '{self.name}'"
+        object.__setattr__(self, "forces", tuple((str(k), as_value(x, f"{what}: {k}")) for k, x in pairs))
+
+
+@dataclass(frozen=True)
+class Potential:
+    """A potential energy by formula of coordinates, parameters and t [J]; its forces follow by differentiation."""
+
+    name: str
+    energy: Value
+
+    def __post_init__(self) -> None:
+        """Convert the formula."""
+        object.__setattr__(self, "energy", as_value(self.energy, f"potential '{self.name}'"))
