@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterator
 
+from symofros.description.forces import Load
 from symofros.description.system import WORLD, Joint, RigidBody, System
-from symofros.description.values import Value, symbols
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.expr.expression import CONSTANTS
 from symofros.expr.ops import FUNCTIONS
-from symofros.topology.coordinates import coordinate_names, joint_sizes, speed_symbols
+from symofros.topology.coordinates import coordinate_names, speed_symbols
+from symofros.topology.formulas import TIME, formula_problems, power_problems, stated_values
+from symofros.topology.joints import IDENTIFIER, joint_number_problems, joint_problems
 from symofros.topology.numbers import Numbers
 from symofros.topology.physics import inertia_problems, massless_tip_problems
 
-TIME = "t"
-_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _MAX_NAME = 200
 
 
@@ -40,7 +39,9 @@ def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]
             them is not reported again.
     """
     checker = _Checker(system, frozenset(broken))
-    problems = [*checker.names(), *checker.structure(), *checker.formulas()]
+    problems = [
+        *checker.names(), *checker.structure(), *checker.acting(), *formula_problems(system, checker.broken)
+    ]  # fmt: skip
     if not problems and not broken:
         numbers = Numbers(system)
         problems = [*checker.values(numbers)]
@@ -111,7 +112,7 @@ class _Checker:
         stated = [("parameter", item.name) for item in self.system.parameters]
         stated += [("input", item.name) for item in self.system.inputs]
         for kind, name in stated:
-            if not _IDENTIFIER.match(name):
+            if not IDENTIFIER.match(name):
                 yield Problem(
                     f"{kind} '{name:.60}': not a legal name", repr(name)[:60],
                     "a letter or underscore, then letters, digits, underscores", "rename it", self.where(kind, name),
@@ -171,20 +172,7 @@ class _Checker:
                 ", ".join(frames) or "no frames", "a joint sits in a named frame of its parent, or in its body frame",
                 did_you_mean(joint.frame, frames) or "add the frame, or drop the entry", where,
             )  # fmt: skip
-        nv = joint_sizes(joint)[1]
-        if joint.effort and len(joint.effort) != nv:
-            yield Problem(
-                f"joint '{joint.name}': wrong number of efforts", f"{len(joint.effort)} efforts",
-                f"a {joint.kind} joint has {nv} speeds, and one effort for each",
-                "list one formula a speed, 0 where there is none", where,
-            )  # fmt: skip
-        if joint.actuated and nv == 0:
-            yield Problem(f"joint '{joint.name}': a fixed joint is actuated", "actuated: true",
-                          "only a joint that moves can be actuated", "drop the entry", where)  # fmt: skip
-        limits = joint.limits
-        if limits and limits.lower is not None and limits.upper is not None and limits.lower > limits.upper:
-            yield Problem(f"joint '{joint.name}': limits crossed", f"lower {limits.lower}, upper {limits.upper}",
-                          "lower <= upper", "swap them", where)  # fmt: skip
+        yield from joint_problems(joint, self.bodies, where)
 
     def _cycles(self) -> Iterator[Problem]:
         """Follow each body's parents; a body met again on the same walk is on a cycle."""
@@ -205,59 +193,57 @@ class _Checker:
                 )  # fmt: skip
             done.update(walk)
 
-    # Formulas.
+    # Forces.
 
-    def formulas(self) -> Iterator[Problem]:
-        parameters = {parameter.name for parameter in self.system.parameters}
-        moving = set(parameters) | {item.name for item in self.system.inputs} | {TIME}
-        for joint in self.joints:
-            moving |= {*coordinate_names(joint), *speed_symbols(joint)}
-        for what, value, where, is_effort in self._values():
-            known = moving if is_effort else parameters
-            for name in sorted(symbols(value) - known - self.broken):
-                if name in moving:
-                    yield Problem(
-                        f"{what}: '{name}' may not be used here", f"'{value}'",
-                        "geometry, inertia and gravity depend on parameters only", "", where,
-                    )  # fmt: skip
-                else:
-                    yield Problem(
-                        f"{what}: unknown symbol '{name}'", f"'{value}'",
-                        "a formula uses names that the description declares",
-                        did_you_mean(name, known) if known else f"declare it under parameters: {name}", where,
-                    )  # fmt: skip
+    def acting(self) -> Iterator[Problem]:
+        """Loads, connections and powers that refer to what does not exist."""
+        for body in self.system.bodies:
+            for load in body.loads:
+                yield from self._load(body, load)
+        for kind, named in (("connection", self.system.connections), ("virtual power", self.system.virtual_power),
+                            ("potential", self.system.potentials)):  # fmt: skip
+            yield from self._unique(kind, [item.name for item in named])
+        for connection in self.system.connections:
+            for name, frame in (connection.first, connection.second):
+                yield from self._anchor(connection.name, name, frame)
+        yield from power_problems(self.system)
 
-    def _values(self) -> Iterator[tuple[str, Value, str, bool]]:
-        """Every value of the description: what it is, the value, where it stands, whether it is an effort."""
-        system = self.system
-        for value in system.gravity:
-            yield f"system '{system.name}': gravity", value, self.where("system"), False
-        for body in system.bodies:
-            if body.joint is not None:
-                joint = body.joint
-                where = self.where("joint", joint.name)
-                for label, values in (("position", joint.position), ("rotation", joint.rotation), ("axis", joint.axis)):
-                    for value in values:
-                        yield f"joint '{joint.name}': {label}", value, where, False
-                for value in joint.effort:
-                    yield f"joint '{joint.name}': effort", value, where, True
-            for label, value in _inertia_values(body):
-                yield f"body '{body.name}': {label}", value, self.where("body", body.name), False
-            for frame in body.frames:
-                for value in (*frame.position, *frame.rotation):
-                    what = f"frame '{frame.name}' of body '{body.name}'"
-                    yield what, value, self.where("frame", body.name, frame.name), False
+    def _load(self, body: RigidBody, load: Load) -> Iterator[Problem]:
+        where = self.where("body", body.name)
+        frames = ["body", "center_of_mass", *(frame.name for frame in body.frames)]
+        if load.at not in frames:
+            yield Problem(f"body '{body.name}': load at '{load.at}', which is not on it", f"'{load.at}'",
+                          "a load acts at 'body', 'center_of_mass' or a frame of its body",
+                          did_you_mean(load.at, frames), where)  # fmt: skip
+        if load.at == "center_of_mass" and body.inertia is None:
+            yield Problem(f"body '{body.name}': load at the mass centre of a massless body", "no inertia",
+                          "a mass centre needs a mass", "use at: body", where)  # fmt: skip
+
+    def _anchor(self, connection: str, name: str, frame: str | None) -> Iterator[Problem]:
+        where = self.where("connection", connection)
+        body = self.base if name in (WORLD, self.base.name) else self.bodies.get(name)
+        if body is None:
+            if name not in self.broken:
+                yield Problem(f"connection '{connection}': no body '{name}'", f"'{name}'",
+                              "a connection joins frames of bodies, or of 'world'",
+                              did_you_mean(name, [WORLD, *self.bodies]), where)  # fmt: skip
+        elif frame is not None and frame not in {item.name for item in body.frames}:
+            known = [item.name for item in body.frames]
+            yield Problem(f"connection '{connection}': frame '{frame}' is not on body '{name}'",
+                          ", ".join(known) or "no frames", "a connection joins frames that exist on their bodies",
+                          did_you_mean(frame, known) or "add the frame", where)  # fmt: skip
+
+    # Numbers.
 
     def values(self, numbers: Numbers) -> Iterator[Problem]:
-        """That every value is a finite number, every rotation a rotation, every axis a direction."""
-        for what, value, where, is_effort in self._values():
-            if not is_effort:
-                yield from numbers.value_problems(what, value, where)
+        """That every constant is a finite number, every rotation a rotation, every axis a direction."""
+        for stated in stated_values(self.system):
+            if stated.scope == "parameters":
+                yield from numbers.value_problems(stated.what, stated.value, self.where(*stated.key))
         for body in self.system.bodies:
             for what, rotation, where in self._rotations(body):
                 yield from numbers.rotation_problems(what, rotation, where)
-            if body.joint is not None and body.joint.kind in ("revolute", "continuous", "prismatic"):
-                yield from numbers.axis_problems(body.joint, self.where("joint", body.joint.name))
+        yield from joint_number_problems(self.system, numbers)
 
     def _rotations(self, body: RigidBody) -> Iterator[tuple[str, object, str]]:
         if body.joint is not None:
@@ -268,17 +254,3 @@ class _Checker:
         for frame in body.frames:
             what = f"frame '{frame.name}' of body '{body.name}': rotation"
             yield what, frame.rotation, self.where("frame", body.name, frame.name)
-
-
-def _inertia_values(body: RigidBody) -> Iterable[tuple[str, Value]]:
-    if body.inertia is None:
-        return
-    inertia = body.inertia
-    yield "mass", inertia.mass
-    for label, values in (
-        ("center_of_mass", inertia.center_of_mass),
-        ("inertia", inertia.moments),
-        ("inertia rotation", inertia.rotation),
-    ):
-        for value in values:
-            yield label, value

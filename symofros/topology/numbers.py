@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -21,10 +21,20 @@ ROTATION_TOLERANCE = 1e-6
 
 
 class Numbers:
-    """Evaluates values of a system at its parameters' defaults."""
+    """Evaluates values of a system at its parameters' defaults.
 
-    def __init__(self, system: System) -> None:
-        self.parameters = system.parameter_values()
+    Args:
+        system: For its parameters.
+        more: Values of further symbols.
+    """
+
+    def __init__(self, system: System, more: Mapping[str, float] | None = None) -> None:
+        self.system = system
+        self.parameters = {**system.parameter_values(), **(more or {})}
+
+    def extended(self, more: Mapping[str, float]) -> Numbers:
+        """The same with values of further symbols, such as coordinates."""
+        return Numbers(self.system, more)
 
     def value(self, value: Value) -> float:
         """The number of a value; NaN where it has none."""
