@@ -1,1 +1,58 @@
-"""Models with their sources, as data."""
+"""Reference models by name, each with its source: `MODELS["rx90"]` is a System.
+
+Files are read, and mechanisms built, when they are first asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+
+import symofros as sf
+from reference_models.rigid.chain import chain
+from reference_models.rigid.station import mss
+
+_FOLDER = Path(__file__).parent
+
+_BUILT: dict[str, Callable[[], sf.System]] = {
+    "chain7": lambda: chain(7),
+    "chain22": lambda: chain(22),
+    "mss": mss,
+}
+
+
+class _Models(Mapping[str, sf.System]):
+    """Name -> System, for the YAML files of the folder and for what is built in Python."""
+
+    def __getitem__(self, name: str) -> sf.System:
+        if name not in self._sources():
+            raise KeyError(name)
+        return load_model(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._sources())
+
+    def __len__(self) -> int:
+        return len(self._sources())
+
+    @staticmethod
+    @cache
+    def _sources() -> tuple[str, ...]:
+        return (*(path.stem for path in sorted(_FOLDER.glob("*/*.yaml"))), *_BUILT)
+
+
+@cache
+def load_model(name: str) -> sf.System:
+    """The reference model of that name.
+
+    Raises:
+        KeyError: There is none.
+    """
+    if name in _BUILT:
+        return _BUILT[name]()
+    (path,) = _FOLDER.glob(f"*/{name}.yaml")
+    return sf.load(path)
+
+
+MODELS: Mapping[str, sf.System] = _Models()

@@ -1,0 +1,1 @@
+"""Open trees of rigid bodies."""
