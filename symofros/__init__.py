@@ -12,6 +12,15 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from symofros.description.forces import Connection as Connection
+from symofros.description.forces import Damper as Damper
+from symofros.description.forces import Friction as Friction
+from symofros.description.forces import Load as Load
+from symofros.description.forces import Potential as Potential
+from symofros.description.forces import Rotor as Rotor
+from symofros.description.forces import Spring as Spring
+from symofros.description.forces import Stop as Stop
+from symofros.description.forces import VirtualPower as VirtualPower
 from symofros.description.system import Frame as Frame
 from symofros.description.system import Inertia as Inertia
 from symofros.description.system import Input as Input
@@ -21,6 +30,7 @@ from symofros.description.system import Parameter as Parameter
 from symofros.description.system import RigidBody as RigidBody
 from symofros.description.system import System as System
 from symofros.description.values import Rotation as Rotation
+from symofros.description.values import as_value
 from symofros.errors import CompileError as CompileError
 from symofros.errors import CompilerMissingWarning as CompilerMissingWarning
 from symofros.errors import DescriptionError as DescriptionError
@@ -33,12 +43,17 @@ from symofros.expr.expression import evaluate as evaluate
 from symofros.options import Options as Options
 
 if TYPE_CHECKING:
-    from symofros.compiler import compile_system as compile  # noqa: F401
+    from symofros.compiler import compile_system
     from symofros.loading import load as load
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
 
+    compile = compile_system
+
 __version__ = "0.1.0"
+
+# The number or formula of a text or SymPy expression, as the constructors convert it.
+formula = as_value
 
 # Loaded at first use: reading files needs pydantic and ruamel.yaml, compiling needs cffi; importing needs neither.
 _LAZY = {

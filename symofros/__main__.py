@@ -37,8 +37,8 @@ def _load(path: Path, floating_base: bool) -> System:
         return sf.load(path, floating_base=floating_base)
     except sf.DescriptionError as error:
         count = len(error.problems)
-        _err.print(str(error), markup=False, highlight=False)
-        _err.print(f"{path.name}: {count} problem{'s' * (count > 1)}", markup=False, highlight=False)
+        _err.print(str(error), markup=False, highlight=False, soft_wrap=True)
+        _err.print(f"{path.name}: {count} problem{'s' * (count > 1)}", markup=False, highlight=False, soft_wrap=True)
         raise typer.Exit(BAD_INPUT) from None
 
 
@@ -63,7 +63,7 @@ def info(model: ModelPath, floating_base: Floating = False, as_json: AsJson = Fa
         table.add_row(name, *map(str, (count.mul, count.add, count.div, count.call, count.total)))
     _out.print(table)
     for note in system.notes:
-        _out.print(f"note: {note}", markup=False, highlight=False)
+        _out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
 
 
 def vars_of(count: Operations) -> dict[str, int]:
@@ -116,7 +116,7 @@ def compile_command(
         generated = time.perf_counter()
         compile_system(system, options)
     except sf.SymofrosError as error:
-        _err.print(str(error), markup=False, highlight=False)
+        _err.print(str(error), markup=False, highlight=False, soft_wrap=True)
         raise typer.Exit(BAD_INPUT) from None
     done = time.perf_counter()
     total = sum(count.total for key, count in count_program(program).items() if key[0] != "init")

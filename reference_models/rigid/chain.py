@@ -12,7 +12,7 @@ OFFSETS = ("lx", "ly", "lz")
 
 
 def chain(n: int, symbolic: bool = True) -> sf.System:
-    """n links by revolute joints about z, y, x in turn, each with ten inertial parameters and a full offset.
+    """Link n bodies by revolute joints about z, y, x in turn, each with ten inertial parameters and a full offset.
 
     Args:
         n: Number of links.
@@ -26,7 +26,7 @@ def chain(n: int, symbolic: bool = True) -> sf.System:
     for i in range(n):
         numbers = _link_numbers(i)
         parameters += [sf.Parameter(f"{name}{i + 1}", value, constant=not symbolic) for name, value in numbers.items()]
-        names = {name: f"{name}{i + 1}" for name in numbers}
+        names = {name: sf.formula(f"{name}{i + 1}") for name in numbers}
         inertia = sf.Inertia(
             names["m"],
             (names["cx"], names["cy"], names["cz"]),

@@ -83,14 +83,14 @@ class Inertia:
     Attributes:
         mass: [kg].
         center_of_mass: p_BC, from Bo to the mass centre, in B [m].
-        moments: Ixx, Iyy, Izz, Ixy, Ixz, Iyz [kg m^2]; products with the sign they have in the matrix.
+        moments: Ixx, Iyy, Izz and, if not zero, Ixy, Ixz, Iyz [kg m^2]; products as they stand in the matrix.
         about: "center_of_mass": about C, along the axes of frame C; "body": about Bo, along the axes of B.
         rotation: R_BC, axes of the mass-centre frame; only with about="center_of_mass".
     """
 
     mass: Value = 0.0
     center_of_mass: Vector = ORIGIN
-    moments: tuple[Value, Value, Value, Value, Value, Value] = (0.0,) * 6
+    moments: tuple[Value, ...] = (0.0,) * 6
     about: Literal["center_of_mass", "body"] = "center_of_mass"
     rotation: Rotation = IDENTITY
 

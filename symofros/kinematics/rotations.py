@@ -147,7 +147,8 @@ def constant_turn(R: Mat3) -> Turn:
             if permutation != [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]:
                 factors.insert(0, MatrixTurn(_number_matrix(g, permutation)))
             return Turn(g, tuple(factors))
-    a, b, c = math.atan2(rows[0][2], -rows[1][2]), math.acos(rows[2][2]), math.atan2(rows[2][0], rows[2][1])
+    a, c = math.atan2(rows[0][2], -rows[1][2]), math.atan2(rows[2][0], rows[2][1])
+    b = math.atan2(math.hypot(rows[0][2], rows[1][2]), rows[2][2])  # An arc cosine would lose small tilts.
     zxz = tuple(AxisTurn(k, g.constant(math.cos(x)), g.constant(math.sin(x))) for k, x in ((2, a), (0, b), (2, c)))
     return Turn(g, (MatrixTurn(R),), zxz)
 

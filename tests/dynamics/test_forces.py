@@ -64,7 +64,8 @@ def test_friction_of_the_papers_first_motor() -> None:
 
 def test_virtual_power_acts_on_the_speeds_it_names(rng: np.random.Generator) -> None:
     """A torsion spring between two joints, by its virtual power -k (q2 - q1) delta(q2' - q1')."""
-    bodies = [sf.RigidBody(f"b{i}", sf.Joint(f"q{i}", "revolute", f"b{i - 1}" if i else "world"), SOLID) for i in range(2)]
+    joints = [sf.Joint("q0", "revolute"), sf.Joint("q1", "revolute", "b0")]
+    bodies = [sf.RigidBody(f"b{i}", joint, SOLID) for i, joint in enumerate(joints)]
     spring = VirtualPower("between", {"dq0": "k*(q1 - q0)", "dq1": "-k*(q1 - q0)"})
     m = interpreted(sf.System("s", bodies, [sf.Parameter("k", 7.0)], virtual_power=[spring]))
     q = rng.standard_normal(2)
@@ -110,7 +111,10 @@ def test_conservative_forces_conserve_energy(seed: int, rng: np.random.Generator
     name = bodies[-1].name
     stated = replace(
         stated, bodies=tuple(bodies),
-        connections=(Connection("a", ("base", "mount"), (name, "tip"), 4.0, 0.3), Connection("b", ("b0", None), (name, None), 3.0)),
+        connections=(
+            Connection("a", ("base", "mount"), (name, "tip"), 4.0, 0.3),
+            Connection("b", ("b0", None), (name, None), 3.0),
+        ),
     )  # fmt: skip
     first = interpreted(stated)
     usable = [n for n in first.names.q if n.replace(".", "").isalnum()]

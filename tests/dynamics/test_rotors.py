@@ -41,7 +41,8 @@ def test_rotor_equals_a_geared_body(seed: int, carrier_choice: str, rng: np.rand
     x /= np.linalg.norm(x)
     frame = sf.Rotation.matrix(np.column_stack([x, np.cross(z, x), z]).tolist())
     solid = sf.Inertia(MASS, (0, 0, 0), (TRANSVERSE, TRANSVERSE, AXIAL))
-    spinning = sf.RigidBody("rotor", sf.Joint("spin", "revolute", carrier, position=(0.1, 0.2, 0.3), rotation=frame), solid)
+    bearing = sf.Joint("spin", "revolute", carrier, position=(0.1, 0.2, 0.3), rotation=frame)
+    spinning = sf.RigidBody("rotor", bearing, solid)
     assert spinning.joint is not None
     locked = replace(spinning, joint=replace(spinning.joint, kind="fixed"))
     geared = replace(

@@ -56,6 +56,18 @@ def test_constant_factors_multiply_to_the_rotation(seed: int) -> None:
     np.testing.assert_allclose(turned, expected @ numbers(S, g) @ expected.T, atol=1e-14)
 
 
+@pytest.mark.parametrize("tilt", [1e-3, 1e-6, 1e-8, 1e-10, 1e-14])
+@pytest.mark.parametrize("form", [(1, 0, 0), (1, 1, 0), (1, 1, 1), (0, 1, 2)])
+def test_slight_tilts_survive_every_form(tilt: float, form: tuple[float, ...]) -> None:
+    """Near a permutation of axes entries round to 1 before the others round to 0."""
+    g = Graph()
+    R = stated_rotation(Rotation.rpy(*(x * tilt for x in form[:2]), form[2] * 0.25), g, {})
+    turn, expected = constant_turn(R), numbers(R, g)
+    S = Sym3(g, *map(g.constant, (1.0, 20.0, 300.0, 2.0, -3.0, 5.0)))
+    np.testing.assert_allclose(numbers(turn.matrix(), g), expected, atol=1e-16)
+    np.testing.assert_allclose(numbers(turn.conjugate(S), g), expected @ numbers(S, g) @ expected.T, atol=1e-13)
+
+
 def test_right_angles_are_exact_and_free() -> None:
     g = Graph()
     turn = constant_turn(stated_rotation(Rotation.rpy(np.pi / 2, 0.0, -np.pi), g, {}))
