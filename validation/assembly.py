@@ -15,14 +15,12 @@ import numpy as np
 
 import symofros as sf
 from validation.geometry import Array, Placement, rotation_matrix, skew
+from validation.parts import Part, PartKind, coordinate_symbols, series
 
 BASE = -1
 WORLD = "world"
 
 Value = float | sf.Expression
-
-# Joint kind -> (coordinates, speeds).
-SIZES = {"revolute": (1, 1), "continuous": (1, 1), "prismatic": (1, 1), "ball": (4, 3), "free": (7, 6)}
 
 
 @dataclass(frozen=True)
@@ -44,32 +42,40 @@ class Mass:
 
 @dataclass(frozen=True)
 class Mover:
-    """A body with a joint that moves.
+    """A body with a joint that moves; a joint of several coordinates makes several movers, all but the last massless.
 
     Attributes:
         body: Its name.
+        name: Of the joint, or of this part of it.
         joint: Its joint as described.
+        part: The part of the joint that this is.
+        continues: Whether it is a further part of the joint of the mover before it.
         parent: Index of the moving body that carries it, or BASE.
         X_AP: The joint's proximal frame in the parent's body frame.
         axis: Unit axis in P (3,); meaningless for ball and free joints.
         q: Slice of our coordinates.
         v: Slice of our speeds.
+        pitch: Of a screw [m/rad].
         masses: Of the body and of everything fixed to it.
     """
 
     body: str
+    name: str
     joint: sf.Joint
+    part: Part
+    continues: bool
     parent: int
     X_AP: Placement
     axis: Array
     q: slice
     v: slice
+    pitch: float = 0.0
     masses: list[Mass] = field(default_factory=list)
 
     @property
-    def kind(self) -> str:
-        """The joint's kind; one that has limits or not is the same to an engine."""
-        return "revolute" if self.joint.kind == "continuous" else self.joint.kind
+    def kind(self) -> PartKind:
+        """What it is to an engine."""
+        return self.part.kind
 
     def merged(self) -> Mass:
         """Everything it carries as one rigid body (parallel axes)."""
@@ -99,11 +105,21 @@ class FrameSite:
 
 
 @dataclass(frozen=True)
+class Described:
+    """A joint as described, with its slices of our coordinates and speeds."""
+
+    joint: sf.Joint
+    q: slice
+    v: slice
+
+
+@dataclass(frozen=True)
 class Assembly:
     """A description as numbers.
 
     Attributes:
         name: Of the system.
+        joints: That move, in order.
         movers: Depth first in the order of description.
         frames: By name.
         gravity: (3,) [m/s^2].
@@ -112,6 +128,7 @@ class Assembly:
     """
 
     name: str
+    joints: tuple[Described, ...]
     movers: tuple[Mover, ...]
     frames: Mapping[str, FrameSite]
     gravity: Array
@@ -138,15 +155,15 @@ def assemble(system: sf.System) -> Assembly:
         # A body frame bears its body's name whatever else is called so.
         name = own if names[own] == 1 or own == qualified else qualified
         frames[name] = FrameSite(name, site.mover, site.X_BF)
-    nq = max((mover.q.stop for mover in builder.movers), default=0)
-    nv = max((mover.v.stop for mover in builder.movers), default=0)
-    return Assembly(system.name, tuple(builder.movers), frames, builder.numbers(system.gravity), nq, nv)
+    nq, nv = (builder.joints[-1].q.stop, builder.joints[-1].v.stop) if builder.joints else (0, 0)
+    return Assembly(system.name, tuple(builder.joints), tuple(builder.movers), frames, builder.numbers(system.gravity), nq, nv)
 
 
 class _Builder:
     def __init__(self, system: sf.System) -> None:
         self.system = system
         self.parameters = system.parameter_values()
+        self.joints: list[Described] = []
         self.movers: list[Mover] = []
         self.frames: list[tuple[str, str, FrameSite]] = []
         self.children: dict[str, list[sf.RigidBody]] = {}
@@ -187,12 +204,20 @@ class _Builder:
         return self.placement(frame.position, frame.rotation) @ X
 
     def _add_mover(self, body: sf.RigidBody, joint: sf.Joint, parent: int, X_AP: Placement) -> None:
-        nq, nv = SIZES[joint.kind]
-        q, v = (self.movers[-1].q.stop, self.movers[-1].v.stop) if self.movers else (0, 0)
-        axis = self.numbers(joint.axis)
-        if nq == 1:
-            axis = axis / np.linalg.norm(axis)
-        self.movers.append(Mover(body.name, joint, parent, X_AP, axis, slice(q, q + nq), slice(v, v + nv)))
+        parts = series(joint)
+        pitch = float(self.numbers([joint.pitch])[0])
+        q, v = (self.joints[-1].q.stop, self.joints[-1].v.stop) if self.joints else (0, 0)
+        nq, nv = sum(part.coordinates for part in parts), sum(part.speeds for part in parts)
+        self.joints.append(Described(joint, slice(q, q + nq), slice(v, v + nv)))
+        for i, part in enumerate(parts):
+            axis = self.numbers(part.axis)
+            if part.coordinates == 1:
+                axis = axis / np.linalg.norm(axis)
+            name = joint.name if len(parts) == 1 else coordinate_symbols(joint)[part.first]
+            q_part = slice(q + part.first, q + part.first + part.coordinates)
+            v_part = slice(v + part.first, v + part.first + part.speeds)
+            self.movers.append(Mover(body.name, name, joint, part, i > 0, parent, X_AP, axis, q_part, v_part, pitch))
+            parent, X_AP = len(self.movers) - 1, Placement.identity()
 
     def _add_mass(self, body: sf.RigidBody, mover: int, X_BF: Placement) -> None:
         if body.inertia is None or mover == BASE:

@@ -205,7 +205,7 @@ class _Check:
                 self.rows.append(self._judged(engine, MOTION_ENERGY, ours, motion.states, scales))
 
     def _drift(self, motion: Motion) -> Comparison:
-        formulas = [effort for mover in self.assembly.movers for effort in mover.joint.effort]
+        formulas = [effort for described in self.assembly.joints for effort in described.joint.effort]
         corners = sorted({kind for formula in formulas for kind in kinds(formula)} & _CORNERS)
         if corners:
             reason = f"an effort uses {', '.join(corners)}: no integrator keeps its order across a corner"

@@ -105,9 +105,13 @@ class Chart:
     nv: int
 
     @staticmethod
-    def identity(assembly: Assembly) -> Chart:
-        """For an engine that shares our conventions."""
-        return Chart(tuple(Slot(m, m.q.start, m.v.start) for m in assembly.movers), assembly.nq, assembly.nv)
+    def in_series(assembly: Assembly) -> Chart:
+        """For an engine that shares our conventions, and keeps one joint after the other."""
+        slots, q, v = [], 0, 0
+        for mover in assembly.movers:
+            slots.append(Slot(mover, q, v))
+            q, v = q + mover.part.coordinates, v + mover.part.speeds
+        return Chart(tuple(slots), q, v)
 
     def coordinates(self, q: Array) -> Array:
         """Our q -> the engine's."""

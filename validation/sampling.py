@@ -36,7 +36,9 @@ def sample(assembly: Assembly, nu: int, count: int = DEFAULT_STATES, seed: int =
         States without forces: `with_forces` adds them.
     """
     rng = np.random.default_rng([seed, zlib.crc32(assembly.name.encode())])
-    q = np.concatenate([_coordinates(mover, rng, count) for mover in assembly.movers], axis=1)
+    q = np.empty((count, assembly.nq))
+    for mover in assembly.movers:
+        q[:, mover.q] = _coordinates(mover, rng, count)
     v = rng.uniform(-SPEED, SPEED, (count, assembly.nv))
     a = rng.uniform(-ACCELERATION, ACCELERATION, (count, assembly.nv))
     u = rng.uniform(-INPUT, INPUT, (count, nu))
@@ -56,10 +58,10 @@ def neutral(assembly: Assembly) -> Array:
 
 
 def _coordinates(mover: Mover, rng: np.random.Generator, count: int) -> Array:
-    if mover.kind == "revolute":
+    if mover.kind in ("revolute", "screw"):
         return rng.uniform(-ANGLE, ANGLE, (count, 1))
-    if mover.kind == "prismatic":
-        return rng.uniform(-SLIDE, SLIDE, (count, 1))
+    if mover.kind in ("prismatic", "general"):
+        return rng.uniform(-SLIDE, SLIDE, (count, mover.part.coordinates))
     quaternion = rng.standard_normal((count, 4))  # Normal in four directions: uniform on the sphere.
     quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
     if mover.kind == "ball":

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 import symofros as sf
-from validation.assembly import Assembly, Mover, assemble
+from validation.assembly import Assembly, assemble
 from validation.geometry import Array
-from validation.interface import States, Subject
+from validation.interface import States, Subject, Unsupported
+from validation.parts import coordinate_symbols, speed_symbols
 from validation.quantities import FORCES_STATED
 
 NAME = "description"
 
-_QUATERNION = ("qx", "qy", "qz", "qw")
-_COORDINATES = {"ball": _QUATERNION, "free": ("px", "py", "pz", *_QUATERNION)}
-_SPEEDS = {"ball": ("wx", "wy", "wz"), "free": ("vx", "vy", "vz", "wx", "wy", "wz")}
 _NUMPY: Mapping[str, Callable[..., Any]] = {
     "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide, "pow": np.power, "neg": np.negative,
     "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin,
@@ -41,31 +39,60 @@ class StatedForces:
         """Q (N, nv)."""
         values: dict[str, Any] = {"pi": np.pi, "t": 0.0, **self.system.parameter_values()}
         values |= {item.name: states.u[:, i] for i, item in enumerate(self.system.inputs)}
-        for mover in self.assembly.movers:
-            values |= dict(_named(mover, states))
+        for described in self.assembly.joints:
+            values |= dict(zip(coordinate_symbols(described.joint), states.q[:, described.q].T, strict=True))
+            values |= dict(zip(speed_symbols(described.joint), states.v[:, described.v].T, strict=True))
         Q = np.zeros_like(states.v)
         motor = len(self.system.inputs)
-        for mover in self.assembly.movers:
-            for i, effort in enumerate(mover.joint.effort):
-                Q[:, mover.v.start + i] += evaluate(effort, values)
-            if mover.joint.actuated:
-                size = mover.v.stop - mover.v.start
-                Q[:, mover.v] += states.u[:, motor : motor + size]
+        for described in self.assembly.joints:
+            joint, start = described.joint, described.v.start
+            for i, effort in enumerate(joint.effort):
+                Q[:, start + i] += evaluate(effort, values)
+            for element in joint.elements:
+                k = element.coordinate
+                x = states.q[:, described.q.start + k] if k < described.q.stop - described.q.start else 0.0
+                Q[:, start + k] += element_force(element, x, states.v[:, start + k], values)
+            if joint.actuated:
+                size = described.v.stop - start
+                Q[:, described.v] += states.u[:, motor : motor + size]
                 motor += size
+        return Q + self._by_power(values, Q.shape)
+
+    def _by_power(self, values: Mapping[str, Any], shape: tuple[int, ...]) -> Array:
+        """Forces stated by their virtual power, each on the speed it names."""
+        speeds = [name for described in self.assembly.joints for name in speed_symbols(described.joint)]
+        Q = np.zeros(shape)
+        for power in self.system.virtual_power:
+            for speed, formula in power.forces:
+                Q[:, speeds.index(speed)] += evaluate(formula, values)
         return Q
 
 
-def _named(mover: Mover, states: States) -> Iterator[tuple[str, Array]]:
-    """What formulas call a joint's coordinates and speeds, and their values."""
-    name = mover.joint.name
-    if mover.kind not in _COORDINATES:
-        yield name, states.q[:, mover.q.start]
-        yield f"d{name}", states.v[:, mover.v.start]
-        return
-    for suffix, column in zip(_COORDINATES[mover.kind], states.q[:, mover.q].T, strict=True):
-        yield f"{name}.{suffix}", column
-    for suffix, column in zip(_SPEEDS[mover.kind], states.v[:, mover.v].T, strict=True):
-        yield f"{name}.{suffix}", column
+def element_force(element: Any, x: Any, v: Array, values: Mapping[str, Any]) -> Array:
+    """What a spring, damper, stop or friction does to its own speed, from its definition."""
+
+    def number(name: str) -> Any:
+        return evaluate(getattr(element, name), values)
+
+    if isinstance(element, sf.Spring):
+        stretch = x - number("rest")
+        return np.asarray(-number("stiffness") * stretch - number("cubic") * stretch**3)
+    if isinstance(element, sf.Damper):
+        return np.asarray(-number("coefficient") * v - number("quadratic") * v * np.abs(v))
+    if isinstance(element, sf.Stop):
+        force = np.zeros_like(v)
+        for limit, side in (("upper", 1.0), ("lower", -1.0)):
+            if getattr(element, limit) is not None:
+                beyond = np.maximum(side * (x - number(limit)), 0.0)
+                inward = np.where(beyond > 0.0, np.maximum(side * v, 0.0), 0.0)
+                force -= side * (number("stiffness") * beyond + number("damping") * inward)
+        return force
+    slow = number("minimum_velocity")
+    level = number("dynamic") + 0.0 * v
+    if element.static is not None:
+        wide = 10.0 * slow if element.stribeck_velocity is None else number("stribeck_velocity")
+        level = level + (number("static") - number("dynamic")) * np.exp(-((v / wide) ** 2))
+    return np.asarray(-level * np.tanh(v / slow) - number("viscous") * v)
 
 
 def evaluate(formula: sf.Expression | float, values: Mapping[str, Any]) -> Any:
@@ -79,6 +106,11 @@ def evaluate(formula: sf.Expression | float, values: Mapping[str, Any]) -> Any:
     return _NUMPY[formula.kind](*(evaluate(arg, values) for arg in formula.args))
 
 
-def build(subject: Subject) -> StatedForces:
+def build(subject: Subject) -> StatedForces | Unsupported:
     """From the description alone."""
+    kinds = {"loads": any(body.loads for body in subject.system.bodies), "connections": subject.system.connections,
+             "potentials": subject.system.potentials}  # fmt: skip
+    beyond = [name for name, stated in kinds.items() if stated]
+    if beyond:
+        return Unsupported(f"{' and '.join(beyond)}: their forces take kinematics or derivatives, not formulas alone")
     return StatedForces(subject.system, assemble(subject.system))

@@ -10,6 +10,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from validation.adapters.reach import armature, offered, unrepresented
 from validation.assembly import BASE, Assembly, Mover, assemble
 from validation.conventions import Chart, Encoding, Slot, angular_first_to_linear_first, xyzw_to_wxyz
 from validation.geometry import Array, Placement, matrix_quaternion
@@ -19,6 +20,7 @@ from validation.quantities import EVERYTHING
 NAME = "mujoco"
 VERSION: str = mujoco.__version__
 
+_JOINTS = frozenset({"revolute", "prismatic", "ball", "free"})
 _SITE = mujoco.mjtObj.mjOBJ_SITE
 _HINGE, _SLIDE = mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE
 _BALL, _FREE = mujoco.mjtJoint.mjJNT_BALL, mujoco.mjtJoint.mjJNT_FREE
@@ -178,12 +180,21 @@ class MujocoEngine:
 def build(subject: Subject) -> TreeEngine | Unsupported:
     """MuJoCo's model of a description, body by body, with everything fixed to a body merged into it."""
     assembly = assemble(subject.system)
+    obstacle = unrepresented(subject.system, assembly, _JOINTS)
+    if obstacle is not None:
+        return obstacle
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
     spec.option.gravity = assembly.gravity
     bodies = [spec.worldbody]
-    for mover in assembly.movers:
-        bodies.append(_add_body(bodies[mover.parent + 1], mover))
+    for i, mover in enumerate(assembly.movers):
+        # Parts of one joint are several joints of one MuJoCo body, whose inertia the last part has.
+        if not mover.continues:
+            last = next(k for k in range(i, len(assembly.movers)) if k + 1 == len(assembly.movers)
+                        or not assembly.movers[k + 1].continues)  # fmt: skip
+            body = _add_body(bodies[mover.parent + 1], mover, assembly.movers[last])
+        bodies.append(body)
+        _add_joints(body, mover, armature(subject.system, mover))
     for frame in subject.frames:
         site = assembly.frames[frame]
         bodies[site.mover + 1].add_site(name=frame, **_pose(site.X_BF))
@@ -191,7 +202,7 @@ def build(subject: Subject) -> TreeEngine | Unsupported:
     if isinstance(model, Unsupported):
         return model
     sites = tuple(mujoco.mj_name2id(model, _SITE, frame) for frame in subject.frames)
-    return MujocoEngine(NAME, model, chart_of(model, assembly), sites)
+    return MujocoEngine(NAME, model, chart_of(model, assembly), sites, offered(subject.system))
 
 
 def compiled(spec: Any) -> Any | Unsupported:
@@ -214,30 +225,30 @@ def _pose(X: Placement) -> dict[str, Array]:
     return {"pos": X.p, "quat": xyzw_to_wxyz(matrix_quaternion(X.R))}
 
 
-def _add_body(parent: Any, mover: Mover) -> Any:
+def _add_body(parent: Any, mover: Mover, last: Mover) -> Any:
     body = parent.add_body(name=mover.body, **_pose(mover.X_AP))
-    merged = mover.merged()
+    merged = last.merged()
     # MuJoCo's own diagonalisation stops at 1e-12, which shows in the light bodies of a hand; LAPACK's does not.
     moments, axes = np.linalg.eigh(merged.J_BC)
     axes[:, 2] *= np.linalg.det(axes)
     body.mass, body.inertia, body.explicitinertial = merged.mass, moments, True
     body.ipos, body.iquat = merged.p_BC, xyzw_to_wxyz(matrix_quaternion(axes))
-    _add_joints(body, mover)
     return body
 
 
-def _add_joints(body: Any, mover: Mover) -> None:
-    name = mover.joint.name
+def _add_joints(body: Any, mover: Mover, armature: float) -> None:
+    name = mover.name
     if mover.kind == "free" and mover.parent == BASE:
-        body.add_joint(name=name, type=_FREE)
+        body.add_joint(name=name, type=_FREE, armature=armature)
     elif mover.kind == "free":
         for axis in np.eye(3):
-            body.add_joint(name=f"{name}.{'xyz'[int(axis.argmax())]}", type=_SLIDE, axis=axis)
-        body.add_joint(name=name, type=_BALL)
+            body.add_joint(name=f"{name}.{'xyz'[int(axis.argmax())]}", type=_SLIDE, axis=axis, armature=armature)
+        body.add_joint(name=name, type=_BALL, armature=armature)
     elif mover.kind == "ball":
-        body.add_joint(name=name, type=_BALL)
+        body.add_joint(name=name, type=_BALL, armature=armature)
     else:
-        body.add_joint(name=name, type=_SLIDE if mover.kind == "prismatic" else _HINGE, axis=mover.axis)
+        kind = _SLIDE if mover.kind == "prismatic" else _HINGE
+        body.add_joint(name=name, type=kind, axis=mover.axis, armature=armature)
 
 
 def chart_of(model: Any, assembly: Assembly, names: Mapping[str, str] | None = None) -> Chart:
@@ -251,7 +262,7 @@ def chart_of(model: Any, assembly: Assembly, names: Mapping[str, str] | None = N
     Raises:
         KeyError: The model lacks one of our joints.
     """
-    slots = [_slot(model, mover, (names or {}).get(mover.joint.name, mover.joint.name)) for mover in assembly.movers]
+    slots = [_slot(model, mover, (names or {}).get(mover.name, mover.name)) for mover in assembly.movers]
     return Chart(tuple(slots), model.nq, model.nv)
 
 

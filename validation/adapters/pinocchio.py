@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from validation.adapters.reach import armature, offered, unrepresented
 from validation.assembly import FrameSite, Mass, Mover, assemble
 from validation.conventions import Chart
 from validation.geometry import Array, Placement
@@ -17,6 +18,7 @@ from validation.quantities import EVERYTHING
 
 NAME = "pinocchio"
 VERSION: str = pin.__version__
+_JOINTS = frozenset({"revolute", "prismatic", "screw", "ball", "free"})
 _WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
 
@@ -133,15 +135,21 @@ class PinocchioEngine:
 def build(subject: Subject) -> TreeEngine | Unsupported:
     """Pinocchio's model of a description; it merges what is fixed to a joint's body by itself."""
     assembly = assemble(subject.system)
+    obstacle = unrepresented(subject.system, assembly, _JOINTS)
+    if obstacle is not None:
+        return obstacle
     model = pin.Model()
     model.gravity.linear = assembly.gravity
     ids = [0]
     for mover in assembly.movers:
-        ids.append(model.addJoint(ids[mover.parent + 1], _joint_model(mover), _se3(mover.X_AP), mover.joint.name))
+        ids.append(model.addJoint(ids[mover.parent + 1], _joint_model(mover), _se3(mover.X_AP), mover.name))
         for part in mover.masses:
             model.appendBodyToJoint(ids[-1], _inertia(part), pin.SE3.Identity())
     frames = tuple(_add_frame(model, ids, assembly.frames[name], name) for name in subject.frames)
-    return PinocchioEngine(NAME, model, Chart.identity(assembly), frames)
+    chart = Chart.in_series(assembly)
+    for slot in chart.slots:
+        model.armature[slot.v : slot.v + slot.mover.part.speeds] = armature(subject.system, slot.mover)
+    return PinocchioEngine(NAME, model, chart, frames, offered(subject.system))
 
 
 def _se3(X: Placement) -> Any:
@@ -160,6 +168,8 @@ def _joint_model(mover: Mover) -> Any:
         return pin.JointModelFreeFlyer()
     if mover.kind == "ball":
         return pin.JointModelSpherical()
+    if mover.kind == "screw":
+        return pin.JointModelHelicalUnaligned(mover.axis, mover.pitch)
     unaligned = pin.JointModelPrismaticUnaligned if mover.kind == "prismatic" else pin.JointModelRevoluteUnaligned
     return unaligned(mover.axis)
 

@@ -1,0 +1,44 @@
+"""How far the numeric engines reach: what of a description none of them is given."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import symofros as sf
+from validation.assembly import Assembly, Mover
+from validation.interface import Unsupported
+from validation.quantities import EVERYTHING
+
+
+def unrepresented(system: sf.System, assembly: Assembly, joints: Collection[str]) -> Unsupported | None:
+    """The first thing of a description that an engine can't be built for.
+
+    Args:
+        system: The description.
+        assembly: The same as numbers.
+        joints: Kinds of simple joints that the engine has.
+    """
+    for mover in assembly.movers:
+        if mover.kind not in joints:
+            return Unsupported(f"joint '{mover.joint.name}': no {mover.kind} joint, and no series of simple ones for it")
+    for body in system.bodies:
+        joint = body.joint
+        if joint is not None and joint.prescribed:
+            return Unsupported(f"joint '{joint.name}': a prescribed motion")
+        if joint is not None and joint.rotors:
+            return Unsupported(f"joint '{joint.name}': a rotor with its gyroscopic effect")
+    return None
+
+
+def armature(system: sf.System, mover: Mover) -> float:
+    """The inertia added to each speed of a joint."""
+    return float(sf.evaluate(mover.joint.armature, system.parameter_values()))
+
+
+def offered(system: sf.System) -> frozenset[str]:
+    """What an engine can be compared by: it knows the weight's potential energy, not that of springs."""
+    joints = [body.joint for body in system.bodies if body.joint is not None]
+    stores = any(isinstance(element, (sf.Spring, sf.Stop)) for joint in joints for element in joint.elements)
+    if stores or system.connections or system.potentials:
+        return EVERYTHING - {"potential_energy"}
+    return EVERYTHING
