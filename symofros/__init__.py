@@ -44,6 +44,7 @@ from symofros.options import Options as Options
 
 if TYPE_CHECKING:
     from symofros.compiler import compile_system
+    from symofros.compiler import program_of as program_of
     from symofros.loading import load as load
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
@@ -58,6 +59,7 @@ formula = as_value
 # Loaded at first use: reading files needs pydantic and ruamel.yaml, compiling needs cffi; importing needs neither.
 _LAZY = {
     "compile": ("symofros.compiler", "compile_system"),
+    "program_of": ("symofros.compiler", "program_of"),
     "load": ("symofros.loading", "load"),
     "save": ("symofros.loading", "save"),
     "Model": ("symofros.runtime.model", "Model"),

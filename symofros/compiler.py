@@ -73,6 +73,22 @@ def plan(system: System) -> SpanningTree:
     return build_tree(system)
 
 
+def program_of(system: System, functions: Iterable[str], frames: Iterable[str] = ()) -> Program:
+    """The graph of some functions of a system, for tools that look inside: counts, mutations, other evaluators.
+
+    Args:
+        system: What the user stated.
+        functions: Names of model and frame functions.
+        frames: What the frame functions are about.
+
+    Raises:
+        DescriptionError: The system can't be a mechanism.
+        UnknownNameError: No such function or frame.
+    """
+    tree = plan(system)
+    return run_passes(write_program(tree, requested(tree, Options(tuple(functions), tuple(frames)))))
+
+
 def generate(tree: SpanningTree, requests: Iterable[Key], record: ModelRecord) -> tuple[Program, Callable[[], str]]:
     """Requests -> optimised Program, and its C text on demand."""
     program = run_passes(write_program(tree, [Request(*key) for key in requests]))

@@ -22,6 +22,7 @@ from validation.junit import to_junit
 from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
+from validation.studies import mutation_report
 
 
 class Exit(IntEnum):
@@ -142,6 +143,8 @@ def verdict(record: Record) -> Exit:
         return Exit.INTERRUPTED
     return Exit.AGREE if record.ok else Exit.BAD_INPUT
 
+
+mutation_report.register(app)
 
 if __name__ == "__main__":
     app()

@@ -156,7 +156,9 @@ def assemble(system: sf.System) -> Assembly:
         name = own if names[own] == 1 or own == qualified else qualified
         frames[name] = FrameSite(name, site.mover, site.X_BF)
     nq, nv = (builder.joints[-1].q.stop, builder.joints[-1].v.stop) if builder.joints else (0, 0)
-    return Assembly(system.name, tuple(builder.joints), tuple(builder.movers), frames, builder.numbers(system.gravity), nq, nv)
+    return Assembly(
+        system.name, tuple(builder.joints), tuple(builder.movers), frames, builder.numbers(system.gravity), nq, nv
+    )
 
 
 class _Builder:

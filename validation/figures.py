@@ -128,8 +128,7 @@ def error_against_condition(record: Record) -> str:
     parts = [_decade_grid(x, top, bottom, 1), *(_level(y, decade, x) for decade in y.ticks(2))]
     parts.append(_line("limit", x.start, x.end, y.at(math.log10(SOLVE)), y.at(math.log10(SOLVE))))
     parts.append(_label(x.end, y.at(math.log10(SOLVE)) - 6, f"tolerance {SOLVE:g}", "end", "limit-name"))
-    parts.append(_line("guide", x.start, x.end, y.at(math.log10(EPS) + x.low), y.at(math.log10(EPS) + x.high)))
-    parts.append(_label(x.end - 4, y.at(math.log10(EPS) + x.high) - 8, "cond(M) · 2.2e-16", "end", "tick"))
+    parts.append(_rounding_guide(x, y))
     parts += [_point(row, x, y) for row in rows]
     parts.append(_label((x.start + x.end) / 2, bottom + 38, "largest condition number of M", "middle", "name"))
     middle = (top + bottom) / 2
@@ -137,6 +136,14 @@ def error_against_condition(record: Record) -> str:
     parts.append(f'<text class="name" x="34" y="{middle}" text-anchor="middle" {turned}>largest relative error</text>')
     parts.append(_legend([name for name in ROUTES if any(row.engine == name for row in rows)], x.start, 14))
     return _svg(bottom + 48, "Error of forward dynamics against the condition number of the mass matrix", parts)
+
+
+def _rounding_guide(x: Scale, y: Scale) -> str:
+    """The line error = eps cond(M), as far as it lies in the picture, named a third of the way up."""
+    eps = math.log10(EPS)
+    last, third = min(x.high, y.high - eps), x.low + (x.high - x.low) / 3
+    line = _line("guide", x.start, x.at(last), y.at(eps + x.low), y.at(eps + last))
+    return line + _label(x.at(third) - 10, y.at(eps + third) - 10, "cond(M) · 2.2e-16", "end", "tick")
 
 
 def _point(row: Comparison, x: Scale, y: Scale) -> str:

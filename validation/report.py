@@ -62,14 +62,15 @@ def _render(template: str, record: Record, **more: object) -> str:
     environment.filters |= {"short": _short, "cell": _markdown_cell}
     return environment.get_template(template).render(
         record=record, headline=headline(record), columns=COLUMNS, models=by_model(record), failures=failures(record),
-        unsupported=unsupported(record), rounding=_worst_of(record, ROUNDING), solve=_worst_of(record, SOLVE),
+        unsupported=unsupported(record), rounding=worst(_rounded(record)),
+        solve=worst(row for row in record.compared if row.quantity == "forward_dynamics"),
         ROUNDING=ROUNDING, SOLVE=SOLVE, SMALL=SMALL, **more,
     )  # fmt: skip
 
 
-def _worst_of(record: Record, tolerance: float) -> Comparison | None:
-    """The worst comparison among those of one tolerance."""
-    return worst(row for row in record.compared if row.tolerance == tolerance and row.quantity != "energy_drift")
+def _rounded(record: Record) -> list[Comparison]:
+    """The comparisons that nothing but rounding stands between."""
+    return [row for row in record.compared if row.quantity not in ("forward_dynamics", "energy_drift")]
 
 
 def _short(number: float | None) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import symofros as sf
 from tests.validation.subjects import floating_arm
 from validation.adapters import available, pinocchio
 from validation.check import ModelResult, Settings, check
@@ -107,3 +108,19 @@ def test_another_mechanism_is_found() -> None:
     found = disagreeing(checked(heavier))
     assert {"mass_matrix", "bias", "gravity", "kinetic_energy", "potential_energy", "inverse_dynamics"} <= found
     assert not found & {name for name in QUANTITIES if name.startswith("frame_")}
+
+
+@pytest.mark.parametrize(("light", "expected"), [(1.0, "disagree"), (1e-12, "agree")])
+def test_solving_is_asked_for_no_more_than_doubles_allow(light: float, expected: str) -> None:
+    """An error of 2e-9 in forward dynamics: too much, unless M is so ill-conditioned that rounding explains it."""
+    arm, hand = (sf.Joint("a", "prismatic"), sf.Joint("b", "prismatic", "arm", axis=(1.0, 0.0, 0.0)))
+    bodies = [sf.RigidBody("arm", arm, sf.Inertia(1.0)), sf.RigidBody("hand", hand, sf.Inertia(light))]
+    subject = Subject("slides", sf.System("slides", bodies))
+
+    def build(subject: Subject) -> Any:
+        return Faulty(pinocchio.build(subject), "forward_dynamics", lambda a: a * (1 + 2e-9))
+
+    result = check(subject, SETTINGS, {**available(), "pinocchio": build})
+    (row,) = (row for row in result.comparisons if row.quantity == "forward_dynamics")
+    assert row.status == expected and row.extra["condition"] == pytest.approx(1 / light, rel=1e-3, abs=2)
+    assert ("allows no better" in row.note) == (expected == "agree")

@@ -1,4 +1,6 @@
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -80,6 +82,14 @@ class TestUrdf:
             other = replace(subject, urdf=replace(subject.urdf, text=text.encode()))
             built = route.build(other)  # type: ignore[attr-defined]
             assert isinstance(built, Unsupported) and "its own reading" in built.reason
+
+    def test_mujoco_leaves_no_log_behind(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: Any) -> None:
+        """It has a remark on limits that coincide, and a habit of writing it into the current folder."""
+        monkeypatch.chdir(tmp_path)
+        text = URDF.replace('lower="-1" upper="1"', 'lower="0" upper="0"')
+        assert not isinstance(mujoco_urdf.build(self.subject(text, tmp_path)), Unsupported)
+        assert [path.name for path in tmp_path.iterdir()] == ["robot.urdf"]
+        assert "limit" not in capfd.readouterr().err
 
     def test_inertia_without_mass(self, tmp_path: object) -> None:
         """MuJoCo drops it when it fuses bodies; its answer would be another mechanism's."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import symofros as sf
 from validation.adapters.compiled import SymofrosEngine, options
-from validation.interface import Subject, TreeEngine
+from validation.interface import Subject
 
 NAME = "interpreted"
 
 
-def build(subject: Subject) -> TreeEngine:
+def build(subject: Subject) -> SymofrosEngine:
     """The model on the interpreter."""
     return SymofrosEngine(NAME, sf.compile(subject.system, options(subject, "interpreter")), subject.frames)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import mujoco
 import numpy as np
@@ -24,10 +26,22 @@ def build(subject: Subject) -> MujocoEngine | Unsupported:
     for part in (part for mover in assembly.movers for part in mover.masses):
         if part.mass == 0.0 and np.any(part.J_BC):
             return Unsupported(f"body '{part.body}': inertia without mass, which MuJoCo drops when it fuses bodies")
-    engine = _read(subject.urdf, assembly)
+    with _quiet():
+        engine = _read(subject.urdf, assembly)
     if isinstance(engine, Unsupported):
         return Unsupported(f"its own reading of the file: {engine.reason}")
     return engine
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without MuJoCo's remarks on the file: it would log them into the folder that the user happens to be in."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda message: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
 
 
 def _read(source: UrdfSource, assembly: Assembly) -> MujocoEngine | Unsupported:

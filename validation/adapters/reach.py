@@ -20,7 +20,9 @@ def unrepresented(system: sf.System, assembly: Assembly, joints: Collection[str]
     """
     for mover in assembly.movers:
         if mover.kind not in joints:
-            return Unsupported(f"joint '{mover.joint.name}': no {mover.kind} joint, and no series of simple ones for it")
+            return Unsupported(
+                f"joint '{mover.joint.name}': no {mover.kind} joint, and no series of simple ones for it"
+            )
     for body in system.bodies:
         joint = body.joint
         if joint is not None and joint.prescribed:

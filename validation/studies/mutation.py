@@ -1,0 +1,203 @@
+"""Can the harness fail? Single faults are planted in generated programs; the cross-check must catch each that matters.
+
+A fault is *caught* if some output differs from an independent engine's by more than the cross-check's tolerance, over
+the same kind of states. A fault that is not caught is *silent* if the program with it computes the same outputs to
+many digits, so that there is nothing to catch. It is *too small* if it changes every output by less than the
+tolerance: a robot's file may hold an inertia of which a millionth is less than rounding is allowed to be. Anything else
+has *survived*: the harness should have seen it, and did not.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import mpmath
+import numpy as np
+
+import symofros as sf
+from symofros.expr.evaluate import evaluate_edges
+from symofros.expr.precise import evaluate_precisely
+from symofros.expr.program import Function
+from validation.adapters import ROUTES, Missing, available, description
+from validation.adapters.interpreted import build as interpreted
+from validation.assembly import assemble
+from validation.check import with_forces
+from validation.compare import Scales, compute, state_errors, typical_scales
+from validation.frames import chosen_frames
+from validation.geometry import Array
+from validation.interface import Engine, States, Subject, Unsupported
+from validation.quantities import FORCES_STATED, FRAME_QUANTITIES, QUANTITIES, Quantity
+from validation.sampling import sample
+from validation.studies.faults import Bench, Fault, faults_at
+
+STATES = 60
+# Outputs that agree to this many of DIGITS digits at random points are equal.
+DIGITS, EQUAL = 60, 40
+PROOF_POINTS = 2
+
+
+@dataclass(frozen=True)
+class MutationScore:
+    """What became of the faults planted in one model.
+
+    Attributes:
+        model: Its label.
+        engine: Whose results were the reference.
+        planted: Faults by kind; likewise those caught, silent and too small.
+        survivors: Faults that should have been caught, with the largest relative change they made.
+        largest_small: The largest relative change among those that are too small.
+    """
+
+    model: str
+    engine: str
+    planted: Counter[str] = field(default_factory=Counter)
+    caught: Counter[str] = field(default_factory=Counter)
+    silent: Counter[str] = field(default_factory=Counter)
+    too_small: Counter[str] = field(default_factory=Counter)
+    largest_small: float = 0.0
+    survivors: tuple[tuple[Fault, float], ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether every fault that matters was caught."""
+        return not self.survivors and sum(self.planted.values()) > 0
+
+
+def mutate(label: str, system: sf.System, count: int, seed: int = 0) -> MutationScore:
+    """Plant faults in one model.
+
+    Args:
+        label: For the report.
+        system: The model.
+        count: How many faults, drawn from all that are possible.
+        seed: Of the draw and of the states.
+
+    Raises:
+        ValueError: No independent engine can represent the model.
+    """
+    harness = _Harness(Subject(label, system), seed)
+    return harness.run(count)
+
+
+class _Harness:
+    def __init__(self, subject: Subject, seed: int) -> None:
+        assembly = assemble(subject.system)
+        # One frame at a tip stands for all: faults in others would be the same faults.
+        self.subject = replace(subject, frames=chosen_frames(assembly)[:1])
+        self.rng = np.random.default_rng(seed)
+        ours = interpreted(self.subject)
+        self.states = with_forces(ours, sample(assembly, ours.model.nu, STATES, seed))
+        self.scales: Scales = typical_scales(ours, self.states)
+        self.engine = _independent(self.subject)
+        results = self._results()
+        # What nobody can judge is not part of the test: a fault there would neither be caught nor be silent.
+        self.program = sf.program_of(subject.system, results, self.subject.frames)
+        self.bench = Bench(self.program, self._inputs(self.states, ours.model))
+        self.reference = {function: results[function.name] for function in self.program.functions}
+
+    def _results(self) -> dict[str, tuple[Quantity, Array]]:
+        """What the engine, and for forces the description's own formulas, say of each function."""
+        forces = description.build(self.subject)
+        found = {}
+        for quantity in QUANTITIES.values():
+            source = forces if quantity.name in FORCES_STATED else self.engine
+            offered = not isinstance(source, Unsupported) and quantity.name in source.capabilities
+            if offered and not quantity.at_rest:
+                assert not isinstance(source, Unsupported)
+                found[quantity.name] = (quantity, compute(source, quantity, self.states))
+        return found
+
+    def _inputs(self, states: States, model: sf.Model) -> dict[str, Array]:
+        par = np.array([list(model.parameters.values())]).reshape(1, -1)
+        groups = {"q": states.q, "v": states.v, "a": states.a, "u": states.u, "par": par}
+        groups["t"] = np.zeros((len(states), 1))
+        init = evaluate_edges(self.program, self.program.init, groups, {}) if self.program.init else []
+        pre = np.array([float(np.asarray(x).ravel()[0]) for x in init])
+        return {**groups, "pre": np.broadcast_to(pre, (len(states), len(init)))}
+
+    def run(self, count: int) -> MutationScore:
+        graph, sizes = self.program.graph, self.program.sizes
+        everything = [fault for node in self.bench.nodes for fault in faults_at(graph, node, sizes, self.rng)]
+        chosen = self.rng.permutation(len(everything))[:count]
+        score = MutationScore(self.subject.label, self.engine.name)
+        survivors: list[tuple[Fault, float]] = []
+        largest_small = 0.0
+        sound = {f: _as_compared(f, self.bench.outputs(f)) for f in self.program.functions}
+        theirs = {f: reference for f, (_, reference) in self.reference.items()}
+        for index in chosen:
+            fault = everything[index]
+            score.planted[fault.kind] += 1
+            if not self._against(fault, theirs)[1]:
+                score.caught[fault.kind] += 1
+                continue
+            change, is_small = self._against(fault, sound)
+            if self._is_silent(fault):
+                score.silent[fault.kind] += 1
+            elif is_small:
+                score.too_small[fault.kind] += 1
+                largest_small = max(largest_small, change)
+            else:
+                survivors.append((fault, change))
+        return replace(score, survivors=tuple(survivors), largest_small=largest_small)
+
+    def _against(self, fault: Fault, references: Mapping[Function, Array]) -> tuple[float, bool]:
+        """The largest relative difference of a faulty program's outputs, and whether all are within tolerance."""
+        touched, outputs = self.bench.affected(fault)
+        worst, within = 0.0, True
+        for function in touched:
+            quantity, value = self.reference[function][0], _as_compared(function, outputs(function))
+            errors = state_errors(quantity, value, references[function], self.scales)
+            largest = float(np.max(np.where(np.isfinite(errors), errors, np.inf)))
+            worst, within = max(worst, largest), within and largest <= quantity.tolerance
+        return worst, within
+
+    def _is_silent(self, fault: Fault) -> bool:
+        """Whether the mutant computes the same to many digits, at points where doubles play no part."""
+        mutant = self.bench.mutant(fault)
+        touched, _ = self.bench.affected(fault)
+        for point in range(PROOF_POINTS):
+            inputs = self._exact_inputs(point)
+            for function in touched:
+                sound = evaluate_precisely(self.program, function, inputs, DIGITS)
+                faulty = evaluate_precisely(mutant, function, inputs, DIGITS)
+                if not _equal(sound, faulty):
+                    return False
+        return True
+
+    def _exact_inputs(self, point: int) -> Mapping[str, list[mpmath.mpf]]:
+        return {name: [mpmath.mpf(float(x)) for x in values[-1 - point if len(values) > 1 else 0]]
+                for name, values in self.bench.inputs.items()}  # fmt: skip
+
+
+def _as_compared(function: Function, outputs: list[Array]) -> Array:
+    """A function's outputs as the engines return them: a pose as twelve numbers, frames stacked."""
+    if function.name == "frame_pose":
+        p, R = outputs
+        return np.concatenate([p, R.reshape(len(R), 9)], axis=1)[:, None]
+    return outputs[0][:, None] if function.name in FRAME_QUANTITIES else outputs[0]
+
+
+def _equal(sound: list[list[mpmath.mpf]], faulty: list[list[mpmath.mpf]]) -> bool:
+    def close(one: list[mpmath.mpf], other: list[mpmath.mpf]) -> bool:
+        scale = max((abs(x) for x in one), default=mpmath.mpf(1)) or mpmath.mpf(1)
+        return all(abs(x - y) <= scale * mpmath.mpf(10) ** -EQUAL for x, y in zip(one, other, strict=True))
+
+    with mpmath.workdps(DIGITS):
+        return all(map(close, sound, faulty))
+
+
+def _independent(subject: Subject) -> Engine:
+    """The first independent engine that can represent a model."""
+    reasons = []
+    factories = available()
+    for name, route in ROUTES.items():
+        factory = factories[name]
+        if not route.independent or route.needs_urdf or isinstance(factory, Missing):
+            continue
+        engine = factory(subject)
+        if not isinstance(engine, Unsupported):
+            return engine
+        reasons.append(f"{name}: {engine.reason}")
+    raise ValueError(f"model '{subject.label}': no independent engine for it ({'; '.join(reasons)})")
