@@ -112,6 +112,11 @@ class _Check:
         self.rows: list[Comparison] = []
 
     def run(self) -> ModelResult:
+        driven = [described.joint.name for described in self.assembly.joints if described.joint.prescribed]
+        if driven:
+            # No engine has such a motion, so there is nothing to compare; that is not agreement.
+            reason = f"joint '{driven[0]}': a prescribed motion, which none of the engines can represent"
+            return failed(self.subject.label, "compile", reason)
         start = time.perf_counter()
         self.ours = our_c.build(self.subject)
         self.seconds["symofros"] = time.perf_counter() - start

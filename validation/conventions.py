@@ -37,6 +37,7 @@ DIFFERENCES = (
     Difference("mujoco", "frame velocity and acceleration", "(linear; angular)", "(angular; linear)"),
     Difference("mujoco", "frame acceleration", "d/dt of the frame velocity", "with -gravity added to the linear part"),
     Difference("pinocchio", "frame acceleration", "d/dt of the frame velocity: classical", "spatial, unless asked"),
+    Difference("pinocchio", "kinetic energy with armatures", "counts them, like M", "depends on the kind of joint"),
     Difference("pinocchio-urdf", "order of joints", "as in the file", "children sorted by name"),
     Difference("pinocchio-urdf", "continuous joint", "q = angle", "q = (cos, sin)"),
     Difference("mujoco-urdf", "angles in the model", "radians", "degrees, unless the compiler is told otherwise"),

@@ -97,3 +97,10 @@ class TestUrdf:
         foot += '</inertial></link><joint name="f" type="fixed"><parent link="slider"/><child link="foot"/></joint>'
         built = mujoco_urdf.build(self.subject(URDF.replace("</robot>", foot + "</robot>"), tmp_path))
         assert isinstance(built, Unsupported) and "'foot'" in built.reason
+
+
+def test_a_prescribed_motion_is_refused_in_words() -> None:
+    cart = sf.RigidBody("cart", sf.Joint("x", "prismatic", prescribed=True), sf.Inertia(1.0))
+    rod = sf.RigidBody("rod", sf.Joint("q", "revolute", "cart"), sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1)))
+    result = check(Subject("driven", sf.System("driven", [cart, rod])), Settings(states=5))
+    assert not result.ok and "prescribed motion" in result.comparisons[0].note

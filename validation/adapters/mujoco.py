@@ -99,12 +99,12 @@ class MujocoEngine:
         return self._each(states, result)
 
     def inverse_dynamics(self, states: States) -> Array:
-        """Newton-Euler with accelerations."""
+        """Newton-Euler with accelerations; it leaves armatures out, as MuJoCo's own inverse dynamics adds them after."""
         a = iter(self.chart.accelerations(states.q, states.v, states.a))
 
         def result(d: Any) -> Array:
             d.qacc[:] = next(a)
-            return self._newton_euler(d, with_acceleration=True)
+            return self._newton_euler(d, with_acceleration=True) + self.model.dof_armature * d.qacc
 
         return self.chart.our_forces(states.q, self._each(states, result)) - states.passive
 
@@ -183,6 +183,10 @@ def build(subject: Subject) -> TreeEngine | Unsupported:
     obstacle = unrepresented(subject.system, assembly, _JOINTS)
     if obstacle is not None:
         return obstacle
+    for mover in assembly.movers:
+        if mover.kind == "free" and armature(subject.system, mover):
+            # The rate of world components is another acceleration than the rate of body components.
+            return Unsupported(f"joint '{mover.joint.name}': an armature along body axes")
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
     spec.option.gravity = assembly.gravity
