@@ -43,6 +43,7 @@ from symofros.expr.expression import evaluate as evaluate
 from symofros.options import Options as Options
 
 if TYPE_CHECKING:
+    from symofros.compiler import compile_library as compile_library
     from symofros.compiler import compile_system
     from symofros.compiler import program_of as program_of
     from symofros.loading import load as load
@@ -59,6 +60,7 @@ formula = as_value
 # Loaded at first use: reading files needs pydantic and ruamel.yaml, compiling needs cffi; importing needs neither.
 _LAZY = {
     "compile": ("symofros.compiler", "compile_system"),
+    "compile_library": ("symofros.compiler", "compile_library"),
     "program_of": ("symofros.compiler", "program_of"),
     "load": ("symofros.loading", "load"),
     "save": ("symofros.loading", "save"),

@@ -17,13 +17,21 @@ import hashlib
 import warnings
 from collections.abc import Callable, Iterable
 from functools import cache
+from pathlib import Path
 
 from symofros.codegen.interpreted import InterpretedUnit
 from symofros.codegen.model import model_source, template
 from symofros.codegen.names import identifier
 from symofros.description.system import System
 from symofros.dynamics.equations import Request, write_program
-from symofros.errors import CompilerMissingWarning, DescriptionError, Problem, UnknownNameError, did_you_mean
+from symofros.errors import (
+    CompileError,
+    CompilerMissingWarning,
+    DescriptionError,
+    Problem,
+    UnknownNameError,
+    did_you_mean,
+)
 from symofros.expr.program import Program
 from symofros.kinematics.joint import neutral_coordinates
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS, Options
@@ -71,6 +79,31 @@ def plan(system: System) -> SpanningTree:
     """
     check(system)
     return build_tree(system)
+
+
+def compile_library(system: System, options: Options | None = None) -> tuple[Path, str]:
+    """The shared library of a system, for programs that call C themselves.
+
+    Args:
+        system: What the user stated.
+        options: What to generate; backend "c".
+
+    Returns:
+        Path of the library in the cache, and the name of its exported function (see symofros_model.h).
+
+    Raises:
+        DescriptionError: The system can't be a mechanism.
+        CompileError: There is no C compiler, or it failed.
+    """
+    options = options or Options()
+    toolchain = find_toolchain(options.compiler)
+    if toolchain is None:
+        raise CompileError("no C compiler was found\n  remedy: install gcc or clang, or `pip install ziglang`")
+    tree = plan(system)
+    record = describe(tree, options)
+    _, source = generate(tree, requested(tree, options), record)
+    path = build_library(source(), template("symofros_model.h"), toolchain, options.flags)
+    return path, f"{identifier(record.name)}_model"
 
 
 def program_of(system: System, functions: Iterable[str], frames: Iterable[str] = ()) -> Program:

@@ -22,7 +22,7 @@ from validation.junit import to_junit
 from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
-from validation.studies import mutation_report
+from validation.studies import mutation_report, timing_report
 
 
 class Exit(IntEnum):
@@ -145,6 +145,7 @@ def verdict(record: Record) -> Exit:
 
 
 mutation_report.register(app)
+timing_report.register(app)
 
 if __name__ == "__main__":
     app()

@@ -99,12 +99,13 @@ class MujocoEngine:
         return self._each(states, result)
 
     def inverse_dynamics(self, states: States) -> Array:
-        """Newton-Euler with accelerations; it leaves armatures out, as MuJoCo's own inverse dynamics adds them after."""
+        """Newton-Euler with accelerations; it leaves armatures out, which MuJoCo adds afterwards."""
         a = iter(self.chart.accelerations(states.q, states.v, states.a))
 
         def result(d: Any) -> Array:
             d.qacc[:] = next(a)
-            return self._newton_euler(d, with_acceleration=True) + self.model.dof_armature * d.qacc
+            force: Array = self._newton_euler(d, with_acceleration=True) + self.model.dof_armature * d.qacc
+            return force
 
         return self.chart.our_forces(states.q, self._each(states, result)) - states.passive
 

@@ -104,8 +104,8 @@ def as_markdown(data: dict[str, Any]) -> str:
         "",
         f"**{data['planted']} single faults planted in {len(data['models'])} models; of the {matter} that matter "
         f"{share:.6g} % were caught.** {silent} are silent: the program with the fault computes the same outputs to 40 "
-        f"digits, so there is nothing to catch. {small} are too small: they change no output by more than its tolerance "
-        f"(largest change {largest:.1e}, which only forward dynamics tolerates). {survived} survived.",
+        f"digits, so there is nothing to catch. {small} are too small: they change no output by more than "
+        f"its tolerance (largest change {largest:.1e}, which only forward dynamics tolerates). {survived} survived.",
         "",
         "A fault replaces one operation of the generated program. It is caught if any output then differs from the "
         "independent engine's by more than the cross-check's own tolerance over 60 random states.",

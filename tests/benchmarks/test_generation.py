@@ -1,0 +1,58 @@
+"""How long a model takes from description to C text, to a library; how many operations it has."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pytest_benchmark.fixture import BenchmarkFixture
+
+import symofros as sf
+from reference_models import MODELS
+from reference_models.rigid.chain import chain
+from symofros.compiler import describe, generate, plan
+from symofros.passes.count import count_program
+
+FUNCTIONS = (("mass_matrix", ""), ("bias", ""))
+
+
+@pytest.mark.parametrize("links", [7, 22, 52])
+def test_description_to_c_text(benchmark: BenchmarkFixture, links: int) -> None:
+    system = chain(links)
+
+    def text() -> str:
+        tree = plan(system)
+        return generate(tree, FUNCTIONS, describe(tree, sf.Options()))[1]()
+
+    benchmark.extra_info["bytes"] = len(benchmark(text))
+
+
+@pytest.mark.parametrize("links", [7, 22])
+def test_c_compilation(
+    benchmark: BenchmarkFixture, links: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From description to loaded library, nothing cached."""
+    system, run = chain(links), iter(range(10**6))
+
+    def compile_anew() -> sf.Model:
+        monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / str(next(run))))
+        return sf.compile(system, sf.Options(functions=tuple(name for name, _ in FUNCTIONS)))
+
+    benchmark.pedantic(compile_anew, rounds=3)
+
+
+@pytest.mark.parametrize("model", ["rx90", "chain7", "chain22", "chain52", "mss"])
+def test_operation_counts(benchmark: BenchmarkFixture, model: str) -> None:
+    system = chain(52) if model == "chain52" else MODELS[model]
+    functions = ("mass_matrix", "bias", "inverse_dynamics")
+    program = benchmark.pedantic(sf.program_of, args=(system, functions), rounds=1)
+    for (name, _), count in count_program(program).items():
+        benchmark.extra_info[name] = str(count)
+        print(f"{model:<8} {name:<17} {count}")
+
+
+def test_import(benchmark: BenchmarkFixture) -> None:
+    """A new interpreter that imports the package."""
+    benchmark.pedantic(subprocess.run, args=([sys.executable, "-c", "import symofros"],), rounds=3)
