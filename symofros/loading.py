@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from symofros.atomic import write_atomically
 from symofros.description import files
 from symofros.description.files import read_yaml, write_yaml
 from symofros.description.reading import Reading, in_order
-from symofros.description.system import System
+from symofros.description.system import WAIVERS, System
 from symofros.description.urdf import SNAP_TOL, read_urdf
 from symofros.description.urdf_values import note
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -21,13 +22,20 @@ from symofros.topology.physics import inertia_problems
 _READABLE = (*files.SUFFIXES, ".urdf")
 
 
-def load(path: str | os.PathLike[str], *, floating_base: bool = False, snap_tol: float = SNAP_TOL) -> System:
+def load(
+    path: str | os.PathLike[str],
+    *,
+    floating_base: bool = False,
+    snap_tol: float = SNAP_TOL,
+    waive: Collection[str] = (),
+) -> System:
     """Read a description and check it.
 
     Args:
         path: Native YAML (.yaml, .yml) or URDF (.urdf).
         floating_base: URDF only: put a free joint under the root link.
         snap_tol: URDF only: numbers this close to exact ones are made exact (`read_urdf`).
+        waive: Checks that every body is allowed to fail (WAIVERS), such as "massless_tip".
 
     Returns:
         The system; its `notes` say what an importer ignored or changed.
@@ -36,11 +44,23 @@ def load(path: str | os.PathLike[str], *, floating_base: bool = False, snap_tol:
         DescriptionError: With every problem of the file and of the mechanism it describes.
     """
     file = Path(path)
-    reading = _read(file, floating_base, snap_tol)
+    reading = _waived(_read(file, floating_base, snap_tol), waive)
     found = find_problems(reading.system, reading.broken) if reading.system is not None else []
     if reading.problems or found or reading.system is None:
         raise DescriptionError(in_order([*reading.problems, *found]))
     return reading.system
+
+
+def _waived(reading: Reading, waive: Collection[str]) -> Reading:
+    for unknown in sorted(set(waive) - WAIVERS.keys()):
+        raise DescriptionError(
+            Problem(f"waive: no check '{unknown}'", f"'{unknown}'", f"one of {', '.join(WAIVERS)}",
+                    did_you_mean(unknown, WAIVERS))
+        )  # fmt: skip
+    if reading.system is None or not waive:
+        return reading
+    bodies = tuple(replace(body, waive=(*body.waive, *waive)) for body in reading.system.bodies)
+    return replace(reading, system=replace(reading.system, bodies=bodies))
 
 
 def _read(file: Path, floating_base: bool, snap_tol: float) -> Reading:

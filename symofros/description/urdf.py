@@ -17,7 +17,9 @@ from symofros.description.xml_nodes import Element, XmlFault, parse_xml
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 MAX_BYTES = 64 << 20
-SNAP_TOL = 1e-12
+# Rounding of the last printed digit of a double: snapping by default must not change a model by more than that, because
+# imports are compared with other engines' at 1e-12. Who knows that a file's 1.5708 means pi/2 passes 1e-4.
+SNAP_TOL = 1e-14
 ROOT_JOINT = "root_joint"
 
 _KINDS: dict[str, JointKind] = {

@@ -54,7 +54,7 @@ def test_structure_pays_by_itself() -> None:
             for i in range(3)
         ]
         stated = sf.System("s", bodies, [sf.Parameter("m", 1.0), sf.Parameter("c", 0.3)])
-        return count_program(sf.program_of(stated, ["bias"]))["bias", ""]
+        return count_program(sf.program_of(stated, ["mass_matrix"]))["mass_matrix", ""]
 
     assert arm((0, 0, 1)).total == arm((0, 1, 0)).total == arm((0, 0, -3)).total
 

@@ -1,0 +1,164 @@
+"""The native file: round trips, and every fault with its line."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.description.files import read_yaml
+from symofros.description.yaml_writer import write_yaml
+from tests.trees import random_tree
+
+HEAD = "symofros: 1\nsystem: {name: arm}\n"
+LINK = "  link: {joint: {name: q1, kind: revolute}, inertia: {mass: 1, moments: [1, 1, 1]}}\n"
+ARM = HEAD + "bodies:\n" + LINK
+
+
+def load(folder: Path, text: str | bytes, name: str = "arm.yaml") -> sf.System:
+    path = folder / name
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return sf.load(path)
+
+
+def faults(folder: Path, text: str | bytes) -> str:
+    """Everything that loading a text complains about."""
+    with pytest.raises(sf.DescriptionError) as caught:
+        load(folder, text)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_reference_models_round_trip(name: str, tmp_path: Path) -> None:
+    sf.save(MODELS[name], tmp_path / "again.yaml")
+    assert sf.load(tmp_path / "again.yaml") == MODELS[name]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_trees_round_trip(seed: int, tmp_path: Path) -> None:
+    tree = random_tree(seed)
+    sf.save(tree, tmp_path / "tree.yaml")
+    assert sf.load(tmp_path / "tree.yaml") == tree
+    # Writing what was read changes nothing.
+    assert write_yaml(sf.load(tmp_path / "tree.yaml")) == (tmp_path / "tree.yaml").read_text()
+
+
+def test_a_minimal_file(tmp_path: Path) -> None:
+    arm = load(tmp_path, ARM)
+    assert arm.body("link").joint == sf.Joint("q1", "revolute")
+    assert arm.origin["body", "link"].endswith("arm.yaml:4")
+
+
+def test_yaml_1_2_numbers(tmp_path: Path) -> None:
+    arm = load(tmp_path, HEAD + "parameters: {a: 1e-3, b: {value: -2.5E+2, constant: true}}\nbodies:\n" + LINK)
+    assert arm.parameter_values() == {"a": 1e-3, "b": -250.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "parts"),
+    [
+        (ARM.replace("kind", "knd"), 4, ["'knd'", "did you mean 'kind'?"]),
+        (ARM.replace("revolute", "revolut"), 4, ["'revolut'", "did you mean 'revolute'?"]),
+        (ARM.replace("mass: 1", "mass: [1]"), 4, ["mass"]),
+        (ARM.replace("mass: 1", "mass: .nan"), 4, ["finite"]),
+        (ARM.replace("mass: 1", "mass: .inf"), 4, ["finite"]),
+        (ARM.replace("mass: 1", "mass: \"__import__('os').system('x')\""), 4, ["'__import__' is not a legal name"]),
+        (ARM.replace("mass: 1", "mass: 2*m"), 4, ["unknown symbol 'm'", "declare it"]),
+        (ARM.replace("[1, 1, 1]", "[1, 1]"), 4, ["moments"]),
+        (ARM.replace("[1, 1, 1]", "[1, 1, 3]"), 4, ["non-physical inertia", "exceeds the sum"]),
+        (ARM.replace("[1, 1, 1]", "[1, 1, 1], abut: body"), 4, ["did you mean 'about'?"]),
+        (ARM + LINK, 5, ["'link' appears twice", "lines 4 and 5"]),
+        (ARM.replace("symofros: 1", "symofros: 7"), 1, ["7"]),
+        (ARM.replace("symofros: 1\n", ""), 1, ["symofros"]),
+        (ARM + "extra: 1\n", 5, ["'extra'"]),
+        (ARM + "closures: {c: {}}\n", 5, ["closures"]),
+        (HEAD + "bodies: {link: &x {joint: {kind: fixed}}}\n", 3, ["anchors and aliases"]),
+        (ARM.replace("mass: 1", "mass: !!python/object:os.system 1"), 4, ["tag"]),
+        (ARM + "---\n" + ARM, 5, ["document"]),
+        ("symofros: 1\nbodies: [", 2, []),
+        ("- 1\n- 2\n", 1, []),
+        ("a: " + "[" * 80 + "]" * 80, 1, ["deep"]),
+    ],
+)  # fmt: skip
+def test_each_fault_names_its_line(text: str, line: int, parts: list[str], tmp_path: Path) -> None:
+    message = faults(tmp_path, text)
+    assert f"arm.yaml:{line}" in message, message
+    for part in parts:
+        assert part in message, message
+    assert "rule:" in message
+
+
+def test_all_faults_of_a_file_come_together(tmp_path: Path) -> None:
+    """Of form, of formulas, of the tree and of physics, each with its line, in order."""
+    text = (
+        HEAD.replace("}", ", gravit: [0, 0, -1]}")
+        + "parameters: {L: 1}\nbodies:\n"
+        + "  a: {joint: {name: q1, kind: revolut}}\n"
+        + "  b: {joint: {name: q2, kind: revolute}, inertia: {mass: m9}}\n"
+        + "  c: {joint: {name: q3, kind: revolute, parent: d}, inertia: {mass: 1, moments: [1, 1, 1]}}\n"
+        + "  e: {joint: {name: q4, kind: revolute, parent: c, frame: tip}, inertia: {mass: -2}}\n"
+    )
+    message = faults(tmp_path, text)
+    order = ["gravit", "revolut", "m9", "'d'", "'tip'", "mass -2"]
+    places = [message.find(part) for part in order]
+    assert -1 not in places, message
+    assert [f"arm.yaml:{n}" in message for n in (2, 5, 6, 7, 8)] == [True] * 5
+    # Body a is broken, but it exists: nobody is told that it does not.
+    assert "parent 'a'" not in message
+
+
+def test_not_text_too_big_missing(tmp_path: Path) -> None:
+    assert "the file is empty" in faults(tmp_path, "")
+    assert "UTF-8" in faults(tmp_path, ARM.encode("utf-16"))
+    assert "MiB" in faults(tmp_path, "# " + "x" * (5 << 20)) or "large" in faults(tmp_path, "# " + "x" * (5 << 20))
+    with pytest.raises(sf.DescriptionError, match="does not exist"):
+        sf.load(tmp_path / "none.yaml")
+
+
+def test_a_bomb_of_aliases_is_refused_at_once(tmp_path: Path) -> None:
+    lines = ["a0: &a0 [x, x]"] + [f"a{i}: &a{i} [*a{i - 1}, *a{i - 1}]" for i in range(1, 60)]
+    start = time.process_time()
+    assert "anchors and aliases" in faults(tmp_path, "\n".join(lines))
+    assert time.process_time() - start < 1.0
+
+
+class TestInclude:
+    def test_parts_are_merged(self, tmp_path: Path) -> None:
+        (tmp_path / "parts").mkdir()
+        (tmp_path / "parts" / "hand.yaml").write_text(
+            "symofros: 1\nparameters: {m_hand: 2}\n"
+            "bodies:\n  hand: {joint: {name: q2, kind: revolute, parent: link}, inertia: {mass: m_hand, moments: [1, 1, 1]}}\n"
+        )
+        arm = load(tmp_path, ARM + "include: [parts/hand.yaml]\n")
+        assert {body.name for body in arm.bodies} == {"link", "hand"}
+        assert arm.parameter_values() == {"m_hand": 2.0}
+
+    @pytest.mark.parametrize("target", ["../secret.yaml", "/etc/passwd.yaml", "parts/../../secret.yaml", "link.yaml"])
+    def test_nothing_outside_the_folder(self, target: str, tmp_path: Path) -> None:
+        inside = tmp_path / "inside"
+        inside.mkdir()
+        (tmp_path / "secret.yaml").write_text("symofros: 1\nparameters: {secret: 1}\n")
+        os.symlink(tmp_path / "secret.yaml", inside / "link.yaml")
+        message = faults(inside, ARM + f"include: [{target}]\n")
+        assert "leaves the main file's folder" in message and "arm.yaml:5" in message
+
+    def test_cycles_and_missing_files(self, tmp_path: Path) -> None:
+        (tmp_path / "b.yaml").write_text("symofros: 1\ninclude: [arm.yaml]\n")
+        assert "cycle" in faults(tmp_path, ARM + "include: [b.yaml]\n")
+        assert "none.yaml" in faults(tmp_path, ARM + "include: [none.yaml]\n")
+
+    def test_names_are_unique_across_files(self, tmp_path: Path) -> None:
+        (tmp_path / "b.yaml").write_text("symofros: 1\nbodies:\n" + LINK)
+        message = faults(tmp_path, ARM + "include: [b.yaml]\n")
+        assert "'link'" in message
+
+
+def test_reading_keeps_what_it_can(tmp_path: Path) -> None:
+    (tmp_path / "arm.yaml").write_text(ARM + "  bad: {joint: 3}\n")
+    reading = read_yaml(tmp_path / "arm.yaml")
+    assert reading.system is not None and [body.name for body in reading.system.bodies] == ["link"]
+    assert reading.broken >= {"bad"} and len(reading.problems) == 1

@@ -1,0 +1,113 @@
+"""Formulas: the grammar, and what a hostile file may try."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from symofros.description.parser import MAX_DEPTH, MAX_LENGTH, ExpressionError, parse
+from symofros.expr.expression import Expression, evaluate
+
+NAMES = {"a": 0.7, "b": -1.3, "c": 2.1}
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("2 + 3*4", 14), ("2*3 + 4", 10), ("(2 + 3)*4", 20), ("7 - 2 - 1", 4), ("7 - (2 - 1)", 6), ("8/4/2", 1),
+        ("8/(4/2)", 4), ("-2^2", -4), ("(-2)^2", 4), ("2^-1", 0.5), ("2^3^2", 512), ("2**3", 8), ("--2", 2),
+        ("2*-3", -6), ("+a", 0.7), ("1e-3", 1e-3), (".5", 0.5), ("2.", 2), ("pi", 3.141592653589793),
+        ("sin(pi/2)", 1), ("atan2(1, 1)*4/pi", 1), ("max(a, b)", 0.7), ("abs(b) + sqrt(4)", 3.3),
+    ],
+)  # fmt: skip
+def test_grammar(text: str, value: float) -> None:
+    assert evaluate(parse(text), NAMES) == pytest.approx(value, rel=1e-15)
+
+
+@st.composite
+def expressions(draw: st.DrawFn, depth: int = 4) -> Expression:
+    kinds = ["number", "symbol"] if depth == 0 else ["number", "symbol", "add", "sub", "mul", "neg", "pow", "sin", "max"]
+    kind = draw(st.sampled_from(kinds))
+    if kind == "number":
+        return Expression("number", number=draw(st.floats(0, 1e6, allow_nan=False)))
+    if kind == "symbol":
+        return Expression("symbol", name=draw(st.sampled_from(sorted(NAMES))))
+    if kind == "pow":
+        exponent = Expression("number", number=float(draw(st.integers(0, 3))))
+        return Expression("pow", (draw(expressions(depth=depth - 1)), exponent))
+    size = 1 if kind in ("neg", "sin") else 2
+    return Expression(kind, tuple(draw(expressions(depth=depth - 1)) for _ in range(size)))
+
+
+@given(expressions())
+def test_text_round_trips(expression: Expression) -> None:
+    """What is printed reads back as the same value, whatever needs parentheses."""
+    again = parse(str(expression))
+    assert evaluate(again, NAMES) == evaluate(expression, NAMES)
+    assert str(parse(str(again))) == str(again)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "__import__('os').system('x')", "a.__class__", "().__class__.__bases__", "lambda: 0", "a if b else c", "[1, 2]",
+        "{1: 2}", "'text'", "a; b", "a = 1", "a == b", "a & b", "a @ b", "open(1)", "exec(a)", "print(1)", "f(a)(b)",
+        "a[b]", "1_000", "0x10", "1j", "a b", "2a", "sin", "sin()", "sin(1, 2)", "", "   ", "(", ")", "1 +", "* 2",
+        "a,b", "x\x00y", "π", "ａ", "1e999", "a..b", ".a", "..", "__a", "a__", "sin(x", "∞", "nan(1)", "#", "a\n#b",
+    ],
+)  # fmt: skip
+def test_anything_else_is_refused(text: str) -> None:
+    with pytest.raises(ExpressionError) as caught:
+        parse(text)
+    assert caught.value.reason and caught.value.problem("mass").rule
+
+
+def test_the_reason_and_the_place_are_told() -> None:
+    with pytest.raises(ExpressionError, match="'sine' is not a function.*character 3"):
+        parse("1+sine(a)")
+    with pytest.raises(ExpressionError) as caught:
+        parse("1 + sine(a)")
+    assert caught.value.remedy == "did you mean 'sin'?"
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["9**9**9", "9^9^9^9^9", "(" * 5000 + "1" + ")" * 5000, "-" * 5000 + "1", "1+" * 4000 + "1", "a" * 10_000_000,
+     "1" * 9000, "sin(" * 3000 + "1" + ")" * 3000, "2^" * 3000 + "2"],
+    ids=["tower", "tower4", "parentheses", "signs", "sum", "10 MB", "digits", "calls", "powers"],
+)  # fmt: skip
+def test_hostile_sizes_take_bounded_time(text: str) -> None:
+    start = time.process_time()
+    try:
+        evaluate(parse(text), NAMES)
+    except (ExpressionError, ArithmeticError, KeyError, OverflowError):
+        pass
+    assert time.process_time() - start < 1.0
+
+
+def test_limits() -> None:
+    with pytest.raises(ExpressionError, match=f"longer than {MAX_LENGTH}"):
+        parse("1" * (MAX_LENGTH + 1))
+    with pytest.raises(ExpressionError, match=f"deeper than {MAX_DEPTH}"):
+        parse("(" * (MAX_DEPTH + 1) + "1" + ")" * (MAX_DEPTH + 1))
+    assert evaluate(parse("1" + "+1" * 200), {}) == 201
+
+
+@given(st.text(max_size=60))
+def test_random_text_never_crashes(text: str) -> None:
+    try:
+        parse(text)
+    except ExpressionError:
+        pass
+
+
+@given(st.text(alphabet="ab1.+-*/^(), sincosq_[]e", max_size=80))
+def test_random_near_formulas_never_crash(text: str) -> None:
+    try:
+        expression = parse(text)
+    except ExpressionError:
+        return
+    assert str(parse(str(expression))) == str(expression)
