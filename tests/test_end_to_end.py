@@ -61,3 +61,12 @@ def test_compile_writes_the_source(tmp_path: Path) -> None:
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "out" / "arm.c").exists() and (tmp_path / "out" / "symofros_model.h").exists()
+
+
+def test_the_example_of_the_file_format_is_a_model(tmp_path: Path) -> None:
+    import symofros as sf
+
+    (text,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "yaml.md").read_text(), re.DOTALL)
+    (tmp_path / "crane.yaml").write_text(text)
+    model = sf.compile(sf.load(tmp_path / "crane.yaml"), sf.Options(backend="interpreter"))
+    assert model.names.q == ("slew", "hoist") and model.names.u == ("winch", "slew")

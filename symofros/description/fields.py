@@ -4,16 +4,28 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, PlainValidator, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 from typing_extensions import TypeAliasType
 
 from symofros.description.parser import MAX_LENGTH
 from symofros.description.system import WAIVERS
-from symofros.description.values import Value, as_value
+from symofros.description.values import Value, Vector, as_value
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+
+
+class Entry(BaseModel):
+    """A mapping of the file. Strict: no unknown keys, and a text is not taken for a number."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True)
+
+
+def three(values: list[Value]) -> Vector:
+    """A list of three as a vector."""
+    x, y, z = values
+    return x, y, z
 
 
 def fault(problem: Problem) -> PydanticCustomError:

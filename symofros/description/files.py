@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from symofros.description.faults import line_of, path_of, problem_of
+from symofros.description.forces import Connection, Potential, VirtualPower
 from symofros.description.reading import Reading as Reading
 from symofros.description.reading import in_order, read_bytes
 from symofros.description.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
@@ -24,7 +25,14 @@ MAX_INCLUDE_DEPTH = 10
 MAX_FILES = 100
 SUFFIXES = (".yaml", ".yml")
 
-_SECTIONS = {"parameters": "parameter", "inputs": "input", "bodies": "body"}
+_SECTIONS = {
+    "parameters": "parameter",
+    "inputs": "input",
+    "bodies": "body",
+    "connections": "connection",
+    "virtual_power": "virtual_power",
+    "potentials": "potential",
+}
 _SUFFIXES = ("px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 
 
@@ -53,6 +61,9 @@ class _Merger:
     parameters: list[Parameter] = field(default_factory=list)
     inputs: list[Input] = field(default_factory=list)
     bodies: list[RigidBody] = field(default_factory=list)
+    connections: list[Connection] = field(default_factory=list)
+    virtual_power: list[VirtualPower] = field(default_factory=list)
+    potentials: list[Potential] = field(default_factory=list)
     origin: dict[tuple[str, ...], str] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
     broken: set[str] = field(default_factory=set)
@@ -65,7 +76,8 @@ class _Merger:
             return Reading(None, problems, broken)
         x, y, z = self.system.gravity
         system = System(self.system.name or default_name, tuple(self.bodies), tuple(self.parameters),
-                        tuple(self.inputs), (x, y, z), origin=self.origin)  # fmt: skip
+                        tuple(self.inputs), (x, y, z), tuple(self.connections), tuple(self.virtual_power),
+                        tuple(self.potentials), origin=self.origin)  # fmt: skip
         return Reading(system, problems, broken)
 
     def add(self, path: Path, shown: str, including: tuple[Path, ...]) -> None:
@@ -145,6 +157,15 @@ class _Merger:
             if self.is_new("bodies", name, root, shown):
                 self.bodies.append((body or BodyEntry()).build(name))
                 self.origin |= dict(_body_origin(self.bodies[-1], root, shown))
+        for name, connection in (file.connections or {}).items():
+            if self.is_new("connections", name, root, shown):
+                self.connections.append(connection.build(name))
+        for name, forces in (file.virtual_power or {}).items():
+            if self.is_new("virtual_power", name, root, shown):
+                self.virtual_power.append(VirtualPower(name, tuple(forces.items())))
+        for name, energy in (file.potentials or {}).items():
+            if self.is_new("potentials", name, root, shown):
+                self.potentials.append(Potential(name, energy))
 
     def is_new(self, section: str, name: str, root: Node, shown: str) -> bool:
         """Record where a named thing stands; whether no other file has one of that name."""

@@ -11,10 +11,11 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from symofros.description.fields import (
     MOMENTS,
+    Entry,
     Formula,
     Four,
     Matrix,
@@ -29,7 +30,9 @@ from symofros.description.fields import (
     listed,
     moments_mapping,
     parameter_mapping,
+    three,
 )
+from symofros.description.schema_forces import ConnectionEntry, ElementEntry, LoadEntry, RotorEntry
 from symofros.description.system import WORLD, Frame, Inertia, Input, Joint, JointKind, Limits, Parameter, RigidBody
 from symofros.description.values import IDENTITY, Rotation, RotationKind
 from symofros.errors import DescriptionError, Problem
@@ -42,12 +45,6 @@ ROTATIONS: tuple[RotationKind, ...] = ("rpy", "axis_angle", "quaternion", "matri
 def default_joint_name(body: str) -> str:
     """The name of a body's joint where the file gives none."""
     return f"q_{body}"
-
-
-class Entry(BaseModel):
-    """A mapping of the file. Strict: no unknown keys, and a text is not taken for a number."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True)
 
 
 class RotationEntry(Entry):
@@ -155,7 +152,7 @@ class JointEntry(Entry):
     rotation: RotationEntry | None = None
     """From that frame to the joint's."""
     axis: Three = [0.0, 0.0, 1.0]
-    """Of a revolute, continuous or prismatic joint, in the joint's frame."""
+    """Of a joint that turns about or slides along one, in the joint's frame; first axis of a universal joint."""
     actuated: bool = False
     """Adds an input for each speed: an effort on the joint."""
     effort: Annotated[
@@ -163,13 +160,48 @@ class JointEntry(Entry):
     ] = []  # fmt: skip
     """One formula a speed, of inputs, parameters, coordinates, speeds (`dq1`) and `t` [N m or N]."""
     limits: LimitsEntry | None = None
+    axis2: Three = [0.0, 1.0, 0.0]
+    """Second axis of a universal joint, in the frame after the first turn."""
+    pitch: Formula = 0.0
+    """Of a screw joint [m/rad]."""
+    coordinates: Annotated[list[Name], Field(max_length=6)] = []
+    """Names of the coordinates of a general joint."""
+    moving_position: Three = [0.0, 0.0, 0.0]
+    """Of a general joint: where it moves to, by formulas of its coordinates [m]."""
+    moving_rotation: RotationEntry | None = None
+    """Of a general joint: how it turns, likewise."""
+    prescribed: bool = False
+    """The motion is given: coordinates, speeds and their rates are inputs."""
+    elements: Annotated[list[ElementEntry], Field(max_length=100)] = []
+    """Springs, dampers, stops and friction."""
+    armature: Formula = 0.0
+    """Inertia added to each speed [kg m^2 or kg]."""
+    rotors: Annotated[list[RotorEntry], Field(max_length=100)] = []
+    """Rotors that its speeds drive, with their gyroscopic effect."""
 
     def build(self, body: str) -> Joint:
         """The Joint of that body."""
-        name = default_joint_name(body) if self.name is None else self.name
-        (x, y, z), (a, b, c) = self.position, self.axis
-        return Joint(name, self.kind, self.parent, self.frame, (x, y, z), _rotation(self.rotation), (a, b, c),
-                     self.actuated, tuple(self.effort), self.limits.build() if self.limits else None)  # fmt: skip
+        return Joint(
+            name=default_joint_name(body) if self.name is None else self.name,
+            kind=self.kind,
+            parent=self.parent,
+            frame=self.frame,
+            position=three(self.position),
+            rotation=_rotation(self.rotation),
+            axis=three(self.axis),
+            actuated=self.actuated,
+            effort=tuple(self.effort),
+            limits=self.limits.build() if self.limits else None,
+            axis2=three(self.axis2),
+            pitch=self.pitch,
+            coordinates=tuple(self.coordinates),
+            moving_position=three(self.moving_position),
+            moving_rotation=_rotation(self.moving_rotation),
+            prescribed=self.prescribed,
+            elements=tuple(element.build() for element in self.elements),
+            armature=self.armature,
+            rotors=tuple(rotor.build() for rotor in self.rotors),
+        )
 
 
 class FrameEntry(Entry):
@@ -195,6 +227,8 @@ class BodyEntry(Entry):
     frames: Annotated[dict[Name, FrameEntry | None], Field(max_length=1000)] | None = None
     waive: list[Waiver] = []
     """Checks that this body is allowed to fail."""
+    loads: Annotated[list[LoadEntry], Field(max_length=100)] = []
+    """Forces and torques on it."""
 
     def build(self, name: str) -> RigidBody:
         """The RigidBody of that name."""
@@ -205,6 +239,7 @@ class BodyEntry(Entry):
             self.inertia.build() if self.inertia else None,
             frames,
             tuple(self.waive),
+            tuple(load.build() for load in self.loads),
         )
 
 
@@ -259,6 +294,12 @@ class NativeFile(Entry):
     inputs: Annotated[dict[Name, InputEntry | None], Field(max_length=10_000)] | None = None
     bodies: Annotated[dict[Name, BodyEntry | None], Field(max_length=10_000)] | None = None
     """In order: coordinates are numbered depth first in this order."""
+    connections: Annotated[dict[Name, ConnectionEntry], Field(max_length=10_000)] | None = None
+    """Springs and dampers between frames."""
+    virtual_power: Annotated[dict[Name, dict[Name, Formula]], Field(max_length=10_000)] | None = None
+    """Internal forces: for each, speed (`dq1`) -> force by formula."""
+    potentials: Annotated[dict[Name, Formula], Field(max_length=10_000)] | None = None
+    """Potential energies by formula of coordinates, parameters and `t` [J]."""
     closures: Reserved = None
     nonholonomic: Reserved = None
     options: Reserved = None

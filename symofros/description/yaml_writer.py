@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from dataclasses import fields
 from io import StringIO
 from typing import Any
 
@@ -12,6 +13,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from symofros.description.faults import problem_of
+from symofros.description.forces import Connection, JointElement, Load, Rotor
 from symofros.description.schema import VERSION, NativeFile, default_joint_name
 from symofros.description.system import WORLD, Frame, Inertia, Joint, Limits, Parameter, RigidBody, System
 from symofros.description.values import ORIGIN, Rotation, Value
@@ -23,7 +25,10 @@ LINE_WIDTH = 120
 _WHOLE = 1e15
 
 # Mappings that stay on lines of their own; any other is short and reads better in braces.
-_OPEN = frozenset({"", "system", "parameters", "inputs", "bodies", "body", "joint", "inertia", "frames"})
+_OPEN = frozenset(
+    {"", "system", "parameters", "inputs", "bodies", "body", "joint", "inertia", "frames", "connections",
+     "virtual_power", "potentials"}
+)  # fmt: skip
 
 Plain = dict[str, Any]
 
@@ -71,6 +76,11 @@ def _document(system: System) -> Plain:
     document["parameters"] = {item.name: _parameter(item) for item in system.parameters}
     document["inputs"] = {item.name: _texts(item) for item in system.inputs}
     document["bodies"] = {item.name: _body(item) for item in system.bodies}
+    document["connections"] = {item.name: _connection(item) for item in system.connections}
+    document["virtual_power"] = {
+        item.name: {speed: _number(force) for speed, force in item.forces} for item in system.virtual_power
+    }
+    document["potentials"] = {item.name: _number(item.energy) for item in system.potentials}
     return {section: entries for section, entries in document.items() if entries}
 
 
@@ -93,7 +103,41 @@ def _body(body: RigidBody) -> Plain:
         entries["frames"] = {frame.name: _placement(frame) for frame in body.frames}
     if body.waive:
         entries["waive"] = [*body.waive]
+    if body.loads:
+        entries["loads"] = [_changed(load, Load()) for load in body.loads]
     return entries
+
+
+def _connection(connection: Connection) -> Plain:
+    ends = {}
+    for key, (body, frame) in (("first", connection.first), ("second", connection.second)):
+        ends[key] = {"body": body} | ({"frame": frame} if frame is not None else {})
+    numbers = {key: getattr(connection, key) for key in ("stiffness", "length", "damping")}
+    return {**ends, **{key: _number(value) for key, value in numbers.items() if value != 0.0}}
+
+
+def _element(element: JointElement) -> Plain:
+    """An element under its kind's name; what has no default is always written."""
+    kind = type(element).__name__.lower()
+    first = fields(element)[0].name
+    default = type(element)(0.0)
+    return {kind: {first: _number(getattr(element, first)), **_changed(element, default, first)}}
+
+
+def _changed(stated: Any, default: Any, *without: str) -> Plain:
+    """The fields of a dataclass that differ from a default one's."""
+    entries: Plain = {}
+    for item in fields(stated):
+        value = getattr(stated, item.name)
+        if item.name not in without and value != getattr(default, item.name):
+            entries[item.name] = _plain(value)
+    return entries
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    return value if isinstance(value, (str, int)) else _number(value)
 
 
 def _joint(joint: Joint, body: str) -> Plain:
@@ -112,6 +156,25 @@ def _joint(joint: Joint, body: str) -> Plain:
         entries["effort"] = _list(joint.effort)
     if joint.limits is not None:
         entries["limits"] = _limits(joint.limits)
+    plain = Joint("")
+    for key in ("axis2", "moving_position"):
+        if getattr(joint, key) != getattr(plain, key):
+            entries[key] = _list(getattr(joint, key))
+    for key in ("pitch", "armature"):
+        if getattr(joint, key) != 0.0:
+            entries[key] = _number(getattr(joint, key))
+    if joint.coordinates:
+        entries["coordinates"] = [*joint.coordinates]
+    if not joint.moving_rotation.is_identity:
+        entries["moving_rotation"] = _rotation(joint.moving_rotation)
+    if joint.prescribed:
+        entries["prescribed"] = True
+    if joint.elements:
+        entries["elements"] = [_element(element) for element in joint.elements]
+    if joint.rotors:
+        entries["rotors"] = [
+            {"inertia": _number(rotor.inertia), **_changed(rotor, Rotor(0.0), "inertia")} for rotor in joint.rotors
+        ]
     return entries
 
 

@@ -151,13 +151,13 @@ def formula_problems(system: System, broken: frozenset[str]) -> Iterator[Problem
                               where)  # fmt: skip
 
 
-def power_problems(system: System) -> Iterator[Problem]:
+def power_problems(system: System, broken: frozenset[str]) -> Iterator[Problem]:
     """Virtual power on speeds that do not exist, or that are prescribed."""
     joints = [body.joint for body in system.bodies if body.joint is not None]
     speeds = {name for joint in joints if not joint.prescribed for name in speed_symbols(joint)}
     for power in system.virtual_power:
         for speed, _ in power.forces:
-            if speed not in speeds:
+            if speed not in speeds | broken:
                 yield Problem(
                     f"virtual power '{power.name}': '{speed}' is not a speed", ", ".join(sorted(speeds)[:12]),
                     "a force is given for a free speed: d and the coordinate's name", did_you_mean(speed, speeds),

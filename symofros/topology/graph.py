@@ -206,7 +206,7 @@ class _Checker:
         for connection in self.system.connections:
             for name, frame in (connection.first, connection.second):
                 yield from self._anchor(connection.name, name, frame)
-        yield from power_problems(self.system)
+        yield from power_problems(self.system, self.broken)
 
     def _load(self, body: RigidBody, load: Load) -> Iterator[Problem]:
         where = self.where("body", body.name)

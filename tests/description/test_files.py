@@ -12,7 +12,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.description.files import read_yaml
 from symofros.description.yaml_writer import write_yaml
-from tests.trees import random_tree
+from tests.trees import MORE_KINDS, random_tree
 
 HEAD = "symofros: 1\nsystem: {name: arm}\n"
 LINK = "  link: {joint: {name: q1, kind: revolute}, inertia: {mass: 1, moments: [1, 1, 1]}}\n"
@@ -162,3 +162,79 @@ def test_reading_keeps_what_it_can(tmp_path: Path) -> None:
     reading = read_yaml(tmp_path / "arm.yaml")
     assert reading.system is not None and [body.name for body in reading.system.bodies] == ["link"]
     assert reading.broken >= {"bad"} and len(reading.problems) == 1
+
+
+@pytest.mark.parametrize("seed", range(100, 112))
+def test_every_joint_kind_round_trips(seed: int, tmp_path: Path) -> None:
+    tree = random_tree(seed, kinds=MORE_KINDS)
+    sf.save(tree, tmp_path / "tree.yaml")
+    assert sf.load(tmp_path / "tree.yaml") == tree
+
+
+EVERYTHING = """symofros: 1
+system: {name: everything}
+parameters: {k: 3.0, Jr: 0.001}
+inputs: {u1: {unit: N}}
+bodies:
+  cart: {joint: {name: x, kind: prismatic, axis: [1, 0, 0], prescribed: true}, inertia: {mass: 1, moments: [1, 1, 1]}}
+  arm:
+    joint:
+      name: q
+      kind: revolute
+      parent: cart
+      armature: 0.1
+      elements:
+        - spring: {stiffness: k, rest: 0.1, cubic: 2}
+        - damper: {coefficient: 0.3}
+        - stop: {stiffness: 100, upper: 1, lower: -1}
+        - friction: {dynamic: 0.42, static: 0.49, minimum_velocity: 0.001}
+      rotors: [{inertia: Jr, ratio: 50}, {inertia: Jr, ratio: -3, axis: [0, 1, 0], carrier: arm}]
+    inertia: {mass: 1, center_of_mass: [0.2, 0, 0], moments: [1, 1, 1]}
+    frames: {tip: {position: [0.5, 0, 0]}}
+    loads: [{force: [u1, 0, 0], at: tip, axes: world}, {torque: [0, 0, 0.1*t]}]
+  nut: {joint: {name: s, kind: screw, parent: arm, pitch: 0.01}, inertia: {mass: 1, moments: [1, 1, 1]}}
+  bead:
+    joint: {name: p, kind: general, parent: nut, coordinates: [a], moving_position: [cos(a), sin(a), 0.1*a]}
+    inertia: {mass: 1, moments: [1, 1, 1]}
+connections:
+  rope: {first: {body: world}, second: {body: arm, frame: tip}, stiffness: 10, length: 0.5, damping: 1}
+virtual_power:
+  coupling: {dq: k*(s - q), ds: -k*(s - q)}
+potentials:
+  well: k*a^2
+"""
+
+
+def test_all_forces_in_one_file(tmp_path: Path) -> None:
+    system = load(tmp_path, EVERYTHING)
+    sf.save(system, tmp_path / "again.yaml")
+    assert sf.load(tmp_path / "again.yaml") == system
+    model = sf.compile(system, sf.Options(backend="interpreter"))
+    assert model.names.q == ("q", "s", "a") and model.names.u == ("u1", "x", "dx", "ddx")
+    assert model.forward_dynamics([0.1, 0.2, 0.3], [1, 2, 3], [1, 0, 0, 0], t=2.0).shape == (3,)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "parts"),
+    [
+        ("kind: screw", "kind: scrw", 22, ["did you mean 'screw'?"]),
+        ("spring: {stiffness: k", "sprng: {stiffness: k", 14, ["did you mean 'spring'?"]),
+        ("- damper: {coefficient: 0.3}", "- {damper: {coefficient: 1}, spring: {stiffness: 1}}", 15, ["exactly one"]),
+        ("stiffness: k, rest", "stiffness: kk, rest", 0, ["unknown symbol 'kk'", "did you mean 'k'?"]),
+        ("carrier: arm", "carrier: amr", 0, ["'amr'", "did you mean 'arm'?"]),
+        ("at: tip", "at: tipp", 0, ["load at 'tipp'", "did you mean 'tip'?"]),
+        ("body: arm, frame: tip", "body: arm, frame: tpi", 27, ["frame 'tpi' is not on body 'arm'"]),
+        ("first: {body: world}", "first: {body: wrld}", 27, ["no body 'wrld'", "did you mean 'world'?"]),
+        ("ds: -k", "dz: -k", 29, ["'dz' is not a speed"]),
+        ("well: k*a^2", "well: k*da^2", 31, ["'da' may not be used here"]),
+        ("coordinates: [a]", "coordinates: []", 0, ["0 coordinates"]),
+        ("[cos(a), sin(a), 0.1*a]", "[cos(a), sin(q), 0.1*a]", 0, ["'q' may not be used here"]),
+        ("prescribed: true", "prescribed: true, actuated: true", 0, ["prescribed motion"]),
+    ],
+)  # fmt: skip
+def test_faults_of_forces(old: str, new: str, line: int, parts: list[str], tmp_path: Path) -> None:
+    assert old in EVERYTHING
+    message = faults(tmp_path, EVERYTHING.replace(old, new))
+    for part in parts:
+        assert part in message, message
+    assert line == 0 or f"arm.yaml:{line}" in message, message
