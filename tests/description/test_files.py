@@ -131,7 +131,8 @@ class TestInclude:
         (tmp_path / "parts").mkdir()
         (tmp_path / "parts" / "hand.yaml").write_text(
             "symofros: 1\nparameters: {m_hand: 2}\n"
-            "bodies:\n  hand: {joint: {name: q2, kind: revolute, parent: link}, inertia: {mass: m_hand, moments: [1, 1, 1]}}\n"
+            "bodies:\n  hand:\n    joint: {name: q2, kind: revolute, parent: link}\n"
+            "    inertia: {mass: m_hand, moments: [1, 1, 1]}\n"
         )
         arm = load(tmp_path, ARM + "include: [parts/hand.yaml]\n")
         assert {body.name for body in arm.bodies} == {"link", "hand"}

@@ -45,9 +45,7 @@ def test_rotor_equals_a_geared_body(seed: int, carrier_choice: str, rng: np.rand
     spinning = sf.RigidBody("rotor", bearing, solid)
     assert spinning.joint is not None
     locked = replace(spinning, joint=replace(spinning.joint, kind="fixed"))
-    geared = replace(
-        driven, joint=replace(driven.joint, rotors=(Rotor(AXIAL, RATIO, axis, carrier),), actuated=False)
-    )
+    geared = replace(driven, joint=replace(driven.joint, rotors=(Rotor(AXIAL, RATIO, axis, carrier),), actuated=False))
     ours = interpreted(stated.with_bodies(geared, locked))
     explicit = interpreted(stated.with_bodies(spinning))
 

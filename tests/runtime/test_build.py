@@ -58,7 +58,7 @@ def test_concurrent_processes_agree(cache: Path) -> None:
 
 def test_a_killed_compilation_leaves_nothing_broken(cache: Path, tmp_path: Path) -> None:
     slow = tmp_path / "slowcc"
-    slow.write_text("#!/bin/sh\ncase \"$*\" in *--version*) echo slow;; *) touch started; sleep 60;; esac\n")
+    slow.write_text('#!/bin/sh\ncase "$*" in *--version*) echo slow;; *) touch started; sleep 60;; esac\n')
     slow.chmod(0o755)
     root = Path(__file__).parent.parent.parent
     process = subprocess.Popen(

@@ -49,7 +49,7 @@ def test_unknown_name() -> None:
 @pytest.mark.parametrize("floating_base", [False, True])
 def test_a_urdf_brings_its_text_and_its_digits(tmp_path: Path, floating_base: bool) -> None:
     path = tmp_path / "arm.urdf"
-    path.write_text(URDF.replace('rpy="0.3 0 0"', 'rpy="1e-13 0 0"'))
+    path.write_text(URDF.replace('rpy="0.3 0 0"', 'rpy="1e-15 0 0"'))
     subject = Case("arm", path, floating_base).load()
     assert subject.urdf is not None and subject.urdf.text == path.read_bytes()
     assert subject.urdf.verbatim != subject.system
