@@ -12,6 +12,9 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from symofros.description.beam import Beam as Beam
+from symofros.description.beam import BeamLoad as BeamLoad
+from symofros.description.beam import Samples as Samples
 from symofros.description.forces import Connection as Connection
 from symofros.description.forces import Damper as Damper
 from symofros.description.forces import Friction as Friction
@@ -21,7 +24,7 @@ from symofros.description.forces import Rotor as Rotor
 from symofros.description.forces import Spring as Spring
 from symofros.description.forces import Stop as Stop
 from symofros.description.forces import VirtualPower as VirtualPower
-from symofros.description.system import Frame as Frame
+from symofros.description.frames import Frame as Frame
 from symofros.description.system import Inertia as Inertia
 from symofros.description.system import Input as Input
 from symofros.description.system import Joint as Joint

@@ -11,7 +11,9 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
+from symofros.description.beam import Beam
 from symofros.description.forces import Connection, JointElement, Load, Potential, Rotor, VirtualPower
+from symofros.description.frames import Frame
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
@@ -55,25 +57,6 @@ class Input:
     name: str
     unit: str = ""
     description: str = ""
-
-
-@dataclass(frozen=True)
-class Frame:
-    """An extremity frame E fixed on a body B.
-
-    Attributes:
-        name: Unique on its body.
-        position: p_BE, from Bo to Eo, in B [m].
-        rotation: R_BE.
-    """
-
-    name: str
-    position: Vector = ORIGIN
-    rotation: Rotation = IDENTITY
-
-    def __post_init__(self) -> None:
-        """Convert the position."""
-        object.__setattr__(self, "position", as_vector(self.position, f"frame '{self.name}': position"))
 
 
 @dataclass(frozen=True)
@@ -237,6 +220,9 @@ class RigidBody:
             )  # fmt: skip
 
 
+Body = RigidBody | Beam
+
+
 @dataclass(frozen=True)
 class System:
     """A mechanism as the user stated it.
@@ -255,7 +241,7 @@ class System:
     """
 
     name: str
-    bodies: tuple[RigidBody, ...] = ()
+    bodies: tuple[Body, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     inputs: tuple[Input, ...] = ()
     gravity: Vector = (0.0, 0.0, -9.81)
@@ -279,7 +265,7 @@ class System:
             self.potentials, self.notes, dict(self.origin),
         )  # fmt: skip
 
-    def body(self, name: str) -> RigidBody:
+    def body(self, name: str) -> Body:
         """The body of that name.
 
         Raises:
@@ -293,7 +279,7 @@ class System:
                     "a body is found by its name", did_you_mean(name, [b.name for b in self.bodies]))
         )  # fmt: skip
 
-    def with_bodies(self, *bodies: RigidBody) -> System:
+    def with_bodies(self, *bodies: Body) -> System:
         """The system with these bodies added; a body of the same name is replaced in its place."""
         merged = {body.name: body for body in self.bodies} | {body.name: body for body in bodies}
         return replace(self, bodies=tuple(merged.values()))

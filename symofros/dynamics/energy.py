@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from symofros.dynamics.inertia import LinkInertia
+from symofros.dynamics.beams import kinetic_energy_twice
+from symofros.dynamics.inertia import LinkInertia, first_moment_change
 from symofros.dynamics.rotors import MovingRotor
 from symofros.expr.graph import ZERO, Edge
 from symofros.expr.vector import Vec3
@@ -23,6 +24,10 @@ def kinetic_energy(motion: Motion, inertias: list[LinkInertia], rotors: list[Mov
         speeds.append((w, v))
         momentum = v.scaled(body.m) + w.cross(body.S) + w.cross(body.S)
         twice = g.add(twice, g.add(v.dot(momentum), w.dot(body.J.times(w))))
+    for beam in motion.beams:
+        if beam.tip is not None:
+            w, v = speeds[beam.root]
+            twice = g.add(twice, kinetic_energy_twice(motion, beam, w, v, motion.links[beam.tip].speeds))
     for rotor in rotors:
         spin = rotor.spin(motion)
         turning = ZERO if rotor.carrier == BASE else speeds[rotor.carrier][0].dot(rotor.axis)
@@ -38,6 +43,8 @@ def potential_energy(motion: Motion, inertias: list[LinkInertia], base: LinkIner
     g = motion.g
     mass = [body.m for body in inertias]
     moment = [body.S for body in inertias]
+    for beam in motion.beams:
+        moment[beam.root] = moment[beam.root] + first_moment_change(motion, beam)
     total = base.S
     for i, link in reversed(list(enumerate(motion.links))):
         carried = link.R_AL.apply(moment[i]) + link.p_AL.scaled(mass[i])

@@ -102,13 +102,14 @@ class Equations:
     @cached_property
     def V(self) -> Edge:
         """Potential energy: of the weight, and what forces store."""
-        weight = potential_energy(self.motion, *self._inertias, self.gravity)
+        weight = potential_energy(self.frames.motion, *self._inertias, self.gravity)
         return self.g.add(weight, stored_energy(self.motion, self.frames))
 
     @cached_property
     def frames(self) -> FrameKinematics:
-        """Kinematics of the frames."""
-        return FrameKinematics(self.motion)
+        """Kinematics of the frames, at their deflected places."""
+        as_stated = all(beam.forms.order > 0 for beam in self.motion.beams)
+        return FrameKinematics(self.motion if as_stated else set_in_motion(self.g, self.tree, as_seen=True))
 
     def function(self, request: Request) -> Function:
         """One function's inputs and outputs.

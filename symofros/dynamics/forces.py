@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from symofros.dynamics.beams import elastic_forces
 from symofros.dynamics.elements import element_energy, element_force
 from symofros.dynamics.jourdain import virtual_power
 from symofros.dynamics.loads import connection_energy, wrenches
@@ -36,6 +37,11 @@ def generalized_forces(motion: Motion, frames: FrameKinematics) -> list[Edge]:
     potentials = [motion.lowering.value(potential.energy) for potential in system.potentials]
     if potentials:
         total = [g.sub(force, slope) for force, slope in zip(total, _gradient(motion, g.sum(potentials)), strict=True)]
+    for beam in motion.beams:
+        if beam.tip is not None:
+            tip = motion.links[beam.tip]
+            for k, force in enumerate(elastic_forces(beam, tip.speeds), start=tip.v):
+                total[k] = g.add(total[k], force)
     acting = wrenches(motion, frames)
     if acting is not None:
         total = [g.add(a, b) for a, b in zip(total, virtual_power(motion, acting), strict=True)]
@@ -49,6 +55,7 @@ def stored_energy(motion: Motion, frames: FrameKinematics) -> Edge:
     for link in motion.tree.links:
         for element in link.joint.elements:
             parts.append(element_energy(lowering, element, _coordinate(lowering, link, element.coordinate)))
+    parts += [beam.forms.strain_energy.value() for beam in motion.beams]
     return g.sum([*parts, connection_energy(motion, frames)])
 
 

@@ -7,12 +7,14 @@ output unchanged, and makes entries of the link's inertia vanish. All of it happ
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from symofros.beams.fields import Form
 from symofros.description.system import Inertia
 from symofros.expr.graph import ZERO, Edge, Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
-from symofros.kinematics.links import Motion, MovingLink
+from symofros.kinematics.links import Motion, MovingBeam, MovingLink
 from symofros.kinematics.rotations import MatrixTurn
 from symofros.topology.tree import BASE
 
@@ -107,10 +109,45 @@ def link_inertias(motion: Motion) -> tuple[list[LinkInertia], LinkInertia]:
 def _stated(motion: Motion, index: int) -> LinkInertia:
     """The sum of the inertias stated for a link's bodies."""
     total = no_inertia(motion.g)
+    for beam in motion.beams:
+        if beam.root == index:
+            total = total + undeformed(motion, beam)
     for placement, inertia in motion.tree.links[index].inertias:
         R_LB, p_LB = motion.lowering.placement(placement, motion.links[index].R_LB)
         total = total + _one_body(motion, inertia, R_LB, p_LB)
     return total
+
+
+def undeformed(motion: Motion, beam: MovingBeam) -> LinkInertia:
+    """The inertia of a straight beam; what deformation adds changes with time and is not regrouped."""
+    return _from_forms(motion, beam, lambda form: form.terms.get((), ZERO), beam.forms.mass)
+
+
+def deformed(motion: Motion, beam: MovingBeam) -> LinkInertia:
+    """What deformation adds to the inertia of a beam, to the beam's order."""
+    order = beam.forms.order
+
+    def change(form: Form) -> Edge:
+        return form.without_constant().value(order)
+
+    return _from_forms(motion, beam, change, ZERO)
+
+
+def first_moment_change(motion: Motion, beam: MovingBeam) -> Vec3:
+    """What deformation adds to the first moment, one order further: its gradient is the weight's force."""
+    upto = beam.forms.order + 1
+    S = Vec3(motion.g, *(form.without_constant().value(upto) for form in beam.forms.first_moment))
+    return motion.links[beam.root].R_LB.times(S)
+
+
+def _from_forms(motion: Motion, beam: MovingBeam, value: Callable[[Form], Edge], m: Edge) -> LinkInertia:
+    """Moments of a beam about its root, from its frame B to the link frame."""
+    g, R = motion.g, motion.links[beam.root].R_LB
+    S = R.times(Vec3(g, *map(value, beam.forms.first_moment)))
+    E = Sym3(g, *map(value, beam.forms.second_moment))
+    trace = g.add(g.add(E.xx, E.yy), E.zz)
+    J = Sym3(g, *(g.sub(trace, diagonal) for diagonal in (E.xx, E.yy, E.zz)), -E.xy, -E.xz, -E.yz)
+    return LinkInertia(m, S, _turned(R, J))
 
 
 def _one_body(motion: Motion, inertia: Inertia, R_LB: Mat3, p_LB: Vec3) -> LinkInertia:
@@ -137,6 +174,8 @@ def _turned(R: Mat3, J: Sym3) -> Sym3:
 def _split(link: MovingLink, inertia: LinkInertia) -> tuple[LinkInertia, LinkInertia | None]:
     """What a link keeps, and what its parent may carry instead (eqs. 16-18)."""
     g, S, J = inertia.S.g, inertia.S, inertia.J
+    if not link.columns and link.rates is None:
+        return no_inertia(g), inertia  # Clamped: all of it.
     if link.axis is not None:
         # A rod along the axis: one transverse moment and, if it can't slide, the mass and the moment along it.
         k, i = link.axis, (link.axis + 1) % 3

@@ -7,49 +7,15 @@ joint is accumulated once and projected on the joint's partial velocities (docs/
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from symofros.dynamics.acceleration import Wrench, base_to_tip, inertia_wrench
+from symofros.dynamics.beams import beam_forces
 from symofros.dynamics.inertia import LinkInertia
 from symofros.dynamics.rotors import MovingRotor
-from symofros.expr.graph import ZERO, Edge, Graph
-from symofros.expr.vector import Mat3, Sym3, Vec3
-from symofros.kinematics.links import Motion, MovingLink
+from symofros.expr.graph import ZERO, Edge
+from symofros.expr.vector import Vec3
+from symofros.kinematics.links import Motion
 from symofros.topology.tree import BASE
-
-
-@dataclass(frozen=True)
-class LinkMotion:
-    """Velocity and acceleration of one link.
-
-    Attributes:
-        w: w_WL_L.
-        alpha: alpha_WL_L.
-        a: a_WLo_L, with gravity as an acceleration of the base.
-        U: [alpha] + [w][w], the matrix that takes a point's position to its relative acceleration.
-        ww: The products wx wx, wy wy, wz wz.
-    """
-
-    w: Vec3
-    alpha: Vec3
-    a: Vec3
-    U: Mat3
-    ww: tuple[Edge, Edge, Edge]
-
-
-@dataclass(frozen=True)
-class Wrench:
-    """Force and moment about a link's origin, in the link frame."""
-
-    f: Vec3
-    n: Vec3
-
-    def __add__(self, other: Wrench) -> Wrench:
-        return Wrench(self.f + other.f, self.n + other.n)
-
-
-def no_wrench(g: Graph) -> Wrench:
-    """The wrench of nothing."""
-    return Wrench(Vec3(g), Vec3(g))
 
 
 def inertia_forces(
@@ -73,8 +39,14 @@ def inertia_forces(
     """
     g = motion.g
     moving = base_to_tip(motion, v_rate, gravity)
-    wrenches = [_wrench(body, state) for body, state in zip(inertias, moving, strict=True)]
+    wrenches = [inertia_wrench(body, state) for body, state in zip(inertias, moving, strict=True)]
     total: list[Edge] = [ZERO] * motion.nv
+    for beam in motion.beams:
+        if beam.tip is not None:
+            tip = motion.links[beam.tip]
+            own, modal = beam_forces(motion, beam, moving[beam.root], tip.speeds, tip.rates_given(v_rate))
+            wrenches[beam.root] = wrenches[beam.root] + own
+            total[tip.v : tip.v + len(modal)] = modal
     for rotor in rotors:
         rate = rotor.rate(motion, v_rate)
         spin_rate = g.mul(rotor.ratio, rate)
@@ -113,70 +85,3 @@ def virtual_power(motion: Motion, wrenches: Sequence[Wrench]) -> list[Edge]:
             carried = Wrench(f_A, link.R_AL.apply(n) + link.p_AL.cross(f_A))
             beyond[link.parent] = beyond[link.parent] + carried
     return total
-
-
-def base_to_tip(motion: Motion, v_rate: Sequence[Edge], gravity: Vec3) -> list[LinkMotion]:
-    """Velocity and acceleration of every link (eqs. 6-8)."""
-    g = motion.g
-    still = Vec3(g)
-    base = LinkMotion(still, still, -gravity, Mat3(g, (ZERO,) * 9), (ZERO,) * 3)
-    moving: list[LinkMotion] = []
-    for link in motion.links:
-        parent = base if link.parent == BASE else moving[link.parent]
-        moving.append(_across(g, link, parent, link.rates_given(v_rate)))
-    return moving
-
-
-def _across(g: Graph, link: MovingLink, parent: LinkMotion, rates: Sequence[Edge]) -> LinkMotion:
-    """From the parent's motion to the link's."""
-    w_AL, v_AL, w_rate, v_rel_rate = Vec3(g), Vec3(g), Vec3(g), Vec3(g)
-    for column, speed, rate in zip(link.columns, link.speeds, rates, strict=True):
-        w_AL, v_AL = w_AL + column.w.scaled(speed), v_AL + column.v.scaled(speed)
-        w_rate = w_rate + (column.w.scaled(rate) + column.w_rate.scaled(speed))
-        v_rel_rate = v_rel_rate + (column.v.scaled(rate) + column.v_rate.scaled(speed))
-    w_WA = link.R_AL.apply_inverse(parent.w)
-    w = (w_WA + w_AL).named(f"w_WL_L[{link.name}]")
-    alpha = link.R_AL.apply_inverse(parent.alpha) + (w_rate + w_WA.cross(w_AL))
-    alpha.named(f"alpha_WL_L[{link.name}]")
-    a = link.R_AL.apply_inverse(parent.a + parent.U.times(link.p_AL)) + (v_rel_rate + (w_WA + w).cross(v_AL))
-    a.named(f"a_WLo_L[{link.name}]")
-    U, ww = _relative_acceleration(w, alpha)
-    return LinkMotion(w, alpha, a, U, ww)
-
-
-def _relative_acceleration(w: Vec3, alpha: Vec3) -> tuple[Mat3, tuple[Edge, Edge, Edge]]:
-    """[alpha] + [w][w]."""
-    g = w.g
-    xx, yy, zz = g.mul(w.x, w.x), g.mul(w.y, w.y), g.mul(w.z, w.z)
-    xy, xz, yz = g.mul(w.x, w.y), g.mul(w.x, w.z), g.mul(w.y, w.z)
-    U = Mat3(g, (
-        -g.add(yy, zz), g.sub(xy, alpha.z), g.add(xz, alpha.y),
-        g.add(xy, alpha.z), -g.add(xx, zz), g.sub(yz, alpha.x),
-        g.sub(xz, alpha.y), g.add(yz, alpha.x), -g.add(xx, yy),
-    ))  # fmt: skip
-    return U, (xx, yy, zz)
-
-
-def _wrench(body: LinkInertia, moving: LinkMotion) -> Wrench:
-    """Force and moment about Lo that the link's acceleration takes (eqs. 9, 10)."""
-    f = moving.a.scaled(body.m) + moving.U.times(body.S)
-    n = _moment(body.second_moment(), moving) + body.S.cross(moving.a)
-    return Wrench(f, n)
-
-
-def _moment(E: Sym3, moving: LinkMotion) -> Vec3:
-    """The integral of r x U r dm, with E the integral of r r^T dm (eq. 10)."""
-    g, U = E.g, moving.U
-    xx, yy, zz = moving.ww
-    mul, sub = g.mul, g.sub
-
-    def combine(*products: tuple[Edge, Edge]) -> Edge:
-        return g.sum(mul(a, b) for a, b in products)
-
-    # U_zz - U_yy is a difference of two squares of w: one subtraction instead of two sums.
-    return Vec3(
-        g,
-        combine((U.at(2, 0), E.xy), (-U.at(1, 0), E.xz), (sub(zz, yy), E.yz), (U.at(2, 1), E.yy), (-U.at(1, 2), E.zz)),
-        combine((U.at(0, 1), E.yz), (-U.at(2, 1), E.xy), (sub(xx, zz), E.xz), (U.at(0, 2), E.zz), (-U.at(2, 0), E.xx)),
-        combine((U.at(1, 2), E.xz), (-U.at(0, 2), E.yz), (sub(yy, xx), E.xy), (U.at(1, 0), E.xx), (-U.at(0, 1), E.yy)),
-    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symofros.description.forces import Anchor, Connection, Load
 from symofros.description.system import RigidBody
-from symofros.dynamics.jourdain import Wrench, no_wrench
+from symofros.dynamics.acceleration import Wrench, no_wrench
 from symofros.expr.graph import ZERO, Edge
 from symofros.expr.vector import Mat3, Vec3
 from symofros.kinematics.frames import FrameKinematics

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from symofros.dynamics.inertia import LinkInertia, carried_to_parent
+from symofros.dynamics.beams import added_momentum, modal_mass
+from symofros.dynamics.inertia import LinkInertia, carried_to_parent, deformed
 from symofros.dynamics.rotors import MovingRotor
 from symofros.expr.graph import ZERO, Edge
 from symofros.expr.vector import Vec3
@@ -29,6 +30,9 @@ def mass_matrix(motion: Motion, inertias: list[LinkInertia], rotors: list[Moving
     """
     M: Matrix = [[ZERO] * motion.nv for _ in range(motion.nv)]
     composite = list(inertias)
+    bent = {beam.tip: beam for beam in motion.beams if beam.tip is not None}
+    for beam in bent.values():
+        composite[beam.root] = composite[beam.root] + deformed(motion, beam)
     for i, link in reversed(list(enumerate(motion.links))):
         whole = composite[i]
         whole.S.named(f"composite_mp_LC[{link.name}]")
@@ -36,8 +40,10 @@ def mass_matrix(motion: Motion, inertias: list[LinkInertia], rotors: list[Moving
         for k, column in enumerate(link.free_columns):
             f, n = _momentum(whole, column)
             for j in range(k + 1):
-                _set(M, link.v + j, link.v + k, _virtual_power(link.columns[j], f, n))
-            _project_down(motion, M, i, link.v + k, f, n)
+                own = modal_mass(bent[i], j, k) if i in bent else ZERO
+                _set(M, link.v + j, link.v + k, motion.g.add(_virtual_power(link.columns[j], f, n), own))
+            added = added_momentum(motion, bent[i], k) if i in bent else None
+            _project_down(motion, M, i, link.v + k, f, n, added)
         if link.parent != BASE:
             composite[link.parent] = composite[link.parent] + carried_to_parent(link, whole)
     for rotor in rotors:
@@ -73,12 +79,19 @@ def _virtual_power(column: Column, f: Vec3, n: Vec3) -> Edge:
     return column.w.g.add(column.w.dot(n), column.v.dot(f))
 
 
-def _project_down(motion: Motion, M: Matrix, i: int, k: int, f: Vec3, n: Vec3) -> None:
-    """Carry a momentum from link i to the base, and book its virtual power on every joint on the way."""
+def _project_down(
+    motion: Motion, M: Matrix, i: int, k: int, f: Vec3, n: Vec3, added: tuple[Vec3, Vec3] | None = None
+) -> None:
+    """Carry a momentum from link i to the base, and book its virtual power on every joint on the way.
+
+    A beam's tip carries what is beyond it; the beam's own momentum is added at its root.
+    """
     link = motion.links[i]
     while link.parent != BASE:
         f, n = link.R_AL.apply(f), link.R_AL.apply(n)
         n = n + link.p_AL.cross(f)
+        if added is not None:
+            f, n, added = f + added[0], n + added[1], None
         link = motion.links[link.parent]
         for j, column in enumerate(link.free_columns):
             _set(M, link.v + j, k, _virtual_power(column, f, n))

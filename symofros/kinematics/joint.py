@@ -77,8 +77,6 @@ def across_joint(
         speeds: Its speeds (nv_j), for the rates of partial velocities that depend on q.
         axis: Its main axis.
 
-    Raises:
-        ValueError: The joint is fixed, and so does not move.
     """
     g = lowering.g
     zero = Vec3(g)
@@ -88,14 +86,26 @@ def across_joint(
         turning = [Column(unit, zero, zero, zero) for unit in units]
         moving = [Column(zero, unit, zero, zero) for unit in units] if joint.kind == "free" else []
         return AcrossJoint(R, Vec3(g, *q[:-4]), tuple(moving + turning))
-    p_PD, turns = _stated(lowering, joint, q, axis)
+    return moved(g, q, speeds, *_stated(lowering, joint, q, axis))
+
+
+def moved(g: Graph, q: tuple[Edge, ...], speeds: Sequence[Edge], p_PD: Vec3, turns: list[AngleTurn]) -> AcrossJoint:
+    """The motion that a displacement and turns make, where the speeds are the rates of the coordinates.
+
+    Args:
+        g: The graph.
+        q: The coordinates.
+        speeds: Their rates.
+        p_PD: The displacement, in P.
+        turns: What follows it, first to last.
+    """
     R = Turn(g, tuple(turn.factor for turn in turns))
     columns = _differentiated(g, q, p_PD, R, turns)
     return AcrossJoint(R, p_PD, tuple(_with_rates(g, q, speeds, w, v) for w, v in columns))
 
 
 @dataclass(frozen=True)
-class _Turn:
+class AngleTurn:
     """One turn of a joint: about an axis by an angle, or by a matrix whose entries depend on q."""
 
     factor: Factor
@@ -103,55 +113,57 @@ class _Turn:
     angle: Edge = ZERO
 
 
-def _about(n: Vec3, angle: Edge, k: int | None, negative: bool) -> _Turn:
+def about(n: Vec3, angle: Edge, k: int | None, negative: bool) -> AngleTurn:
     g = n.g
     c, s = g.call("cos", angle), g.call("sin", angle)
     factor = MatrixTurn(axis_angle_matrix(n, c, s)) if k is None else AxisTurn(k, c, -s if negative else s)
-    return _Turn(factor, n, angle)
+    return AngleTurn(factor, n, angle)
 
 
-def _about_stated(n: Vec3, angle: Edge) -> _Turn:
+def _about_stated(n: Vec3, angle: Edge) -> AngleTurn:
     """A turn about any unit axis, cheap if it is a coordinate axis."""
     along = [i for i, edge in enumerate(n) if abs(edge) == ONE]
-    return _about(n, angle, along[0], tuple(n)[along[0]] < 0) if along else _about(n, angle, None, False)
+    return about(n, angle, along[0], tuple(n)[along[0]] < 0) if along else about(n, angle, None, False)
 
 
-def _stated(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> tuple[Vec3, list[_Turn]]:
+def _stated(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> tuple[Vec3, list[AngleTurn]]:
     """p_PD and the turns of a joint that is not a quaternion's."""
     g, zero, kind = lowering.g, Vec3(lowering.g), joint.kind
     main = axis.n
     if kind in ("revolute", "continuous"):
-        return zero, [_about(main, q[0], axis.k, axis.negative)]
+        return zero, [about(main, q[0], axis.k, axis.negative)]
     if kind == "prismatic":
         return main.scaled(q[0]), []
     if kind == "screw":
-        return main.scaled(g.mul(lowering.value(joint.pitch), q[0])), [_about(main, q[0], axis.k, axis.negative)]
+        return main.scaled(g.mul(lowering.value(joint.pitch), q[0])), [about(main, q[0], axis.k, axis.negative)]
     if kind == "cylindrical":
-        return main.scaled(q[1]), [_about(main, q[0], axis.k, axis.negative)]
+        return main.scaled(q[1]), [about(main, q[0], axis.k, axis.negative)]
     if kind == "universal":
         second = unit_vector(lowering.vector(joint.axis2))
         return zero, [_about_stated(main, q[0]), _about_stated(second, q[1])]
+    if kind == "fixed":
+        return zero, []
     if kind == "planar":
-        return Vec3(g, q[0], q[1]), [_about(Vec3.unit(g, 2), q[2], 2, False)]
-    if kind == "general":
-        return lowering.vector(joint.moving_position), _stated_turns(lowering, joint)
-    raise ValueError(f"joint '{joint.name}' is {kind}")
+        return Vec3(g, q[0], q[1]), [about(Vec3.unit(g, 2), q[2], 2, False)]
+    return lowering.vector(joint.moving_position), _stated_turns(lowering, joint)
 
 
-def _stated_turns(lowering: Lowering, joint: Joint) -> list[_Turn]:
+def _stated_turns(lowering: Lowering, joint: Joint) -> list[AngleTurn]:
     """The turns of the user's own R_PD(q)."""
     g, rotation = lowering.g, joint.moving_rotation
     if rotation.is_identity:
         return []
     values = [lowering.value(value) for value in rotation.values]
     if rotation.kind == "rpy":
-        return [_about(Vec3.unit(g, k), values[k], k, False) for k in (2, 1, 0) if values[k] != ZERO]
+        return [about(Vec3.unit(g, k), values[k], k, False) for k in (2, 1, 0) if values[k] != ZERO]
     if rotation.kind == "axis_angle" and all(map(g.is_constant, values[:3])):
         return [_about_stated(unit_vector(Vec3(g, *values[:3])), values[3])]
-    return [_Turn(MatrixTurn(lowering.rotation(rotation)))]
+    return [AngleTurn(MatrixTurn(lowering.rotation(rotation)))]
 
 
-def _differentiated(g: Graph, q: tuple[Edge, ...], p_PD: Vec3, R: Turn, turns: list[_Turn]) -> list[tuple[Vec3, Vec3]]:
+def _differentiated(
+    g: Graph, q: tuple[Edge, ...], p_PD: Vec3, R: Turn, turns: list[AngleTurn]
+) -> list[tuple[Vec3, Vec3]]:
     """Partial velocities w and v of v = q', in D (eqs. 32, 33)."""
     columns = []
     for coordinate in q:
@@ -165,7 +177,7 @@ def _differentiated(g: Graph, q: tuple[Edge, ...], p_PD: Vec3, R: Turn, turns: l
     return columns
 
 
-def _turn_rate(g: Graph, turn: _Turn, seeds: dict[Edge, Edge]) -> Vec3:
+def _turn_rate(g: Graph, turn: AngleTurn, seeds: dict[Edge, Edge]) -> Vec3:
     """Angular velocity of one turn, in the frame it leads to."""
     if turn.n is not None:
         # The axis is the same vector on both sides of the turn.

@@ -9,8 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from symofros.beams.elastic import BeamForms, beam_forms
 from symofros.expr.graph import Edge, Graph
 from symofros.expr.vector import Mat3, Vec3
+from symofros.kinematics.flexible import across_beam
 from symofros.kinematics.joint import Axis, Column, across_joint
 from symofros.kinematics.lowering import Lowering
 from symofros.kinematics.rotations import Turn, constant_turn, frame_with_axis, snapped, unit_vector
@@ -59,6 +61,21 @@ class MovingLink:
 
 
 @dataclass(frozen=True)
+class MovingBeam:
+    """A beam in the tree.
+
+    Attributes:
+        root: Index of the link at its root.
+        tip: Index of the link at its tip, which its elastic coordinates move; None for a rigid beam.
+        forms: Its inertia, strain energy and displacements, by those coordinates.
+    """
+
+    root: int
+    tip: int | None
+    forms: BeamForms
+
+
+@dataclass(frozen=True)
 class Motion:
     """The whole tree in motion, in one graph.
 
@@ -68,6 +85,7 @@ class Motion:
         tree: What it was made from.
         links: Parents before children.
         nv: Number of speeds.
+        beams: The beams.
     """
 
     g: Graph
@@ -75,22 +93,26 @@ class Motion:
     tree: SpanningTree
     links: tuple[MovingLink, ...]
     nv: int
+    beams: tuple[MovingBeam, ...]
 
     def in_link(self, index: int) -> Mat3:
         """R_LB of a link; the identity for the base."""
         return Mat3.identity(self.g) if index == BASE else self.links[index].R_LB
 
 
-def set_in_motion(g: Graph, tree: SpanningTree) -> Motion:
-    """Lower a tree's joints and offsets into a graph.
+def set_in_motion(g: Graph, tree: SpanningTree, as_seen: bool = False) -> Motion:
+    """Lower a tree's joints, beams and offsets into a graph.
 
     Args:
         g: Where the operations go.
         tree: Checked and numbered.
+        as_seen: With every tip where its deflection puts it; otherwise the tips of beams of zeroth order stay at
+            their undeformed places, as their equations of motion take it.
     """
     lowering = Lowering(g, tree.coordinates)
     links: list[MovingLink] = []
-    for link in tree.links:
+    beams: list[MovingBeam] = []
+    for i, link in enumerate(tree.links):
         R_LB_parent = Mat3.identity(g) if link.parent == BASE else links[link.parent].R_LB
         R_AP, p_AP = lowering.placement(link.placement, R_LB_parent)
         # P and D are turned alike by A, so that the axis lies along a coordinate axis of both.
@@ -98,7 +120,14 @@ def set_in_motion(g: Graph, tree: SpanningTree) -> Motion:
         q = tuple(lowering.symbol(name) for name in coordinate_names(link.joint))
         speeds = tuple(lowering.symbol(name) for name in speed_symbols(link.joint))
         rates = tuple(lowering.symbol(name) for name in rate_symbols(link.joint)) if link.joint.prescribed else None
-        across = across_joint(lowering, link.joint, q, speeds, axis)
+        if link.beam is not None:
+            elastic = tuple(map(lowering.symbol, link.beam.coordinates))
+            forms = beam_forms(g, lowering.value, link.beam, elastic)
+            beams.append(MovingBeam(i, i + 1 if elastic else None, forms))
+        if link.tip_of is None:
+            across = across_joint(lowering, link.joint, q, speeds, axis)
+        else:
+            across = across_beam(beams[-1].forms, q, speeds, as_seen or link.tip_of.retain != "zeroth_order")
         constant = constant_turn(snapped(R_AP @ A))
         links.append(
             MovingLink(
@@ -115,7 +144,7 @@ def set_in_motion(g: Graph, tree: SpanningTree) -> Motion:
                 axis=axis.k if link.joint.kind in _TURN_ABOUT_AXIS else None,
             )
         )
-    return Motion(g, lowering, tree, tuple(links), len(tree.coordinates.v))
+    return Motion(g, lowering, tree, tuple(links), len(tree.coordinates.v), tuple(beams))
 
 
 # Joints with a main axis that any constant direction is turned into a coordinate axis for.

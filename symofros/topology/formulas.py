@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
+from symofros.description.beam import DIRECTIONS, SECTION, STATION, Beam, Samples
 from symofros.description.system import Joint, RigidBody, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean
@@ -13,8 +14,8 @@ from symofros.topology.coordinates import QUASI_VELOCITIES, coordinate_names, ra
 
 TIME = "t"
 # What a formula may use: parameters alone; also the configuration and t; also speeds and inputs; a general joint's
-# own coordinates.
-Scope = Literal["parameters", "configuration", "motion", "joint"]
+# own coordinates; parameters and the station x of a beam; everything and x; the station xi = x/L alone.
+Scope = Literal["parameters", "configuration", "motion", "joint", "section", "spread", "shape"]
 
 
 class Stated(NamedTuple):
@@ -42,7 +43,7 @@ def stated_values(system: System) -> Iterator[Stated]:
     for body in system.bodies:
         if body.joint is not None:
             yield from _joint_values(body.joint)
-        yield from _body_values(body)
+        yield from _beam_values(body) if isinstance(body, Beam) else _body_values(body)
     for connection in system.connections:
         for label in ("stiffness", "length", "damping"):
             key = ("connection", connection.name)
@@ -101,6 +102,21 @@ def _body_values(body: RigidBody) -> Iterator[Stated]:
             yield Stated(f"{what}: load", value, key, "motion")
 
 
+def _beam_values(beam: Beam) -> Iterator[Stated]:
+    what, key = f"beam '{beam.name}'", ("body", beam.name)
+    for label in ("length", "damping"):
+        yield Stated(f"{what}: {label}", getattr(beam, label), key)
+    for label in SECTION:
+        yield Stated(f"{what}: {label}", getattr(beam, label), key, "section")
+    for load in beam.loads:
+        for value in (*load.force, *load.torque):
+            yield Stated(f"{what}: load", value, key, "spread" if load.at is None else "motion")
+    for direction in DIRECTIONS:
+        for shape in beam.user_shapes(direction):
+            if not isinstance(shape, Samples):
+                yield Stated(f"{what}: shapes of {direction}", shape, key, "shape")
+
+
 @dataclass(frozen=True)
 class _Known:
     """The names that exist, by what they are."""
@@ -113,6 +129,12 @@ class _Known:
         if stated.scope == "joint":
             assert stated.joint is not None
             return self.parameters | frozenset(stated.joint.coordinates)
+        if stated.scope == "section":
+            return self.parameters | {STATION}
+        if stated.scope == "spread":
+            return self.motion | {STATION}
+        if stated.scope == "shape":
+            return frozenset({"xi"})
         return frozenset(getattr(self, stated.scope))
 
 
@@ -131,6 +153,9 @@ _RULES: dict[Scope, str] = {
     "parameters": "geometry, inertia, gravity and the constants of forces depend on parameters only",
     "configuration": "a potential depends on coordinates, parameters and t only",
     "motion": "a formula uses names that the description declares",
+    "section": "a section property depends on parameters and on the station x only",
+    "spread": "a spread load uses names that the description declares, and the station x",
+    "shape": "a shape function depends on xi = x/L only",
     "joint": "a joint's own R_PD and p_PD depend on its coordinates and on parameters only",
 }
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from symofros.description.system import RigidBody, System
+from symofros.description.beam import STATION, Beam
+from symofros.description.system import Body, RigidBody, System
 from symofros.errors import Problem
 from symofros.topology.numbers import Array, Numbers, skew
 
@@ -17,7 +18,7 @@ PHYSICAL_TOLERANCE = 1e-6
 def inertia_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
     """Bodies whose inertia no distribution of mass can have, unless they waive the check."""
     for body in system.bodies:
-        if body.inertia is None or "nonphysical_inertia" in body.waive:
+        if isinstance(body, Beam) or body.inertia is None or "nonphysical_inertia" in body.waive:
             continue
         fault = _fault(body, numbers)
         if fault:
@@ -60,14 +61,23 @@ def moments_about_center(body: RigidBody, numbers: Numbers) -> Array:
     return J
 
 
+def _weight(body: Body, numbers: Numbers) -> tuple[float, float]:
+    """How much mass and moment of inertia a body has, in size."""
+    if isinstance(body, Beam):
+        middle = numbers.extended({STATION: 0.5 * numbers.value(body.length)})
+        return abs(middle.value(body.rhoA) * middle.value(body.length)), 0.0
+    if body.inertia is None:
+        return 0.0, 0.0
+    return abs(numbers.value(body.inertia.mass)), float(np.abs(numbers.values(body.inertia.moments)).max())
+
+
 def massless_tip_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
     """Joints that move no mass at all: the mass matrix would be singular at every configuration."""
     mass: dict[str, float] = {}
     turning: dict[str, float] = {}
     parent_of = {body.name: body.joint.parent for body in system.bodies if body.joint is not None}
     for body in system.bodies:
-        own = abs(numbers.value(body.inertia.mass)) if body.inertia else 0.0
-        moments = float(np.abs(numbers.values(body.inertia.moments)).max()) if body.inertia else 0.0
+        own, moments = _weight(body, numbers)
         name: str | None = body.name
         while name is not None:
             mass[name] = mass.get(name, 0.0) + own

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from symofros.description.system import WORLD, Inertia, Joint, RigidBody, System
-from symofros.description.values import Rotation, Vector
+from symofros.description.beam import Beam
+from symofros.description.system import WORLD, Body, Inertia, Joint, RigidBody, System
+from symofros.description.values import IDENTITY, Rotation, Vector
 from symofros.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates
 
 BASE = -1
@@ -34,6 +35,8 @@ class Link:
         inertias: Of the body and of the bodies fixed to it, each with where it sits.
         q: Its slice of q, as (start, size); empty where the motion is prescribed.
         v: Its slice of v, alike.
+        beam: The beam whose root this link is.
+        tip_of: The beam whose tip this link is: its joint stands for the beam's deformation.
     """
 
     name: str
@@ -43,6 +46,8 @@ class Link:
     inertias: tuple[tuple[Placement, Inertia], ...]
     q: tuple[int, int]
     v: tuple[int, int]
+    beam: Beam | None = None
+    tip_of: Beam | None = None
 
 
 @dataclass(frozen=True)
@@ -104,7 +109,7 @@ def build_tree(system: System) -> SpanningTree:
     Args:
         system: Without problems; this function relies on it.
     """
-    children: dict[str, list[RigidBody]] = {}
+    children: dict[str, list[Body]] = {}
     base_names = {WORLD} | {body.name for body in system.bodies if body.joint is None}
     for body in system.bodies:
         if body.joint is not None:
@@ -124,52 +129,68 @@ class _Draft(NamedTuple):
     placement: Placement
     q: tuple[int, int]
     v: tuple[int, int]
+    beam: Beam | None
+    tip_of: Beam | None
 
     def freeze(self, inertias: list[tuple[Placement, Inertia]]) -> Link:
-        return Link(self.name, self.joint, self.parent, self.placement, tuple(inertias), self.q, self.v)
+        return Link(self.name, self.joint, self.parent, self.placement, tuple(inertias), self.q, self.v, self.beam,
+                    self.tip_of)  # fmt: skip
 
 
 class _Builder:
-    def __init__(self, children: dict[str, list[RigidBody]]) -> None:
+    def __init__(self, children: dict[str, list[Body]]) -> None:
         self.children = children
         self.links: list[_Draft] = []
         self.inertias: list[list[tuple[Placement, Inertia]]] = []
         self.frames: list[tuple[str, str, int, Placement]] = []
         self.nq = self.nv = 0
 
-    def place(self, body: RigidBody, link: int, placement: Placement, key: str) -> None:
+    def place(self, body: Body, link: int, placement: Placement, key: str) -> None:
         """Put a body, and then what it carries, at a placement on a link; depth first without recursion."""
         stack = [(body, link, placement, key)]
         while stack:
             body, link, placement, key = stack.pop()
-            if body.joint is not None and body.joint.kind != "fixed":
-                link, placement = self._add_link(body, body.joint, link, placement), ()
-            self._attach(body, link, placement)
-            frames = {frame.name: frame for frame in body.frames}
+            beam = body if isinstance(body, Beam) else None
+            if body.joint is not None and (body.joint.kind != "fixed" or beam is not None):
+                link, placement = self._add_link(body.name, body.joint, link, placement, beam), ()
+            ends = self._attach(body, link, placement)
             carried = []
             for child in self.children.get(key, ()):
                 assert child.joint is not None
                 joint = child.joint
-                at = placement
-                if joint.frame is not None and joint.frame in frames:
-                    at = (*at, Step(frames[joint.frame].position, frames[joint.frame].rotation))
-                carried.append((child, link, (*at, Step(joint.position, joint.rotation)), child.name))
+                on, at = ends.get(joint.frame, ends[None])
+                carried.append((child, on, (*at, Step(joint.position, joint.rotation)), child.name))
             stack.extend(reversed(carried))
 
-    def _add_link(self, body: RigidBody, joint: Joint, parent: int, placement: Placement) -> int:
+    def _add_link(
+        self, name: str, joint: Joint, parent: int, placement: Placement,
+        beam: Beam | None = None, tip_of: Beam | None = None,
+    ) -> int:  # fmt: skip
         nq, nv = (0, 0) if joint.prescribed else joint_sizes(joint)
-        self.links.append(_Draft(body.name, joint, parent, placement, (self.nq, nq), (self.nv, nv)))
+        self.links.append(_Draft(name, joint, parent, placement, (self.nq, nq), (self.nv, nv), beam, tip_of))
         self.inertias.append([])
         self.nq, self.nv = self.nq + nq, self.nv + nv
         return len(self.links) - 1
 
-    def _attach(self, body: RigidBody, link: int, placement: Placement) -> None:
+    def _attach(self, body: Body, link: int, placement: Placement) -> dict[str | None, tuple[int, Placement]]:
+        """Add a body's inertia and frames to its link; where each of its frames is (None: the body frame)."""
         if body.inertia is not None and link != BASE:
             self.inertias[link].append((placement, body.inertia))
         self.frames.append((body.name, body.name, link, placement))
+        ends: dict[str | None, tuple[int, Placement]] = {None: (link, placement)}
+        tip = self._add_tip(body, link) if isinstance(body, Beam) else None
         for frame in body.frames:
-            at = (*placement, Step(frame.position, frame.rotation))
-            self.frames.append((frame.name, f"{body.name}.{frame.name}", link, at))
+            on, at = tip if tip is not None else (link, (*placement, Step(frame.position, frame.rotation)))
+            ends[frame.name] = (on, at)
+            self.frames.append((frame.name, f"{body.name}.{frame.name}", on, at))
+        return ends
+
+    def _add_tip(self, beam: Beam, root: int) -> tuple[int, Placement]:
+        """The place of a beam's tip: a link of its own, which the elastic coordinates move, if there are any."""
+        if not beam.modes:
+            return root, (Step((beam.length, 0.0, 0.0), IDENTITY),)
+        elastic = Joint(f"{beam.name}.elastic", "general", beam.name, coordinates=beam.coordinates)
+        return self._add_link(f"{beam.name}.tip", elastic, root, (), tip_of=beam), ()
 
 
 def _public_names(found: list[tuple[str, str, int, Placement]]) -> tuple[NamedFrame, ...]:

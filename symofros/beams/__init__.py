@@ -1,0 +1,1 @@
+"""One flexible body in its own frame: shape functions, deformation, modal integrals (docs/theory/beams.md)."""

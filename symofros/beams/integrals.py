@@ -1,0 +1,83 @@
+"""Integrals over the length of a beam: Fields weighted by section properties become Forms.
+
+A property that is the same along the beam stands before the integral, which is then exact (rational where the shape
+functions are). One that changes is taken at Gauss stations on every interval between knots.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from symofros.beams.fields import Field, Form, Monomial, length_power
+from symofros.beams.piecewise import Number, Piecewise, stations
+from symofros.description.beam import STATION
+from symofros.description.values import Value, symbols
+from symofros.expr.expression import Expression
+from symofros.expr.graph import ZERO, Edge, Graph
+
+# Gauss nodes an interval for properties that change along the beam: exact to degree 31.
+POINTS = 16
+
+Lower = Callable[[Value], Edge]
+
+
+@dataclass(frozen=True)
+class Along:
+    """What integration over one beam needs.
+
+    Attributes:
+        g: The graph.
+        lower: Values of the description -> edges.
+        length: The beam's length, as it was stated and as an edge.
+        coordinates: Edges of its elastic coordinates.
+        knots: Where its shape functions' pieces meet.
+    """
+
+    g: Graph
+    lower: Lower
+    length: Value
+    L: Edge
+    coordinates: tuple[Edge, ...]
+    knots: tuple[Number, ...]
+
+    def integral(self, field: Field, weight: Value) -> Form:
+        """The integral of weight times field over the beam's length."""
+        g = self.g
+        if STATION not in symbols(weight):
+            uniform = self.lower(weight)
+            numbers = {mono: g.constant(float(f.integral())) for mono, f in field.terms.items()}
+            terms = {mono: g.mul(number, uniform) for mono, number in numbers.items()}
+        else:
+            assert isinstance(weight, Expression)
+            xi, w = stations(self.knots, POINTS)
+            values = [self.lower(at_station(weight, self.length, x)) for x in xi]
+            terms = {mono: _weighted(g, f, xi, w, values) for mono, f in field.terms.items()}
+        return self._scaled(field, terms)
+
+    def at(self, field: Field, xi: float) -> Form:
+        """The field at one station."""
+        return field.at(self.g, self.coordinates, self.L, xi)
+
+    def _scaled(self, field: Field, terms: dict[Monomial, Edge]) -> Form:
+        g = self.g
+        return Form(g, self.coordinates, {
+            mono: g.mul(edge, length_power(g, self.L, field.exponent(mono) + 1))
+            for mono, edge in terms.items() if edge != ZERO
+        })  # fmt: skip
+
+
+def _weighted(g: Graph, f: Piecewise, xi: Sequence[float], w: Sequence[float], values: Sequence[Edge]) -> Edge:
+    return g.sum(g.mul(g.constant(weight * float(f(x))), value) for x, weight, value in zip(xi, w, values, strict=True))
+
+
+def at_station(formula: Expression, length: Value, xi: float) -> Expression:
+    """A formula of the station x with x = xi times the length."""
+    if formula.kind == "symbol" and formula.name == STATION:
+        whole = length if isinstance(length, Expression) else Expression("number", number=length)
+        return Expression("mul", (Expression("number", number=xi), whole))
+    if not formula.args:
+        return formula
+    return Expression(
+        formula.kind, tuple(at_station(arg, length, xi) for arg in formula.args), formula.number, formula.name
+    )

@@ -1,0 +1,193 @@
+"""Piecewise polynomials on [0, 1]: exact with fractions, to rounding with floats.
+
+Every shape function is one of these, whatever its family: products, integrals and antiderivatives are then the same
+few lines, and exact where the coefficients are rational.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+
+Number = Fraction | float | int
+Coefficients = tuple[Number, ...]
+
+# Degree of the polynomials that stand for a smooth function on one piece.
+_FIT_DEGREE = 14
+
+
+@dataclass(frozen=True)
+class Piecewise:
+    """Polynomials on consecutive intervals.
+
+    Attributes:
+        knots: Ends of the intervals, from 0 to 1.
+        pieces: For each interval, coefficients in the distance from its left end, constant first.
+    """
+
+    knots: tuple[Number, ...]
+    pieces: tuple[Coefficients, ...]
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether it vanishes identically."""
+        return not any(any(piece) for piece in self.pieces)
+
+    @property
+    def degree(self) -> int:
+        """The largest degree of its pieces."""
+        return max(len(piece) for piece in self.pieces) - 1
+
+    def __add__(self, other: Piecewise) -> Piecewise:
+        a, b = _aligned(self, other)
+        return Piecewise(a.knots, tuple(map(_sum, a.pieces, b.pieces)))
+
+    def __mul__(self, other: Piecewise) -> Piecewise:
+        a, b = _aligned(self, other)
+        return Piecewise(a.knots, tuple(map(_product, a.pieces, b.pieces)))
+
+    def scaled(self, factor: Number) -> Piecewise:
+        """Factor times the function."""
+        return Piecewise(self.knots, tuple(tuple(factor * c for c in piece) for piece in self.pieces))
+
+    def derivative(self) -> Piecewise:
+        """The derivative, piece by piece."""
+        return Piecewise(
+            self.knots, tuple(tuple(k * c for k, c in enumerate(p))[1:] or (p[0] * 0,) for p in self.pieces)
+        )
+
+    def antiderivative(self) -> Piecewise:
+        """The continuous antiderivative that vanishes at 0."""
+        start: Number = Fraction(0)
+        pieces: list[Coefficients] = []
+        for (a, b), piece in zip(pairwise(self.knots), self.pieces, strict=True):
+            raised = (start, *(_divided(c, k + 1) for k, c in enumerate(piece)))
+            pieces.append(raised)
+            start = _value(raised, b - a)
+        return Piecewise(self.knots, tuple(pieces))
+
+    def integral(self) -> Number:
+        """The integral from 0 to 1."""
+        total: Number = Fraction(0)
+        for (a, b), piece in zip(pairwise(self.knots), self.pieces, strict=True):
+            h = b - a
+            total += h * _value(tuple(_divided(c, k + 1) for k, c in enumerate(piece)), h)
+        return total
+
+    def __call__(self, xi: Number) -> Number:
+        """The value at a station; at a knot, that of the interval to its left."""
+        i = 0
+        while i < len(self.pieces) - 1 and xi > self.knots[i + 1]:
+            i += 1
+        return _value(self.pieces[i], xi - self.knots[i])
+
+    def refined(self, knots: tuple[Number, ...]) -> Piecewise:
+        """The same function on finer knots, which contain its own."""
+        pieces, i = [], 0
+        for a in knots[:-1]:
+            while i < len(self.pieces) - 1 and a >= self.knots[i + 1]:
+                i += 1
+            pieces.append(_shifted(self.pieces[i], a - self.knots[i]))
+        return Piecewise(knots, tuple(pieces))
+
+
+def polynomial(*coefficients: Number | int) -> Piecewise:
+    """One polynomial on [0, 1], constant first."""
+    return Piecewise(
+        (Fraction(0), Fraction(1)), (tuple(Fraction(c) if isinstance(c, int) else c for c in coefficients),)
+    )
+
+
+ONE = polynomial(1)
+XI = polynomial(0, 1)
+
+
+def fitted(function: Callable[[np.ndarray], np.ndarray], pieces: int) -> Piecewise:
+    """A smooth function by interpolation at Chebyshev points on equal intervals.
+
+    Args:
+        function: Of stations in [0, 1], vectorised.
+        pieces: How many intervals.
+    """
+    nodes = np.cos((2 * np.arange(_FIT_DEGREE + 1) + 1) * np.pi / (2 * (_FIT_DEGREE + 1)))
+    found = []
+    for k in range(pieces):
+        a, h = k / pieces, 1.0 / pieces
+        series = np.polynomial.chebyshev.Chebyshev.fit(
+            a + h * (nodes + 1) / 2, function(a + h * (nodes + 1) / 2), _FIT_DEGREE, domain=[a, a + h]
+        )
+        # In the interval's own variable the coefficients stay of the size of the function.
+        local = np.polynomial.chebyshev.cheb2poly(series.coef)
+        shifted = np.polynomial.Polynomial(local)(np.polynomial.Polynomial([-1.0, 2.0 / h]))
+        found.append(tuple(float(c) for c in shifted.coef))
+    return Piecewise(tuple(k / pieces for k in range(pieces)) + (1.0,), tuple(found))
+
+
+@lru_cache(maxsize=16)
+def gauss(points: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Nodes and weights of Gauss-Legendre quadrature on [0, 1]."""
+    x, w = np.polynomial.legendre.leggauss(points)
+    return tuple(((x + 1) / 2).tolist()), tuple((w / 2).tolist())
+
+
+def stations(knots: Sequence[Number], points: int) -> tuple[list[float], list[float]]:
+    """Gauss nodes and weights on every interval between knots.
+
+    Args:
+        knots: From 0 to 1.
+        points: Nodes an interval.
+    """
+    nodes, weights = gauss(points)
+    xi = [float(a) + float(b - a) * node for a, b in pairwise(knots) for node in nodes]
+    w = [float(b - a) * weight for a, b in pairwise(knots) for weight in weights]
+    return xi, w
+
+
+def _aligned(a: Piecewise, b: Piecewise) -> tuple[Piecewise, Piecewise]:
+    if a.knots == b.knots:
+        return a, b
+    knots = tuple(sorted({*a.knots, *b.knots}))
+    return a.refined(knots), b.refined(knots)
+
+
+def _sum(a: Coefficients, b: Coefficients) -> Coefficients:
+    short, long = sorted((a, b), key=len)
+    return tuple(x + y for x, y in zip(short, long, strict=False)) + long[len(short) :]
+
+
+def _product(a: Coefficients, b: Coefficients) -> Coefficients:
+    if not any(a) or not any(b):
+        return (Fraction(0),)
+    total: list[Number] = [Fraction(0)] * (len(a) + len(b) - 1)
+    for i, x in enumerate(a):
+        if x:
+            for j, y in enumerate(b):
+                total[i + j] += x * y
+    return tuple(total)
+
+
+def _value(coefficients: Coefficients, s: Number) -> Number:
+    total: Number = Fraction(0)
+    for c in reversed(coefficients):
+        total = total * s + c
+    return total
+
+
+def _divided(c: Number, k: int) -> Number:
+    return Fraction(c.numerator, c.denominator * k) if isinstance(c, Fraction) else c / k
+
+
+def _shifted(coefficients: Coefficients, s: Number) -> Coefficients:
+    """The same polynomial in the distance from a point further on (Taylor's formula by repeated synthetic division)."""
+    if not s:
+        return coefficients
+    c = list(coefficients)
+    for i in range(len(c) - 1):
+        for j in range(len(c) - 2, i - 1, -1):
+            c[j] = c[j] + s * c[j + 1]
+    return tuple(c)

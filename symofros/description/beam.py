@@ -1,0 +1,198 @@
+"""Beam: a flexible body, with the loads along its axis. No computation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+from symofros.description.frames import Frame
+from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
+from symofros.errors import DescriptionError, Problem, did_you_mean
+
+if TYPE_CHECKING:
+    from symofros.description.system import Joint
+
+Direction = Literal["bend_y", "bend_z", "twist"]
+DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
+Family = Literal["spline", "polynomial", "legendre", "clamped_free", "hermite", "user"]
+FAMILIES: tuple[Family, ...] = get_args(Family)
+Retain = Literal["zeroth_order", "first_order", "all"]
+RETAIN: tuple[Retain, ...] = get_args(Retain)
+
+# What may depend on the station x, and so taper.
+SECTION = ("rhoA", "EI_y", "EI_z", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
+STATION = "x"
+
+
+@dataclass(frozen=True)
+class Samples:
+    """A shape function by its values at stations; a cubic spline goes through them.
+
+    Attributes:
+        xi: x/L of the samples, rising from 0 to 1.
+        values: Of the function.
+    """
+
+    xi: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        """Convert, and check the stations."""
+        object.__setattr__(self, "xi", tuple(float(x) for x in self.xi))
+        object.__setattr__(self, "values", tuple(float(x) for x in self.values))
+        rising = all(a < b for a, b in zip(self.xi, self.xi[1:], strict=False))
+        if len(self.xi) < 4 or len(self.xi) != len(self.values) or not rising or (self.xi[0], self.xi[-1]) != (0, 1):
+            raise DescriptionError(
+                Problem("sampled shape function: unusable stations",
+                        f"{len(self.xi)} stations, {len(self.values)} values",
+                        "at least 4 stations that rise from 0 to 1, and one value for each")
+            )  # fmt: skip
+
+
+UserShape = Value | Samples
+
+
+@dataclass(frozen=True)
+class BeamLoad:
+    """A force and a moment on the centroid axis, at one station or spread over the length.
+
+    Attributes:
+        force: [N], or [N/m] if spread: formulas as for a Load, and also of the station x [m] if spread.
+        torque: [N m], or [N m/m], likewise.
+        at: x/L of the station, from 0 (root) to 1 (tip); None if spread over the length.
+        axes: Of the components: "body" (the axes of the undeformed beam) or "world".
+    """
+
+    force: Vector = ORIGIN
+    torque: Vector = ORIGIN
+    at: float | None = None
+    axes: Literal["body", "world"] = "body"
+
+    def __post_init__(self) -> None:
+        """Convert the components, check the station."""
+        object.__setattr__(self, "force", as_vector(self.force, "beam load: force"))
+        object.__setattr__(self, "torque", as_vector(self.torque, "beam load: torque"))
+        if self.at is not None and not 0.0 <= self.at <= 1.0:
+            raise DescriptionError(
+                Problem("beam load: station off the beam", f"at {self.at!r}", "at is x/L, from 0 (root) to 1 (tip)")
+            )
+        if self.axes not in ("body", "world"):
+            raise DescriptionError(
+                Problem(f"beam load: axes '{self.axes}'", str(self.axes), "axes are 'body' or 'world'")
+            )
+
+
+@dataclass(frozen=True)
+class Beam:
+    """A slender elastic body along x of its frame B, clamped to B at the root (docs/theory/beams.md).
+
+    Section properties are numbers or formulas of parameters and, where the section changes, of the station x [m].
+
+    Attributes:
+        name: Unique; also the name of its body frame, at the root.
+        joint: How the root moves on its parent; kind "fixed" clamps it there.
+        length: [m].
+        rhoA: Mass per length [kg/m].
+        EI_z: Stiffness against bending in the x-y plane [N m^2].
+        EI_y: Stiffness against bending in the x-z plane [N m^2].
+        GJ: Stiffness against twist [N m^2].
+        rhoJ: Polar moment of inertia per length, about x [kg m].
+        rhoI_y: Moment of inertia per length about y, counted with rotary_inertia [kg m].
+        rhoI_z: Likewise about z.
+        bend_y: Number of shape functions for the displacement along y; zero is rigid.
+        bend_z: Likewise along z.
+        twist: Likewise for the rotation about x.
+        family: Of the shape functions (FAMILIES).
+        shapes: The user's own functions of xi = x/L, or samples, for family "user": direction -> functions.
+        damping: Voigt-Kelvin retardation time: stress is E (strain + damping strain rate) [s].
+        foreshortening: Whether bending pulls the axis back, which is what stiffens a beam that spins.
+        rotary_inertia: Whether sections resist being turned by bending.
+        retain: How far elastic terms are kept: "zeroth_order" (linear elastic terms only, no stiffening or softening
+            by motion), "first_order" (consistent to first order) or "all" (everything the second-order field gives).
+        frames: Its one extremity frame, at the tip and turned with it.
+        loads: Along the axis.
+        waive: Names of checks it is allowed to fail.
+    """
+
+    name: str
+    joint: Joint
+    length: Value
+    rhoA: Value
+    EI_z: Value = 0.0
+    EI_y: Value = 0.0
+    GJ: Value = 0.0
+    rhoJ: Value = 0.0
+    rhoI_y: Value = 0.0
+    rhoI_z: Value = 0.0
+    bend_y: int = 0
+    bend_z: int = 0
+    twist: int = 0
+    family: Family = "spline"
+    shapes: tuple[tuple[Direction, tuple[UserShape, ...]], ...] = ()
+    damping: Value = 0.0
+    foreshortening: bool = True
+    rotary_inertia: bool = False
+    retain: Retain = "first_order"
+    frames: tuple[Frame, ...] = (Frame("tip"),)
+    loads: tuple[BeamLoad, ...] = ()
+    waive: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Convert numbers, freeze collections, check the choices."""
+        what = f"beam '{self.name}'"
+        for label in ("length", "damping", *SECTION):
+            object.__setattr__(self, label, as_value(getattr(self, label), f"{what}: {label}"))
+        for label in ("frames", "loads", "waive"):
+            object.__setattr__(self, label, tuple(getattr(self, label)))
+        given: Any = dict(self.shapes)
+        shapes = tuple(
+            (key, tuple(_shape(x, f"{what}: {key}") for x in given[key])) for key in DIRECTIONS if key in given
+        )
+        object.__setattr__(self, "shapes", shapes)
+        for label, choice, known in (("family", self.family, FAMILIES), ("retain", self.retain, RETAIN)):
+            if choice not in known:
+                raise DescriptionError(
+                    Problem(f"{what}: unknown {label}", f"'{choice}'", f"one of {', '.join(known)}",
+                            did_you_mean(str(choice), known))
+                )  # fmt: skip
+        for key in given:
+            if key not in DIRECTIONS:
+                raise DescriptionError(
+                    Problem(f"{what}: shapes for an unknown direction", f"'{key}'", f"one of {', '.join(DIRECTIONS)}",
+                            did_you_mean(str(key), DIRECTIONS))
+                )  # fmt: skip
+        for direction in DIRECTIONS:
+            count = getattr(self, direction)
+            if isinstance(count, bool) or not isinstance(count, int) or count < 0:
+                raise DescriptionError(
+                    Problem(
+                        f"{what}: {direction} is not a number of functions", repr(count), "a whole number, 0 or more"
+                    )
+                )
+
+    @property
+    def inertia(self) -> None:
+        """A beam's mass is in its section, not in an inertia of a rigid body."""
+        return None
+
+    @property
+    def modes(self) -> int:
+        """How many elastic coordinates it has."""
+        return self.bend_y + self.bend_z + self.twist
+
+    def user_shapes(self, direction: Direction) -> tuple[UserShape, ...]:
+        """The user's own functions for a direction."""
+        return dict(self.shapes).get(direction, ())
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the elastic coordinates: beam.bend_y[0] and so on."""
+        return tuple(f"{self.name}.{key}[{i}]" for key in DIRECTIONS for i in range(getattr(self, key)))
+
+    def plain_values(self) -> list[tuple[str, Value]]:
+        """What may depend on parameters only, by label."""
+        return [(item.name, getattr(self, item.name)) for item in fields(self) if item.name in ("length", "damping")]
+
+
+def _shape(stated: Any, what: str) -> UserShape:
+    return stated if isinstance(stated, Samples) else as_value(stated, what)
