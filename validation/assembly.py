@@ -168,8 +168,8 @@ class _Builder:
         self.joints: list[Described] = []
         self.movers: list[Mover] = []
         self.frames: list[tuple[str, str, FrameSite]] = []
-        self.children: dict[str, list[sf.RigidBody]] = {}
-        self.base = next((body for body in system.bodies if body.joint is None), sf.RigidBody(WORLD))
+        self.children: dict[str, list[sf.Body]] = {}
+        self.base: sf.Body = next((body for body in system.bodies if body.joint is None), sf.RigidBody(WORLD))
         for body in system.bodies:
             if body.joint is not None:
                 parent = self.base.name if body.joint.parent == WORLD else body.joint.parent
@@ -193,10 +193,10 @@ class _Builder:
             self._add_frames(body, mover, X_BF)
             pending += [(child, mover, X_BF @ self._proximal(body, child)) for child in self._reversed_children(body)]
 
-    def _reversed_children(self, body: sf.RigidBody) -> list[sf.RigidBody]:
+    def _reversed_children(self, body: sf.Body) -> list[sf.Body]:
         return self.children.get(body.name, [])[::-1]
 
-    def _proximal(self, parent: sf.RigidBody, child: sf.RigidBody) -> Placement:
+    def _proximal(self, parent: sf.Body, child: sf.Body) -> Placement:
         joint = child.joint
         assert joint is not None
         X = self.placement(joint.position, joint.rotation)
@@ -205,7 +205,7 @@ class _Builder:
         frame = next(frame for frame in parent.frames if frame.name == joint.frame)
         return self.placement(frame.position, frame.rotation) @ X
 
-    def _add_mover(self, body: sf.RigidBody, joint: sf.Joint, parent: int, X_AP: Placement) -> None:
+    def _add_mover(self, body: sf.Body, joint: sf.Joint, parent: int, X_AP: Placement) -> None:
         parts = series(joint)
         pitch = float(self.numbers([joint.pitch])[0])
         q, v = (self.joints[-1].q.stop, self.joints[-1].v.stop) if self.joints else (0, 0)
@@ -221,7 +221,7 @@ class _Builder:
             self.movers.append(Mover(body.name, name, joint, part, i > 0, parent, X_AP, axis, q_part, v_part, pitch))
             parent, X_AP = len(self.movers) - 1, Placement.identity()
 
-    def _add_mass(self, body: sf.RigidBody, mover: int, X_BF: Placement) -> None:
+    def _add_mass(self, body: sf.Body, mover: int, X_BF: Placement) -> None:
         if body.inertia is None or mover == BASE:
             return
         inertia = body.inertia
@@ -236,7 +236,7 @@ class _Builder:
             J = R_FC @ J @ R_FC.T
         self.movers[mover].masses.append(Mass(body.name, mass, X_BF.p + X_BF.R @ center, X_BF.R @ J @ X_BF.R.T))
 
-    def _add_frames(self, body: sf.RigidBody, mover: int, X_BF: Placement) -> None:
+    def _add_frames(self, body: sf.Body, mover: int, X_BF: Placement) -> None:
         self.frames.append((body.name, body.name, FrameSite(body.name, mover, X_BF)))
         for frame in body.frames:
             X = X_BF @ self.placement(frame.position, frame.rotation)

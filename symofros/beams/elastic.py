@@ -133,8 +133,8 @@ class BeamForms:
     def damping_energy(self, speeds: tuple[Edge, ...]) -> Form:
         """The dissipation function: damping times the quadratic strain energy, of the rates (eq. 14)."""
         factor = self.along.lower(self.beam.damping)
-        terms = {mono: self.along.g.mul(factor, c) for mono, c in self.strain_energy.terms.items() if len(mono) == 2}
-        return Form(self.along.g, speeds, terms)
+        quadratic = self.strain_energy.upto(2).scaled(factor)
+        return Form(self.along.g, speeds, quadratic.terms)
 
     def point(self, xi: float) -> Vector:
         """p_BS at a station."""

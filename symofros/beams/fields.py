@@ -143,6 +143,10 @@ class Form:
         """The form without its term of degree 0."""
         return Form(self.g, self.coordinates, {mono: edge for mono, edge in self.terms.items() if mono})
 
+    def upto(self, degree: float) -> Form:
+        """The form without monomials above a degree."""
+        return Form(self.g, self.coordinates, {mono: edge for mono, edge in self.terms.items() if len(mono) <= degree})
+
     @cached_property
     def gradient(self) -> tuple[Form, ...]:
         """The derivatives with respect to each coordinate."""
@@ -150,8 +154,7 @@ class Form:
 
     def value(self, upto: float = EVERY_DEGREE) -> Edge:
         """The polynomial's value without the monomials above a degree: the one place where orders are cut."""
-        kept = {mono: edge for mono, edge in self.terms.items() if len(mono) <= upto and edge != ZERO}
-        return self._nested(kept)
+        return self._nested({mono: edge for mono, edge in self.upto(upto).terms.items() if edge != ZERO})
 
     def _nested(self, terms: Mapping[Monomial, Edge]) -> Edge:
         """The sum as c + sum_i x_i (c_i + sum_(j >= i) x_j (...)): each monomial costs one product."""

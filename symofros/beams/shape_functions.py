@@ -4,10 +4,10 @@ Bending functions satisfy phi(0) = phi'(0) = 0, twist functions phi(0) = 0. What
 
 | family | functions | coordinate |
 |---|---|---|
-| spline | cubic B-splines on uniform knots | coefficient [m, rad]; the last one alone moves the tip, by its value |
+| spline | cubic B-splines, uniform knots | coefficient [m, rad]; only the last moves the tip, by its value |
 | polynomial | xi^2, xi^3, ... (twist: xi, xi^2, ...) | share of the tip's displacement [m] or angle [rad] |
 | legendre | xi^2 (twist: xi) times Jacobi polynomials, orthogonal over the beam, 1 at the tip | likewise |
-| clamped_free | modes of the uniform cantilever (twist: clamped-free shaft), mean square 1 | modal amplitude [m, rad] |
+| clamped_free | modes of the uniform cantilever (twist: of the shaft), mean square 1 | modal amplitude [m, rad] |
 | hermite | cubic with given tip displacement and slope (twist: linear) | tip displacement [m], slope [rad]; angle [rad] |
 | user | formulas of xi, or sampled values | amplitude [m, rad] |
 """
@@ -102,10 +102,8 @@ def _orthogonal(bending: bool, count: int) -> list[Piecewise]:
 
 
 def _hermite(bending: bool, count: int) -> tuple[Shape, ...]:
-    if bending:
-        available = (Shape(polynomial(0, 0, 3, -2), True), Shape(polynomial(0, 0, -1, 1), False))
-    else:
-        available = (Shape(XI, False),)
+    cubic = (Shape(polynomial(0, 0, 3, -2), True), Shape(polynomial(0, 0, -1, 1), False))
+    available = cubic if bending else (Shape(XI, False),)
     if count not in (0, len(available)):
         meaning = "tip displacement and slope: 2 functions" if bending else "the tip angle: 1 function"
         raise FamilyError(f"{count} functions asked for; hermite has {meaning}, all or none")
@@ -150,9 +148,12 @@ def _b_spline(knots: list[Fraction], degree: int, index: int, spans: int) -> Pie
 
 def _eigenmodes(bending: bool, count: int) -> list[Piecewise]:
     if not bending:
-        waves = [(k + 0.5) * math.pi for k in range(count)]
-        return [_integrated(lambda xi, b=b: math.sqrt(2.0) * b * np.cos(b * xi), 1, 2 + k) for k, b in enumerate(waves)]
+        return [_integrated(_shaft_slope((k + 0.5) * math.pi), 1, 2 + k) for k in range(count)]
     return [_integrated(_cantilever_curvature(k), 2, 3 + k) for k in range(count)]
+
+
+def _shaft_slope(b: float) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda xi: math.sqrt(2.0) * b * np.cos(b * xi)
 
 
 def cantilever_root(k: int) -> float:
@@ -167,7 +168,7 @@ def cantilever_root(k: int) -> float:
 
 
 def _cantilever_curvature(k: int) -> Callable[[np.ndarray], np.ndarray]:
-    """phi'' of cantilever mode k with mean square 1, in a form without differences of large numbers."""
+    """The second derivative of cantilever mode k with mean square 1, in a form without differences of large numbers."""
     b = cantilever_root(k)
     # sigma = (sinh b - sin b)/(cosh b + cos b); 1 - sigma is exponentially small and written without cancellation.
     e = math.exp(-b)

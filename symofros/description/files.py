@@ -15,7 +15,7 @@ from symofros.description.forces import Connection, Potential, VirtualPower
 from symofros.description.reading import Reading as Reading
 from symofros.description.reading import in_order, read_bytes
 from symofros.description.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
-from symofros.description.system import Input, Parameter, RigidBody, System
+from symofros.description.system import Body, Input, Parameter, System
 from symofros.description.yaml_nodes import Node, YamlFault, compose
 from symofros.description.yaml_writer import write_yaml as write_yaml
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -60,7 +60,7 @@ class _Merger:
     system: SystemEntry = field(default_factory=SystemEntry)
     parameters: list[Parameter] = field(default_factory=list)
     inputs: list[Input] = field(default_factory=list)
-    bodies: list[RigidBody] = field(default_factory=list)
+    bodies: list[Body] = field(default_factory=list)
     connections: list[Connection] = field(default_factory=list)
     virtual_power: list[VirtualPower] = field(default_factory=list)
     potentials: list[Potential] = field(default_factory=list)
@@ -210,7 +210,7 @@ def _names_of(section: str, name: str, entry: Any) -> set[str]:
     return {name, own, f"d{own}", *(f"{own}.{suffix}" for suffix in _SUFFIXES)}
 
 
-def _body_origin(body: RigidBody, root: Node, shown: str) -> Iterator[tuple[tuple[str, ...], str]]:
+def _body_origin(body: Body, root: Node, shown: str) -> Iterator[tuple[tuple[str, ...], str]]:
     if body.joint is not None:
         yield ("joint", body.joint.name), f"{shown}:{root.at(('bodies', body.name, 'joint')).key_line}"
     for frame in body.frames:

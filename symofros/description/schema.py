@@ -32,8 +32,10 @@ from symofros.description.fields import (
     parameter_mapping,
     three,
 )
+from symofros.description.frames import Frame
+from symofros.description.schema_beam import BeamEntry
 from symofros.description.schema_forces import ConnectionEntry, ElementEntry, LoadEntry, RotorEntry
-from symofros.description.system import WORLD, Frame, Inertia, Input, Joint, JointKind, Limits, Parameter, RigidBody
+from symofros.description.system import WORLD, Body, Inertia, Input, Joint, JointKind, Limits, Parameter, RigidBody
 from symofros.description.values import IDENTITY, Rotation, RotationKind
 from symofros.errors import DescriptionError, Problem
 
@@ -219,25 +221,39 @@ class FrameEntry(Entry):
 
 
 class BodyEntry(Entry):
-    """A rigid body and the joint that carries it; without a joint it is the base."""
+    """A body and the joint that carries it; without a joint it is the base. Rigid, unless it is a beam."""
 
     joint: JointEntry | None = None
     inertia: InertiaEntry | None = None
-    """A body without one is massless."""
+    """A rigid body without one is massless."""
+    beam: BeamEntry | None = None
+    """What makes it a beam; then it has a joint, no inertia of its own, and one frame at most: its tip."""
     frames: Annotated[dict[Name, FrameEntry | None], Field(max_length=1000)] | None = None
     waive: list[Waiver] = []
     """Checks that this body is allowed to fail."""
     loads: Annotated[list[LoadEntry], Field(max_length=100)] = []
     """Forces and torques on it."""
 
-    def build(self, name: str) -> RigidBody:
-        """The RigidBody of that name."""
-        frames = tuple((entry or FrameEntry()).build(frame) for frame, entry in (self.frames or {}).items())
+    @model_validator(mode="after")
+    def _one_nature(self) -> Self:
+        if self.beam is not None:
+            also = [key for key in ("inertia", "loads") if getattr(self, key)]
+            if also or self.joint is None:
+                found = f"also {' and '.join(also)}" if also else "no joint"
+                rule = "a beam has a joint, its mass in rhoA and its loads under beam"
+                raise fault(Problem("a beam that is not only a beam", found, rule, "kind: fixed clamps a beam"))
+        return self
+
+    def build(self, name: str) -> Body:
+        """The body of that name."""
+        frames = {frame: (entry or FrameEntry()).build(frame) for frame, entry in (self.frames or {}).items()}
+        if self.beam is not None and self.joint is not None:
+            return self.beam.build(name, self.joint.build(name), frames, tuple(self.waive))
         return RigidBody(
             name,
             self.joint.build(name) if self.joint else None,
             self.inertia.build() if self.inertia else None,
-            frames,
+            tuple(frames.values()),
             tuple(self.waive),
             tuple(load.build() for load in self.loads),
         )

@@ -12,10 +12,12 @@ from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
+from symofros.description.beam import Beam, BeamLoad, Samples, UserShape
 from symofros.description.faults import problem_of
 from symofros.description.forces import Connection, JointElement, Load, Rotor
+from symofros.description.frames import Frame
 from symofros.description.schema import VERSION, NativeFile, default_joint_name
-from symofros.description.system import WORLD, Frame, Inertia, Joint, Limits, Parameter, RigidBody, System
+from symofros.description.system import WORLD, Body, Inertia, Joint, Limits, Parameter, System
 from symofros.description.values import ORIGIN, Rotation, Value
 from symofros.errors import DescriptionError, Problem
 
@@ -26,7 +28,7 @@ _WHOLE = 1e15
 
 # Mappings that stay on lines of their own; any other is short and reads better in braces.
 _OPEN = frozenset(
-    {"", "system", "parameters", "inputs", "bodies", "body", "joint", "inertia", "frames", "connections",
+    {"", "system", "parameters", "inputs", "bodies", "body", "joint", "inertia", "beam", "frames", "connections",
      "virtual_power", "potentials"}
 )  # fmt: skip
 
@@ -93,19 +95,36 @@ def _parameter(parameter: Parameter) -> Plain:
     return {"value": _number(float(parameter.value)), **constant, **_texts(parameter)}
 
 
-def _body(body: RigidBody) -> Plain:
+def _body(body: Body) -> Plain:
     entries: Plain = {}
     if body.joint is not None:
         entries["joint"] = _joint(body.joint, body.name)
     if body.inertia is not None:
         entries["inertia"] = _inertia(body.inertia)
-    if body.frames:
+    if isinstance(body, Beam):
+        entries["beam"] = _beam(body)
+    if body.frames != (() if not isinstance(body, Beam) else (Frame("tip"),)):
         entries["frames"] = {frame.name: _placement(frame) for frame in body.frames}
     if body.waive:
         entries["waive"] = [*body.waive]
-    if body.loads:
+    if body.loads and not isinstance(body, Beam):
         entries["loads"] = [_changed(load, Load()) for load in body.loads]
     return entries
+
+
+def _beam(beam: Beam) -> Plain:
+    required = {"length": _number(beam.length), "rhoA": _number(beam.rhoA)}
+    plain = Beam("", beam.joint, 0.0, 0.0)
+    entries = required | _changed(beam, plain, "name", "joint", "length", "rhoA", "frames", "loads", "waive", "shapes")
+    if beam.shapes:
+        entries["shapes"] = {direction: [_shape(shape) for shape in given] for direction, given in beam.shapes}
+    if beam.loads:
+        entries["loads"] = [_changed(load, BeamLoad()) for load in beam.loads]
+    return entries
+
+
+def _shape(shape: UserShape) -> Any:
+    return {"xi": [*shape.xi], "values": [*shape.values]} if isinstance(shape, Samples) else _number(shape)
 
 
 def _connection(connection: Connection) -> Plain:

@@ -1,4 +1,4 @@
-"""Velocities and accelerations of links, base to tip, and the wrench that a link's inertia takes (theory, section 3)."""
+"""Motion of links, base to tip, and the wrench that a link's inertia takes (docs/theory/rigid.md, section 3)."""
 
 from __future__ import annotations
 

@@ -83,10 +83,9 @@ def _modal_force(
     total = g.add(total, _centrifugal(g, w, [form.gradient[i].value(order) for form in forms.second_moment]))
     curl = Vec3(g)
     for j, speed in enumerate(speeds):
-        one, other = forms.angular[i], forms.angular[j]
-        curl = curl + Vec3(g, *(
-            g.sub(p.gradient[j].value(order - 1), q.gradient[i].value(order - 1)) for p, q in zip(one, other, strict=True)
-        )).scaled(speed)  # fmt: skip
+        there = _vector(g, _slopes(forms.angular[i], j), order - 1)
+        back = _vector(g, _slopes(forms.angular[j], i), order - 1)
+        curl = curl + (there - back).scaled(speed)
     return g.add(g.add(total, w.dot(curl)), _convective(beam, i, speeds))
 
 
@@ -137,10 +136,10 @@ def kinetic_energy_twice(motion: Motion, beam: MovingBeam, w_L: Vec3, v_L: Vec3,
     return total
 
 
-def elastic_forces(beam: MovingBeam, speeds: tuple[Edge, ...]) -> list[Edge]:
+def elastic_forces(motion: Motion, beam: MovingBeam) -> list[Edge]:
     """Elastic and damping forces on the elastic coordinates (eqs. 7, 14)."""
-    g, forms = beam.forms.along.g, beam.forms
-    dissipation = forms.damping_energy(speeds)
+    g, forms = motion.g, beam.forms
+    dissipation = forms.damping_energy(() if beam.tip is None else motion.links[beam.tip].speeds)
     return [
         -g.add(elastic.value(), viscous.value())
         for elastic, viscous in zip(forms.strain_energy.gradient, dissipation.gradient, strict=True)
@@ -149,6 +148,11 @@ def elastic_forces(beam: MovingBeam, speeds: tuple[Edge, ...]) -> list[Edge]:
 
 def _vector(g: Graph, forms: Triple, upto: float) -> Vec3:
     return Vec3(g, *(form.value(upto) for form in forms))
+
+
+def _slopes(forms: Triple, i: int) -> Triple:
+    x, y, z = (form.gradient[i] for form in forms)
+    return x, y, z
 
 
 def _moment_rate(g: Graph, E_rate: Sequence[Edge]) -> Mat3:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from symofros.dynamics.acceleration import no_wrench
+from symofros.dynamics.beam_loads import beam_loads
 from symofros.dynamics.beams import elastic_forces
 from symofros.dynamics.elements import element_energy, element_force
 from symofros.dynamics.jourdain import virtual_power
@@ -11,7 +13,7 @@ from symofros.dynamics.loads import connection_energy, wrenches
 from symofros.expr.derivative import directional
 from symofros.expr.graph import ONE, ZERO, Edge
 from symofros.kinematics.frames import FrameKinematics
-from symofros.kinematics.links import Motion
+from symofros.kinematics.links import Motion, MovingBeam
 from symofros.kinematics.lowering import Lowering
 from symofros.kinematics.rotations import quaternion_matrix
 from symofros.topology.coordinates import coordinate_names, speed_symbols
@@ -37,15 +39,23 @@ def generalized_forces(motion: Motion, frames: FrameKinematics) -> list[Edge]:
     potentials = [motion.lowering.value(potential.energy) for potential in system.potentials]
     if potentials:
         total = [g.sub(force, slope) for force, slope in zip(total, _gradient(motion, g.sum(potentials)), strict=True)]
-    for beam in motion.beams:
-        if beam.tip is not None:
-            tip = motion.links[beam.tip]
-            for k, force in enumerate(elastic_forces(beam, tip.speeds), start=tip.v):
-                total[k] = g.add(total[k], force)
     acting = wrenches(motion, frames)
+    for beam in motion.beams:
+        if beam.forms.beam.loads:
+            wrench, modal = beam_loads(motion, frames, beam)
+            acting = acting or [no_wrench(g) for _ in motion.links]
+            acting[beam.root] = acting[beam.root] + wrench
+            _add_modal(motion, beam, total, modal)
+        _add_modal(motion, beam, total, elastic_forces(motion, beam))
     if acting is not None:
         total = [g.add(a, b) for a, b in zip(total, virtual_power(motion, acting), strict=True)]
     return total
+
+
+def _add_modal(motion: Motion, beam: MovingBeam, total: list[Edge], forces: list[Edge]) -> None:
+    if beam.tip is not None:
+        for k, force in enumerate(forces, start=motion.links[beam.tip].v):
+            total[k] = motion.g.add(total[k], force)
 
 
 def stored_energy(motion: Motion, frames: FrameKinematics) -> Edge:

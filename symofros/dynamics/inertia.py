@@ -144,9 +144,8 @@ def _from_forms(motion: Motion, beam: MovingBeam, value: Callable[[Form], Edge],
     """Moments of a beam about its root, from its frame B to the link frame."""
     g, R = motion.g, motion.links[beam.root].R_LB
     S = R.times(Vec3(g, *map(value, beam.forms.first_moment)))
-    E = Sym3(g, *map(value, beam.forms.second_moment))
-    trace = g.add(g.add(E.xx, E.yy), E.zz)
-    J = Sym3(g, *(g.sub(trace, diagonal) for diagonal in (E.xx, E.yy, E.zz)), -E.xy, -E.xz, -E.yz)
+    xx, yy, zz, xy, xz, yz = map(value, beam.forms.second_moment)
+    J = Sym3(g, g.add(yy, zz), g.add(xx, zz), g.add(xx, yy), -xy, -xz, -yz)
     return LinkInertia(m, S, _turned(R, J))
 
 

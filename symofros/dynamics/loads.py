@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symofros.description.beam import Beam
 from symofros.description.forces import Anchor, Connection, Load
 from symofros.description.system import RigidBody
 from symofros.dynamics.acceleration import Wrench, no_wrench
@@ -17,6 +18,8 @@ def wrenches(motion: Motion, frames: FrameKinematics) -> list[Wrench] | None:
     total = [no_wrench(motion.g) for _ in motion.links]
     acting = False
     for body in motion.tree.system.bodies:
+        if isinstance(body, Beam):
+            continue  # Its loads also act on its elastic coordinates.
         for load in body.loads:
             frame = _body_frame(motion, body.name)
             if frame.link != BASE:

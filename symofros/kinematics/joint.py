@@ -114,6 +114,14 @@ class AngleTurn:
 
 
 def about(n: Vec3, angle: Edge, k: int | None, negative: bool) -> AngleTurn:
+    """A turn about a unit axis.
+
+    Args:
+        n: The axis.
+        angle: Of the turn.
+        k: The coordinate axis that n lies along; None if along none.
+        negative: Whether n points against it.
+    """
     g = n.g
     c, s = g.call("cos", angle), g.call("sin", angle)
     factor = MatrixTurn(axis_angle_matrix(n, c, s)) if k is None else AxisTurn(k, c, -s if negative else s)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator
 
+from symofros.description.beam import STATION, Beam, BeamLoad
 from symofros.description.forces import Load
-from symofros.description.system import WORLD, Joint, RigidBody, System
+from symofros.description.system import WORLD, Body, Joint, RigidBody, System
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.expr.expression import CONSTANTS
 from symofros.expr.ops import FUNCTIONS
+from symofros.topology.beams import beam_number_problems, beam_problems
 from symofros.topology.coordinates import coordinate_names, speed_symbols
 from symofros.topology.formulas import TIME, formula_problems, power_problems, stated_values
 from symofros.topology.joints import IDENTIFIER, joint_number_problems, joint_problems
@@ -60,7 +62,7 @@ class _Checker:
         self.bodies = {body.name: body for body in system.bodies}
         self.joints = [body.joint for body in system.bodies if body.joint is not None]
         bases = [body for body in system.bodies if body.joint is None]
-        self.base = bases[0] if bases else RigidBody(WORLD)
+        self.base: Body = bases[0] if bases else RigidBody(WORLD)
         self.extra_bases = bases[1:]
 
     def where(self, *key: str) -> str:
@@ -109,6 +111,8 @@ class _Checker:
         """Parameters, inputs, coordinates and speeds share the name space of formulas."""
         taken: dict[str, str] = {TIME: "the time", **dict.fromkeys(CONSTANTS, "a constant")}
         taken |= dict.fromkeys(FUNCTIONS, "a function")
+        if any(isinstance(body, Beam) for body in self.system.bodies):
+            taken[STATION] = "the station along a beam"
         stated = [("parameter", item.name) for item in self.system.parameters]
         stated += [("input", item.name) for item in self.system.inputs]
         for kind, name in stated:
@@ -148,14 +152,15 @@ class _Checker:
             if body.joint is not None:
                 yield from self._joint(body, body.joint)
         yield from self._cycles()
-        moving = [joint for joint in self.joints if joint.kind != "fixed"]
+        moving = any(joint.kind != "fixed" for joint in self.joints)
+        moving = moving or any(isinstance(body, Beam) and body.modes for body in self.system.bodies)
         if not moving and not self.broken:
             yield Problem(
                 f"system '{self.system.name}': nothing moves", f"{len(self.system.bodies)} bodies, no moving joint",
                 "a model has at least one joint that is not fixed", "add a joint; floating_base=True frees a URDF root",
             )  # fmt: skip
 
-    def _joint(self, body: RigidBody, joint: Joint) -> Iterator[Problem]:
+    def _joint(self, body: Body, joint: Joint) -> Iterator[Problem]:
         where = self.where("joint", joint.name)
         parent = self.base if joint.parent in (WORLD, self.base.name) else self.bodies.get(joint.parent)
         if parent is None:
@@ -173,6 +178,8 @@ class _Checker:
                 did_you_mean(joint.frame, frames) or "add the frame, or drop the entry", where,
             )  # fmt: skip
         yield from joint_problems(joint, self.bodies, where)
+        if isinstance(body, Beam):
+            yield from beam_problems(body, self.where("body", body.name))
 
     def _cycles(self) -> Iterator[Problem]:
         """Follow each body's parents; a body met again on the same walk is on a cycle."""
@@ -208,8 +215,14 @@ class _Checker:
                 yield from self._anchor(connection.name, name, frame)
         yield from power_problems(self.system, self.broken)
 
-    def _load(self, body: RigidBody, load: Load) -> Iterator[Problem]:
+    def _load(self, body: Body, load: Load | BeamLoad) -> Iterator[Problem]:
         where = self.where("body", body.name)
+        if isinstance(body, Beam) or isinstance(load, BeamLoad):
+            if isinstance(body, Beam) != isinstance(load, BeamLoad):
+                yield Problem(f"body '{body.name}': a {type(load).__name__} on a {type(body).__name__}",
+                              type(load).__name__, "a BeamLoad acts on a Beam, a Load on a RigidBody",
+                              "use the other kind", where)  # fmt: skip
+            return
         frames = ["body", "center_of_mass", *(frame.name for frame in body.frames)]
         if load.at not in frames:
             yield Problem(f"body '{body.name}': load at '{load.at}', which is not on it", f"'{load.at}'",
@@ -244,8 +257,9 @@ class _Checker:
             for what, rotation, where in self._rotations(body):
                 yield from numbers.rotation_problems(what, rotation, where)
         yield from joint_number_problems(self.system, numbers)
+        yield from beam_number_problems(self.system, numbers)
 
-    def _rotations(self, body: RigidBody) -> Iterator[tuple[str, object, str]]:
+    def _rotations(self, body: Body) -> Iterator[tuple[str, object, str]]:
         if body.joint is not None:
             joint = body.joint
             yield f"joint '{joint.name}': rotation", joint.rotation, self.where("joint", joint.name)

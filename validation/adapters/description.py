@@ -109,7 +109,8 @@ def evaluate(formula: sf.Expression | float, values: Mapping[str, Any]) -> Any:
 def build(subject: Subject) -> StatedForces | Unsupported:
     """From the description alone."""
     kinds = {"loads": any(body.loads for body in subject.system.bodies), "connections": subject.system.connections,
-             "potentials": subject.system.potentials}  # fmt: skip
+             "potentials": subject.system.potentials,
+             "beams": any(isinstance(body, sf.Beam) for body in subject.system.bodies)}  # fmt: skip
     beyond = [name for name, stated in kinds.items() if stated]
     if beyond:
         return Unsupported(f"{' and '.join(beyond)}: their forces take kinematics or derivatives, not formulas alone")

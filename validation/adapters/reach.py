@@ -25,6 +25,8 @@ def unrepresented(system: sf.System, assembly: Assembly, joints: Collection[str]
             )
     for body in system.bodies:
         joint = body.joint
+        if isinstance(body, sf.Beam):
+            return Unsupported(f"beam '{body.name}': no elastic bodies with foreshortening")
         if joint is not None and joint.prescribed:
             return Unsupported(f"joint '{joint.name}': a prescribed motion")
         if joint is not None and joint.rotors:

@@ -65,7 +65,7 @@ def models() -> dict[str, sf.System]:
     }
 
 
-def _locked_finger(body: sf.RigidBody) -> sf.RigidBody:
+def _locked_finger(body: sf.Body) -> sf.Body:
     joint = body.joint
     if joint is None or "finger" not in joint.name:
         return body
