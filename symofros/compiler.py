@@ -19,6 +19,7 @@ from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 
+from symofros.beams.deformation import small_coordinates
 from symofros.codegen.interpreted import InterpretedUnit
 from symofros.codegen.model import model_source, template
 from symofros.codegen.names import identifier
@@ -32,6 +33,7 @@ from symofros.errors import (
     UnknownNameError,
     did_you_mean,
 )
+from symofros.expr.expression import evaluate
 from symofros.expr.program import Program
 from symofros.kinematics.joint import neutral_coordinates
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS, Options
@@ -208,6 +210,13 @@ def describe(tree: SpanningTree, options: Options) -> ModelRecord:
         if link.joint.prescribed:
             nq, nv = joint_sizes(link.joint)
             driven += (*neutral_coordinates(link.joint, nq), *(0.0,) * (2 * nv))
+            continue
+        if link.tip_of is not None:
+            sizes = small_coordinates(link.tip_of, evaluate(link.tip_of.length, tree.system.parameter_values()))
+            lower += [-size for size in sizes]
+            upper += sizes
+            neutral += (0.0,) * n
+            periodic += (False,) * n
             continue
         lower += [-float("inf") if limits is None or limits.lower is None else limits.lower] * n
         upper += [float("inf") if limits is None or limits.upper is None else limits.upper] * n

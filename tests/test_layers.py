@@ -17,7 +17,7 @@ ALLOWED: dict[str, set[str]] = {
     "options": set(),
     "expr": {"errors"},
     "description": {"expr", "errors", "atomic"},
-    "topology": {"description", "expr", "errors"},
+    "topology": {"beams", "description", "expr", "errors"},
     "beams": {"description", "expr", "errors"},
     "kinematics": {"beams", "topology", "description", "expr", "errors"},
     "dynamics": {"kinematics", "beams", "topology", "description", "expr", "errors"},
@@ -25,7 +25,8 @@ ALLOWED: dict[str, set[str]] = {
     "runtime": {"errors", "options", "atomic"},
     "codegen": {"expr", "passes", "options", "runtime"},
     "compiler": {
-        "errors", "options", "expr", "description", "topology", "kinematics", "dynamics", "passes", "codegen", "runtime"
+        "errors", "options", "expr", "description", "beams", "topology", "kinematics", "dynamics", "passes", "codegen",
+        "runtime",
     },
     "loading": {"errors", "atomic", "description", "topology"},
     "__init__": {"errors", "options", "expr", "description", "compiler", "loading", "runtime"},

@@ -12,6 +12,9 @@ from symofros.beams.shape_functions import Shape, shapes
 from symofros.description.beam import DIRECTIONS, Beam, Family, UserShape
 
 _HALF = Fraction(1, 2)
+# Slope and twist [rad] up to which second-order theory errs by less than a percent.
+SMALL = 0.1
+_SAMPLES = 32
 
 
 @dataclass(frozen=True)
@@ -125,6 +128,25 @@ def deformation_of(beam: Beam) -> Deformation:
     counts = (beam.bend_y, beam.bend_z, beam.twist)
     user = tuple(beam.user_shapes(direction) for direction in DIRECTIONS)
     return _cached(beam.family, counts, user, beam.foreshortening)
+
+
+def small_coordinates(beam: Beam, length: float) -> tuple[float, ...]:
+    """Sizes of the elastic coordinates that second-order theory is good for, to sample within.
+
+    With every coordinate of a direction at its size, no slope and no twist angle exceeds SMALL.
+
+    Args:
+        beam: What the user stated.
+        length: Of the beam [m].
+    """
+    shape = deformation_of(beam)
+    sizes = []
+    for i, function in enumerate(shape.functions):
+        direction = 0 if i < shape.counts[0] else 1 if i < sum(shape.counts[:2]) else 2
+        angle = function.phi if direction == 2 else function.phi.derivative()
+        largest = max(abs(float(angle(Fraction(k, _SAMPLES)))) for k in range(_SAMPLES + 1))
+        sizes.append(SMALL / (largest * shape.counts[direction]) * (length if function.length else 1.0))
+    return tuple(sizes)
 
 
 @lru_cache(maxsize=64)

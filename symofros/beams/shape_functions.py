@@ -4,11 +4,11 @@ Bending functions satisfy phi(0) = phi'(0) = 0, twist functions phi(0) = 0. What
 
 | family | functions | coordinate |
 |---|---|---|
-| spline | cubic B-splines, uniform knots | coefficient [m, rad]; only the last moves the tip, by its value |
+| spline | cubic B-splines, uniform knots | coefficient [m, rad]; only the last moves the tip |
 | polynomial | xi^2, xi^3, ... (twist: xi, xi^2, ...) | share of the tip's displacement [m] or angle [rad] |
 | legendre | xi^2 (twist: xi) times Jacobi polynomials, orthogonal over the beam, 1 at the tip | likewise |
 | clamped_free | modes of the uniform cantilever (twist: of the shaft), mean square 1 | modal amplitude [m, rad] |
-| hermite | cubic with given tip displacement and slope (twist: linear) | tip displacement [m], slope [rad]; angle [rad] |
+| hermite | cubics of tip displacement and slope (twist: linear) | tip displacement [m], slope [rad]; angle [rad] |
 | user | formulas of xi, or sampled values | amplitude [m, rad] |
 """
 
