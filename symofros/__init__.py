@@ -38,6 +38,7 @@ from symofros.description.values import as_value
 from symofros.errors import CompileError as CompileError
 from symofros.errors import CompilerMissingWarning as CompilerMissingWarning
 from symofros.errors import DescriptionError as DescriptionError
+from symofros.errors import InconsistentModelWarning as InconsistentModelWarning
 from symofros.errors import Problem as Problem
 from symofros.errors import ShapeError as ShapeError
 from symofros.errors import SymofrosError as SymofrosError

@@ -23,12 +23,14 @@ from symofros.beams.deformation import small_coordinates
 from symofros.codegen.interpreted import InterpretedUnit
 from symofros.codegen.model import model_source, template
 from symofros.codegen.names import identifier
+from symofros.description.beam import Beam
 from symofros.description.system import System
 from symofros.dynamics.equations import Request, write_program
 from symofros.errors import (
     CompileError,
     CompilerMissingWarning,
     DescriptionError,
+    InconsistentModelWarning,
     Problem,
     UnknownNameError,
     did_you_mean,
@@ -67,6 +69,7 @@ def compile_system(system: System, options: Options | None = None) -> Model:
     options = options or Options()
     tree = plan(system)
     requests = requested(tree, options)
+    _warn_inconsistent(system)
     record = describe(tree, options)
     build = _builder(tree, record, options)
     first = build(tuple(requests))
@@ -128,6 +131,18 @@ def generate(tree: SpanningTree, requests: Iterable[Key], record: ModelRecord) -
     """Requests -> optimised Program, and its C text on demand."""
     program = run_passes(write_program(tree, [Request(*key) for key in requests]))
     return program, lambda: model_source(program, record, GENERATOR)
+
+
+def _warn_inconsistent(system: System) -> None:
+    """Beams that soften when they spin, because they lack what would stiffen them."""
+    for body in system.bodies:
+        if isinstance(body, Beam) and not body.foreshortening and body.retain == "first_order" and body.modes:
+            warnings.warn(
+                f"beam '{body.name}': first order without foreshortening keeps the softening of a spinning beam and"
+                " drops its stiffening: it diverges at its first natural frequency. For studies only; otherwise turn"
+                " foreshortening on, or use retain: zeroth_order.",
+                InconsistentModelWarning, stacklevel=3,
+            )  # fmt: skip
 
 
 def _builder(tree: SpanningTree, record: ModelRecord, options: Options) -> Callable[[tuple[Key, ...]], Unit]:

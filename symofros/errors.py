@@ -71,6 +71,10 @@ class CompilerMissingWarning(UserWarning):
     """No C compiler was found; a slower way is used."""
 
 
+class InconsistentModelWarning(UserWarning):
+    """A model leaves out terms of the order of those it keeps; it is for studies only."""
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """The remedy for a misspelt name: the nearest known one, or the list of them.
 

@@ -24,8 +24,7 @@ import numpy as np
 
 from symofros.beams.piecewise import XI, Number, Piecewise, fitted, polynomial
 from symofros.description.beam import Direction, UserShape
-from symofros.expr.expression import Expression, lower
-from symofros.expr.graph import Graph
+from symofros.expr.expression import Expression, evaluate
 
 MAX_MODES = 40
 
@@ -216,12 +215,12 @@ def _formula(formula: Expression | float) -> Callable[[np.ndarray], np.ndarray]:
     def value(xi: np.ndarray) -> np.ndarray:
         found = []
         for x in xi.tolist():
-            g = Graph()
-            edge = g.constant(formula) if isinstance(formula, float) else lower(formula, g, {"xi": g.constant(x)})
-            number = g.number(edge)
-            if number is None or not math.isfinite(number):
-                raise FamilyError(f"a function is not finite at xi = {x:.3g}")
-            found.append(number)
+            try:
+                found.append(evaluate(formula, {"xi": x}))
+            except KeyError as error:
+                raise FamilyError(f"the formula '{formula}' uses {error}; it may use xi only") from None
+            except ArithmeticError:
+                raise FamilyError(f"the formula '{formula}' is not a number at xi = {x:.3g}") from None
         return np.array(found)
 
     return value

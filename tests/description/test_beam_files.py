@@ -1,0 +1,72 @@
+"""Beams in the native file: everything that can be stated survives writing and reading."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import symofros as sf
+
+FULL: dict[str, Any] = {
+    "EI_z": "E*(1 - x/(2*L))", "EI_y": 2.0, "GJ": "E", "rhoJ": 0.01, "rhoI_y": 0.004, "rhoI_z": 0.006,
+    "bend_y": 2, "bend_z": 1, "twist": 1, "damping": 0.001, "rotary_inertia": True, "retain": "all",
+    "loads": [sf.BeamLoad((0, "u*sin(x)", 0)), sf.BeamLoad(torque=(1, 0, 0), at=0.5, axes="world")],
+}  # fmt: skip
+
+
+def system(**changed: Any) -> sf.System:
+    root = sf.Joint("hub", "revolute")
+    beam = sf.Beam("link", root, "L", "2 - x/L", **(FULL | changed))
+    hand = sf.RigidBody("hand", sf.Joint("wrist", "revolute", "link", "tip"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+    return sf.System("s", [beam, hand], [sf.Parameter("L", 2.0), sf.Parameter("E", 10.0)], [sf.Input("u")])
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {},
+        {"family": "legendre", "foreshortening": False},
+        {"family": "user", "shapes": {
+            "bend_y": ["xi^2", "xi^3*(1 - xi/2)"], "bend_z": [sf.Samples((0, 0.2, 0.6, 1), (0, 0.04, 0.3, 1.0))],
+            "twist": ["sin(pi*xi/2)"]}},
+    ],
+)  # fmt: skip
+def test_written_and_read(tmp_path: Path, changed: dict[str, Any]) -> None:
+    stated = system(**changed)
+    sf.save(stated, tmp_path / "arm.yaml")
+    assert sf.load(tmp_path / "arm.yaml") == stated
+
+
+def test_the_tip_by_its_own_name(tmp_path: Path) -> None:
+    text = """
+symofros: 1
+bodies:
+  boom:
+    joint: {name: q, kind: revolute, axis: [0, 0, 1]}
+    beam: {length: 3, rhoA: 1.5, EI_z: 100, bend_y: 2}
+    frames: {end: }
+"""
+    (tmp_path / "boom.yaml").write_text(text)
+    model = sf.compile(sf.load(tmp_path / "boom.yaml"), sf.Options(functions=("frame_pose",)))
+    p, R = model.frame_pose("end", [0.0, 0.0, 0.0])
+    assert p.tolist() == [3.0, 0.0, 0.0] and R[0, 0] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        ("beam: {length: 1, rhoA: 1, EI_z: 1, bend_y: 1}\n    inertia: {mass: 1}", "not only a beam"),
+        ("beam: {length: 1}", "rhoA"),
+        ("beam: {length: 1, rhoA: 1, EI_z: 1, bend_y: 1, family: spleen}", "spline"),
+        ("beam: {length: 1, rhoA: 1, EI_z: 1, bend_y: 1, modes: 3}", "modes"),
+        ("beam: {length: 1, rhoA: 1, EI_z: 1, bend_y: -1}", "bend_y"),
+        ("beam: {length: 1, rhoA: 1, EI_z: 1, family: user, shapes: {bend_y: [{xi: [0], values: [0]}]}}", "xi"),
+    ],
+)  # fmt: skip
+def test_faults_name_line_and_rule(tmp_path: Path, entry: str, said: str) -> None:
+    (tmp_path / "bad.yaml").write_text(f"symofros: 1\nbodies:\n  b:\n    joint: {{kind: revolute}}\n    {entry}\n")
+    with pytest.raises(sf.DescriptionError) as caught:
+        sf.load(tmp_path / "bad.yaml")
+    assert said in str(caught.value) and "bad.yaml:" in str(caught.value)
