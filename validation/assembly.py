@@ -56,6 +56,7 @@ class Mover:
         q: Slice of our coordinates.
         v: Slice of our speeds.
         pitch: Of a screw [m/rad].
+        length: Of a beam whose elastic coordinates it stands for [m].
         masses: Of the body and of everything fixed to it.
     """
 
@@ -70,6 +71,7 @@ class Mover:
     q: slice
     v: slice
     pitch: float = 0.0
+    length: float = 0.0
     masses: list[Mass] = field(default_factory=list)
 
     @property
@@ -189,9 +191,16 @@ class _Builder:
             if body.joint is not None and body.joint.kind != "fixed":
                 self._add_mover(body, body.joint, mover, X_BF)
                 mover, X_BF = len(self.movers) - 1, Placement.identity()
+            root = (mover, X_BF)
+            if isinstance(body, sf.Beam) and body.modes:
+                self._add_elastic(body, *root)
+                mover, X_BF = len(self.movers) - 1, Placement.identity()
             self._add_mass(body, mover, X_BF)
-            self._add_frames(body, mover, X_BF)
-            pending += [(child, mover, X_BF @ self._proximal(body, child)) for child in self._reversed_children(body)]
+            self._add_frames(body, root, (mover, X_BF))
+            for child in self._reversed_children(body):
+                assert child.joint is not None
+                on, X = root if child.joint.frame is None else (mover, X_BF)
+                pending.append((child, on, X @ self._proximal(body, child)))
 
     def _reversed_children(self, body: sf.Body) -> list[sf.Body]:
         return self.children.get(body.name, [])[::-1]
@@ -221,6 +230,20 @@ class _Builder:
             self.movers.append(Mover(body.name, name, joint, part, i > 0, parent, X_AP, axis, q_part, v_part, pitch))
             parent, X_AP = len(self.movers) - 1, Placement.identity()
 
+    def _add_elastic(self, beam: sf.Beam, root: int, X_BF: Placement) -> None:
+        """The elastic coordinates, between root and tip; no rigid engine is built from them."""
+        q, v = (self.joints[-1].q.stop, self.joints[-1].v.stop) if self.joints else (0, 0)
+        n = beam.modes
+        joint = sf.Joint(f"{beam.name}.elastic", "general", beam.name, coordinates=beam.coordinates)
+        described = Described(joint, slice(q, q + n), slice(v, v + n))
+        self.joints.append(described)
+        part, along_x = Part("elastic", joint.axis, 0, n, n), np.array([1.0, 0.0, 0.0])
+        length = float(self.numbers([beam.length])[0])
+        mover = Mover(
+            beam.name, joint.name, joint, part, False, root, X_BF, along_x, described.q, described.v, length=length
+        )
+        self.movers.append(mover)
+
     def _add_mass(self, body: sf.Body, mover: int, X_BF: Placement) -> None:
         if body.inertia is None or mover == BASE:
             return
@@ -236,8 +259,10 @@ class _Builder:
             J = R_FC @ J @ R_FC.T
         self.movers[mover].masses.append(Mass(body.name, mass, X_BF.p + X_BF.R @ center, X_BF.R @ J @ X_BF.R.T))
 
-    def _add_frames(self, body: sf.Body, mover: int, X_BF: Placement) -> None:
-        self.frames.append((body.name, body.name, FrameSite(body.name, mover, X_BF)))
+    def _add_frames(self, body: sf.Body, root: tuple[int, Placement], ends: tuple[int, Placement]) -> None:
+        """The body frame at its root; extremity frames where its ends are, which for a beam is another mover."""
+        self.frames.append((body.name, body.name, FrameSite(body.name, *root)))
+        mover, X_BE = ends
         for frame in body.frames:
-            X = X_BF @ self.placement(frame.position, frame.rotation)
+            X = X_BE @ self.placement(frame.position, frame.rotation)
             self.frames.append((frame.name, f"{body.name}.{frame.name}", FrameSite(frame.name, mover, X)))

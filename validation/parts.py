@@ -10,7 +10,7 @@ from typing import Literal
 
 import symofros as sf
 
-PartKind = Literal["revolute", "prismatic", "screw", "ball", "free", "general"]
+PartKind = Literal["revolute", "prismatic", "screw", "ball", "free", "general", "elastic"]
 Axis = tuple[float | sf.Expression, float | sf.Expression, float | sf.Expression]
 
 _X: Axis = (1.0, 0.0, 0.0)
@@ -34,7 +34,8 @@ class Part:
     """One simple joint of a series.
 
     Attributes:
-        kind: "general" where the series is not found: no engine can represent it.
+        kind: "general" where the series is not found, "elastic" between the root and the tip of a beam: no rigid
+            engine can represent them.
         axis: As stated, in the frame that the parts before it lead to.
         first: Its first coordinate among the joint's, and its first speed.
         coordinates: How many.

@@ -18,6 +18,7 @@ ANGLE = np.pi
 SLIDE = 1.0  # [m]
 SPEED = 2.0  # [rad/s, m/s]
 ACCELERATION = 5.0  # [rad/s^2, m/s^2]
+DEFLECTION = 0.1  # [rad, and m per m of length]: what second-order beam theory is good for.
 INPUT = 10.0  # [N m, N]
 MANY_TURNS = 100.0  # [rad]
 FAST = 20.0  # [rad/s, m/s]
@@ -62,6 +63,9 @@ def _coordinates(mover: Mover, rng: np.random.Generator, count: int) -> Array:
         return rng.uniform(-ANGLE, ANGLE, (count, 1))
     if mover.kind in ("prismatic", "general"):
         return rng.uniform(-SLIDE, SLIDE, (count, mover.part.coordinates))
+    if mover.kind == "elastic":
+        n = mover.part.coordinates
+        return rng.uniform(-DEFLECTION / n, DEFLECTION / n, (count, n)) * min(1.0, mover.length)
     quaternion = rng.standard_normal((count, 4))  # Normal in four directions: uniform on the sphere.
     quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
     if mover.kind == "ball":
