@@ -58,24 +58,26 @@ def stiffer(system: sf.System) -> sf.System:
 
 
 def pushed(system: sf.System) -> sf.System:
-    return replace(system, virtual_power=(sf.VirtualPower("more", (("dq0", 2.0**-40),)),))
+    return replace(system, virtual_power=(sf.VirtualPower("more", (("dq0", 2.0**-36),)),))
+
+
+DYNAMIC = ("mass_matrix", "bias", "kinetic_energy", "potential_energy")
 
 
 @pytest.mark.parametrize("derive", [lagrange.derive, kane.derive])
 @pytest.mark.parametrize(
-    "name, change, function",
+    "name, change, functions",
     [
-        ("planar", heavier, "mass_matrix"),
-        ("planar", heavier, "bias"),
-        ("planar", heavier, "kinetic_energy"),
-        ("connections", stiffer, "potential_energy"),
-        ("connections", pushed, "generalized_force"),
+        ("massless between", heavier, DYNAMIC),
+        ("connections", stiffer, ("potential_energy", "generalized_force")),
+        ("connections", pushed, ("generalized_force",)),
     ],
 )
-def test_the_oracle_can_disagree(name, change, function, derive) -> None:  # type: ignore[no-untyped-def]
-    """A description that is off by 1e-12 in one place agrees to twelve digits, not to thirty."""
+def test_the_oracle_can_disagree(name, change, functions, derive) -> None:  # type: ignore[no-untyped-def]
+    """A description that is off by 1e-12 in one place agrees to twelve digits or so, not to thirty."""
     digits = compare.agreement(MODELS[name].system, lambda system: derive(change(system)), points=1, seed=0)
-    assert 10 < digits[function] < 15
+    assert {function for function in digits if digits[function] < EXACT} == set(functions)
+    assert all(10 < digits[function] < 15 for function in functions)
 
 
 def test_lagrange_refuses_quaternions_in_words() -> None:
@@ -91,10 +93,9 @@ def test_command() -> None:
 
 
 def test_command_fails_on_disagreement(monkeypatch: pytest.MonkeyPatch) -> None:
-    wrong = {by: lambda system, derive=derive: derive(heavier(system)) for by, derive in compare.DERIVATIONS.items()}
-    monkeypatch.setattr(compare, "DERIVATIONS", wrong)
-    result = CliRunner().invoke(app, ["oracle", "--model", "planar"])
-    assert result.exit_code == 1 and "do not agree: planar (lagrange), planar (kane)" in result.stdout
+    monkeypatch.setitem(compare.DERIVATIONS, "lagrange", lambda system: lagrange.derive(pushed(system)))
+    result = CliRunner().invoke(app, ["oracle", "--model", "loads"])
+    assert result.exit_code == 1 and "do not agree: loads (lagrange)." in result.stdout
 
 
 def test_command_refuses_an_unknown_model() -> None:

@@ -54,8 +54,7 @@ def agreement(system: sf.System, derive: Derivation, points: int, seed: int) -> 
     """Digits by function, the fewest over the points.
 
     Args:
-        system: Numbers that the generator computes ahead, in double precision, must come out as binary fractions;
-            what does not (a unit vector, a sine) is to be made of run-time parameters.
+        system: Any; what the generator rounds ahead of time, such as constant unit vectors, shows in the digits.
         derive: Of the oracle.
         points: How many.
         seed: Of the points.

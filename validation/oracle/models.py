@@ -1,7 +1,7 @@
 """Small models that between them have everything a description may state.
 
-Their numbers are binary fractions, and what the generator would compute ahead in double precision (unit vectors,
-quotients) is made of run-time parameters: no rounding enters, and agreement to all digits can be asked for.
+What the generator would compute ahead, in double precision, and could not hold exactly (unit vectors, sines, quotients
+of numbers) is made of run-time parameters: no rounding enters, and agreement to all digits can be asked for.
 """
 
 from __future__ import annotations
@@ -116,25 +116,26 @@ _SPUN = _s.Rotation.matrix([["cos(2*s)", "-sin(2*s)", 0], ["sin(2*s)", "cos(2*s)
 MODELS: dict[str, Model] = {
     "double pendulum": Model(REFERENCE["double_pendulum"], _BOTH),
     "cart-pole": Model(REFERENCE["cart_pole"], _BOTH),
-    "axes by parameters": Model(_chain(({"axis": _AXIS}, _SOLID), ({"axis": ("a", "k", "J")}, _ROUND)), _KANE),
+    "axes by parameters": Model(_chain(({"axis": _AXIS}, _SOLID), ({"axis": ("a", 0, "k")}, _ROUND)), _KANE),
     "constant axes": Model(_chain(({"axis": (1, 2, 2)}, _SOLID), ({"axis": (2, -1, 2)}, _ROUND)), _KANE, ROUNDED),
     "screw": Model(_chain(({"kind": "screw", "pitch": "a", "axis": (0, -1, 0)}, _SOLID), ({}, _ROUND)), _BOTH),
     "cylindrical": Model(_chain(({"kind": "cylindrical", "axis": (1, 0, 0)}, _ROUND), ({}, _FLAT))),
-    "universal": Model(_chain(({"kind": "universal", "axis": (1, 0, 0), "axis2": ("n1", 0, "n3")}, _SOLID)), _BOTH),
+    "universal": Model(_chain(({"kind": "universal", "axis": (1, 0, 0), "axis2": ("n1", 0, "n3")}, _FLAT)), _BOTH),
     "planar": Model(_chain(({"kind": "planar"}, _SOLID), ({"axis": (0, 1, 0)}, _FLAT)), _BOTH),
     "general, by angles": Model(_chain((_EULER, _SOLID)), _BOTH),
     "general, by matrix": Model(_chain(
         ({"kind": "general", "coordinates": ("s",), "moving_position": ("cos(s)", "a*sin(s)", "s/4"),
           "moving_rotation": _SPUN}, _SOLID), ({"axis": (0, 1, 0)}, _ROUND))),
     "branches": Model(_branched(), _KANE),
-    "massless between": Model(_chain(({}, None), ({"axis": (0, 1, 0)}, None), ({"kind": "prismatic"}, _SOLID)), _BOTH),
+    "massless between": Model(_chain(({}, None), ({"axis": (0, 1, 0)}, None), ({"kind": "prismatic"}, _ROUND)), _BOTH),
     "rotors": Model(_chain(
         ({}, _ROUND),
         ({"axis": (0, 1, 0), "rotation": _s.Rotation.rpy("a", 0, "k"), "armature": "J/8",
           "rotors": (_s.Rotor("J/64", 40.0), _s.Rotor("J/32", "-k", _AXIS, "b1"))}, _ROUND)), _BOTH),
     "prescribed base": Model(_chain(
         ({"kind": "general", "coordinates": ("X", "Y"), "moving_position": ("X", "Y", "X*Y"), "prescribed": True,
-          "moving_rotation": _s.Rotation.axis_angle((0, 0, 1), "X")}, _ROUND),
+          "moving_rotation": _s.Rotation.axis_angle((0, 0, 1), "X"),
+          "rotors": (_s.Rotor("J/32", "k", (1, 0, 0), "b1", 1),)}, _ROUND),
         ({"axis": (1, 0, 0), "rotors": (_s.Rotor("J/64", 8.0, (0, 0, 1)),)}, _SOLID)), _BOTH),
     "joint forces": Model(_forces(), _BOTH),
     "loads": Model(_loads(), _BOTH),
