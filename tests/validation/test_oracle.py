@@ -68,7 +68,7 @@ DYNAMIC = ("mass_matrix", "bias", "kinetic_energy", "potential_energy")
 @pytest.mark.parametrize(
     "name, change, functions",
     [
-        ("massless between", heavier, DYNAMIC),
+        ("screw", heavier, DYNAMIC),
         ("connections", stiffer, ("potential_energy", "generalized_force")),
         ("connections", pushed, ("generalized_force",)),
     ],
@@ -83,6 +83,12 @@ def test_the_oracle_can_disagree(name, change, functions, derive) -> None:  # ty
 def test_lagrange_refuses_quaternions_in_words() -> None:
     with pytest.raises(NotDerivable, match="joint 'q0': quaternions are no generalized coordinates"):
         lagrange.derive(MODELS["ball"].system)
+
+
+def test_a_prescribed_motion_with_quaternions_is_refused_in_words() -> None:
+    driven = sf.System("s", (sf.RigidBody("b", sf.Joint("j", "ball", prescribed=True)),))
+    with pytest.raises(NotDerivable, match="joint 'j': a prescribed motion with quaternions"):
+        kane.derive(driven)
 
 
 def test_command() -> None:

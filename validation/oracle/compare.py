@@ -64,13 +64,10 @@ def agreement(system: sf.System, derive: Derivation, points: int, seed: int) -> 
     """
     derived = derive(system)
     program = sf.program_of(system, FUNCTIONS)
-    functions = {function.name: function for function in program.functions}
-    compiled = {name: _compiled(derived, name) for name in FUNCTIONS}
     arguments = [*derived.u, *derived.symbols.values()]
-    shorts = []
-    for symbol, meaning in derived.shorts.items():
-        shorts.append(sympy.lambdify(arguments, meaning, "mpmath"))
-        arguments = [*arguments, symbol]
+    shorts = sympy.lambdify(arguments, list(derived.shorts.values()), "mpmath", cse=True)
+    symbols = [*derived.q, *derived.v, *derived.u, *derived.symbols.values(), *derived.shorts]
+    entries = sympy.lambdify(symbols, [list(derived.values[name]) for name in FUNCTIONS], "mpmath", cse=True)
     par = [item for item in system.parameters if not item.constant]
     rng = np.random.default_rng(seed)
     worst = dict.fromkeys(FUNCTIONS, float(WORKING))
@@ -82,20 +79,14 @@ def agreement(system: sf.System, derive: Derivation, points: int, seed: int) -> 
             constants = {item.name: mpmath.mpf(item.value) for item in system.parameters}
             constants["t"] = _rationals(rng, 1)[0]
             known = [constants[key] for key in derived.symbols]
-            for shorthand in shorts:
-                known.append(shorthand(*u, *known))
+            known += shorts(*u, *known)
         inputs = {"q": q, "v": v, "u": u, "par": [constants[item.name] for item in par], "t": [constants["t"]]}
-        for name in FUNCTIONS:
-            ours = [x for output in evaluate_precisely(program, functions[name], inputs, WORKING) for x in output]
-            with mpmath.workdps(WORKING):
-                theirs = compiled[name](*q, *v, *u, *known)
-                worst[name] = min(worst[name], _digits(ours, theirs))
+        with mpmath.workdps(WORKING):
+            theirs = dict(zip(FUNCTIONS, entries(*q, *v, *u, *known), strict=True))
+            for function in program.functions:
+                ours = [x for output in evaluate_precisely(program, function, inputs, WORKING) for x in output]
+                worst[function.name] = min(worst[function.name], _digits(ours, theirs[function.name]))
     return worst
-
-
-def _compiled(derived: Derived, name: str) -> Any:
-    symbols = [*derived.q, *derived.v, *derived.u, *derived.symbols.values(), *derived.shorts]
-    return sympy.lambdify(symbols, list(derived.values[name]), "mpmath", cse=True)
 
 
 def _rationals(rng: np.random.Generator, count: int) -> list[Any]:

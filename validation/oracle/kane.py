@@ -24,6 +24,9 @@ def derive(system: sf.System) -> Derived:
 
     Args:
         system: With any joints.
+
+    Raises:
+        NotDerivable: A prescribed motion has quaternions.
     """
     scope = Scope(system)
     model = _Model(scope)

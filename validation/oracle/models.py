@@ -97,16 +97,17 @@ def _loads() -> sf.System:
     return _with(system, 1, frames=(frame,), loads=(*at_tip, _s.Load(force, torque, "center_of_mass", "world")))
 
 
-def _connections(system: sf.System) -> sf.System:
-    """A spring to the ground, one between bodies, and one of no length, with dampers."""
+def _connected(system: sf.System, *names: str) -> sf.System:
+    """With springs and dampers: "down" to the ground, "across" from tip to root, "short" of no length."""
     last = system.bodies[-1].name
     frame = _s.Frame("tip", ("a", 0.5, 0), _s.Rotation.rpy("a", 0, 0))
     system = _with(system, len(system.bodies) - 1, frames=(frame,))
-    return replace(system, connections=(
+    listed = (
         _s.Connection("down", ("world", None), (last, "tip"), "k", "a", "m"),
         _s.Connection("across", (last, "tip"), (system.bodies[0].name, None), "m", "J", "a"),
         _s.Connection("short", (last, None), ("world", None), "J", 0.0, "k"),
-    ))  # fmt: skip
+    )  # fmt: skip
+    return replace(system, connections=tuple(item for item in listed if item.name in names))
 
 
 _EULER = {"kind": "general", "coordinates": ("x", "y"), "moving_position": ("x*y", 0, "y^2"),
@@ -116,13 +117,13 @@ _SPUN = _s.Rotation.matrix([["cos(2*s)", "-sin(2*s)", 0], ["sin(2*s)", "cos(2*s)
 MODELS: dict[str, Model] = {
     "double pendulum": Model(REFERENCE["double_pendulum"], _BOTH),
     "cart-pole": Model(REFERENCE["cart_pole"], _BOTH),
-    "axes by parameters": Model(_chain(({"axis": _AXIS}, _SOLID), ({"axis": ("a", 0, "k")}, _ROUND)), _KANE),
-    "constant axes": Model(_chain(({"axis": (1, 2, 2)}, _SOLID), ({"axis": (2, -1, 2)}, _ROUND)), _KANE, ROUNDED),
+    "axes by parameters": Model(_chain(({"axis": _AXIS}, _FLAT), ({"axis": ("a", 0, "k")}, _ROUND)), _KANE),
+    "constant axes": Model(_chain(({"axis": (1, 2, 2)}, _FLAT), ({"axis": (2, -1, 2)}, _ROUND)), _KANE, ROUNDED),
     "screw": Model(_chain(({"kind": "screw", "pitch": "a", "axis": (0, -1, 0)}, _SOLID), ({}, _ROUND)), _BOTH),
     "cylindrical": Model(_chain(({"kind": "cylindrical", "axis": (1, 0, 0)}, _ROUND), ({}, _FLAT))),
     "universal": Model(_chain(({"kind": "universal", "axis": (1, 0, 0), "axis2": ("n1", 0, "n3")}, _FLAT)), _BOTH),
     "planar": Model(_chain(({"kind": "planar"}, _SOLID), ({"axis": (0, 1, 0)}, _FLAT)), _BOTH),
-    "general, by angles": Model(_chain((_EULER, _SOLID)), _BOTH),
+    "general, by angles": Model(_chain((_EULER, _FLAT)), _BOTH),
     "general, by matrix": Model(_chain(
         ({"kind": "general", "coordinates": ("s",), "moving_position": ("cos(s)", "a*sin(s)", "s/4"),
           "moving_rotation": _SPUN}, _SOLID), ({"axis": (0, 1, 0)}, _ROUND))),
@@ -139,12 +140,13 @@ MODELS: dict[str, Model] = {
         ({"axis": (1, 0, 0), "rotors": (_s.Rotor("J/64", 8.0, (0, 0, 1)),)}, _SOLID)), _BOTH),
     "joint forces": Model(_forces(), _BOTH),
     "loads": Model(_loads(), _BOTH),
-    "connections": Model(_connections(_chain(({}, _ROUND), ({"axis": (0, 1, 0)}, _FLAT))), _BOTH),
+    "connections": Model(
+        _connected(_chain(({}, _ROUND), ({"axis": (0, 1, 0)}, _FLAT)), "down", "across", "short"), _BOTH),
     "ball": Model(_chain(
         ({"kind": "ball", "elements": (_s.Damper("k", "a", 1),), "effort": ("u1", "m*q0.wy", "q0.qx")}, _SOLID),
         inputs=[sf.Input("u1")], potentials=[_s.Potential("v", "k*q0.qx*q0.qw + m*q0.qz^2")]), _KANE),
     "ball on an arm": Model(_chain(({"axis": (0, 1, 0)}, _ROUND), ({"kind": "ball"}, _ROUND)), _KANE),
-    "free base with an arm": Model(_connections(_chain(
+    "free base with an arm": Model(_connected(_chain(
         ({"kind": "free", "actuated": True}, _SOLID), ({"axis": (0, 1, 0), "effort": ("-k*dq1",)}, _FLAT),
-        potentials=[_s.Potential("v", "k*q0.px*q0.qy")])), _KANE),
+        potentials=[_s.Potential("v", "k*q0.px*q0.qy")]), "across", "short"), _KANE),
 }  # fmt: skip

@@ -29,7 +29,7 @@ class Derived:
     Attributes:
         q: Symbols of the coordinates, in order; likewise v of the speeds, u of the inputs.
         symbols: name -> symbol of the parameters and of t.
-        shorts: Symbol -> what it is short for, in inputs, the other symbols and the shorts before it.
+        shorts: Symbol -> what it is short for, in inputs and the other symbols.
         quaternions: Where in q quaternions start.
         values: The entries (row by row) of each function, by its name.
     """
@@ -49,6 +49,9 @@ class Scope:
     Args:
         system: The description.
 
+    Raises:
+        NotDerivable: A prescribed motion has quaternions.
+
     Attributes:
         bodies: Those with a joint, depth first in the order of description.
         joints: Those of them that move.
@@ -64,6 +67,9 @@ class Scope:
         self.bodies = list(self._carried_by(None))
         joints = [body.joint for body in self.bodies if body.joint is not None and body.joint.kind != "fixed"]
         self.joints = tuple(joints)
+        for joint in joints:
+            if joint.prescribed and joint.kind in QUASI:
+                raise NotDerivable(f"joint '{joint.name}': a prescribed motion with quaternions")
         free = [joint for joint in joints if not joint.prescribed]
         driven = [joint for joint in joints if joint.prescribed]
         self.free = tuple(name for joint in free for name in coordinate_symbols(joint))
@@ -172,12 +178,15 @@ class Scope:
         for joint in self.joints:
             at += 0 if joint.prescribed else len(coordinate_symbols(joint))
             quaternions += [at - 4] if joint.kind in QUASI else []
+        meanings: dict[Any, Any] = {}
+        for meaning, symbol in self._shorts.items():
+            meanings[symbol] = meaning.xreplace(meanings)
         rules = self._plain | {key: self._plain[value] for key, value in (more or {}).items()}
         return Derived(
             tuple(self._plain[self.function[name]] for name in self.free),
             tuple(self._plain[self.rate[name]] for name in self.speeds),
             tuple(self._inputs), self._constant,
-            {symbol: meaning.xreplace(rules) for meaning, symbol in self._shorts.items()}, tuple(quaternions),
+            meanings, tuple(quaternions),
             {name: [sympy.sympify(x).xreplace(rules) for x in listed] for name, listed in values.items()},
         )  # fmt: skip
 
