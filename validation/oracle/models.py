@@ -117,11 +117,12 @@ _SPUN = _s.Rotation.matrix([["cos(2*s)", "-sin(2*s)", 0], ["sin(2*s)", "cos(2*s)
 MODELS: dict[str, Model] = {
     "double pendulum": Model(REFERENCE["double_pendulum"], _BOTH),
     "cart-pole": Model(REFERENCE["cart_pole"], _BOTH),
-    "axes by parameters": Model(_chain(({"axis": _AXIS}, _FLAT), ({"axis": ("a", 0, "k")}, _ROUND)), _KANE),
-    "constant axes": Model(_chain(({"axis": (1, 2, 2)}, _FLAT), ({"axis": (2, -1, 2)}, _ROUND)), _KANE, ROUNDED),
+    "axes by parameters": Model(
+        _chain(({"axis": _AXIS}, _SOLID), ({"kind": "prismatic", "axis": ("a", 0, "k")}, _ROUND)), _KANE),
+    "constant axes": Model(_chain(({"axis": (1, 2, 2)}, _SOLID), ({"axis": (2, -1, 2)}, _ROUND)), _KANE, ROUNDED),
     "screw": Model(_chain(({"kind": "screw", "pitch": "a", "axis": (0, -1, 0)}, _SOLID), ({}, _ROUND)), _BOTH),
     "cylindrical": Model(_chain(({"kind": "cylindrical", "axis": (1, 0, 0)}, _ROUND), ({}, _FLAT))),
-    "universal": Model(_chain(({"kind": "universal", "axis": (1, 0, 0), "axis2": ("n1", 0, "n3")}, _FLAT)), _BOTH),
+    "universal": Model(_chain(({"kind": "universal", "axis": (1, 0, 0), "axis2": ("n1", 0, "n3")}, _SOLID)), _KANE),
     "planar": Model(_chain(({"kind": "planar"}, _SOLID), ({"axis": (0, 1, 0)}, _FLAT)), _BOTH),
     "general, by angles": Model(_chain((_EULER, _FLAT)), _BOTH),
     "general, by matrix": Model(_chain(
