@@ -22,7 +22,7 @@ from validation.junit import to_junit
 from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
-from validation.studies import fuzz, mutation_report, timing_report
+from validation.studies import fuzz, mutation_report, oracle, timing_report
 
 
 class Exit(IntEnum):
@@ -146,6 +146,7 @@ def verdict(record: Record) -> Exit:
 
 fuzz.register(app)
 mutation_report.register(app)
+oracle.register(app)
 timing_report.register(app)
 
 if __name__ == "__main__":
