@@ -26,7 +26,7 @@ app = typer.Typer(no_args_is_help=True, add_completion=False, help="Symbolic mul
 _out = Console()
 _err = Console(stderr=True)
 
-ModelPath = Annotated[Path, typer.Argument(help="A model: .yaml or .urdf", show_default=False)]
+ModelPath = Annotated[Path, typer.Argument(help="A model: .yaml, .urdf or .xml (MJCF)", show_default=False)]
 Floating = Annotated[bool, typer.Option("--floating-base", help="Put a free joint under a URDF's root link.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Machine-readable output.")]
 BAD_INPUT = 2

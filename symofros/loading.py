@@ -10,16 +10,17 @@ from pathlib import Path
 from symofros.atomic import write_atomically
 from symofros.description import files
 from symofros.description.files import read_yaml, write_yaml
+from symofros.description.mjcf import read_mjcf
 from symofros.description.reading import Reading, in_order
+from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
 from symofros.description.urdf import SNAP_TOL, read_urdf
-from symofros.description.urdf_values import note
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.topology.graph import find_problems
 from symofros.topology.numbers import Numbers
 from symofros.topology.physics import inertia_problems
 
-_READABLE = (*files.SUFFIXES, ".urdf")
+_READABLE = (*files.SUFFIXES, ".urdf", ".xml")
 
 
 def load(
@@ -32,9 +33,9 @@ def load(
     """Read a description and check it.
 
     Args:
-        path: Native YAML (.yaml, .yml) or URDF (.urdf).
+        path: Native YAML (.yaml, .yml), URDF (.urdf) or MJCF (.xml; needs the package mujoco).
         floating_base: URDF only: put a free joint under the root link.
-        snap_tol: URDF only: numbers this close to exact ones are made exact (`read_urdf`).
+        snap_tol: URDF and MJCF: numbers this close to exact ones are made exact (`read_urdf`, `read_mjcf`).
         waive: Checks that every body is allowed to fail (WAIVERS), such as "massless_tip".
 
     Returns:
@@ -71,9 +72,11 @@ def _read(file: Path, floating_base: bool, snap_tol: float) -> Reading:
         return _accept_inertias(read_urdf(file, floating_base=floating_base, snap_tol=snap_tol))
     if floating_base:
         raise DescriptionError(
-            Problem("floating_base applies to URDF files only", f"'{file}'", "a native description states its joints",
-                    "give the base a joint of kind: free")
+            Problem("floating_base applies to URDF files only", f"'{file}'", "other descriptions state their joints",
+                    "give the base a free joint in the file")
         )  # fmt: skip
+    if file.suffix.lower() == ".xml":
+        return _accept_inertias(read_mjcf(file, snap_tol=snap_tol))
     return read_yaml(file)
 
 

@@ -70,7 +70,8 @@ def standard(
 @app.command()
 def check(
     models: Annotated[
-        list[str] | None, typer.Argument(help="URDF or YAML files, or names of the standard set; none: all of it.")
+        list[str] | None,
+        typer.Argument(help="URDF, MJCF or YAML files, or names of the standard set; none: all of it."),
     ] = None,
     floating_base: FloatingBase = False,
     states: States = DEFAULT_STATES,

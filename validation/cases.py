@@ -9,7 +9,7 @@ from pathlib import Path
 
 import reference_models
 import symofros as sf
-from validation.interface import Subject, UrdfSource
+from validation.interface import MjcfSource, Subject, UrdfSource
 
 ROBOT_PACKAGE = "example-robot-data"
 
@@ -43,7 +43,10 @@ class Case:
         if self.path is None:
             return Subject(self.label, reference_models.MODELS[self.label])
         system = sf.load(self.path, floating_base=self.floating_base)
-        if self.path.suffix.lower() != ".urdf":
+        suffix = self.path.suffix.lower()
+        if suffix == ".xml":
+            return Subject(self.label, system, mjcf=MjcfSource(self.path, sf.load(self.path, snap_tol=0.0)))
+        if suffix != ".urdf":
             return Subject(self.label, system)
         verbatim = sf.load(self.path, floating_base=self.floating_base, snap_tol=0.0)
         return Subject(self.label, system, urdf=UrdfSource(self.path.read_bytes(), verbatim, self.floating_base))

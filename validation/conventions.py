@@ -41,6 +41,7 @@ DIFFERENCES = (
     Difference("pinocchio-urdf", "order of joints", "as in the file", "children sorted by name"),
     Difference("pinocchio-urdf", "continuous joint", "q = angle", "q = (cos, sin)"),
     Difference("mujoco-urdf", "angles in the model", "radians", "degrees, unless the compiler is told otherwise"),
+    Difference("mujoco-mjcf", "potential energy", "of what moves", "of everything with mass, moving or not"),
 )
 
 Encoding = Literal["same", "cos_sin", "wxyz", "free_in_world", "free_in_parent"]

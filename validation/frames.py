@@ -17,8 +17,8 @@ def chosen_frames(assembly: Assembly) -> tuple[str, ...]:
     last = {site.mover: name for name, site in assembly.frames.items() if site.mover != BASE}
     leaves = assembly.leaves()
     chosen = _spread(leaves, MOST_FRAMES)
-    # The first parts of a joint of several coordinates bear no frames.
-    inner = [i for i in last if i not in leaves]
+    # The first parts of a joint of several coordinates bear no frames; bodies without mass only stand between joints.
+    inner = [i for i in last if i not in leaves and assembly.movers[i].masses]
     chosen += _spread(inner, MOST_FRAMES - len(chosen))
     return tuple(last[i] for i in chosen)
 

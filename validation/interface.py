@@ -6,10 +6,14 @@ Everything crosses this border in SYMOFROS conventions (`symofros/NOTATION.md`);
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from pathlib import Path
+from typing import Literal, Protocol
 
 import symofros as sf
 from validation.geometry import Array
+
+# Of files that engines read themselves; "" for none.
+Format = Literal["", "urdf", "mjcf"]
 
 
 @dataclass(frozen=True)
@@ -125,6 +129,19 @@ class UrdfSource:
 
 
 @dataclass(frozen=True)
+class MjcfSource:
+    """The MJCF file that a system was read from; reading it has shown that it names no file outside of its folder.
+
+    Attributes:
+        path: Of the main file.
+        verbatim: Our reading of it with every digit as it stands.
+    """
+
+    path: Path
+    verbatim: sf.System
+
+
+@dataclass(frozen=True)
 class Subject:
     """What an engine is built from.
 
@@ -133,12 +150,25 @@ class Subject:
         system: The description.
         frames: The frames that frame quantities are compared at; none: the harness chooses.
         urdf: Its file, if it came from one.
+        mjcf: Likewise.
     """
 
     label: str
     system: sf.System
     frames: tuple[str, ...] = ()
     urdf: UrdfSource | None = None
+    mjcf: MjcfSource | None = None
+
+    @property
+    def format(self) -> Format:
+        """Of the file that engines can read themselves."""
+        return "urdf" if self.urdf is not None else "mjcf" if self.mjcf is not None else ""
+
+    @property
+    def verbatim(self) -> sf.System:
+        """The system with every digit of its file as it stands."""
+        source = self.urdf or self.mjcf
+        return self.system if source is None else source.verbatim
 
 
 class EngineFactory(Protocol):

@@ -79,3 +79,5 @@ FORCES_STATED = frozenset({"generalized_force"})
 EVERYTHING = frozenset(QUANTITIES) - FORCES_STATED
 # What an engine's own reading of a file is compared by: all of geometry and inertia enters these.
 SECOND_ROUTE = frozenset({"mass_matrix", "bias", "gravity", "kinetic_energy", "potential_energy"})
+# MJCF also has springs, dampers and sites, and MuJoCo's potential energy counts springs as ours does.
+MJCF_ROUTE = SECOND_ROUTE | {"generalized_force", "frame_pose"}

@@ -43,7 +43,7 @@ def to_html(record: Record) -> str:
         engines=engines,
         independent=[name for name in engines if ROUTES[name].independent],
         lines_of={name: by_engine(record, engines=(name,)) for name in engines},
-        drifts=[row for row in record.comparisons if row.quantity == "energy_drift"],
+        drifts=[row for row in record.comparisons if row.quantity == "energy_drift" and row.error is not None],
         quantities=[*QUANTITIES.values(), MOTION_ENERGY],
         differences=DIFFERENCES,
     )  # fmt: skip

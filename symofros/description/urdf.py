@@ -97,7 +97,7 @@ class _Importer:
         problems = in_order(self.values.problems)
         if not self.links:
             return Reading(None, problems)
-        system = System(name, bodies, notes=self.values.notes(), origin=self.origin)
+        system = System(name, bodies, notes=self.values.remarks.notes(), origin=self.origin)
         return Reading(system, problems, frozenset(self.broken))
 
     def link(self, element: Element) -> None:
@@ -115,7 +115,7 @@ class _Importer:
         if len(self.values.problems) > before:
             self.broken.add(name)
         if element.first("visual") or element.first("collision"):
-            self.values.remark("visual and collision shapes ignored", "link", name)
+            self.values.remarks.add("visual and collision shapes ignored", "link", name)
 
     def joint(self, element: Element) -> None:
         """Read a joint and hang its child link on it."""
@@ -177,9 +177,9 @@ class _Importer:
     def remark_ignored(self, element: Element, name: str) -> None:
         dynamics = element.first("dynamics")
         if dynamics is not None and any(self.is_nonzero(text) for text in dynamics.attributes.values()):
-            self.values.remark("damping and friction ignored", "joint", name)
+            self.values.remarks.add("damping and friction ignored", "joint", name)
         if element.first("mimic"):
-            self.values.remark("mimic ignored, the coordinate stays independent", "joint", name)
+            self.values.remarks.add("mimic ignored, the coordinate stays independent", "joint", name)
 
     @staticmethod
     def is_nonzero(text: str) -> bool:
@@ -220,7 +220,7 @@ class _Importer:
             self.origin["joint", root_joint] = self.values.where(link.element)
             return RigidBody(name, Joint(root_joint, "free", WORLD), link.inertia)
         if link.parent is None and link.inertia is not None:
-            self.values.remark("inertia of the base dropped, it never moves", "link", name)
+            self.values.remarks.add("inertia of the base dropped, it never moves", "link", name)
             return RigidBody(name)
         return RigidBody(name, link.joint, link.inertia)
 
@@ -229,4 +229,4 @@ class _Importer:
         for element in self.robot.children:
             if element.tag not in _USED:
                 name = element.attributes.get("name") or element.attributes.get("reference") or f"line {element.line}"
-                self.values.remark(f"<{element.tag:.60}> ignored", "element", name)
+                self.values.remarks.add(f"<{element.tag:.60}> ignored", "element", name)

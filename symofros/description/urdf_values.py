@@ -6,6 +6,7 @@ import math
 import re
 from dataclasses import dataclass, field
 
+from symofros.description.remarks import Remarks
 from symofros.description.system import Inertia, Limits
 from symofros.description.values import IDENTITY, Rotation
 from symofros.description.xml_nodes import Element
@@ -14,7 +15,6 @@ from symofros.errors import Problem
 Triple = tuple[float, float, float]
 
 ZERO: Triple = (0.0, 0.0, 0.0)
-EXAMPLES = 3
 
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\Z")
 _INFINITE = re.compile(r"[-+]?inf(?:inity)?\Z", re.IGNORECASE)
@@ -33,13 +33,13 @@ class Values:
         snap_tol: Angles this close to a multiple of pi/2, lengths this close to 0 and entries of an axis this close
             to 0 or +-1 become exact.
         problems: Every fault met.
-        remarks: What was ignored or changed -> kind of thing and their names.
+        remarks: What was ignored or changed.
     """
 
     file: str
     snap_tol: float
     problems: list[Problem] = field(default_factory=list)
-    remarks: dict[str, tuple[str, list[str]]] = field(default_factory=dict)
+    remarks: Remarks = field(default_factory=Remarks)
 
     def where(self, element: Element) -> str:
         """The element's place."""
@@ -48,16 +48,6 @@ class Values:
     def fault(self, element: Element, what: str, found: str, rule: str, remedy: str = "") -> None:
         """Note a problem."""
         self.problems.append(Problem(what, found, rule, remedy, self.where(element)))
-
-    def remark(self, text: str, noun: str, name: str) -> None:
-        """Note that something was ignored or changed, for the thing of that name."""
-        names = self.remarks.setdefault(text, (noun, []))[1]
-        if name not in names[-1:]:
-            names.append(name)
-
-    def notes(self) -> tuple[str, ...]:
-        """The remarks, one line a kind, with the number of things and some of their names."""
-        return tuple(note(text, noun, names) for text, (noun, names) in self.remarks.items())
 
     def attribute(self, element: Element, name: str, owner: str) -> str | None:
         """An attribute that must be there."""
@@ -115,21 +105,21 @@ class Values:
             self.fault(element or owner_element, f"{owner}: the axis has no direction", f"'{x:g} {y:g} {z:g}'",
                        "an axis is not the zero vector", 'give a direction such as xyz="0 0 1"')  # fmt: skip
         elif abs(length - 1.0) > _UNIT_TOLERANCE:
-            self.remark("axes that are not unit vectors are normalised", "joint", _bare(owner))
+            self.remarks.add("axes that are not unit vectors are normalised", "joint", _bare(owner))
         return x, y, z
 
     def snapped(self, values: tuple[float, ...], exact: tuple[float, ...], owner: str) -> tuple[float, ...]:
         """The values, each replaced by an exact one within the tolerance."""
         result = tuple(next((e for e in exact if abs(value - e) <= self.snap_tol), value) for value in values)
         if result != values:
-            self.remark(f"numbers within {self.snap_tol:g} of exact ones made exact", "element", _bare(owner))
+            self.remarks.add(f"numbers within {self.snap_tol:g} of exact ones made exact", "element", _bare(owner))
         return result
 
     def inertia(self, link: Element, owner: str) -> Inertia | None:
         """The inertia of a link; None for one without."""
         element = link.first("inertial")
         if element is None:
-            self.remark("links without <inertial> are massless", "link", _bare(owner))
+            self.remarks.add("links without <inertial> are massless", "link", _bare(owner))
             return None
         position, rotation = self.origin(element, owner)
         mass, matrix = element.first("mass"), element.first("inertia")
@@ -165,12 +155,6 @@ class Values:
         if text is None or _INFINITE.match(text.strip()):
             return None
         return self.number(element, name, owner)
-
-
-def note(text: str, noun: str, names: list[str]) -> str:
-    """One line: what happened, to how many things, and the names of the first few."""
-    shown = ", ".join(names[:EXAMPLES]) + (", …" if len(names) > EXAMPLES else "")
-    return f"{text}: {len(names)} {noun}{'s' * (len(names) > 1)} ({shown})"
 
 
 def _bare(owner: str) -> str:

@@ -20,12 +20,19 @@ class Element:
         attributes: Name -> text.
         line: Of its start, counted from 1.
         children: In order.
+        file: It stands in.
     """
 
     tag: str
     attributes: dict[str, str]
     line: int
     children: list[Element] = field(default_factory=list)
+    file: str = ""
+
+    @property
+    def where(self) -> str:
+        """Its place."""
+        return f"{self.file}:{self.line}"
 
     def all(self, tag: str) -> Iterator[Element]:
         """The children of that name."""
@@ -90,7 +97,7 @@ class _Builder:
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         if len(self.open) >= MAX_DEPTH:
             raise self.fault(f"nested deeper than {MAX_DEPTH}", f"<{tag}>", "a robot file needs fewer than ten", "")
-        element = Element(tag, attributes, self.parser.CurrentLineNumber)
+        element = Element(tag, attributes, self.parser.CurrentLineNumber, file=self.file)
         if self.open:
             self.open[-1].children.append(element)
         else:

@@ -3,6 +3,7 @@ import pytest
 
 import symofros as sf
 from tests.validation.subjects import every_kind, states_of, subject_of
+from validation.adapters.compiled import build_weightless
 from validation.motion import Motion, fall, judge_drift, step
 
 SUBJECT = every_kind()
@@ -45,6 +46,15 @@ def test_work_of_a_damper_is_counted() -> None:
     assert motion.drift[1] < 1e-9
 
 
+def test_work_on_a_spring_is_counted_once() -> None:
+    joint = sf.Joint("q", "revolute", axis=(0, 1, 0), elements=[sf.Spring(30.0, 0.4), sf.Damper(0.5)])
+    system = sf.System("sprung", [sf.RigidBody("rod", joint, sf.Inertia(1.0, (0.5, 0, 0), (0.1, 0.1, 0.1)))])
+    sprung = sf.compile(system, sf.Options(functions=FUNCTIONS))
+    weightless = build_weightless(subject_of(system))
+    motion = fall(sprung, np.array([[0.3]]), np.array([[4.0]]), weightless)
+    assert motion.drift[1] < 1e-9
+
+
 def with_drift(coarse: float, fine: float) -> Motion:
     return Motion(states_of(SUBJECT, 1), 1.0, (coarse, fine))
 
@@ -62,3 +72,12 @@ def with_drift(coarse: float, fine: float) -> Motion:
 )
 def test_verdict_on_drift(coarse: float, fine: float, status: str) -> None:
     assert judge_drift("m", with_drift(coarse, fine)).status == status
+
+
+def test_stiff_dampers_are_watched_for_a_shorter_time() -> None:
+    """A damper that stops its link within 10 us makes the explicit method run away with steps of 1 ms."""
+    joint = sf.Joint("q", "revolute", axis=(0, 1, 0), elements=[sf.Damper(1.0)])
+    body = sf.RigidBody("rod", joint, sf.Inertia(1e-5, (0, 0, 0), (1e-5, 1e-5, 1e-5)))
+    damped = sf.compile(sf.System("damped", [body]), sf.Options(functions=FUNCTIONS))
+    motion = fall(damped, np.array([[0.3]]), np.array([[4.0]]))
+    assert motion.step == pytest.approx(1e-6) and judge_drift("m", motion).ok

@@ -108,3 +108,10 @@ def test_the_hash_is_of_the_mechanism() -> None:
     noted = check(Subject("b", pendulum(notes=("n",))), Settings(states=2, engines=("pinocchio",)))
     other = check(Subject("c", pendulum(gravity=(0, 0, -1.62))), Settings(states=2, engines=("pinocchio",)))
     assert base.hash == noted.hash != other.hash
+
+
+def test_a_motion_without_a_verdict_is_no_row_of_the_drift(good: ModelResult) -> None:
+    rows = [Comparison("fast", "symofros", "energy_drift", status, note="why") for status in ("failed", "unsupported")]
+    page = to_html(make_record(SETTINGS, [good, ModelResult("fast", tuple(rows))], 1.0))
+    drifts = page.partition("half the step should leave a sixteenth")[2]
+    assert ">pendulum</td>" in drifts and ">fast</td>" not in drifts.partition("</table>")[0]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 
-from validation.interface import EngineFactory
+from validation.interface import EngineFactory, Format
 
 
 @dataclass(frozen=True)
@@ -15,12 +15,12 @@ class Route:
 
     Attributes:
         module: The adapter; its `build` is the factory.
-        needs_urdf: It reads a URDF file by itself, and has nothing to say of other models.
+        reads: It reads files of this format by itself, and has nothing to say of other models.
         independent: It shares no equations with us; agreement with it is evidence.
     """
 
     module: str
-    needs_urdf: bool = False
+    reads: Format = ""
     independent: bool = True
 
 
@@ -28,8 +28,9 @@ class Route:
 ROUTES: dict[str, Route] = {
     "pinocchio": Route("validation.adapters.pinocchio"),
     "mujoco": Route("validation.adapters.mujoco"),
-    "pinocchio-urdf": Route("validation.adapters.pinocchio_urdf", needs_urdf=True),
-    "mujoco-urdf": Route("validation.adapters.mujoco_urdf", needs_urdf=True),
+    "pinocchio-urdf": Route("validation.adapters.pinocchio_urdf", reads="urdf"),
+    "mujoco-urdf": Route("validation.adapters.mujoco_urdf", reads="urdf"),
+    "mujoco-mjcf": Route("validation.adapters.mujoco_mjcf", reads="mjcf"),
     "interpreted": Route("validation.adapters.interpreted", independent=False),
     "description": Route("validation.adapters.description", independent=False),
 }

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 import symofros as sf
+from validation.adapters.reach import stores_energy
 from validation.geometry import Array
 from validation.interface import States, Subject
-from validation.quantities import FRAME_QUANTITIES, QUANTITIES, SECOND_ROUTE
+from validation.quantities import FRAME_QUANTITIES, MJCF_ROUTE, QUANTITIES, SECOND_ROUTE
 
 NAME = "symofros"
 
@@ -105,12 +106,23 @@ def build_verbatim(subject: Subject) -> SymofrosEngine:
 
     Raises:
         DescriptionError: The system can't be a mechanism.
-        ValueError: The subject was not read from a URDF file.
     """
-    if subject.urdf is None:
-        raise ValueError(f"model '{subject.label}' was not read from a URDF file")
-    functions = tuple(name for name in _FUNCTIONS if name in SECOND_ROUTE)
-    return SymofrosEngine(NAME, sf.compile(subject.urdf.verbatim, sf.Options(functions=functions)))
+    compared = MJCF_ROUTE if subject.format == "mjcf" else SECOND_ROUTE
+    functions = tuple(name for name in _FUNCTIONS if name in compared)
+    frames = subject.frames if FRAME_QUANTITIES & compared else ()
+    model = sf.compile(subject.verbatim, sf.Options(functions=functions, frames=frames))
+    return SymofrosEngine(NAME, model, frames)
+
+
+def build_weightless(subject: Subject) -> sf.Model | None:
+    """The potential energy of everything but the weight; None where nothing else has any.
+
+    Raises:
+        DescriptionError: The system can't be a mechanism.
+    """
+    if not stores_energy(subject.system):
+        return None
+    return sf.compile(replace(subject.system, gravity=(0.0, 0.0, 0.0)), sf.Options(functions=("potential_energy",)))
 
 
 def options(subject: Subject, backend: Literal["c", "interpreter"]) -> sf.Options:

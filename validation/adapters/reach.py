@@ -41,8 +41,11 @@ def armature(system: sf.System, mover: Mover) -> float:
 
 def offered(system: sf.System) -> frozenset[str]:
     """What an engine can be compared by: it knows the weight's potential energy, not that of springs."""
+    return EVERYTHING - {"potential_energy"} if stores_energy(system) else EVERYTHING
+
+
+def stores_energy(system: sf.System) -> bool:
+    """Whether anything but the weight has potential energy."""
     joints = [body.joint for body in system.bodies if body.joint is not None]
-    stores = any(isinstance(element, (sf.Spring, sf.Stop)) for joint in joints for element in joint.elements)
-    if stores or system.connections or system.potentials:
-        return EVERYTHING - {"potential_energy"}
-    return EVERYTHING
+    springs = any(isinstance(element, (sf.Spring, sf.Stop)) for joint in joints for element in joint.elements)
+    return springs or bool(system.connections or system.potentials)

@@ -194,7 +194,7 @@ def _independent(subject: Subject) -> Engine:
     factories = available()
     for name, route in ROUTES.items():
         factory = factories[name]
-        if not route.independent or route.needs_urdf or isinstance(factory, Missing):
+        if not route.independent or route.reads or isinstance(factory, Missing):
             continue
         engine = factory(subject)
         if not isinstance(engine, Unsupported):

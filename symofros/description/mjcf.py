@@ -1,0 +1,165 @@
+"""MJCF in: MuJoCo's own compiler reads the model, and what it compiled becomes our description.
+
+A model file is untrusted. MuJoCo never sees it: it gets a text that is written anew from what a whitelist keeps
+(`mjcf_sections`), and the content of meshes that we have read (`mjcf_meshes`), so that it opens no file itself.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+from symofros.description.mjcf_files import Folder
+from symofros.description.mjcf_meshes import Meshes
+from symofros.description.mjcf_model import Importer, Stated
+from symofros.description.mjcf_sections import Sections
+from symofros.description.reading import Reading, in_order
+from symofros.description.remarks import Remarks
+from symofros.description.xml_nodes import Element, XmlFault
+from symofros.errors import DescriptionError, Problem
+
+_LINE = re.compile(r",? ?line (\d+)")
+MAX_WARNINGS = 10
+
+
+def read_mjcf(path: str | os.PathLike[str], *, snap_tol: float) -> Reading:
+    """Read an MJCF file; needs the package `mujoco`.
+
+    Args:
+        path: The main file; what it includes, and the meshes that give inertia, lie in its folder or below.
+        snap_tol: Lengths this close to 0 [m], and entries of axes and rotations this close to 0 or +-1, are made
+            exact.
+
+    Returns:
+        The system, and every problem.
+
+    Raises:
+        ValueError: `snap_tol` is not a small number.
+    """
+    if not 0.0 <= snap_tol < 0.1:
+        raise ValueError(f"snap_tol: found {snap_tol}; rule: 0 <= snap_tol < 0.1, so that it only absorbs rounding")
+    folder, remarks = Folder(Path(path)), Remarks()
+    try:
+        document = vetted(folder, remarks)
+        if folder.problems:
+            return Reading(None, in_order(folder.problems))
+        model = compiled(document, remarks)
+        return Reading(Importer(model, document.stated, remarks, snap_tol).system())
+    except XmlFault as error:
+        return Reading(None, (error.problem,))
+    except DescriptionError as error:
+        return Reading(None, error.problems)
+
+
+@dataclass(frozen=True)
+class Document:
+    """What is handed to MuJoCo.
+
+    Attributes:
+        text: MJCF of nothing but a tree of bodies.
+        lines: The element that each line of the text came from.
+        assets: Content of mesh files by name.
+        stated: What the compiled model does not say.
+    """
+
+    text: str
+    lines: tuple[Element, ...]
+    assets: dict[str, bytes]
+    stated: Stated
+
+
+def vetted(folder: Folder, remarks: Remarks) -> Document:
+    """Read the model's files and keep what describes a tree; the folder collects the faults.
+
+    Raises:
+        XmlFault: A file is no XML.
+        DescriptionError: The main file can't be read, is too large, or is no MJCF.
+    """
+    root = folder.document()
+    if root.tag != "mujoco":
+        remedy = "name a URDF file .urdf" if root.tag == "robot" else ""
+        raise DescriptionError(Problem("the file is not an MJCF model", f"the root element is <{root.tag:.60}>",
+                                       "the root element is <mujoco>", remedy, root.where))  # fmt: skip
+    sections = Sections(folder, remarks)
+    kept = sections.kept(root)
+    meshes = Meshes(folder, kept, root, remarks)
+    meshes.cut()
+    pairs = list(_written(kept))
+    stated = Stated(root.attributes.get("model") or folder.main.stem, str(folder.main), sections.driven, _places(kept))
+    return Document("\n".join(line for line, _ in pairs), tuple(e for _, e in pairs), meshes.assets, stated)
+
+
+def compiled(document: Document, remarks: Remarks) -> Any:
+    """MuJoCo's model.
+
+    Raises:
+        DescriptionError: MuJoCo is not installed, or refuses the model.
+    """
+    try:
+        import mujoco  # Only those who read MJCF need it.
+    except ImportError as error:
+        raise DescriptionError(
+            Problem(f"'{document.stated.file}' can't be read: MJCF needs MuJoCo", str(error),
+                    "MuJoCo's own compiler reads MJCF files", "pip install 'symofros[mjcf]'")
+        ) from None  # fmt: skip
+    try:
+        with _warnings(mujoco, remarks):
+            return mujoco.MjModel.from_xml_string(document.text, document.assets)
+    except (ValueError, mujoco.FatalError) as error:
+        raise DescriptionError(_explained(str(error), document)) from None
+
+
+def _explained(message: str, document: Document) -> Problem:
+    """MuJoCo's complaint, which names a line of our text, about the line of the file."""
+    found = _LINE.search(message)
+    line = int(found[1]) if found else 0
+    where = document.lines[line - 1].where if 0 < line <= len(document.lines) else document.stated.file
+    complaint, _, rest = _LINE.sub("", message).strip().partition("\n")
+    complaint = complaint.removeprefix("XML ").removeprefix("Error: ").strip()
+    return Problem(f"MuJoCo refuses the model: {complaint:.300}", f"{rest.strip():.300}",
+                   "MuJoCo's own compiler reads MJCF files", "", where)  # fmt: skip
+
+
+@contextmanager
+def _warnings(mujoco: Any, remarks: Remarks) -> Iterator[None]:
+    """MuJoCo's warnings as remarks; it would log them into the folder that the user happens to be in."""
+    said: list[str] = []
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(said.append)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
+        for text in said[:MAX_WARNINGS]:
+            remarks.add("MuJoCo warns", "remark", " ".join(text.split())[:200])
+
+
+def _written(element: Element) -> Iterator[tuple[str, Element]]:
+    """The element as text, a tag a line, each with the element it came from."""
+    attributes = "".join(f" {name}={quoteattr(text)}" for name, text in element.attributes.items())
+    if not element.children:
+        yield f"<{element.tag}{attributes}/>", element
+        return
+    yield f"<{element.tag}{attributes}>", element
+    for child in element.children:
+        yield from _written(child)
+    yield f"</{element.tag}>", element
+
+
+def _places(element: Element) -> dict[tuple[str, ...], str]:
+    """Where named bodies and joints are stated."""
+    kinds = {"body": "body", "joint": "joint", "freejoint": "joint"}
+    places: dict[tuple[str, ...], str] = {}
+    pending = list(element.children)
+    while pending:
+        item = pending.pop()
+        pending += item.children
+        if item.tag in kinds and "name" in item.attributes:
+            places[kinds[item.tag], item.attributes["name"]] = item.where
+    return places

@@ -1,0 +1,139 @@
+"""The files of an MJCF model: its own, those it includes, its meshes; none from outside of the model's folder."""
+
+from __future__ import annotations
+
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+from symofros.description.reading import read_bytes
+from symofros.description.xml_nodes import MAX_DEPTH, Element, XmlFault, parse_xml
+from symofros.errors import DescriptionError, Problem
+
+MAX_BYTES = 16 << 20
+MAX_MESH_BYTES = 256 << 20
+MAX_ELEMENTS = 100_000
+
+
+class Folder:
+    """The folder of a model's main file, and what was read from it.
+
+    Attributes:
+        main: The model's main file.
+        problems: Every fault met.
+    """
+
+    def __init__(self, main: Path) -> None:
+        self.main = main
+        self.problems: list[Problem] = []
+        self._read: set[Path] = set()
+        self._bytes = {MAX_BYTES: 0, MAX_MESH_BYTES: 0}
+        self._elements = 0
+
+    def document(self) -> Element:
+        """The main file with its includes in their places.
+
+        Raises:
+            XmlFault: A file is no XML.
+            DescriptionError: A file can't be read, or all together are too large.
+        """
+        root = self._parsed(self.main.resolve(), str(self.main))
+        self._expand(root, self.main.parent, 1)
+        return root
+
+    def mesh(self, file: str, user: Element, what: str) -> bytes | None:
+        """The content of a mesh file; None after a fault.
+
+        Args:
+            file: As the model states it.
+            user: The element that states it.
+            what: The mesh and what needs it, for the problem.
+        """
+        path = self._inside(file, user, self.main.parent)
+        if path is None:
+            return None
+        try:
+            return self._bounded(path, MAX_MESH_BYTES)
+        except DescriptionError as error:
+            found = error.problems[0].found
+            self.fault(user, f"{what}: its file can't be read", f"'{file}': {found}",
+                       "a mesh that gives a body its inertia lies in the model's folder",
+                       "put the file there, or give the body an <inertial>")  # fmt: skip
+            return None
+
+    def fault(self, element: Element, what: str, found: str, rule: str, remedy: str = "") -> None:
+        """Note a problem."""
+        self.problems.append(Problem(what, found, rule, remedy, element.where))
+
+    def _parsed(self, path: Path, shown: str) -> Element:
+        self._read.add(path)
+        root = parse_xml(self._bounded(path, MAX_BYTES), shown)
+        self._elements += _size(root)
+        if self._elements > MAX_ELEMENTS:
+            problem = Problem("the model is too large", f"{self._elements} elements", f"at most {MAX_ELEMENTS}",
+                              "split it", shown)  # fmt: skip
+            raise DescriptionError(problem)
+        return root
+
+    def _bounded(self, path: Path, limit: int) -> bytes:
+        """A file's content; the limit is on all files of its kind together."""
+        data = read_bytes(path, limit - self._bytes[limit])
+        self._bytes[limit] += len(data)
+        return data
+
+    def _expand(self, element: Element, folder: Path, depth: int) -> None:
+        """Put what is included in the place of each <include>."""
+        if depth > MAX_DEPTH:
+            raise XmlFault(Problem(f"nested deeper than {MAX_DEPTH}, includes counted", f"<{element.tag:.60}>",
+                                   "a robot needs fewer", "", element.where))  # fmt: skip
+        children: list[Element] = []
+        for child in element.children:
+            if child.tag == "include":
+                children += self._included(child, folder, depth)
+            else:
+                self._expand(child, folder, depth + 1)
+                children.append(child)
+        element.children = children
+
+    def _included(self, include: Element, folder: Path, depth: int) -> list[Element]:
+        file = include.attributes.get("file")
+        if file is None:
+            given = ", ".join(include.attributes) or "no attributes"
+            self.fault(include, "<include> lacks the attribute 'file'", given,
+                       "<include> names a file", 'write <include file="…"/>')  # fmt: skip
+            return []
+        # From the main file's folder, or else from that of the file that includes it.
+        places = [self._inside(file, include, base) for base in dict.fromkeys((self.main.parent, folder))]
+        paths = [path for path in places if path is not None]
+        if len(paths) < len(places):
+            return []
+        path = next((path for path in paths if path.is_file()), paths[0])
+        if path in self._read:
+            self.fault(include, f"'{file}' is included twice", f"'{path.name}' again",
+                       "a file is included once at most, and never by itself", "remove one <include>")  # fmt: skip
+            return []
+        try:
+            root = self._parsed(path, str(path))
+        except DescriptionError as error:
+            found = error.problems[0]
+            self.fault(
+                include, f"'{file}' can't be included", found.found, found.rule or "the file exists", found.remedy
+            )
+            return []
+        self._expand(root, path.parent, depth)
+        return root.children
+
+    def _inside(self, file: str, user: Element, base: Path) -> Path | None:
+        """The path of a file that a model names, if that is inside of the model's folder, links followed."""
+        plain = PurePosixPath(file.replace("\\", "/"))
+        folder = self.main.parent.resolve()
+        if not plain.is_absolute() and not PureWindowsPath(file).drive and ".." not in plain.parts and "\0" not in file:
+            path = (base / plain).resolve()
+            if path.is_relative_to(folder):
+                return path
+        self.fault(user, f"<{user.tag}> leaves the model's folder", f"'{file:.80}'",
+                   "files of a model lie in the folder of its main file or below, without '..'",
+                   f"copy the file into '{folder}'")  # fmt: skip
+        return None
+
+
+def _size(element: Element) -> int:
+    return 1 + sum(map(_size, element.children))

@@ -1,0 +1,150 @@
+"""Joints of a compiled MJCF model.
+
+A MuJoCo body has any number of joints, each with an anchor and an axis that are stated in the body's frame B as it is
+in the reference configuration; there, the coordinate of a hinge or slide is `ref`, not zero. In the order of the
+joints, with J(q) the motion of one (R_PD or p_PD) and T(a) a shift by its anchor a, the body is at
+
+    X_AB(q) = X_AB(ref) * product over joints of T(a) J(q - ref) T(-a).
+
+As J(q - ref) = J(-ref) J(q), the constant parts go into the placements of our joints, whose coordinates then equal
+MuJoCo's: T(a) J(-ref) before a joint and T(-a) behind it. Each joint but the last has a massless body of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from symofros.description.forces import Damper, JointElement, Spring
+from symofros.description.mjcf_geometry import Array, Exact, about
+from symofros.description.mjcf_names import Names
+from symofros.description.remarks import Remarks
+from symofros.description.system import WORLD, Joint, JointKind, Limits
+
+# mjtJoint and mjtDisableBit of mujoco/mjmodel.h, which never change: compiled models are stored by them.
+FREE, BALL, SLIDE, HINGE = range(4)
+_NO_SPRINGS, _NO_DAMPERS = 1 << 5, 1 << 6
+_SPEEDS = {FREE: 6, BALL: 3, SLIDE: 1, HINGE: 1}
+
+
+@dataclass
+class Chain:
+    """Where a body is, at the references of its joints, as seen from what carries it; it is moved on joint by joint.
+
+    Attributes:
+        parent: Name of the body that carries.
+        p: Position of Bo in that body's frame (3,) [m].
+        R: Rotation from that frame to B (3, 3).
+    """
+
+    parent: str
+    p: Array
+    R: Array
+
+    @property
+    def is_offset(self) -> bool:
+        """Whether B is not the frame that the last joint moves."""
+        return bool(np.any(self.p))
+
+
+class JointReader:
+    """Reads the joints of a model.
+
+    Args:
+        model: An MjModel.
+        names: Of its joints.
+        driven: Names of those that an actuator acts on.
+        remarks: On what is ignored.
+        exact: Makes numbers exact.
+    """
+
+    def __init__(
+        self, model: Any, names: Names, driven: Collection[str], remarks: Remarks, exact: Exact
+    ) -> None:  # fmt: skip
+        self.model = model
+        self.names = names
+        self.driven = driven
+        self.remarks = remarks
+        self.exact = exact
+
+    def free(self, j: int, chain: Chain) -> Joint:
+        """A free joint: its coordinates say where the body is in the world, wherever the model puts it first."""
+        chain.p, chain.R = np.zeros(3), np.eye(3)
+        armature = self._armature(j)
+        if armature:
+            self.remarks.add("armature of free joints acts along body axes, without MuJoCo's gyroscopic part", "joint",
+                             self.names[j])  # fmt: skip
+        self._remark(j)
+        return Joint(self.names[j], "free", WORLD, elements=tuple(self._elements(j)), armature=armature)
+
+    def joint(self, j: int, chain: Chain) -> Joint:
+        """A hinge, slide or ball, placed on the chain's parent; the chain is left at what the joint moves."""
+        m, kind = self.model, int(self.model.jnt_type[j])
+        axis = np.array(m.jnt_axis[j])
+        # A shift is the same wherever it is anchored.
+        anchor = np.zeros(3) if kind == SLIDE else np.array(m.jnt_pos[j])
+        ref = 0.0 if kind == BALL else float(m.qpos0[m.jnt_qposadr[j]])
+        p, R = chain.p + chain.R @ anchor, chain.R
+        if kind == SLIDE:
+            p = p - ref * R @ axis
+        elif ref:
+            R = R @ about(axis, -ref)
+        position, rotation = self.exact.placement(p, R)
+        limits = self._limits(j)
+        kinds: dict[int, JointKind] = {BALL: "ball", SLIDE: "prismatic", HINGE: "revolute" if limits else "continuous"}
+        self._remark(j)
+        chain.p, chain.R = -anchor, np.eye(3)
+        return Joint(
+            self.names[j], kinds[kind], chain.parent, None, position, rotation,
+            (0.0, 0.0, 1.0) if kind == BALL else self.exact.direction(axis),
+            actuated=self.names[j] in self.driven and kind != BALL, limits=limits,
+            elements=tuple(self._elements(j)), armature=self._armature(j),
+        )  # fmt: skip
+
+    def _armature(self, j: int) -> float:
+        # One number for all speeds of a joint, like its damping.
+        return float(self.model.dof_armature[self.model.jnt_dofadr[j]])
+
+    def _limits(self, j: int) -> Limits | None:
+        if not self.model.jnt_limited[j] or self.model.jnt_type[j] == BALL:
+            return None
+        lower, upper = (float(bound) if np.isfinite(bound) else None for bound in self.model.jnt_range[j])
+        return Limits(lower, upper)
+
+    def _elements(self, j: int) -> Iterator[JointElement]:
+        """Springs and dampers, with MuJoCo's higher orders where ours have them.
+
+        MuJoCo: F = -(k x + k2 x^2 + k3 x^3) with x = q - springref, and F = -(d v + d2 v |v| + d3 v^3).
+        """
+        m, dof, name = self.model, int(self.model.jnt_dofadr[j]), self.names[j]
+        simple = m.jnt_type[j] in (SLIDE, HINGE)
+        k, (k2, k3) = float(m.jnt_stiffness[j]), map(float, m.jnt_stiffnesspoly[j])
+        if (k or k2 or k3) and not m.opt.disableflags & _NO_SPRINGS:
+            if simple:
+                if k or k3:
+                    yield Spring(k, float(m.qpos_spring[m.jnt_qposadr[j]]), k3)
+                if k2:
+                    self.remarks.add("quadratic stiffness ignored", "joint", name)
+            else:
+                self.remarks.add("stiffness of ball and free joints ignored", "joint", name)
+        d, (d2, d3) = float(m.dof_damping[dof]), map(float, m.dof_dampingpoly[dof])
+        if m.opt.disableflags & _NO_DAMPERS:
+            return
+        if d or (d2 and simple):
+            for i in range(_SPEEDS[int(m.jnt_type[j])]):
+                yield Damper(d, d2 if simple else 0.0, i)
+        if d3 or (d2 and not simple):
+            self.remarks.add("damping of higher order ignored", "joint", name)
+
+    def _remark(self, j: int) -> None:
+        m, name = self.model, self.names[j]
+        if np.any(m.dof_frictionloss[m.jnt_dofadr[j]]):
+            self.remarks.add("frictionloss ignored, a constraint in MuJoCo", "joint", name)
+        if m.jnt_limited[j]:
+            what = "limits of ball joints ignored" if m.jnt_type[j] == BALL else "limits kept as data, without a stop"
+            self.remarks.add(what, "joint", name)
+        if m.jnt_springyield[j]:
+            self.remarks.add("yield of springs ignored", "joint", name)

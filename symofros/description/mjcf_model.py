@@ -1,0 +1,139 @@
+"""MuJoCo's compiled model -> System: bodies in MuJoCo's order, joints by `mjcf_joints`, and remarks on the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from symofros.description.forces import Load
+from symofros.description.mjcf_geometry import Exact, turned
+from symofros.description.mjcf_joints import FREE, Chain, JointReader
+from symofros.description.mjcf_names import Names
+from symofros.description.mjcf_numbers import infinite_numbers
+from symofros.description.remarks import Remarks
+from symofros.description.system import WORLD, Frame, Inertia, Joint, RigidBody, System
+from symofros.errors import DescriptionError
+
+_NO_GRAVITY = 1 << 7  # mjDSBL_GRAVITY
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What a compiled model does not say.
+
+    Attributes:
+        name: Of the model.
+        file: Its main file.
+        driven: Joints that an actuator acts on.
+        places: Where bodies and joints are stated, as in System.origin.
+    """
+
+    name: str
+    file: str
+    driven: frozenset[str]
+    places: Mapping[tuple[str, ...], str]
+
+
+class Importer:
+    """Turns one compiled model into a description.
+
+    Args:
+        model: An MjModel.
+        stated: What it does not say.
+        remarks: On what is ignored or changed.
+        snap_tol: As in `read_mjcf`.
+    """
+
+    def __init__(self, model: Any, stated: Stated, remarks: Remarks, snap_tol: float) -> None:
+        self.model = model
+        self.stated = stated
+        self.remarks = remarks
+        self.exact = Exact(snap_tol)
+        self.bodies = Names("body", [model.body(i).name for i in range(model.nbody)])
+        self.joints = Names("joint", [model.joint(i).name for i in range(model.njnt)])
+        self.sites = Names("site", [model.site(i).name for i in range(model.nsite)])
+        self.reader = JointReader(model, self.joints, stated.driven, remarks, self.exact)
+        off = model.opt.disableflags & _NO_GRAVITY
+        self.gravity = np.zeros(3) if off else np.array(model.opt.gravity)
+
+    def system(self) -> System:
+        """The description.
+
+        Raises:
+            DescriptionError: Numbers of the model are not finite.
+        """
+        places, file = self.stated.places, self.stated.file
+        problems = [*infinite_numbers(self.model, self.bodies, self.joints, self.sites, places, file)]
+        if problems:
+            raise DescriptionError(problems)
+        frames = self._frames()
+        bodies = [RigidBody(WORLD, frames=frames.get(0, ()))]
+        for i in range(1, self.model.nbody):
+            bodies += self._body(i, frames.get(i, ()))
+        self._remark_ignored()
+        origin = {("system",): file, **places}
+        gravity = self.exact.vector(self.gravity)
+        if self.exact.changed:
+            self.remarks.add(f"numbers within {self.exact.tolerance:g} of exact ones made exact", "number",
+                             f"{self.exact.changed} of them")  # fmt: skip
+        return System(self.stated.name, tuple(bodies), gravity=gravity, notes=self.remarks.notes(), origin=origin)
+
+    def _body(self, i: int, frames: tuple[Frame, ...]) -> Iterator[RigidBody]:
+        """A body, after the massless ones that carry it from joint to joint."""
+        m, name = self.model, self.bodies[i]
+        indices = range(int(m.body_jntadr[i]), int(m.body_jntadr[i] + m.body_jntnum[i]))
+        chain = Chain(self.bodies[int(m.body_parentid[i])], np.array(m.body_pos[i]), turned(m.body_quat[i]))
+        if m.body_mocapid[i] >= 0:
+            self.remarks.add("mocap bodies stay where the model puts them", "body", name)
+        joint: Joint | None = None
+        for j in indices:
+            if joint is not None:
+                carrier = self.bodies.fresh(f"{name}_at_{joint.name}")
+                yield RigidBody(carrier, joint)
+                chain.parent = carrier
+            joint = self.reader.free(j, chain) if m.jnt_type[j] == FREE else self.reader.joint(j, chain)
+        if joint is not None and chain.is_offset:
+            # A body turns about an anchor that is not its origin: the origin is fixed to what turns there.
+            carrier = self.bodies.fresh(f"{name}_at_{joint.name}")
+            yield RigidBody(carrier, joint)
+            chain.parent, joint = carrier, None
+        if joint is None:
+            fixed = self.joints.fresh(f"{name}_fixed")
+            joint = Joint(fixed, "fixed", chain.parent, None, *self.exact.placement(chain.p, chain.R))
+        yield RigidBody(name, joint, self._inertia(i), frames, loads=self._loads(i))
+
+    def _inertia(self, i: int) -> Inertia | None:
+        m = self.model
+        if m.body_mass[i] == 0.0 and not np.any(m.body_inertia[i]):
+            return None
+        position, rotation = self.exact.placement(np.array(m.body_ipos[i]), turned(m.body_iquat[i]))
+        return Inertia(float(m.body_mass[i]), position, tuple(map(float, m.body_inertia[i])), rotation=rotation)
+
+    def _loads(self, i: int) -> tuple[Load, ...]:
+        """What a compensation of gravity pushes the body with."""
+        lift = -float(self.model.body_gravcomp[i]) * float(self.model.body_mass[i])
+        x, y, z = (lift * g for g in self.gravity.tolist())
+        if not any((x, y, z)) or self.model.body_treeid[i] < 0:
+            return ()
+        return (Load((x, y, z), at="center_of_mass", axes="world"),)
+
+    def _frames(self) -> dict[int, tuple[Frame, ...]]:
+        """Sites, by the index of their body."""
+        m = self.model
+        found: dict[int, tuple[Frame, ...]] = {}
+        for s in range(m.nsite):
+            frame = Frame(self.sites[s], *self.exact.placement(np.array(m.site_pos[s]), turned(m.site_quat[s])))
+            body = int(m.site_bodyid[s])
+            found[body] = (*found.get(body, ()), frame)
+        return found
+
+    def _remark_ignored(self) -> None:
+        m = self.model
+        for g in range(m.ngeom):
+            self.remarks.add("contacts ignored, shapes count by their inertia only", "shape",
+                             m.geom(g).name or f"geom{g}")  # fmt: skip
+        if m.opt.density or m.opt.viscosity:
+            self.remarks.add("forces of the medium ignored", "option", "density, viscosity")

@@ -1,0 +1,114 @@
+"""What of an MJCF document reaches MuJoCo: a whitelist. The rest is ignored with a remark, or refused."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from symofros.description.mjcf_files import MAX_ELEMENTS, Folder
+from symofros.description.remarks import Remarks
+from symofros.description.xml_nodes import Element
+from symofros.errors import did_you_mean
+
+_KEPT_SECTIONS = frozenset({"compiler", "option", "default", "asset", "worldbody"})
+_IGNORED_SECTIONS = frozenset({
+    "actuator", "contact", "custom", "deformable", "equality", "extension", "keyframe", "sensor", "size", "statistic",
+    "tendon", "visual",
+})  # fmt: skip
+# Of no meaning to mechanics, so not worth a remark.
+_SILENT = frozenset({"custom", "extension", "size", "statistic", "visual"})
+
+_BODY = frozenset({"body", "frame", "replicate", "joint", "freejoint", "inertial", "geom", "site"})
+_KEPT: dict[str, frozenset[str]] = {
+    "mujoco": _KEPT_SECTIONS,
+    "option": frozenset({"flag"}),
+    "default": frozenset({"default", "joint", "geom", "site", "mesh"}),
+    "asset": frozenset({"mesh"}),
+    **dict.fromkeys(("worldbody", "body", "frame", "replicate"), _BODY),
+}
+_IGNORED: dict[str, frozenset[str]] = {
+    "mujoco": _IGNORED_SECTIONS,
+    **dict.fromkeys(("worldbody", "body", "frame", "replicate"), frozenset({"camera", "light"})),
+}
+# What adds bodies, masses or forces in ways that only MuJoCo's own simulation knows.
+_REFUSED: dict[str, str] = {
+    "attach": "attach the other model in MuJoCo, and save the whole",
+    "composite": "state its bodies one by one",
+    "flexcomp": "a soft body is no rigid tree",
+    "plugin": "state the body without it",
+}
+# Looks, and folders of files that are handed over by name.
+_DROPPED_ATTRIBUTES = frozenset({"material", "meshdir", "texturedir", "assetdir", "strippath"})
+
+
+class Sections:
+    """Cuts a document down to what describes a rigid tree.
+
+    Attributes:
+        folder: Of the model; its faults are collected there.
+        remarks: On what is ignored.
+        driven: Joints that an actuator acts on.
+    """
+
+    def __init__(self, folder: Folder, remarks: Remarks) -> None:
+        self.folder = folder
+        self.remarks = remarks
+        self.driven: frozenset[str] = frozenset()
+
+    def kept(self, root: Element) -> Element:
+        """The document without what is ignored; everything refused or unknown is noted as a fault."""
+        self.driven = frozenset(
+            name
+            for actuators in root.all("actuator")
+            for actuator in actuators.children
+            if (name := actuator.attributes.get("joint") or actuator.attributes.get("jointinparent"))
+        )
+        result = self._kept(root)
+        if self._expanded(result) > MAX_ELEMENTS:
+            self.folder.fault(result, "the model is too large", "<replicate> makes too many elements",
+                              f"at most {MAX_ELEMENTS}", "replicate fewer")  # fmt: skip
+        return result
+
+    def _kept(self, element: Element, is_asset: bool = False) -> Element:
+        # A default that names a file would have MuJoCo open it.
+        dropped = _DROPPED_ATTRIBUTES if is_asset else _DROPPED_ATTRIBUTES | {"file"}
+        attributes = {k: text for k, text in element.attributes.items() if k not in dropped}
+        return replace(element, attributes=attributes, children=list(self._children(element)))
+
+    def _children(self, element: Element) -> Iterator[Element]:
+        kept, ignored = _KEPT.get(element.tag, frozenset()), _IGNORED.get(element.tag, frozenset())
+        for child in element.children:
+            if child.tag in kept:
+                yield self._kept(child, element.tag == "asset")
+            elif child.tag in _REFUSED:
+                self.folder.fault(child, f"<{child.tag}> can't be read", f"in <{element.tag}>",
+                                  f"bodies are stated by <body>, <frame> and <replicate>, without {_listed(_REFUSED)}",
+                                  _REFUSED[child.tag])  # fmt: skip
+            elif child.tag in ignored:
+                self._remark(child, element.tag == "mujoco")
+            elif element.tag in ("worldbody", "body", "frame", "replicate", "mujoco"):
+                self.folder.fault(child, f"<{child.tag:.60}> is unknown in <{element.tag}>", f"<{child.tag:.60}>",
+                                  f"<{element.tag}> holds {_listed(kept | ignored)}",
+                                  did_you_mean(child.tag, kept | ignored))  # fmt: skip
+
+    def _remark(self, element: Element, is_section: bool) -> None:
+        if element.tag in _SILENT:
+            return
+        for item in element.children if is_section else [element]:
+            name = item.attributes.get("name") or f"{item.tag} in line {item.line}"
+            self.remarks.add(f"<{element.tag}> ignored", "element", name)
+
+    def _expanded(self, element: Element) -> int:
+        """How many elements MuJoCo makes of one."""
+        inside = sum(map(self._expanded, element.children))
+        if element.tag != "replicate":
+            return 1 + inside
+        count = element.attributes.get("count", "1").strip()
+        if not (count.isascii() and count.isdigit() and len(count) <= 9):
+            self.folder.fault(element, "<replicate> has a bad 'count'", f"'{count:.60}'", "a whole number")
+            return 1
+        return 1 + int(count) * inside
+
+
+def _listed(tags: frozenset[str] | dict[str, str]) -> str:
+    return ", ".join(f"<{tag}>" for tag in sorted(tags))
