@@ -15,6 +15,11 @@ from typing import TYPE_CHECKING, Any
 from symofros.description.beam import Beam as Beam
 from symofros.description.beam import BeamLoad as BeamLoad
 from symofros.description.beam import Samples as Samples
+from symofros.description.constraints import Closure as Closure
+from symofros.description.constraints import KnifeEdge as KnifeEdge
+from symofros.description.constraints import Nonholonomic as Nonholonomic
+from symofros.description.constraints import Rod as Rod
+from symofros.description.constraints import Rolling as Rolling
 from symofros.description.forces import Connection as Connection
 from symofros.description.forces import Damper as Damper
 from symofros.description.forces import Friction as Friction

@@ -247,6 +247,7 @@ def describe(tree: SpanningTree, options: Options) -> ModelRecord:
         par_default=names.par_default,
         q_neutral=tuple(neutral), q_lower=tuple(lower), q_upper=tuple(upper),
         segments=_segments(tree), periodic=tuple(periodic),
+        nc=sum(constraint.rows for constraint in tree.system.constraints),
     )  # fmt: skip
 
 

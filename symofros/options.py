@@ -15,6 +15,10 @@ MODEL_FUNCTIONS = (
     "inverse_dynamics",
     "kinetic_energy",
     "potential_energy",
+    "constraint",
+    "constraint_rate",
+    "constraint_jacobian",
+    "constraint_bias",
 )
 FRAME_FUNCTIONS = ("frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian", "frame_jacobian_rate")
 

@@ -1,8 +1,8 @@
-"""MSS with its flexibility: SSRMS with flexible booms and joints, SPDM with flexible joints, 22 + 35 degrees of freedom.
+"""MSS with its flexibility: SSRMS with flexible booms and joints, SPDM with flexible joints.
 
-The paper's introduction asks for 22 rigid and more than 30 flexible degrees of freedom and prints no parameters. Lengths
-and masses are those of the rigid `mss`; boom stiffness is that of a carbon-fibre tube of 0.35 m diameter, joint
-stiffnesses are plausible for the torque of each arm.
+The paper's introduction asks for 22 rigid and more than 30 flexible degrees of freedom, and prints no parameters; here
+are 22 + 35. Lengths and masses are those of the rigid `mss`; boom stiffness is that of a carbon-fibre tube of 0.35 m
+diameter, joint stiffnesses are plausible for the torque of each arm.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ import numpy as np
 
 from symofros.expr.evaluate import evaluate_edges, interpret
 from symofros.expr.program import Function, Program
+from symofros.runtime.constrained import constrained
 from symofros.runtime.kernel import Array, Kernel, Signature
 
 
@@ -28,7 +29,7 @@ class InterpretedKernel:
             function.name,
             function.frame,
             tuple((name, program.sizes[name]) for name in function.inputs),
-            tuple((output.name, output.shape) for output in function.outputs),
+            function.returns,
         )
 
     def prepare(self, par: Array) -> Array:
@@ -41,4 +42,5 @@ class InterpretedKernel:
     def run(self, n: int, pre: Array, inputs: list[Array]) -> list[Array]:
         """Evaluate n states."""
         named = dict(zip(self._function.inputs, inputs, strict=True)) | {"pre": pre}
-        return interpret(self._program, self._function, named, n)
+        outputs = interpret(self._program, self._function, named, n)
+        return constrained(*outputs) if self._function.solve else outputs

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib.resources import files
+from math import prod
 from string import Template
 
 from symofros.codegen.function import FunctionText, FunctionWriter
@@ -44,7 +45,9 @@ def model_source(program: Program, record: ModelRecord, generator: str) -> str:
         generator=generator,
         hash=record.hash,
         operations=_comment("\n".join(lines)),
-        functions="\n\n".join(texts),
+        functions="\n\n".join(
+            [template("constrained.c.in"), *texts] if any(f.solve for f in program.functions) else texts
+        ),
         tables="\n".join([*(table for table, _ in rows), _function_table(name, [row for _, row in rows])]),
         n_functions=len(rows),
         c_name=name,
@@ -86,10 +89,11 @@ def _init_function(program: Program, name: str) -> str:
 def _one_function(program: Program, function: Function, c_name: str) -> tuple[str, tuple[str, str]]:
     """Code, and (tables of its arrays, row of the function table)."""
     inputs = ["pre", *function.inputs]
-    text = FunctionWriter(program, c_name, inputs, function.outputs).text()
+    writer = FunctionWriter(program, f"{c_name}_terms" if function.solve else c_name, inputs, function.outputs)
+    text = _with_solver(writer.text(), c_name, function) if function.solve else writer.text()
     code = "\n".join([text.code, _batch(c_name, function, len(inputs))])
     arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)
-    arrays_out = ", ".join(f'{{"{o.name}", {len(o.shape)}, {_rows(o)}, {_columns(o)}}}' for o in function.outputs)
+    arrays_out = ", ".join(f'{{"{name}", {len(s)}, {_rows(s)}, {_columns(s)}}}' for name, s in function.returns)
     tables = (
         f"static const sym_array {c_name}_in[] = {{{arrays_in}}};\n"
         f"static const sym_array {c_name}_out[] = {{{arrays_out}}};"
@@ -100,14 +104,14 @@ def _one_function(program: Program, function: Function, c_name: str) -> tuple[st
 def _row(function: Function, c_name: str, n_in: int, text: FunctionText) -> str:
     frame = c_string(function.frame) if function.frame else "NULL"
     return (
-        f"    {{{c_string(function.name)}, {frame}, {n_in}, {len(function.outputs)}, {c_name}_in, {c_name}_out, "
+        f"    {{{c_string(function.name)}, {frame}, {n_in}, {len(function.returns)}, {c_name}_in, {c_name}_out, "
         f"{text.work}, {c_name}, {c_name}_batch}}"
     )
 
 
 def _batch(c_name: str, function: Function, n_in: int) -> str:
     """The loop over states."""
-    n_out = len(function.outputs)
+    n_out = len(function.returns)
     lines = [
         f"static void {c_name}_batch(size_t n, const double *const *in, const size_t *in_stride, double *const *out,",
         "    double *work) {",
@@ -119,7 +123,7 @@ def _batch(c_name: str, function: Function, n_in: int) -> str:
         "    for (i = 0; i < n; ++i) {",
         f"        {c_name}((const double *const *)x, y, work);",
         *(f"        x[{k}] += in_stride[{k}];" for k in range(n_in)),
-        *(f"        y[{k}] += {len(o.edges)};" for k, o in enumerate(function.outputs)),
+        *(f"        y[{k}] += {prod(shape)};" for k, (_, shape) in enumerate(function.returns)),
         "    }",
         "}",
     ]
@@ -130,12 +134,30 @@ def _function_table(name: str, rows: Sequence[str]) -> str:
     return f"static const sym_function {name}_functions[] = {{\n" + ",\n".join(rows) + "\n};"
 
 
-def _rows(output: Output) -> int:
-    return output.shape[0] if output.shape else 1
+def _with_solver(terms: FunctionText, c_name: str, function: Function) -> FunctionText:
+    """The terms of forward dynamics, then the solver of templates/constrained.c.in on them."""
+    n, m = function.outputs[2].shape[1], function.outputs[2].shape[0]
+    sizes = [len(output.edges) for output in function.outputs]
+    starts = [sum(sizes[:k]) for k in range(len(sizes) + 1)]
+    scratch = n * n + 2 * m * n + 2 * m * m + 2 * m
+    lines = [
+        f"static void {c_name}(const double *const *in, double *const *out, double *restrict work) {{",
+        f"    double *terms[{len(sizes)}];",
+        *(f"    terms[{k}] = work + {start};" for k, start in enumerate(starts[:-1])),
+        f"    {c_name}_terms(in, terms, work + {starts[-1]});",
+        f"    *out[2] = sym_constrained({n}, {m}, terms[0], terms[1], terms[2], terms[3], out[0], out[1],",
+        f"        work + {starts[-1]});",
+        "}",
+    ]
+    return FunctionText("\n".join([terms.code, *lines]), starts[-1] + max(terms.work, scratch))
 
 
-def _columns(output: Output) -> int:
-    return output.shape[1] if len(output.shape) > 1 else 1
+def _rows(shape: tuple[int, ...]) -> int:
+    return shape[0] if shape else 1
+
+
+def _columns(shape: tuple[int, ...]) -> int:
+    return shape[1] if len(shape) > 1 else 1
 
 
 def _strings(names: Iterable[str]) -> str:

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from symofros.description.forces import Load
+from symofros.description.frames import Frame
 from symofros.description.mjcf_geometry import Exact, turned
 from symofros.description.mjcf_joints import FREE, Chain, JointReader
 from symofros.description.mjcf_names import Names
 from symofros.description.mjcf_numbers import infinite_numbers
 from symofros.description.remarks import Remarks
-from symofros.description.system import WORLD, Frame, Inertia, Joint, RigidBody, System
+from symofros.description.system import WORLD, Inertia, Joint, RigidBody, System
 from symofros.errors import DescriptionError
 
 _NO_GRAVITY = 1 << 7  # mjDSBL_GRAVITY

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any, Literal, get_args
 
 from symofros.description.beam import Beam
+from symofros.description.constraints import Constraint
 from symofros.description.forces import Connection, JointElement, Load, Potential, Rotor, VirtualPower
 from symofros.description.frames import Frame
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
@@ -236,6 +237,7 @@ class System:
         connections: Springs and dampers between frames.
         virtual_power: Internal forces by their virtual power.
         potentials: Potential energies by formula.
+        constraints: Closures of loops and conditions on speeds.
         notes: What an importer dropped or changed, in words.
         origin: "file:line" of objects, keyed by ("body", name), ("joint", name), …; not part of equality.
     """
@@ -248,12 +250,14 @@ class System:
     connections: tuple[Connection, ...] = ()
     virtual_power: tuple[VirtualPower, ...] = ()
     potentials: tuple[Potential, ...] = ()
+    constraints: tuple[Constraint, ...] = ()
     notes: tuple[str, ...] = field(default=(), compare=False, repr=False)
     origin: Mapping[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         """Freeze the collections and convert the gravity."""
-        for name in ("bodies", "parameters", "inputs", "connections", "virtual_power", "potentials", "notes"):
+        for name in ("bodies", "parameters", "inputs", "connections", "virtual_power", "potentials", "constraints",
+                     "notes"):  # fmt: skip
             object.__setattr__(self, name, tuple(getattr(self, name)))
         object.__setattr__(self, "gravity", as_vector(self.gravity, f"system '{self.name}': gravity"))
         object.__setattr__(self, "origin", MappingProxyType(dict(self.origin)))
@@ -262,7 +266,7 @@ class System:
         """Pickle without the read-only view, which can't be pickled."""
         return System, (
             self.name, self.bodies, self.parameters, self.inputs, self.gravity, self.connections, self.virtual_power,
-            self.potentials, self.notes, dict(self.origin),
+            self.potentials, self.constraints, self.notes, dict(self.origin),
         )  # fmt: skip
 
     def body(self, name: str) -> Body:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
+from symofros.dynamics.constraints import Constraints, Row
 from symofros.dynamics.energy import kinetic_energy, potential_energy
 from symofros.dynamics.forces import generalized_forces, stored_energy
 from symofros.dynamics.forward import solve
@@ -88,6 +89,22 @@ class Equations:
         return solve(self.g, self.M, [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)])
 
     @cached_property
+    def constraints(self) -> list[Row]:
+        """One row a condition."""
+        return Constraints(self.frames).rows()
+
+    @cached_property
+    def stabilised(self) -> list[Edge]:
+        """What G v' must equal, with Baumgarte's terms: gamma - 2 alpha (G v - b) - beta^2 phi (nc)."""
+        g, nc = self.g, len(self.constraints)
+        found = []
+        for i, row in enumerate(self.constraints):
+            alpha, beta = g.input("gains", i), g.input("gains", nc + i)
+            damped = g.mul(g.add(alpha, alpha), row.rate)
+            found.append(g.sub(g.sub(row.gamma, damped), g.mul(g.mul(beta, beta), row.phi)))
+        return found
+
+    @cached_property
     def required(self) -> list[Edge]:
         """M a + h - Q(q, v, 0): what the inputs must supply for an acceleration a."""
         total = inertia_forces(self.motion, self._inertias[0], self.rotors, self.v_rate, self.gravity)
@@ -117,12 +134,22 @@ class Equations:
         Raises:
             KeyError: There is no such function or frame.
         """
+        if request.name == "forward_dynamics" and self.tree.system.constraints:
+            return self._constrained(request)
         if request.name in _FRAME_FUNCTIONS:
             inputs, outputs = _FRAME_FUNCTIONS[request.name](self, self.tree.frame(request.frame))
         else:
             inputs, outputs = _FUNCTIONS[request.name](self)
         more = tuple(name for name in self.always if name not in inputs)
         return Function(request.name, request.frame, (*inputs, *more), outputs)
+
+    def _constrained(self, request: Request) -> Function:
+        """Forward dynamics under constraints: the terms, for a solver that copes with any rank."""
+        right = [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)]
+        G = [row.G for row in self.constraints]
+        outputs = (_matrix("M", self.M), _vector("r", right), _matrix("G", G), _vector("c", self.stabilised))
+        solved = (("a", (self.nv,)), ("lam", (len(G),)), ("rank", ()))
+        return Function(request.name, "", ("q", "v", "u", "gains", "t"), outputs, solved)
 
 
 _Parts = tuple[tuple[str, ...], tuple[Output, ...]]
@@ -133,7 +160,7 @@ def _vector(name: str, edges: Sequence[Edge]) -> Output:
 
 
 def _matrix(name: str, rows: Sequence[Sequence[Edge]]) -> Output:
-    return Output(name, (len(rows), len(rows[0])), tuple(edge for row in rows for edge in row))
+    return Output(name, (len(rows), len(rows[0]) if rows else 0), tuple(edge for row in rows for edge in row))
 
 
 def _dynamics(e: Equations) -> _Parts:
@@ -149,6 +176,10 @@ _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "inverse_dynamics": lambda e: (("q", "v", "a", "t"), (_vector("tau", e.required),)),
     "kinetic_energy": lambda e: (("q", "v"), (Output("T", (), (e.T,)),)),
     "potential_energy": lambda e: (("q", "t"), (Output("V", (), (e.V,)),)),
+    "constraint": lambda e: (("q", "t"), (_vector("phi", [row.phi for row in e.constraints]),)),
+    "constraint_rate": lambda e: (("q", "v", "t"), (_vector("phi_rate", [row.rate for row in e.constraints]),)),
+    "constraint_jacobian": lambda e: (("q", "t"), (_matrix("G", [row.G for row in e.constraints]),)),
+    "constraint_bias": lambda e: (("q", "v", "t"), (_vector("gamma", [row.gamma for row in e.constraints]),)),
 }
 
 
@@ -181,5 +212,6 @@ def write_program(tree: SpanningTree, requests: Sequence[Request]) -> Program:
     names = tree.coordinates
     sizes = {
         "q": len(names.q), "v": len(names.v), "a": len(names.v), "u": len(names.u), "par": len(names.par), "t": 1,
+        "gains": 2 * sum(constraint.rows for constraint in tree.system.constraints),
     }  # fmt: skip
     return Program(tree.system.name, equations.g, sizes, functions)

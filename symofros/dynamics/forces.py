@@ -118,6 +118,19 @@ def _gradient(motion: Motion, energy: Edge) -> list[Edge]:
     return slopes
 
 
+def coordinate_rates(motion: Motion) -> dict[Edge, Edge]:
+    """The rate of every coordinate, q' = N v; of prescribed ones, their given speeds."""
+    g, lowering = motion.g, motion.lowering
+    rates: dict[Edge, Edge] = {}
+    for link in motion.tree.links:
+        names, speeds = coordinate_names(link.joint), speed_symbols(link.joint)
+        for k, speed in enumerate(speeds):
+            for coordinate, slope in _RATES.get(link.joint.kind, _own_rate)(lowering, names, k).items():
+                part = g.mul(slope, lowering.symbol(speed))
+                rates[coordinate] = g.add(rates.get(coordinate, ZERO), part)
+    return rates
+
+
 def _own_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
     return {lowering.symbol(names[k]): ONE}
 

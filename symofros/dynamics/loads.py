@@ -29,7 +29,7 @@ def wrenches(motion: Motion, frames: FrameKinematics) -> list[Wrench] | None:
         acting = True
         force = _Line(motion, frames, connection).force()
         for anchor, pull in ((connection.first, force), (connection.second, -force)):
-            frame = _anchor(motion, anchor)
+            frame = anchored(motion, anchor)
             if frame.link != BASE:
                 total[frame.link] = total[frame.link] + _at_frame(motion, frames, frame, pull, Vec3(motion.g))
     return total if acting else None
@@ -43,7 +43,8 @@ def _body_frame(motion: Motion, name: str) -> NamedFrame:
     return motion.tree.frames[0]
 
 
-def _anchor(motion: Motion, anchor: Anchor) -> NamedFrame:
+def anchored(motion: Motion, anchor: Anchor) -> NamedFrame:
+    """The frame that an anchor names."""
     body, frame = anchor
     return _body_frame(motion, body) if frame is None else motion.tree.frame(f"{body}.{frame}")
 
@@ -85,7 +86,7 @@ class _Line:
     def __init__(self, motion: Motion, frames: FrameKinematics, connection: Connection) -> None:
         self.g = motion.g
         self.motion, self.frames, self.connection = motion, frames, connection
-        self.ends = [_anchor(motion, anchor) for anchor in (connection.first, connection.second)]
+        self.ends = [anchored(motion, anchor) for anchor in (connection.first, connection.second)]
         self.d = frames.pose(self.ends[1]).p - frames.pose(self.ends[0]).p
         self.stiffness = motion.lowering.value(connection.stiffness)
         self.rest = motion.lowering.value(connection.length)

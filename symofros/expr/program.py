@@ -30,13 +30,21 @@ class Function:
         name: Such as "mass_matrix".
         frame: The frame it is about, or "".
         inputs: Groups it takes, in order; "pre" is added where parameter-only work is hoisted.
-        outputs: What it returns.
+        outputs: What it computes.
+        solve: What a solver makes of the outputs, (name, shape) of each, where the function is not done with them:
+            forward dynamics under constraints computes M, r, G, c and returns a, lam and the rank.
     """
 
     name: str
     frame: str
     inputs: tuple[str, ...]
     outputs: tuple[Output, ...]
+    solve: tuple[tuple[str, tuple[int, ...]], ...] = ()
+
+    @property
+    def returns(self) -> tuple[tuple[str, tuple[int, ...]], ...]:
+        """Name and shape of each array that a caller gets."""
+        return self.solve or tuple((output.name, output.shape) for output in self.outputs)
 
     def edges(self) -> list[Edge]:
         """All output edges."""

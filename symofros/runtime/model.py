@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -156,9 +156,101 @@ class Model:
         M, h, Q = self._call("dynamics", "", {"q": q, "v": v, "u": u, "t": t}, par)
         return M, h, Q
 
-    def forward_dynamics(self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0) -> Array:
-        """The v' (..., nv) that the forces produce."""
-        return self._one("forward_dynamics", {"q": q, "v": v, "u": u, "t": t}, par)
+    @overload
+    def forward_dynamics(
+        self,
+        q: Given,
+        v: Given,
+        u: Given,
+        *,
+        par: Given | None = None,
+        t: Given = 0.0,
+        gains: Given | None = None,
+        multipliers: Literal[False] = False,
+    ) -> Array: ...
+    @overload
+    def forward_dynamics(
+        self,
+        q: Given,
+        v: Given,
+        u: Given,
+        *,
+        par: Given | None = None,
+        t: Given = 0.0,
+        gains: Given | None = None,
+        multipliers: Literal[True],
+    ) -> tuple[Array, Array]: ...
+    def forward_dynamics(
+        self,
+        q: Given,
+        v: Given,
+        u: Given,
+        *,
+        par: Given | None = None,
+        t: Given = 0.0,
+        gains: Given | None = None,
+        multipliers: bool = False,
+    ) -> Array | tuple[Array, Array]:
+        """The v' (..., nv) that the forces produce, constraints kept.
+
+        Args:
+            q: Configuration (..., nq).
+            v: Speeds (..., nv).
+            u: Inputs (..., nu).
+            par: Run-time parameters (..., npar).
+            t: Time (...,).
+            gains: Baumgarte's (alpha, beta) for all constraints, or (..., 2 nc): alpha of each, then beta of each
+                [1/s]; none: accelerations only, so that errors of phi and G v drift.
+            multipliers: Whether to return lam (..., nc) as well: G^T lam are the constraint forces.
+        """
+        a, lam, _ = self.constrained_dynamics(q, v, u, par=par, t=t, gains=gains)
+        return (a, lam) if multipliers else a
+
+    def constrained_dynamics(
+        self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0, gains: Given | None = None
+    ) -> tuple[Array, Array, Array]:
+        """V' (..., nv), multipliers (..., nc) and the rank of G (...,).
+
+        Conditions that repeat others leave v' as it is and get multipliers of least norm; ones that contradict each
+        other are met in the sense of least squares. A rank of -1 marks a state that has no acceleration (NaN).
+        """
+        given = {"q": q, "v": v, "u": u, "t": t, "gains": self._gains(gains)}
+        found = self._call("forward_dynamics", "", given, par)
+        if len(found) == 1:
+            batch = found[0].shape[:-1]
+            return found[0], np.zeros((*batch, 0)), np.zeros(batch)
+        a, lam, rank = found
+        return a, lam, rank
+
+    def _gains(self, gains: Given | None) -> Given:
+        if gains is None:
+            return np.zeros(2 * self.nc)
+        given = np.asarray(gains, dtype=np.float64)
+        return np.repeat(given, self.nc, axis=-1) if given.shape == (2,) else given
+
+    # Constraints: phi(q) = 0, G v = b, G v' = gamma.
+
+    def constraint(self, q: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0) -> Array:
+        """Phi(q) (..., nc); zero for conditions on speeds."""
+        return self._one("constraint", {"q": q, "u": u, "t": t}, par)
+
+    def constraint_rate(
+        self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+    ) -> Array:
+        """G v - b (..., nc): the rate of phi, and the residual of conditions on speeds."""
+        return self._one("constraint_rate", {"q": q, "v": v, "u": u, "t": t}, par)
+
+    def constraint_jacobian(
+        self, q: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+    ) -> Array:
+        """G(q) (..., nc, nv)."""
+        return self._one("constraint_jacobian", {"q": q, "u": u, "t": t}, par)
+
+    def constraint_bias(
+        self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+    ) -> Array:
+        """Gamma(q, v) (..., nc): what G v' equals."""
+        return self._one("constraint_bias", {"q": q, "v": v, "u": u, "t": t}, par)
 
     def inverse_dynamics(
         self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0

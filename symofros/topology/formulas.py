@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple
 
 from symofros.description.beam import DIRECTIONS, SECTION, STATION, Beam, Samples
+from symofros.description.constraints import Constraint, Nonholonomic
 from symofros.description.system import Joint, RigidBody, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean
@@ -52,9 +53,22 @@ def stated_values(system: System) -> Iterator[Stated]:
         for speed, value in power.forces:
             key = ("virtual_power", power.name)
             yield Stated(f"virtual power '{power.name}': force on {speed}", value, key, "motion")
+    for constraint in system.constraints:
+        yield from _constraint_values(constraint)
     for potential in system.potentials:
         key = ("potential", potential.name)
         yield Stated(f"potential '{potential.name}'", potential.energy, key, "configuration")
+
+
+def _constraint_values(constraint: Constraint) -> Iterator[Stated]:
+    what, key = f"constraint '{constraint.name}'", ("constraint", constraint.name)
+    for label in ("length", "radius", "height"):
+        if hasattr(constraint, label):
+            yield Stated(f"{what}: {label}", getattr(constraint, label), key)
+    if isinstance(constraint, Nonholonomic):
+        for speed, value in constraint.coefficients:
+            yield Stated(f"{what}: coefficient of {speed}", value, key, "configuration")
+        yield Stated(f"{what}: right", constraint.right, key, "configuration")
 
 
 def _joint_values(joint: Joint) -> Iterator[Stated]:

@@ -12,6 +12,7 @@ from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.expr.expression import CONSTANTS
 from symofros.expr.ops import FUNCTIONS
 from symofros.topology.beams import beam_number_problems, beam_problems
+from symofros.topology.constraints import anchor_problems, constraint_number_problems, constraint_problems
 from symofros.topology.coordinates import coordinate_names, speed_symbols
 from symofros.topology.formulas import TIME, formula_problems, power_problems, stated_values
 from symofros.topology.joints import IDENTIFIER, joint_number_problems, joint_problems
@@ -211,8 +212,11 @@ class _Checker:
                             ("potential", self.system.potentials)):  # fmt: skip
             yield from self._unique(kind, [item.name for item in named])
         for connection in self.system.connections:
-            for name, frame in (connection.first, connection.second):
-                yield from self._anchor(connection.name, name, frame)
+            where, what = self.where("connection", connection.name), f"connection '{connection.name}'"
+            for anchor in (connection.first, connection.second):
+                yield from anchor_problems(what, anchor, self.bodies, self.base, self.broken, where)
+        yield from self._unique("constraint", [item.name for item in self.system.constraints])
+        yield from constraint_problems(self.system, self.bodies, self.base, self.broken)
         yield from power_problems(self.system, self.broken)
 
     def _load(self, body: Body, load: Load | BeamLoad) -> Iterator[Problem]:
@@ -232,20 +236,6 @@ class _Checker:
             yield Problem(f"body '{body.name}': load at the mass centre of a massless body", "no inertia",
                           "a mass centre needs a mass", "use at: body", where)  # fmt: skip
 
-    def _anchor(self, connection: str, name: str, frame: str | None) -> Iterator[Problem]:
-        where = self.where("connection", connection)
-        body = self.base if name in (WORLD, self.base.name) else self.bodies.get(name)
-        if body is None:
-            if name not in self.broken:
-                yield Problem(f"connection '{connection}': no body '{name}'", f"'{name}'",
-                              "a connection joins frames of bodies, or of 'world'",
-                              did_you_mean(name, [WORLD, *self.bodies]), where)  # fmt: skip
-        elif frame is not None and frame not in {item.name for item in body.frames}:
-            known = [item.name for item in body.frames]
-            yield Problem(f"connection '{connection}': frame '{frame}' is not on body '{name}'",
-                          ", ".join(known) or "no frames", "a connection joins frames that exist on their bodies",
-                          did_you_mean(frame, known) or "add the frame", where)  # fmt: skip
-
     # Numbers.
 
     def values(self, numbers: Numbers) -> Iterator[Problem]:
@@ -258,6 +248,7 @@ class _Checker:
                 yield from numbers.rotation_problems(what, rotation, where)
         yield from joint_number_problems(self.system, numbers)
         yield from beam_number_problems(self.system, numbers)
+        yield from constraint_number_problems(self.system, numbers)
 
     def _rotations(self, body: Body) -> Iterator[tuple[str, object, str]]:
         if body.joint is not None:

@@ -50,7 +50,7 @@ class Scope:
         system: The description.
 
     Raises:
-        NotDerivable: A prescribed motion has quaternions.
+        NotDerivable: A prescribed motion has quaternions, or there are beams or constraints.
 
     Attributes:
         bodies: Those with a joint, depth first in the order of description.
@@ -64,6 +64,8 @@ class Scope:
 
     def __init__(self, system: sf.System) -> None:
         self.system = system
+        if system.constraints:
+            raise NotDerivable(f"constraint '{system.constraints[0].name}': the oracle has no multipliers")
         self.bodies = list(self._carried_by(None))
         joints = [body.joint for body in self.bodies if body.joint is not None and body.joint.kind != "fixed"]
         self.joints = tuple(joints)
@@ -94,9 +96,11 @@ class Scope:
     def _carried_by(self, name: str | None) -> list[sf.RigidBody]:
         """Depth first; None for the ground, which the base is, too."""
         bases = {"world"} | {body.name for body in self.system.bodies if body.joint is None}
-        found = []
+        found: list[sf.RigidBody] = []
         for body in self.system.bodies:
             if body.joint is not None and (body.joint.parent in bases if name is None else body.joint.parent == name):
+                if isinstance(body, sf.Beam):
+                    raise NotDerivable(f"beam '{body.name}': the oracle knows rigid bodies")
                 found += [body, *self._carried_by(body.name)]
         return found
 

@@ -1,0 +1,179 @@
+"""What closes loops and binds speeds: closures, rods, rolling contacts, knife edges, constraints by formula."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+from symofros.description.forces import Anchor
+from symofros.description.values import Value, as_value
+from symofros.errors import DescriptionError, Problem, did_you_mean
+
+AxisName = Literal["x", "y", "z"]
+AXES: tuple[AxisName, ...] = get_args(AxisName)
+
+
+def _axes(stated: Any, what: str) -> tuple[AxisName, ...]:
+    for name in stated:
+        if name not in AXES:
+            raise DescriptionError(
+                Problem(f"{what}: unknown direction", f"'{name}'", "blocked directions are x, y, z of the first frame",
+                        did_you_mean(str(name), AXES))
+            )  # fmt: skip
+    return tuple(axis for axis in AXES if axis in stated)
+
+
+@dataclass(frozen=True)
+class Closure:
+    """Two frames that stay together in some directions: it closes a loop of the tree.
+
+    Attributes:
+        name: Unique.
+        first: (body, frame) of the reference, frame None for the body frame; "world" for the ground.
+        second: The other, likewise.
+        translations: Blocked directions of the second origin, along axes of the first frame.
+        rotations: Blocked rotations about axes of the first frame. All three: the frames stay parallel; two: their
+            third axes do; one: the two free axes stay at right angles, as in a universal joint.
+    """
+
+    name: str
+    first: Anchor
+    second: Anchor
+    translations: tuple[AxisName, ...] = AXES
+    rotations: tuple[AxisName, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check and order the directions."""
+        what = f"closure '{self.name}'"
+        object.__setattr__(self, "translations", _axes(self.translations, f"{what}: translations"))
+        object.__setattr__(self, "rotations", _axes(self.rotations, f"{what}: rotations"))
+        if not self.translations and not self.rotations:
+            raise DescriptionError(Problem(f"{what}: blocks nothing", "no directions", "a closure blocks at least one",
+                                           "name translations, rotations or both"))  # fmt: skip
+
+    @property
+    def rows(self) -> int:
+        """How many conditions it makes."""
+        return len(self.translations) + len(self.rotations)
+
+
+@dataclass(frozen=True)
+class Rod:
+    """A massless rod: the distance between two frames' origins stays the same.
+
+    Attributes:
+        name: Unique.
+        first: (body, frame), frame None for the body frame; "world" for the ground.
+        second: Likewise.
+        length: [m].
+    """
+
+    name: str
+    first: Anchor
+    second: Anchor
+    length: Value
+
+    def __post_init__(self) -> None:
+        """Convert the length."""
+        object.__setattr__(self, "length", as_value(self.length, f"rod '{self.name}': length"))
+
+    @property
+    def rows(self) -> int:
+        """One condition."""
+        return 1
+
+
+@dataclass(frozen=True)
+class KnifeEdge:
+    """A frame that moves along its own axes, but for one: an edge, or a thin wheel that may slip along.
+
+    Attributes:
+        name: Unique.
+        anchor: (body, frame) of the edge.
+        axis: The direction of the frame that its origin does not move in.
+    """
+
+    name: str
+    anchor: Anchor
+    axis: AxisName = "y"
+
+    def __post_init__(self) -> None:
+        """Check the direction."""
+        _axes((self.axis,), f"knife edge '{self.name}'")
+
+    @property
+    def rows(self) -> int:
+        """One condition."""
+        return 1
+
+
+@dataclass(frozen=True)
+class Rolling:
+    """A disc or a sphere that rolls without slipping on the horizontal plane z = height of the world.
+
+    The first two conditions bind speeds; the third keeps the contact on the plane, and binds coordinates.
+
+    Attributes:
+        name: Unique.
+        anchor: (body, frame) at the centre; a disc's axis is the frame's z axis.
+        radius: [m].
+        shape: "disc" (thin, at any tilt but flat) or "sphere".
+        height: Of the plane [m].
+    """
+
+    name: str
+    anchor: Anchor
+    radius: Value
+    shape: Literal["disc", "sphere"] = "disc"
+    height: Value = 0.0
+
+    def __post_init__(self) -> None:
+        """Convert the numbers, check the shape."""
+        what = f"rolling contact '{self.name}'"
+        for label in ("radius", "height"):
+            object.__setattr__(self, label, as_value(getattr(self, label), f"{what}: {label}"))
+        if self.shape not in ("disc", "sphere"):
+            raise DescriptionError(
+                Problem(f"{what}: unknown shape", f"'{self.shape}'", "a rolling body is a disc or a sphere",
+                        did_you_mean(str(self.shape), ("disc", "sphere")))
+            )  # fmt: skip
+
+    @property
+    def rows(self) -> int:
+        """Two that bind speeds, one that binds coordinates."""
+        return 3
+
+
+@dataclass(frozen=True)
+class Nonholonomic:
+    """A condition on speeds by formula: the sum of coefficient times speed equals a right-hand side.
+
+    Attributes:
+        name: Unique.
+        coefficients: Speed, as formulas call it (dq1) -> formula of coordinates, parameters and t.
+        right: Formula of coordinates, parameters and t.
+    """
+
+    name: str
+    coefficients: tuple[tuple[str, Value], ...]
+    right: Value = 0.0
+
+    def __post_init__(self) -> None:
+        """Accept a mapping, and convert the formulas."""
+        given: Any = self.coefficients
+        pairs = given.items() if isinstance(given, Mapping) else given
+        what = f"non-holonomic constraint '{self.name}'"
+        object.__setattr__(self, "coefficients", tuple((str(k), as_value(x, f"{what}: {k}")) for k, x in pairs))
+        object.__setattr__(self, "right", as_value(self.right, f"{what}: right"))
+        if not self.coefficients:
+            raise DescriptionError(Problem(f"{what}: binds no speed", "no coefficients",
+                                           "a constraint has at least one", "name a speed"))  # fmt: skip
+
+    @property
+    def rows(self) -> int:
+        """One condition."""
+        return 1
+
+
+Constraint = Closure | Rod | KnifeEdge | Rolling | Nonholonomic
