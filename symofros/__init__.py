@@ -40,6 +40,7 @@ from symofros.description.system import RigidBody as RigidBody
 from symofros.description.system import System as System
 from symofros.description.values import Rotation as Rotation
 from symofros.description.values import as_value
+from symofros.errors import AssemblyError as AssemblyError
 from symofros.errors import CompileError as CompileError
 from symofros.errors import CompilerMissingWarning as CompilerMissingWarning
 from symofros.errors import DescriptionError as DescriptionError
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
     from symofros.loading import load as load
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
+    from symofros.simulation.assembly import assemble as assemble
 
     compile = compile_system
 
@@ -75,6 +77,7 @@ _LAZY = {
     "load": ("symofros.loading", "load"),
     "save": ("symofros.loading", "save"),
     "Model": ("symofros.runtime.model", "Model"),
+    "assemble": ("symofros.simulation.assembly", "assemble"),
 }
 
 

@@ -24,6 +24,7 @@ from symofros.codegen.interpreted import InterpretedUnit
 from symofros.codegen.model import model_source, template
 from symofros.codegen.names import identifier
 from symofros.description.beam import Beam
+from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
 from symofros.dynamics.equations import Request, write_program
 from symofros.errors import (
@@ -44,11 +45,11 @@ from symofros.runtime.build import build_library
 from symofros.runtime.kernel import Unit
 from symofros.runtime.library import CompiledUnit
 from symofros.runtime.model import Key, Model
-from symofros.runtime.record import ModelRecord, Segment, SegmentKind
+from symofros.runtime.record import ClosureRecord, ModelRecord, Segment, SegmentKind
 from symofros.runtime.toolchain import Toolchain, find_toolchain
 from symofros.topology.coordinates import angles, joint_sizes
 from symofros.topology.graph import check
-from symofros.topology.tree import SpanningTree, build_tree
+from symofros.topology.tree import SpanningTree, build_tree, frame_of
 
 GENERATOR = "symofros 0.1.0"
 _EAGER = (Request("dynamics"),)
@@ -247,8 +248,14 @@ def describe(tree: SpanningTree, options: Options) -> ModelRecord:
         par_default=names.par_default,
         q_neutral=tuple(neutral), q_lower=tuple(lower), q_upper=tuple(upper),
         segments=_segments(tree), periodic=tuple(periodic),
-        nc=sum(constraint.rows for constraint in tree.system.constraints),
+        constraint_names=tuple(name for item in tree.system.constraints for name in item.conditions),
+        closures=tuple(_closure(tree, item) for item in tree.system.constraints if isinstance(item, Closure)),
     )  # fmt: skip
+
+
+def _closure(tree: SpanningTree, closure: Closure) -> ClosureRecord:
+    first, second = (frame_of(tree, *anchor).name for anchor in (closure.first, closure.second))
+    return ClosureRecord(closure.name, first, second, tuple(AXES.index(axis) for axis in closure.rotations))
 
 
 def _segments(tree: SpanningTree) -> tuple[Segment, ...]:

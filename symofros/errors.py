@@ -67,6 +67,10 @@ class CompileError(SymofrosError):
     """The C compiler refused the generated code, or the result did not load."""
 
 
+class AssemblyError(SymofrosError):
+    """No configuration, or no speeds, satisfy the constraints; says which constraint is worst and by how much."""
+
+
 class CompilerMissingWarning(UserWarning):
     """No C compiler was found; a slower way is used."""
 

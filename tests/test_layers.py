@@ -28,8 +28,9 @@ ALLOWED: dict[str, set[str]] = {
         "errors", "options", "expr", "description", "beams", "topology", "kinematics", "dynamics", "passes", "codegen",
         "runtime",
     },
+    "simulation": {"runtime", "errors"},
     "loading": {"errors", "atomic", "description", "topology"},
-    "__init__": {"errors", "options", "expr", "description", "compiler", "loading", "runtime"},
+    "__init__": {"errors", "options", "expr", "description", "compiler", "loading", "runtime", "simulation"},
 }  # fmt: skip
 ENGINES = {"pinocchio", "mujoco", "exudyn", "casadi"}
 

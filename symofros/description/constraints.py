@@ -53,9 +53,9 @@ class Closure:
                                            "name translations, rotations or both"))  # fmt: skip
 
     @property
-    def rows(self) -> int:
-        """How many conditions it makes."""
-        return len(self.translations) + len(self.rotations)
+    def conditions(self) -> tuple[str, ...]:
+        """Names of its conditions: closure.x for a translation, closure.rx for a rotation."""
+        return (*(f"{self.name}.{x}" for x in self.translations), *(f"{self.name}.r{x}" for x in self.rotations))
 
 
 @dataclass(frozen=True)
@@ -79,9 +79,9 @@ class Rod:
         object.__setattr__(self, "length", as_value(self.length, f"rod '{self.name}': length"))
 
     @property
-    def rows(self) -> int:
+    def conditions(self) -> tuple[str, ...]:
         """One condition."""
-        return 1
+        return (self.name,)
 
 
 @dataclass(frozen=True)
@@ -103,9 +103,9 @@ class KnifeEdge:
         _axes((self.axis,), f"knife edge '{self.name}'")
 
     @property
-    def rows(self) -> int:
+    def conditions(self) -> tuple[str, ...]:
         """One condition."""
-        return 1
+        return (self.name,)
 
 
 @dataclass(frozen=True)
@@ -140,9 +140,9 @@ class Rolling:
             )  # fmt: skip
 
     @property
-    def rows(self) -> int:
+    def conditions(self) -> tuple[str, ...]:
         """Two that bind speeds, one that binds coordinates."""
-        return 3
+        return (f"{self.name}.slip_x", f"{self.name}.slip_y", f"{self.name}.height")
 
 
 @dataclass(frozen=True)
@@ -171,9 +171,9 @@ class Nonholonomic:
                                            "a constraint has at least one", "name a speed"))  # fmt: skip
 
     @property
-    def rows(self) -> int:
+    def conditions(self) -> tuple[str, ...]:
         """One condition."""
-        return 1
+        return (self.name,)
 
 
 Constraint = Closure | Rod | KnifeEdge | Rolling | Nonholonomic

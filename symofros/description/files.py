@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from symofros.description.constraints import Constraint
 from symofros.description.faults import line_of, path_of, problem_of
 from symofros.description.forces import Connection, Potential, VirtualPower
 from symofros.description.reading import Reading as Reading
@@ -32,6 +33,8 @@ _SECTIONS = {
     "connections": "connection",
     "virtual_power": "virtual_power",
     "potentials": "potential",
+    "closures": "constraint",
+    "nonholonomic": "constraint",
 }
 _SUFFIXES = ("px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 
@@ -64,6 +67,7 @@ class _Merger:
     connections: list[Connection] = field(default_factory=list)
     virtual_power: list[VirtualPower] = field(default_factory=list)
     potentials: list[Potential] = field(default_factory=list)
+    constraints: list[Constraint] = field(default_factory=list)
     origin: dict[tuple[str, ...], str] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
     broken: set[str] = field(default_factory=set)
@@ -77,7 +81,7 @@ class _Merger:
         x, y, z = self.system.gravity
         system = System(self.system.name or default_name, tuple(self.bodies), tuple(self.parameters),
                         tuple(self.inputs), (x, y, z), tuple(self.connections), tuple(self.virtual_power),
-                        tuple(self.potentials), origin=self.origin)  # fmt: skip
+                        tuple(self.potentials), tuple(self.constraints), origin=self.origin)  # fmt: skip
         return Reading(system, problems, broken)
 
     def add(self, path: Path, shown: str, including: tuple[Path, ...]) -> None:
@@ -166,6 +170,12 @@ class _Merger:
         for name, energy in (file.potentials or {}).items():
             if self.is_new("potentials", name, root, shown):
                 self.potentials.append(Potential(name, energy))
+        for name, closure in (file.closures or {}).items():
+            if self.is_new("closures", name, root, shown):
+                self.constraints.append(closure.build(name))
+        for name, condition in (file.nonholonomic or {}).items():
+            if self.is_new("nonholonomic", name, root, shown):
+                self.constraints.append(condition.build(name))
 
     def is_new(self, section: str, name: str, root: Node, shown: str) -> bool:
         """Record where a named thing stands; whether no other file has one of that name."""

@@ -34,6 +34,7 @@ from symofros.description.fields import (
 )
 from symofros.description.frames import Frame
 from symofros.description.schema_beam import BeamEntry
+from symofros.description.schema_constraints import ClosureEntry, NonholonomicEntry
 from symofros.description.schema_forces import ConnectionEntry, ElementEntry, LoadEntry, RotorEntry
 from symofros.description.system import WORLD, Body, Inertia, Input, Joint, JointKind, Limits, Parameter, RigidBody
 from symofros.description.values import IDENTITY, Rotation, RotationKind
@@ -316,8 +317,10 @@ class NativeFile(Entry):
     """Internal forces: for each, speed (`dq1`) -> force by formula."""
     potentials: Annotated[dict[Name, Formula], Field(max_length=10_000)] | None = None
     """Potential energies by formula of coordinates, parameters and `t` [J]."""
-    closures: Reserved = None
-    nonholonomic: Reserved = None
+    closures: Annotated[dict[Name, ClosureEntry], Field(max_length=10_000)] | None = None
+    """Frames that stay together: they close loops of the tree."""
+    nonholonomic: Annotated[dict[Name, NonholonomicEntry], Field(max_length=10_000)] | None = None
+    """Conditions on speeds."""
     options: Reserved = None
 
 

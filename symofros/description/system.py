@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any, Literal, get_args
 
 from symofros.description.beam import Beam
-from symofros.description.constraints import Constraint
+from symofros.description.constraints import Closure, Constraint, Rod
 from symofros.description.forces import Connection, JointElement, Load, Potential, Rotor, VirtualPower
 from symofros.description.frames import Frame
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
@@ -237,7 +237,7 @@ class System:
         connections: Springs and dampers between frames.
         virtual_power: Internal forces by their virtual power.
         potentials: Potential energies by formula.
-        constraints: Closures of loops and conditions on speeds.
+        constraints: Closures of loops and rods; after them, conditions on speeds.
         notes: What an importer dropped or changed, in words.
         origin: "file:line" of objects, keyed by ("body", name), ("joint", name), …; not part of equality.
     """
@@ -259,6 +259,9 @@ class System:
         for name in ("bodies", "parameters", "inputs", "connections", "virtual_power", "potentials", "constraints",
                      "notes"):  # fmt: skip
             object.__setattr__(self, name, tuple(getattr(self, name)))
+        # Those that bind coordinates come first, as they do in files.
+        ordered = sorted(self.constraints, key=lambda item: not isinstance(item, (Closure, Rod)))
+        object.__setattr__(self, "constraints", tuple(ordered))
         object.__setattr__(self, "gravity", as_vector(self.gravity, f"system '{self.name}': gravity"))
         object.__setattr__(self, "origin", MappingProxyType(dict(self.origin)))
 

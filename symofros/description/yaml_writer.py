@@ -13,8 +13,9 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from symofros.description.beam import Beam, BeamLoad, Samples, UserShape
+from symofros.description.constraints import AXES, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
 from symofros.description.faults import problem_of
-from symofros.description.forces import Connection, JointElement, Load, Rotor
+from symofros.description.forces import Anchor, Connection, JointElement, Load, Rotor
 from symofros.description.frames import Frame
 from symofros.description.schema import VERSION, NativeFile, default_joint_name
 from symofros.description.system import WORLD, Body, Inertia, Joint, Limits, Parameter, System
@@ -29,7 +30,7 @@ _WHOLE = 1e15
 # Mappings that stay on lines of their own; any other is short and reads better in braces.
 _OPEN = frozenset(
     {"", "system", "parameters", "inputs", "bodies", "body", "joint", "inertia", "beam", "frames", "connections",
-     "virtual_power", "potentials"}
+     "closures", "nonholonomic", "virtual_power", "potentials"}
 )  # fmt: skip
 
 Plain = dict[str, Any]
@@ -83,6 +84,11 @@ def _document(system: System) -> Plain:
         item.name: {speed: _number(force) for speed, force in item.forces} for item in system.virtual_power
     }
     document["potentials"] = {item.name: _number(item.energy) for item in system.potentials}
+    holonomic = (Closure, Rod)
+    document["closures"] = {item.name: _closure(item) for item in system.constraints if isinstance(item, holonomic)}
+    document["nonholonomic"] = {
+        item.name: _condition(item) for item in system.constraints if not isinstance(item, holonomic)
+    }
     return {section: entries for section, entries in document.items() if entries}
 
 
@@ -127,10 +133,35 @@ def _shape(shape: UserShape) -> Any:
     return {"xi": [*shape.xi], "values": [*shape.values]} if isinstance(shape, Samples) else _number(shape)
 
 
+def _anchor(anchor: Anchor) -> Plain:
+    body, frame = anchor
+    return {"body": body} | ({"frame": frame} if frame is not None else {})
+
+
+def _closure(item: Closure | Rod) -> Plain:
+    ends = {"first": _anchor(item.first), "second": _anchor(item.second)}
+    if isinstance(item, Rod):
+        return {**ends, "length": _number(item.length)}
+    translations = {} if item.translations == AXES else {"translations": [*item.translations]}
+    return {**ends, **translations, **({"rotations": [*item.rotations]} if item.rotations else {})}
+
+
+def _condition(item: KnifeEdge | Rolling | Nonholonomic) -> Plain:
+    if isinstance(item, Nonholonomic):
+        right = {"right": _number(item.right)} if item.right != 0.0 else {}
+        return {"coefficients": {speed: _number(value) for speed, value in item.coefficients}, **right}
+    if isinstance(item, KnifeEdge):
+        return {"knife_edge": _anchor(item.anchor) | ({"axis": item.axis} if item.axis != "y" else {})}
+    plain = Rolling("", item.anchor, 0.0)
+    return {
+        "rolling": _anchor(item.anchor)
+        | {"radius": _number(item.radius)}
+        | _changed(item, plain, "name", "anchor", "radius")
+    }
+
+
 def _connection(connection: Connection) -> Plain:
-    ends = {}
-    for key, (body, frame) in (("first", connection.first), ("second", connection.second)):
-        ends[key] = {"body": body} | ({"frame": frame} if frame is not None else {})
+    ends = {"first": _anchor(connection.first), "second": _anchor(connection.second)}
     numbers = {key: getattr(connection, key) for key in ("stiffness", "length", "damping")}
     return {**ends, **{key: _number(value) for key, value in numbers.items() if value != 0.0}}
 

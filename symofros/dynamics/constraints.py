@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from symofros.description.constraints import AXES, AxisName, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
 from symofros.description.forces import Anchor
 from symofros.dynamics.forces import coordinate_rates
-from symofros.dynamics.loads import anchored
 from symofros.expr.derivative import directional
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.kinematics.frames import FrameKinematics
+from symofros.topology.tree import frame_of
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Constraints:
         return [row for item in self.motion.tree.system.constraints for row in make[type(item)](item)]
 
     def _body(self, anchor: Anchor) -> _Body:
-        frame = anchored(self.motion, anchor)
+        frame = frame_of(self.motion.tree, *anchor)
         if frame.qualified not in self._bodies:
             pose = self.frames.pose(frame)
             velocity = self.frames.velocity(frame)

@@ -212,6 +212,6 @@ def write_program(tree: SpanningTree, requests: Sequence[Request]) -> Program:
     names = tree.coordinates
     sizes = {
         "q": len(names.q), "v": len(names.v), "a": len(names.v), "u": len(names.u), "par": len(names.par), "t": 1,
-        "gains": 2 * sum(constraint.rows for constraint in tree.system.constraints),
+        "gains": 2 * sum(len(constraint.conditions) for constraint in tree.system.constraints),
     }  # fmt: skip
     return Program(tree.system.name, equations.g, sizes, functions)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from symofros.description.beam import Beam
-from symofros.description.forces import Anchor, Connection, Load
+from symofros.description.forces import Connection, Load
 from symofros.description.system import RigidBody
 from symofros.dynamics.acceleration import Wrench, no_wrench
 from symofros.expr.graph import ZERO, Edge
 from symofros.expr.vector import Mat3, Vec3
 from symofros.kinematics.frames import FrameKinematics
 from symofros.kinematics.links import Motion
-from symofros.topology.tree import BASE, NamedFrame, Step
+from symofros.topology.tree import BASE, NamedFrame, Step, frame_of
 
 
 def wrenches(motion: Motion, frames: FrameKinematics) -> list[Wrench] | None:
@@ -21,7 +21,7 @@ def wrenches(motion: Motion, frames: FrameKinematics) -> list[Wrench] | None:
         if isinstance(body, Beam):
             continue  # Its loads also act on its elastic coordinates.
         for load in body.loads:
-            frame = _body_frame(motion, body.name)
+            frame = frame_of(motion.tree, body.name)
             if frame.link != BASE:
                 total[frame.link] = total[frame.link] + _load(motion, frames, body, frame, load)
                 acting = True
@@ -29,24 +29,10 @@ def wrenches(motion: Motion, frames: FrameKinematics) -> list[Wrench] | None:
         acting = True
         force = _Line(motion, frames, connection).force()
         for anchor, pull in ((connection.first, force), (connection.second, -force)):
-            frame = anchored(motion, anchor)
+            frame = frame_of(motion.tree, *anchor)
             if frame.link != BASE:
                 total[frame.link] = total[frame.link] + _at_frame(motion, frames, frame, pull, Vec3(motion.g))
     return total if acting else None
-
-
-def _body_frame(motion: Motion, name: str) -> NamedFrame:
-    """The frame of a body; the base answers to "world" too."""
-    for frame in motion.tree.frames:
-        if frame.qualified == name:
-            return frame
-    return motion.tree.frames[0]
-
-
-def anchored(motion: Motion, anchor: Anchor) -> NamedFrame:
-    """The frame that an anchor names."""
-    body, frame = anchor
-    return _body_frame(motion, body) if frame is None else motion.tree.frame(f"{body}.{frame}")
 
 
 def _load(motion: Motion, frames: FrameKinematics, body: RigidBody, frame: NamedFrame, load: Load) -> Wrench:
@@ -86,7 +72,7 @@ class _Line:
     def __init__(self, motion: Motion, frames: FrameKinematics, connection: Connection) -> None:
         self.g = motion.g
         self.motion, self.frames, self.connection = motion, frames, connection
-        self.ends = [anchored(motion, anchor) for anchor in (connection.first, connection.second)]
+        self.ends = [frame_of(motion.tree, *anchor) for anchor in (connection.first, connection.second)]
         self.d = frames.pose(self.ends[1]).p - frames.pose(self.ends[0]).p
         self.stiffness = motion.lowering.value(connection.stiffness)
         self.rest = motion.lowering.value(connection.length)

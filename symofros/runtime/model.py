@@ -21,13 +21,14 @@ Key = tuple[str, str]
 
 @dataclass(frozen=True)
 class Names:
-    """Names of coordinates, speeds, inputs, run-time parameters and frames, in order."""
+    """Names of coordinates, speeds, inputs, run-time parameters, frames and constraints, in order."""
 
     q: tuple[str, ...]
     v: tuple[str, ...]
     u: tuple[str, ...]
     par: tuple[str, ...]
     frames: tuple[str, ...]
+    constraints: tuple[str, ...]
 
 
 class Model:
@@ -60,7 +61,10 @@ class Model:
         self._par.flags.writeable = False
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
         self._prepared: dict[Key, Array] = {}
-        self.names = Names(record.q_names, record.v_names, record.u_names, record.par_names, record.frame_names)
+        self.names = Names(
+            record.q_names, record.v_names, record.u_names, record.par_names, record.frame_names,
+            record.constraint_names,
+        )  # fmt: skip
 
     def __repr__(self) -> str:
         """Name and sizes."""

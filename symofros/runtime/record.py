@@ -25,6 +25,22 @@ class Segment(NamedTuple):
     size: int
 
 
+class ClosureRecord(NamedTuple):
+    """A closure as far as it matters after compilation.
+
+    Attributes:
+        name: Its name.
+        first: Public name of the reference frame.
+        second: Of the other frame.
+        rotations: Blocked axes of rotation, 0 to 2.
+    """
+
+    name: str
+    first: str
+    second: str
+    rotations: tuple[int, ...]
+
+
 @dataclass(frozen=True)
 class ModelRecord:
     """The description of a compiled model that needs no symbols.
@@ -41,7 +57,8 @@ class ModelRecord:
         q_upper: Upper bounds, alike.
         segments: The configuration manifold, in order.
         periodic: Coordinates that are angles, so that unbounded ones are sampled in one turn.
-        nc: Number of constraints.
+        constraint_names: One a condition: the constraint's name, and which of its conditions.
+        closures: Of frames, for checks of their rotations.
     """
 
     name: str
@@ -59,7 +76,13 @@ class ModelRecord:
     q_upper: tuple[float, ...]
     segments: tuple[Segment, ...]
     periodic: tuple[bool, ...]
-    nc: int = 0
+    constraint_names: tuple[str, ...] = ()
+    closures: tuple[ClosureRecord, ...] = ()
+
+    @property
+    def nc(self) -> int:
+        """Number of constraints."""
+        return len(self.constraint_names)
 
     def sampling_bounds(self) -> list[tuple[float, float]]:
         """Finite bounds a coordinate: its own, one turn for an angle, one unit otherwise."""

@@ -103,6 +103,21 @@ class SpanningTree:
         raise KeyError(name)
 
 
+def frame_of(tree: SpanningTree, body: str, frame: str | None = None) -> NamedFrame:
+    """The frame of a body, or its body frame; the base answers to "world" too.
+
+    Args:
+        tree: Of a checked system, whose names exist.
+        body: Name of the body.
+        frame: Of one of its extremity frames.
+    """
+    if frame is None:
+        return next((found for found in tree.frames if found.qualified == body), tree.frames[0])
+    known = next((found for found in tree.frames if found.qualified == f"{body}.{frame}"), None)
+    # Frames of a base that goes by another name than "world".
+    return known or tree.frame(f"{tree.frames[0].qualified}.{frame}")
+
+
 def build_tree(system: System) -> SpanningTree:
     """Number a system that has been checked (`graph.check`).
 

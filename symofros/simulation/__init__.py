@@ -1,0 +1,1 @@
+"""Model -> motion: consistent initial states (docs/theory/constraints.md, section 5)."""

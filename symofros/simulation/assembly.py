@@ -1,0 +1,155 @@
+"""Assembly: a configuration that closes every loop, near a guess, and speeds that keep it closed."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from symofros.errors import AssemblyError, UnknownNameError, did_you_mean
+from symofros.runtime.kernel import Array
+from symofros.runtime.model import Given, Model
+
+# Singular values below this share of the largest are taken for redundant conditions.
+RANK = 1e-10
+# No step turns or slides further than this at once: beyond it the linearisation says nothing.
+LARGEST_STEP = 0.5
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """A state on the constraints.
+
+    Attributes:
+        q: Configuration (nq).
+        v: Speeds (nv).
+        residual: Largest |phi|.
+        iterations: How many steps it took.
+        rank: Of G; fewer than nc conditions are independent where it is smaller.
+    """
+
+    q: Array
+    v: Array
+    residual: float
+    iterations: int
+    rank: int
+
+
+def assemble(
+    model: Model,
+    q: Given | None = None,
+    v: Given | None = None,
+    *,
+    held: Collection[str] = (),
+    u: Given | None = None,
+    par: Given | None = None,
+    t: float = 0.0,
+    tolerance: float = 1e-12,
+    iterations: int = 100,
+) -> Assembled:
+    """Solve phi(q) = 0 and G v = b by damped Gauss-Newton steps of least norm.
+
+    Args:
+        model: With constraints.
+        q: Guess (nq); the neutral configuration if not given.
+        v: Wished speeds (nv), changed as little as possible; zeros if not given.
+        held: Names of speeds (`model.names.v`) whose coordinates and values stay as they are.
+        u: Inputs, for prescribed motions.
+        par: Run-time parameters.
+        t: Time.
+        tolerance: Of the largest |phi| [m, rad].
+        iterations: Most steps to take.
+
+    Raises:
+        AssemblyError: No such configuration was found; names the constraint that is worst.
+        UnknownNameError: `held` names something that is not a speed.
+    """
+    free = _free(model, held)
+    q = model.neutral() if q is None else np.array(q, dtype=np.float64)
+    wished = np.zeros(model.nv) if v is None else np.array(v, dtype=np.float64)
+
+    def residual(at: Array) -> Array:
+        return model.constraint(at, u=u, par=par, t=t)
+
+    phi, count = residual(q), 0
+    while np.abs(phi).max(initial=0.0) > tolerance and count < iterations:
+        G = model.constraint_jacobian(q, u=u, par=par, t=t)[:, free]
+        step = np.zeros(model.nv)
+        step[free] = -np.linalg.pinv(G, rcond=RANK) @ phi
+        step *= min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
+        for _ in range(30):
+            tried = model.integrate(q, step)
+            phi_tried = residual(tried)
+            if np.linalg.norm(phi_tried) < np.linalg.norm(phi):
+                break
+            step *= 0.5
+        else:
+            break
+        q, phi, count = tried, phi_tried, count + 1
+    _accept(model, q, phi, tolerance, count, held)
+    _check_rotations(model, q, u, par)
+    G = model.constraint_jacobian(q, u=u, par=par, t=t)
+    rate = model.constraint_rate(q, wished, u=u, par=par, t=t)
+    change = np.zeros(model.nv)
+    change[free] = -np.linalg.pinv(G[:, free], rcond=RANK) @ rate
+    speeds = wished + change
+    left = model.constraint_rate(q, speeds, u=u, par=par, t=t)
+    scale = 1.0 + float(np.abs(wished).max(initial=0.0))
+    if np.abs(left).max(initial=0.0) > 1e3 * tolerance * scale:
+        worst = int(np.argmax(np.abs(left)))
+        raise AssemblyError(
+            f"model '{model.record.name}': no speeds keep it closed\n"
+            f"  found:  G v - b = {left[worst]:.3g} at '{model.names.constraints[worst]}'\n"
+            "  rule:   the speeds that are held must allow G v = b\n  remedy: hold fewer speeds"
+        )
+    rank = int(np.linalg.matrix_rank(G, tol=RANK * max(float(np.linalg.norm(G, 2)), 1e-300))) if G.size else 0
+    return Assembled(q, speeds, float(np.abs(phi).max(initial=0.0)), count, rank)
+
+
+def _free(model: Model, held: Collection[str]) -> Array:
+    for name in held:
+        if name not in model.names.v:
+            raise UnknownNameError(
+                f"held: no speed '{name}'\n  remedy: {did_you_mean(name, model.names.v) or 'see model.names.v'}"
+            )
+    return np.array([i for i, name in enumerate(model.names.v) if name not in held], dtype=np.intp)
+
+
+def _accept(model: Model, q: Array, phi: Array, tolerance: float, count: int, held: Collection[str]) -> None:
+    # Rounding of the coordinates themselves bounds what can be reached.
+    reachable = max(tolerance, 1e-14 * (1.0 + float(np.abs(q).max(initial=0.0))))
+    if np.abs(phi).max(initial=0.0) <= reachable:
+        return
+    worst = int(np.argmax(np.abs(phi)))
+    also = f"; held: {', '.join(held)}" if held else ""
+    raise AssemblyError(
+        f"model '{model.record.name}': can't be assembled from this guess\n"
+        f"  found:  after {count} steps phi = {phi[worst]:.3g} at '{model.names.constraints[worst]}'{also}\n"
+        f"  rule:   |phi| <= {tolerance:g}; either no configuration closes it, or the guess leads to none\n"
+        "  remedy: start nearer, hold fewer coordinates, or check lengths"
+    )
+
+
+def _check_rotations(model: Model, q: Array, u: Given | None, par: Given | None) -> None:
+    """Conditions on rotations vanish at the opposite posture, too; that one is not closed."""
+    for closure in model.record.closures:
+        if not closure.rotations:
+            continue
+        R_A, R_B = (
+            np.eye(3) if frame is None else model.frame_pose(frame, q, u=u, par=par)[1]
+            for frame in (closure.first, closure.second)
+        )
+        cosines = np.diag(R_A.T @ R_B)
+        blocked = closure.rotations
+        judged = (
+            range(3) if len(blocked) == 3 else [k for k in range(3) if k not in blocked] if len(blocked) == 2 else ()
+        )
+        worst = min((float(cosines[k]) for k in judged), default=1.0)
+        if worst < 0.0:
+            raise AssemblyError(
+                f"model '{model.record.name}': closure '{closure.name}' is closed the wrong way round\n"
+                f"  found:  axes that must be parallel are {np.degrees(np.arccos(max(worst, -1.0))):.0f} degrees apart\n"
+                "  rule:   conditions on rotations hold up to a right angle from the closed posture\n"
+                "  remedy: start from a guess on the right side"
+            )
