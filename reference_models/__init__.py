@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 import symofros as sf
+from reference_models.closed import spatial
 from reference_models.flexible.station import flexible_mss
 from reference_models.rigid.chain import chain
 from reference_models.rigid.station import mss
@@ -21,6 +22,10 @@ _BUILT: dict[str, Callable[[], sf.System]] = {
     "chain22": lambda: chain(22),
     "mss": mss,
     "flexible_mss": flexible_mss,
+    "bricard": spatial.bricard,
+    "stewart": spatial.stewart,
+    "delta": spatial.delta,
+    "grasp": spatial.grasp,
 }
 
 

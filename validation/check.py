@@ -6,8 +6,9 @@ import hashlib
 import math
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 
@@ -16,15 +17,17 @@ from validation.adapters import ROUTES, Missing, available
 from validation.adapters import compiled as our_c
 from validation.adapters.compiled import SymofrosEngine
 from validation.assembly import Assembly, assemble
+from validation.closed import ConstrainedEngine, condition, joined_frames
 from validation.compare import Comparison, Scales, compute, judge, state_errors, typical_scales
 from validation.frames import chosen_frames
 from validation.geometry import Array
-from validation.interface import Engine, EngineFactory, States, Subject, Unsupported
+from validation.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
 from validation.motion import MOTIONS, Motion, fall, judge_drift
-from validation.quantities import FRAME_QUANTITIES, MOTION_ENERGY, QUANTITIES, Quantity
+from validation.quantities import CONSTRAINED, FRAME_QUANTITIES, MOTION_ENERGY, QUANTITIES, Quantity
 from validation.sampling import DEFAULT_STATES, sample
 
 FORWARD = "forward_dynamics"
+SOLVED = (FORWARD, "multipliers")
 
 EPS = 2.0**-52
 
@@ -122,6 +125,8 @@ class _Check:
         self.seconds["symofros"] = time.perf_counter() - start
         self.states = with_forces(self.ours, sample(self.assembly, self.ours.model.nu, self.settings.states,
                                                     self.settings.seed))  # fmt: skip
+        if self.subject.system.constraints:
+            self.states = regular(self.ours, self.states)
         self.scales = typical_scales(self.ours, self.states)
         self.condition = worst_condition(self.ours, self.states)
         engines = list(self._engines())
@@ -131,7 +136,7 @@ class _Check:
                 self.rows.append(Comparison(self.subject.label, "symofros", name, "unsupported", note=reason))
         for quantity in self._quantities():
             self._compare(quantity, engines)
-        if self._can_be_solved():
+        if self._can_be_solved() and not self.subject.system.constraints:
             self._fall(engines)
         self._second_opinion()
         return self._result(engines)
@@ -142,17 +147,29 @@ class _Check:
             if route.reads and route.reads != self.subject.format:
                 continue
             factory = self.factories[name]
-            engine = Unsupported(factory.reason) if isinstance(factory, Missing) else factory(self.subject)
+            engine = Unsupported(factory.reason) if isinstance(factory, Missing) else self._build(name, factory)
             if isinstance(engine, Unsupported):
                 self.rows.append(Comparison(self.subject.label, name, "all", "unsupported", note=engine.reason))
             else:
                 self.seconds[name] = 0.0
                 yield engine
 
+    def _build(self, name: str, factory: EngineFactory) -> Engine | Unsupported:
+        """The engine; one that knows trees gets the constraints in NumPy."""
+        engine = factory(self.subject)
+        if isinstance(engine, Unsupported) or not self.subject.system.constraints or not ROUTES[name].independent:
+            return engine
+        joined = joined_frames(self.assembly, self.subject.system)
+        anchored = factory(replace(self.subject, frames=joined))
+        # Every independent engine knows trees; the protocol of engines does not say so.
+        return ConstrainedEngine(cast(TreeEngine, engine), cast(TreeEngine, anchored), self.subject, joined)
+
     def _quantities(self) -> list[Quantity]:
         left_out = (frozenset() if self.subject.frames else FRAME_QUANTITIES) | (
             frozenset() if self._can_be_solved() else {FORWARD}
         )
+        if not self.subject.system.constraints:
+            left_out |= CONSTRAINED
         return [q for q in QUANTITIES.values() if q.name not in left_out]
 
     def _can_be_solved(self) -> bool:
@@ -186,9 +203,9 @@ class _Check:
         self.seconds[engine.name] += time.perf_counter() - start
         errors = state_errors(quantity, ours, reference, scales)
         row = judge(self.subject.label, engine.name, quantity, errors)
-        if quantity.name == FORWARD and not row.ok and EPS * self.condition > quantity.tolerance:
+        if quantity.name in SOLVED and not row.ok and EPS * self.condition > quantity.tolerance:
             # No solution in doubles is better than eps cond(M): where that is in the way, no more is asked for.
-            note = f"cond(M) = {self.condition:.1e} allows no better"
+            note = f"condition {self.condition:.1e} allows no better"
             row = judge(
                 self.subject.label, engine.name, replace(quantity, tolerance=EPS * self.condition), errors, note
             )
@@ -253,11 +270,21 @@ def sum_of_energies(engine: Engine, states: States) -> Array:
     )
 
 
-def worst_condition(engine: Engine, states: States) -> float:
-    """The largest condition number of M over the states: by how much solving with it amplifies rounding."""
-    moments = np.linalg.eigvalsh(compute(engine, QUANTITIES["mass_matrix"], states))
+def regular(engine: SymofrosEngine, states: States) -> States:
+    """The states where constraints have a Jacobian: a disc that lies flat has no lowest point."""
+    sound = np.all(np.isfinite(engine.constraint_jacobian(states)), axis=(1, 2))
+    return States(*(getattr(states, item.name)[sound] for item in fields(States)))
+
+
+def worst_condition(engine: SymofrosEngine, states: States) -> float:
+    """By how much solving for v' amplifies rounding: the largest condition number of M, and of multipliers."""
+    M = compute(engine, QUANTITIES["mass_matrix"], states)
+    moments = np.linalg.eigvalsh(M)
     smallest, largest = moments[:, 0], moments[:, -1]
-    return float(np.max(np.where(smallest > 0.0, largest / np.where(smallest > 0.0, smallest, 1.0), np.inf)))
+    worst = float(np.max(np.where(smallest > 0.0, largest / np.where(smallest > 0.0, smallest, 1.0), np.inf)))
+    if engine.model.nc and np.isfinite(worst):
+        worst *= condition(M, engine.constraint_jacobian(states))
+    return worst
 
 
 def kinds(formula: sf.Expression | float) -> frozenset[str]:

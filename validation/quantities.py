@@ -62,6 +62,10 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity("potential_energy", "V", "J", ROUNDING, 0, "energy"),
         Quantity("inverse_dynamics", "M a + h - Q", "N m, N", ROUNDING, 1, "inertia_force"),
         Quantity("forward_dynamics", "dv/dt", "rad/s², m/s²", SOLVE, 1),
+        Quantity("multipliers", "lam", "N, N m", SOLVE, 1),
+        Quantity("constraint", "phi", "m, 1", ROUNDING, 1),
+        Quantity("constraint_jacobian", "G", "m, 1", ROUNDING, 2),
+        Quantity("constraint_bias", "gamma", "m/s², 1/s²", ROUNDING, 1),
         Quantity("frame_pose", "p, R", "m, 1", ROUNDING, 1),
         Quantity("frame_velocity", "v, w", "m/s, rad/s", ROUNDING, 1),
         Quantity("frame_acceleration", "dv/dt, dw/dt", "m/s², rad/s²", ROUNDING, 1),
@@ -76,7 +80,9 @@ MOTION_ENERGY = Quantity("motion_energy", "T + V on a free motion", "J", ROUNDIN
 FRAME_QUANTITIES = frozenset(name for name in QUANTITIES if name.startswith("frame_"))
 FORCES_STATED = frozenset({"generalized_force"})
 # What an engine that simulates offers; the forces of a description's formulas are known to the description only.
-EVERYTHING = frozenset(QUANTITIES) - FORCES_STATED
+# Quantities of mechanisms with constraints.
+CONSTRAINED = frozenset({"multipliers", "constraint", "constraint_jacobian", "constraint_bias"})
+EVERYTHING = frozenset(QUANTITIES) - FORCES_STATED - CONSTRAINED
 # What an engine's own reading of a file is compared by: all of geometry and inertia enters these.
 SECOND_ROUTE = frozenset({"mass_matrix", "bias", "gravity", "kinetic_energy", "potential_energy"})
 # MJCF also has springs, dampers and sites, and MuJoCo's potential energy counts springs as ours does.

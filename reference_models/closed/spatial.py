@@ -33,15 +33,15 @@ def bricard() -> sf.System:
         moments = tuple(along if x else across for x in span)
         joint = sf.Joint(f"q{i + 1}", "revolute", parent, position=at, axis=_HINGES[i])
         center = (span[0] / 2, span[1] / 2, span[2] / 2)
-        bodies.append(sf.RigidBody(f"bar{i + 1}", joint, sf.Inertia(1.0, center, moments), [sf.Frame("end", span)]))
+        bodies.append(sf.RigidBody(f"bar{i + 1}", joint, sf.Inertia(1.0, center, moments), (sf.Frame("end", span),)))
         parent, at = f"bar{i + 1}", span
-    ground = sf.RigidBody("ground", frames=[sf.Frame("hinge", _CORNERS[5])])
+    ground = sf.RigidBody("ground", frames=(sf.Frame("hinge", _CORNERS[5]),))
     # The sixth hinge is about x: all directions but the rotation about it are blocked.
     last = sf.Closure("hinge6", ("ground", "hinge"), ("bar5", "end"), ("x", "y", "z"), ("y", "z"))
-    return sf.System("bricard", [ground, *bodies], gravity=(0, -9.81, 0), constraints=[last])
+    return sf.System("bricard", (ground, *bodies), gravity=(0, -9.81, 0), constraints=(last,))
 
 
-def stewart(radius: float = 0.6, top: float = 0.35, height: float = 0.8) -> sf.System:
+def stewart(radius: float = 0.6, top: float = 0.35) -> sf.System:
     """A platform on six legs: universal joint, slide and, at the platform, a ball joint that is a closure.
 
     Source: Stewart (1965), with round dimensions of ours; each leg's cylinder and rod have mass.
@@ -49,7 +49,9 @@ def stewart(radius: float = 0.6, top: float = 0.35, height: float = 0.8) -> sf.S
     tray = sf.Inertia(8.0, (0, 0, 0), (0.3, 0.3, 0.6))
     sockets = [_on_circle(top, 60 * (i // 2 * 2 + 1) + (10 if i % 2 else -10), 0.0) for i in range(6)]
     bodies: list[sf.Body] = [
-        sf.RigidBody("platform", sf.Joint("pose", "free"), tray, [sf.Frame(f"s{i}", p) for i, p in enumerate(sockets)])
+        sf.RigidBody(
+            "platform", sf.Joint("pose", "free"), tray, tuple(sf.Frame(f"s{i}", p) for i, p in enumerate(sockets))
+        )
     ]
     closures = []
     for i in range(6):
@@ -60,7 +62,7 @@ def stewart(radius: float = 0.6, top: float = 0.35, height: float = 0.8) -> sf.S
         rod = sf.RigidBody(f"rod{i}", slide, sf.Inertia(0.7, (0, 0, -0.2), (0.01, 0.01, 0.001)))
         bodies += [cylinder, rod]
         closures.append(sf.Closure(f"ball{i}", ("platform", f"s{i}"), (f"rod{i}", None)))
-    return sf.System("stewart", bodies, constraints=closures)
+    return sf.System("stewart", tuple(bodies), constraints=tuple(closures))
 
 
 def stewart_guess(height: float = 0.8) -> list[float]:
@@ -86,15 +88,15 @@ def delta(base: float = 0.2, top: float = 0.06, upper: float = 0.3, lower: float
         joint = sf.Joint(
             f"motor{i}", "revolute", position=_on_circle(base, angle, 0), rotation=turn, axis=(0, 1, 0), actuated=True
         )
-        ends = [sf.Frame(name, (upper, y, 0)) for name, y in (("left", half), ("right", -half))]
+        ends = tuple(sf.Frame(name, (upper, y, 0)) for name, y in (("left", half), ("right", -half)))
         crank = sf.Inertia(0.5, (upper / 2, 0, 0), (1e-4, 0.004, 0.004))
         bodies.append(sf.RigidBody(f"crank{i}", joint, crank, ends))
         for name, y in (("left", half), ("right", -half)):
             c, s = cos(angle * pi / 180), sin(angle * pi / 180)
             frames.append(sf.Frame(f"{name}{i}", (top * c - y * s, top * s + y * c, 0)))
             rods.append(sf.Rod(f"rod_{name}{i}", (f"crank{i}", name), ("platform", f"{name}{i}"), lower))
-    platform = sf.RigidBody("platform", sf.Joint("pose", "free"), feet, frames)
-    return sf.System("delta", [*bodies, platform], constraints=rods)
+    platform = sf.RigidBody("platform", sf.Joint("pose", "free"), feet, tuple(frames))
+    return sf.System("delta", (*bodies, platform), constraints=tuple(rods))
 
 
 def delta_guess() -> list[float]:
@@ -109,17 +111,13 @@ def grasp() -> sf.System:
         "payload",
         sf.Joint("grip", "fixed", "spdm_left_link7", "end"),
         sf.Inertia(120.0, (0.3, 0.0, 0.0), (8.0, 10.0, 10.0)),
-        [sf.Frame("handle", (0.6, 0.0, 0.0), sf.Rotation.rpy(0, 0, "pi"))],
+        (sf.Frame("handle", (0.6, 0.0, 0.0), sf.Rotation.rpy(0, 0, "pi")),),
     )
-    hold = sf.Closure(
-        "hold", ("payload", "handle"), ("spdm_right_link7", "end"), ("x", "y", "z"), ("x", "y", "z")
-    )
-    return sf.System("grasp", [*system.bodies, payload], gravity=(0, 0, 0), constraints=[hold])
+    hold = sf.Closure("hold", ("payload", "handle"), ("spdm_right_link7", "end"), ("x", "y", "z"), ("x", "y", "z"))
+    return sf.System("grasp", (*system.bodies, payload), gravity=(0, 0, 0), constraints=(hold,))
 
 
 def grasp_guess(names: Sequence[str]) -> list[float]:
     """Coordinates from which it assembles: both arms bent towards each other."""
     bent = {"q3": 0.9, "q4": -1.6, "q5": 0.4, "q2": 0.0}
-    return [
-        (bent.get(name[-2:], 0.0) + (0.2 if "ssrms" in name else 0.0)) * (1 if "left" in name else 1) for name in names
-    ]
+    return [bent.get(name[-2:], 0.0) + (0.2 if "ssrms" in name else 0.0) for name in names]

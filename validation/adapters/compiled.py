@@ -12,11 +12,11 @@ import symofros as sf
 from validation.adapters.reach import stores_energy
 from validation.geometry import Array
 from validation.interface import States, Subject
-from validation.quantities import FRAME_QUANTITIES, MJCF_ROUTE, QUANTITIES, SECOND_ROUTE
+from validation.quantities import CONSTRAINED, FRAME_QUANTITIES, MJCF_ROUTE, QUANTITIES, SECOND_ROUTE
 
 NAME = "symofros"
 
-_FUNCTIONS = tuple(name for name in QUANTITIES if name != "gravity")
+_FUNCTIONS = tuple(name for name in QUANTITIES if name not in ("gravity", "multipliers"))
 
 
 @dataclass(frozen=True)
@@ -62,6 +62,22 @@ class SymofrosEngine:
     def forward_dynamics(self, states: States) -> Array:
         """M^-1 (Q - h), with the model's own Q."""
         return self.model.forward_dynamics(states.q, states.v, states.u)
+
+    def multipliers(self, states: States) -> Array:
+        """Multipliers of the constraints."""
+        return self.model.constrained_dynamics(states.q, states.v, states.u)[1]
+
+    def constraint(self, states: States) -> Array:
+        """Residuals of the constraints."""
+        return self.model.constraint(states.q)
+
+    def constraint_jacobian(self, states: States) -> Array:
+        """G."""
+        return self.model.constraint_jacobian(states.q)
+
+    def constraint_bias(self, states: States) -> Array:
+        """What G v' equals."""
+        return self.model.constraint_bias(states.q, states.v)
 
     def _frames(self, one: Callable[[str], Array]) -> Array:
         return np.stack([one(frame) for frame in self.frames], axis=1)
@@ -127,5 +143,8 @@ def build_weightless(subject: Subject) -> sf.Model | None:
 
 def options(subject: Subject, backend: Literal["c", "interpreter"]) -> sf.Options:
     """Just the functions and frames that are compared."""
-    functions = _FUNCTIONS if subject.frames else tuple(f for f in _FUNCTIONS if f not in FRAME_QUANTITIES)
+    absent = (frozenset() if subject.frames else FRAME_QUANTITIES) | (
+        frozenset() if subject.system.constraints else CONSTRAINED
+    )
+    functions = tuple(f for f in _FUNCTIONS if f not in absent)
     return sf.Options(functions=functions, frames=subject.frames, backend=backend)
