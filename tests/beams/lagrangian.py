@@ -22,6 +22,15 @@ SX = Any  # CasADi has no types.
 POINTS = 12
 
 
+class Line(NamedTuple):
+    """A force and a moment on the axis: at a station x [m], or per length at every x, in B or in the world."""
+
+    force: Callable[[float], Sequence[float]]
+    torque: Callable[[float], Sequence[float]] | None = None
+    at: float | None = None
+    world: bool = False
+
+
 @dataclass(frozen=True)
 class Flexible:
     """A beam along x, clamped to its frame; its functions are of x [m], and smooth between breaks."""
@@ -41,6 +50,7 @@ class Flexible:
     foreshortening: bool = True
     rotary_inertia: bool = False
     breaks: tuple[float, ...] = ()
+    loads: tuple[Line, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -95,6 +105,7 @@ class Lagrangian:
         self.all_q, self.all_v = ca.vertcat(self.q, s), ca.vertcat(self.v, s_rate)
         self.T = self.weight = self.strain = ca.SX(0)
         self.viscous = ca.SX(0)  # Rayleigh's dissipation function.
+        self.power = ca.SX(0)  # Of loads.
         at_q = at_s = 0
         carried: list[tuple[SX, SX]] = []  # What each body shows its children: its frame, or its tip.
         for node in nodes:
@@ -117,7 +128,7 @@ class Lagrangian:
         h = ca.jtimes(momentum, self.all_q, self.all_v) - ca.gradient(self.T - self.weight, self.q)
         if ns:
             h += ca.jtimes(momentum, s_rate, s_rate2)
-        Q = -ca.gradient(self.strain, self.q) - ca.gradient(self.viscous, self.v)
+        Q = ca.gradient(self.power - self.viscous, self.v) - ca.gradient(self.strain, self.q)
         outputs = [ca.jacobian(momentum, self.v), h, Q, self.T, self.weight + self.strain]
         self._terms = ca.Function("terms", [self.q, self.v, s, s_rate, s_rate2], outputs)
 
@@ -155,9 +166,20 @@ class Lagrangian:
         squares = ca.dot(ca.SX(GJ), slopes[0] ** 2) + ca.dot(ca.SX(EI_y), slopes[1] ** 2)
         stiffness = ca.hessian(0.5 * (squares + ca.dot(ca.SX(EI_z), slopes[2] ** 2)), q)[0]
         self.viscous += 0.5 * beam.damping * rates.T @ stiffness @ rates
-        r_tip, (F, T, P), _ = _deformed(beam, np.array([beam.length]), q)
-        turned = about((0, 0, 1), P) @ about((0, 1, 0), T) @ about((1, 0, 0), F)
-        return p + R @ r_tip, R @ turned
+        for line in beam.loads:
+            self._load(beam, line, p, R, q)
+        return _section(beam, beam.length, p, R, q)
+
+    def _load(self, beam: Flexible, line: Line, p: SX, R: SX, q: SX) -> None:
+        """The power of a load: of its force on the centroid, of its moment on the section, which turns exactly."""
+        x, weight = ([line.at], [1.0]) if line.at is not None else stations(beam.length, beam.breaks)
+        for xi, w in zip(x, weight, strict=True):
+            place, turned = _section(beam, xi, p, R, q)
+            axes = ca.SX.eye(3) if line.world else R
+            self.power += w * ca.dot(axes @ ca.SX(np.array(line.force(xi), dtype=float)), self._rate(place))
+            if line.torque is not None:
+                moment = axes @ ca.SX(np.array(line.torque(xi), dtype=float))
+                self.power += w * ca.dot(moment, turned @ self._spin(turned))
 
     def _turning(self, beam: Flexible, x: np.ndarray, weight: np.ndarray, angles: tuple[SX, ...], w_B: SX) -> None:
         """Kinetic energy of sections that turn: about the axis alone, or about all three of their own axes."""
@@ -216,6 +238,12 @@ def _deformed(beam: Flexible, x: np.ndarray, q: SX) -> tuple[SX, tuple[SX, ...],
     angles = modal(beam.twist, q_F, 0), -modal(beam.w, q_w, 1), modal(beam.v, q_v, 1)
     slopes = modal(beam.twist, q_F, 1), -modal(beam.w, q_w, 2), modal(beam.v, q_v, 2)
     return r, angles, slopes
+
+
+def _section(beam: Flexible, x: float, p: SX, R: SX, q: SX) -> tuple[SX, SX]:
+    """Position and rotation of one section in the world."""
+    r, (F, T, P), _ = _deformed(beam, np.array([x]), q)
+    return p + R @ r, R @ about((0, 0, 1), P) @ about((0, 1, 0), T) @ about((1, 0, 0), F)
 
 
 def _slopes_squared(beam: Flexible, shapes: tuple[Shape, ...], x: float) -> np.ndarray:
