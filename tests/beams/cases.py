@@ -94,6 +94,18 @@ def two_in_series(second: sf.Joint, motion: Any) -> Case:
     return Case(system(one, other), (first, node))
 
 
+def branching() -> Case:
+    """Two beams side by side on the tip of a beam without shape functions; a body on one of them."""
+    stem, first = pair("stem", HUB, -1, hub(), (0, 0, 0))
+    joint = sf.Joint("wrist", "revolute", "stem", "tip", axis=(1, 0, 0))
+    left, second = pair("left", joint, 0, hub((1, 0, 0), (0, 0, 0)), (1, 1, 1))
+    weld = sf.Joint("weld", "fixed", "stem", "tip", (0, 0.1, 0), sf.Rotation.rpy(0, 0, 1.2))
+    placed = 0, lambda q: (vector(0, 0.1, 0), about((0, 0, 1), ca.SX(1.2)))
+    right, third = pair("right", weld, 0, placed, (2, 1, 0), foreshortening=False)
+    load = sf.RigidBody("load", sf.Joint("clamp", "fixed", "left", "tip"), BODY)
+    return Case(system(stem, left, load, right), (first, second, Node(1, SOLID), third))
+
+
 def with_tip_body(joint: sf.Joint, motion: Any, **more: Any) -> Case:
     beam, node = pair("beam", sf.Joint("hub", "revolute", axis=(0, 1, 0)), -1, hub((0, 1, 0), (0, 0, 0)), (2, 2, 1),
                       **more)  # fmt: skip
@@ -176,6 +188,7 @@ CASES: dict[str, Case] = {
         sf.Joint("weld", "fixed", "one", "tip", rotation=sf.Rotation.rpy(0.3, -0.7, 1.2)),
         (0, lambda q: (vector(0, 0, 0), about((0, 0, 1), 1.2) @ about((0, 1, 0), -0.7) @ about((1, 0, 0), 0.3))),
     ),
+    "branching": branching(),
     "body on the tip": with_tip_body(
         sf.Joint("weld", "fixed", "beam", "tip", (0.2, 0.1, -0.15), sf.Rotation.rpy(0, 0, 0.5)),
         (0, lambda q: (vector(0.2, 0.1, -0.15), about((0, 0, 1), ca.SX(0.5)))),

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 import symofros as sf
 from symofros.passes.count import count_program
@@ -124,6 +125,62 @@ def test_the_tip_is_where_the_displacement_field_puts_it() -> None:
     np.testing.assert_allclose(R[:, 0], (np.cos(v) * np.cos(w), np.sin(v) * np.cos(w), np.sin(w)), rtol=1e-15)
 
 
+@pytest.mark.parametrize("retain", ORDERS)
+def test_a_quaternion_base_moves_as_one_with_euler_angles(retain: str, rng: np.random.Generator) -> None:
+    """The same motion, stated with other coordinates: its forces have the same virtual power."""
+    euler = model("free base, rotary inertia", retain)
+    body = CASES["free base, rotary inertia"].retaining(retain).bodies[0]
+    floating = replace(body, joint=sf.Joint("base", "free"))
+    stated = replace(CASES["free base, rotary inertia"].system, bodies=(floating,))
+    free = sf.compile(stated, sf.Options(("inverse_dynamics",), backend="interpreter"))
+    q, v = (x[0] for x in states(euler, rng))
+    a = rng.standard_normal(euler.nv)
+    p, R = euler.frame_pose("beam", q)
+    velocity, acceleration = euler.frame_velocity("beam", q, v), euler.frame_acceleration("beam", q, v, a)
+    # Body velocities and their rates: the linear one is seen to turn.
+    turned = acceleration[:3] - np.cross(velocity[3:], velocity[:3])
+    v_free = np.concatenate([R.T @ velocity[:3], R.T @ velocity[3:], v[6:]])
+    a_free = np.concatenate([R.T @ turned, R.T @ acceleration[3:], a[6:]])
+    q_free = np.concatenate([p, Rotation.from_matrix(R).as_quat(), q[6:]])
+    partial = np.eye(euler.nv)
+    partial[:6] = np.kron(np.eye(2), R.T) @ euler.frame_jacobian("beam", q)
+    expected = euler.inverse_dynamics(q, v, a)
+    found = partial.T @ free.inverse_dynamics(q_free, v_free, a_free)
+    np.testing.assert_allclose(found, expected, atol=ROUNDING * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("orders", [("zeroth_order", "all"), ("all", "zeroth_order"), ("first_order", "all")])
+def test_orders_mix_in_one_tree(orders: tuple[str, str], rng: np.random.Generator) -> None:
+    """Each beam has its own order; M, h and the frames still belong together."""
+    stated = CASES["two in series"].system
+    bodies = [replace(body, retain=retain) for body, retain in zip(stated.bodies, orders, strict=True)]
+    m = sf.compile(replace(stated, bodies=tuple(bodies)), sf.Options(backend="interpreter"))
+    q, v = states(m, rng)
+    M, h, Q = m.dynamics(q, v, ())
+    a = rng.standard_normal((STATES, m.nv))
+    expected = np.einsum("nij,nj->ni", M, a) + h - Q
+    np.testing.assert_allclose(m.inverse_dynamics(q, v, a), expected, atol=ROUNDING * np.abs(expected).max())
+    np.testing.assert_allclose(m.kinetic_energy(q, v), 0.5 * np.einsum("ni,nij,nj->n", v, M, v), rtol=ROUNDING)
+    (p, _), (other, _) = m.frame_pose("two.tip", q), model("two in series", "all").frame_pose("two.tip", q)
+    np.testing.assert_allclose(p, other, rtol=ROUNDING)
+
+
+@pytest.mark.parametrize("retain", ["first_order", "all"])
+def test_a_spring_on_the_tip_is_conservative(retain: str, rng: np.random.Generator) -> None:
+    """A connection to the tip pulls where the tip is: its force is the gradient of its energy at any order."""
+    spring = sf.Connection("spring", ("beam", "tip"), ("world", None), stiffness=7.0, length=0.3)
+    cases = [CASES["hub about another axis"].retaining(retain)]
+    cases.append(replace(cases[0], connections=(spring,)))
+    free, held = (sf.compile(case, sf.Options(backend="interpreter")) for case in cases)
+    q, v = states(held, rng)
+    force = held.generalized_force(q, v, ()) - free.generalized_force(q, v, ())
+    steps = STEP * np.eye(held.nv)
+    ahead, behind = (
+        held.potential_energy(q[:, None] + dq) - free.potential_energy(q[:, None] + dq) for dq in (steps, -steps)
+    )
+    np.testing.assert_allclose(-(ahead - behind) / (2 * STEP), force, atol=DIFFERENCE * np.abs(force).max())
+
+
 # Rigid limits.
 
 LENGTH, RHO_A, RHO_J, RHO_Y, RHO_Z = 1.3, 2.0, 0.04, 0.03, 0.01
@@ -225,13 +282,13 @@ def test_everything_kept_conserves_energy() -> None:
     assert np.abs(error).max() < 1e-9
 
 
-def test_first_order_errs_by_third_degree_and_does_not_drift() -> None:
+def test_first_order_errs_by_the_square_of_the_deflection_and_does_not_drift() -> None:
     time, error = free_motion("first_order", 0.05, 20)
     early, late = (np.abs(error[part]).max() for part in (time < 10, time >= 10))
     assert 1e-7 < early < 0.01
     assert late < 1.5 * early
     _, smaller = free_motion("first_order", 0.025, 10)
-    assert np.log2(early / np.abs(smaller).max()) > 2.5
+    assert np.log2(early / np.abs(smaller).max()) > 1.9
 
 
 # Generated code.
