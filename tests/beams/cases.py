@@ -89,9 +89,9 @@ def one(*args: Any, **more: Any) -> Case:
 
 
 def two_in_series(second: sf.Joint, motion: Any) -> Case:
-    one, first = pair("one", HUB, -1, hub(), (2, 1, 1))
-    other, node = pair("two", second, 0, motion, (1, 2, 1), "polynomial")
-    return Case(system(one, other), (first, node))
+    inner, first = pair("one", HUB, -1, hub(), (2, 1, 1))
+    outer, node = pair("two", second, 0, motion, (1, 2, 1), "polynomial")
+    return Case(system(inner, outer), (first, node))
 
 
 def branching() -> Case:
@@ -160,6 +160,20 @@ def planar(family: str) -> Case:
     return Case(system(beam), (Node(-1, Flexible(L, v=known, breaks=breaks, **given), *hub()),))
 
 
+def users_own() -> Case:
+    """Samples at stations of their own and formulas, in three directions of one beam."""
+    twist = (0.0, 0.3, 0.4, 0.6, 0.9, 1.0), (0.0, 0.2, 0.35, 0.5, 0.9, 0.8)
+    stated = {"bend_y": (sf.Samples(XI, SAMPLES),), "bend_z": ("xi^2", "xi^3"), "twist": (sf.Samples(*twist), "xi")}
+    known = {
+        "v": (shapes.through(XI, SAMPLES, L),), "w": shapes.monomials(2, 2, L),
+        "twist": (shapes.through(*twist, L, bending=False), *shapes.monomials(1, 1, L)),
+        "breaks": tuple(L * x for x in sorted({*XI, *twist[0]})),
+    }  # fmt: skip
+    beam = sf.Beam("beam", FREE, L, bend_y=1, bend_z=2, twist=2, family="user", shapes=stated, retain="all",
+                   **SECTION)  # type: ignore[arg-type]  # fmt: skip
+    return Case(system(beam), (Node(-1, Flexible(L, **SECTION, **known), 6, six),))
+
+
 def on_a_driven_base() -> Case:
     """Base motion is given: its rates and second rates enter h."""
     joint = sf.Joint(
@@ -201,6 +215,7 @@ CASES: dict[str, Case] = {
         sf.Joint("wrist", "revolute", "beam", "tip", (0.2, 0.1, -0.15), axis=AXIS), hub(AXIS, (0.2, 0.1, -0.15))
     ),
     "tapered": tapered(),
+    "user's own": users_own(),
     "driven base": on_a_driven_base(),
     "clamped to the world": one(sf.Joint("clamp", "fixed", position=(0, 0, 1)), -1,
                                 (0, lambda q: (vector(0, 0, 1), ca.SX.eye(3))), (2, 2, 1)),

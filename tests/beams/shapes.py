@@ -93,7 +93,7 @@ def clamped_free(count: int, L: float) -> tuple[Shape, ...]:
     return tuple(found)
 
 
-def through(xi: Sequence[float], values: Sequence[float], L: float) -> Shape:
-    """The cubic spline through samples, without slope at the root and curvature at the tip."""
-    s = scipy.interpolate.CubicSpline(xi, values, bc_type=((1, 0.0), (2, 0.0)))
+def through(xi: Sequence[float], values: Sequence[float], L: float, bending: bool = True) -> Shape:
+    """The cubic spline through samples, without slope (twist: curvature) at the root and curvature at the tip."""
+    s = scipy.interpolate.CubicSpline(xi, values, bc_type=((1 if bending else 2, 0.0), (2, 0.0)))
     return stretched(s, s.derivative(), s.derivative(2), L)

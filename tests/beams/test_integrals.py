@@ -15,6 +15,7 @@ from symofros.beams.fields import Field, Form
 from symofros.description.values import Value
 from symofros.expr.expression import Expression, lower
 from symofros.expr.graph import Edge, Graph
+from symofros.passes.count import count_program
 
 L = 1.7
 STATE = np.array([0.11, -0.07, 0.05, 0.13, 0.21, -0.17])
@@ -144,8 +145,6 @@ def test_tapered_formulas_enter_as_parameters() -> None:
     uniform = sf.System(
         "s", [sf.Beam("b", sf.Joint("h", "revolute"), "L", "rho", EI_z="EI", bend_y=2)], stated.parameters
     )
-    from symofros.passes.count import count_program
-
     counts = [count_program(sf.program_of(s, ["mass_matrix", "bias"])) for s in (stated, uniform)]
     for name in ("mass_matrix", "bias"):
         assert counts[0][name, ""] == counts[1][name, ""]

@@ -124,6 +124,7 @@ def test_values_are_those_of_scipy_and_textbooks(family: str, expected: tuple[ob
 @pytest.mark.parametrize(("family", "count", "condition"), [
     ("spline", 4, 15.42), ("spline", 8, 24.73), ("spline", 16, 26.42), ("polynomial", 4, 6.395e5),
     ("polynomial", 8, 2.133e12), ("clamped_free", 13, 1.0), ("legendre", 8, 3.8),
+    ("hermite", 2, 180.85),
 ])  # fmt: skip
 def test_conditioning(family: str, count: int, condition: float) -> None:
     """Monomials lose the mass matrix; splines keep it at any number."""
