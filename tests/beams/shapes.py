@@ -1,0 +1,99 @@
+"""Shape functions written anew with NumPy and SciPy, for comparison: value, slope, curvature over x [m]."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import scipy.interpolate
+import scipy.optimize
+import scipy.special
+
+Curve = Callable[[np.ndarray], np.ndarray]
+
+
+class Shape(NamedTuple):
+    """A function of x and its first two derivatives."""
+
+    value: Curve
+    slope: Curve
+    curvature: Curve
+
+
+def stretched(value: Curve, slope: Curve, curvature: Curve, L: float, factor: float = 1.0) -> Shape:
+    """Factor times a function of xi = x/L."""
+    return Shape(
+        lambda x: factor * value(np.asarray(x) / L),
+        lambda x: factor / L * slope(np.asarray(x) / L),
+        lambda x: factor / L**2 * curvature(np.asarray(x) / L),
+    )
+
+
+def of_polynomial(p: np.polynomial.Polynomial, L: float, factor: float = 1.0) -> Shape:
+    return stretched(p, p.deriv(), p.deriv(2), L, factor)
+
+
+def monomials(first: int, count: int, L: float) -> tuple[Shape, ...]:
+    return tuple(of_polynomial(np.polynomial.Polynomial.basis(first + k), L) for k in range(count))
+
+
+def legendre(first: int, count: int, L: float) -> tuple[Shape, ...]:
+    """xi^first times Jacobi polynomials of weight xi^(2 first), 1 at the tip."""
+    variable = np.polynomial.Polynomial([-1.0, 2.0])
+    found = []
+    for k in range(count):
+        jacobi = np.polynomial.Polynomial(scipy.special.jacobi(k, 0, 2 * first).coef[::-1])
+        found.append(of_polynomial(jacobi(variable) * np.polynomial.Polynomial.basis(first), L))
+    return tuple(found)
+
+
+def hermite(L: float) -> tuple[Shape, ...]:
+    """Tip displacement, tip slope."""
+    one, other = np.polynomial.Polynomial([0, 0, 3, -2]), np.polynomial.Polynomial([0, 0, -1, 1])
+    return of_polynomial(one, L), of_polynomial(other, L, L)
+
+
+def splines(dropped: int, count: int, L: float) -> tuple[Shape, ...]:
+    """Cubic B-splines on uniform knots without the first few; of lower degree where there are too few for cubics."""
+    degree = min(3, count + dropped - 1)
+    inner = np.linspace(0.0, 1.0, count + dropped - degree + 1)
+    knots = np.concatenate([[0.0] * degree, inner, [1.0] * degree])
+    found = []
+    for i in range(dropped, dropped + count):
+        b = scipy.interpolate.BSpline(knots, np.eye(count + dropped)[i], degree)
+        found.append(stretched(b, b.derivative(), b.derivative(2), L))
+    return tuple(found)
+
+
+def spline_breaks(dropped: int, count: int, L: float) -> tuple[float, ...]:
+    """Where their pieces meet."""
+    spans = count + dropped - min(3, count + dropped - 1)
+    return tuple(L * k / spans for k in range(1, spans))
+
+
+def cantilever_roots(count: int) -> np.ndarray:
+    """Of cos b cosh b = -1."""
+    guess = [(k + 0.5) * np.pi for k in range(count)]
+    return np.array([
+        scipy.optimize.brentq(lambda b: np.cos(b) + 1.0 / np.cosh(b), g - 0.5, g + 0.5, xtol=1e-15) for g in guess
+    ])  # fmt: skip
+
+
+def clamped_free(count: int, L: float) -> tuple[Shape, ...]:
+    """Textbook modes of a cantilever, mean square 1; good for the lowest few, where cosh - sinh has digits."""
+    found = []
+    for b in cantilever_roots(count):
+        s = (np.sinh(b) - np.sin(b)) / (np.cosh(b) + np.cos(b))
+        found.append(stretched(
+            lambda x, b=b, s=s: np.cosh(b * x) - np.cos(b * x) - s * (np.sinh(b * x) - np.sin(b * x)),
+            lambda x, b=b, s=s: b * (np.sinh(b * x) + np.sin(b * x) - s * (np.cosh(b * x) - np.cos(b * x))),
+            lambda x, b=b, s=s: b**2 * (np.cosh(b * x) + np.cos(b * x) - s * (np.sinh(b * x) + np.sin(b * x))), L,
+        ))  # fmt: skip
+    return tuple(found)
+
+
+def through(xi: Sequence[float], values: Sequence[float], L: float, bending: bool = True) -> Shape:
+    """The cubic spline through samples, without slope (twist: curvature) at the root and curvature at the tip."""
+    s = scipy.interpolate.CubicSpline(xi, values, bc_type=((1 if bending else 2, 0.0), (2, 0.0)))
+    return stretched(s, s.derivative(), s.derivative(2), L)
