@@ -45,6 +45,7 @@ from symofros.errors import AssemblyError as AssemblyError
 from symofros.errors import CompileError as CompileError
 from symofros.errors import CompilerMissingWarning as CompilerMissingWarning
 from symofros.errors import DescriptionError as DescriptionError
+from symofros.errors import EquilibriumError as EquilibriumError
 from symofros.errors import InconsistentModelWarning as InconsistentModelWarning
 from symofros.errors import Problem as Problem
 from symofros.errors import ShapeError as ShapeError
@@ -62,6 +63,8 @@ if TYPE_CHECKING:
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
     from symofros.simulation.assembly import assemble as assemble
+    from symofros.simulation.equilibrium import equilibrium as equilibrium
+    from symofros.simulation.modes import modes as modes
 
     compile = compile_system
 
@@ -79,6 +82,8 @@ _LAZY = {
     "save": ("symofros.loading", "save"),
     "Model": ("symofros.runtime.model", "Model"),
     "assemble": ("symofros.simulation.assembly", "assemble"),
+    "equilibrium": ("symofros.simulation.equilibrium", "equilibrium"),
+    "modes": ("symofros.simulation.modes", "modes"),
 }
 
 

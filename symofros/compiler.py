@@ -249,6 +249,7 @@ def describe(tree: SpanningTree, options: Options) -> ModelRecord:
         q_neutral=tuple(neutral), q_lower=tuple(lower), q_upper=tuple(upper),
         segments=_segments(tree), periodic=tuple(periodic),
         constraint_names=tuple(name for item in tree.system.constraints for name in item.conditions),
+        speed_conditions=tuple(name for item in tree.system.constraints for name in item.on_speeds),
         closures=tuple(_closure(tree, item) for item in tree.system.constraints if isinstance(item, Closure)),
     )  # fmt: skip
 

@@ -71,6 +71,10 @@ class AssemblyError(SymofrosError):
     """No configuration, or no speeds, satisfy the constraints; says which constraint is worst and by how much."""
 
 
+class EquilibriumError(SymofrosError):
+    """No configuration was found in which the speeds stay as they are."""
+
+
 class CompilerMissingWarning(UserWarning):
     """No C compiler was found; a slower way is used."""
 

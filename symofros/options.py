@@ -19,6 +19,8 @@ MODEL_FUNCTIONS = (
     "constraint_rate",
     "constraint_jacobian",
     "constraint_bias",
+    "inverse_dynamics_derivatives",
+    "residual_derivatives",
 )
 FRAME_FUNCTIONS = ("frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian", "frame_jacobian_rate")
 

@@ -57,6 +57,11 @@ class Closure:
         """Names of its conditions: closure.x for a translation, closure.rx for a rotation."""
         return (*(f"{self.name}.{x}" for x in self.translations), *(f"{self.name}.r{x}" for x in self.rotations))
 
+    @property
+    def on_speeds(self) -> tuple[str, ...]:
+        """None of them binds speeds only."""
+        return ()
+
 
 @dataclass(frozen=True)
 class Rod:
@@ -83,6 +88,11 @@ class Rod:
         """One condition."""
         return (self.name,)
 
+    @property
+    def on_speeds(self) -> tuple[str, ...]:
+        """None of them binds speeds only."""
+        return ()
+
 
 @dataclass(frozen=True)
 class KnifeEdge:
@@ -106,6 +116,11 @@ class KnifeEdge:
     def conditions(self) -> tuple[str, ...]:
         """One condition."""
         return (self.name,)
+
+    @property
+    def on_speeds(self) -> tuple[str, ...]:
+        """It binds speeds only."""
+        return self.conditions
 
 
 @dataclass(frozen=True)
@@ -144,6 +159,11 @@ class Rolling:
         """Two that bind speeds, one that binds coordinates."""
         return (f"{self.name}.slip_x", f"{self.name}.slip_y", f"{self.name}.height")
 
+    @property
+    def on_speeds(self) -> tuple[str, ...]:
+        """Those that bind speeds only."""
+        return self.conditions[:2]
+
 
 @dataclass(frozen=True)
 class Nonholonomic:
@@ -174,6 +194,11 @@ class Nonholonomic:
     def conditions(self) -> tuple[str, ...]:
         """One condition."""
         return (self.name,)
+
+    @property
+    def on_speeds(self) -> tuple[str, ...]:
+        """It binds speeds only."""
+        return self.conditions
 
 
 Constraint = Closure | Rod | KnifeEdge | Rolling | Nonholonomic

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from symofros.dynamics.constraints import Constraints, Row
+from symofros.dynamics.derivatives import by_configuration, by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
 from symofros.dynamics.forces import generalized_forces, stored_energy
 from symofros.dynamics.forward import solve
@@ -112,6 +113,20 @@ class Equations:
         return [self.g.sub(needed, given) for needed, given in zip(total, passive, strict=True)]
 
     @cached_property
+    def residual(self) -> list[Edge]:
+        """M a + h - Q - G^T lam, then G a - gamma: zero for the motion that the inputs produce (nv + nc)."""
+        g, a = self.g, self.v_rate
+        total = inertia_forces(self.motion, self._inertias[0], self.rotors, a, self.gravity)
+        found = [g.sub(needed, given) for needed, given in zip(total, self.Q, strict=True)]
+        for i, row in enumerate(self.constraints):
+            lam = g.input("lam", i)
+            found = [g.sub(one, g.mul(lam, entry)) for one, entry in zip(found, row.G, strict=True)]
+        bound = [
+            g.sub(g.sum(g.mul(x, y) for x, y in zip(row.G, a, strict=True)), row.gamma) for row in self.constraints
+        ]
+        return found + bound
+
+    @cached_property
     def T(self) -> Edge:
         """Kinetic energy."""
         return kinetic_energy(self.motion, self._inertias[0], self.rotors)
@@ -167,6 +182,21 @@ def _dynamics(e: Equations) -> _Parts:
     return ("q", "v", "u", "t"), (_matrix("M", e.M), _vector("h", e.h), _vector("Q", e.Q))
 
 
+def _inverse_derivatives(e: Equations) -> _Parts:
+    by_q = by_configuration(e.motion, e.required)
+    by_v = by_inputs(e.motion, e.required, "v", e.nv)
+    return ("q", "v", "a", "t"), (_matrix("dtau_dq", by_q), _matrix("dtau_dv", by_v))
+
+
+def _residual_derivatives(e: Equations) -> _Parts:
+    by_q = by_configuration(e.motion, e.residual)
+    by_v = by_inputs(e.motion, e.residual, "v", e.nv)
+    by_u = by_inputs(e.motion, e.residual, "u", len(e.tree.coordinates.u))
+    rate_by_q = by_configuration(e.motion, [row.rate for row in e.constraints])
+    outputs = (_matrix("dR_dq", by_q), _matrix("dR_dv", by_v), _matrix("dR_du", by_u), _matrix("drate_dq", rate_by_q))
+    return ("q", "v", "a", "u", "lam", "t"), outputs
+
+
 _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "mass_matrix": lambda e: (("q",), (_matrix("M", e.M),)),
     "bias": lambda e: (("q", "v"), (_vector("h", e.h),)),
@@ -176,6 +206,8 @@ _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "inverse_dynamics": lambda e: (("q", "v", "a", "t"), (_vector("tau", e.required),)),
     "kinetic_energy": lambda e: (("q", "v"), (Output("T", (), (e.T,)),)),
     "potential_energy": lambda e: (("q", "t"), (Output("V", (), (e.V,)),)),
+    "inverse_dynamics_derivatives": _inverse_derivatives,
+    "residual_derivatives": _residual_derivatives,
     "constraint": lambda e: (("q", "t"), (_vector("phi", [row.phi for row in e.constraints]),)),
     "constraint_rate": lambda e: (("q", "v", "t"), (_vector("phi_rate", [row.rate for row in e.constraints]),)),
     "constraint_jacobian": lambda e: (("q", "t"), (_matrix("G", [row.G for row in e.constraints]),)),
@@ -212,6 +244,7 @@ def write_program(tree: SpanningTree, requests: Sequence[Request]) -> Program:
     names = tree.coordinates
     sizes = {
         "q": len(names.q), "v": len(names.v), "a": len(names.v), "u": len(names.u), "par": len(names.par), "t": 1,
+        "lam": sum(len(constraint.conditions) for constraint in tree.system.constraints),
         "gains": 2 * sum(len(constraint.conditions) for constraint in tree.system.constraints),
     }  # fmt: skip
     return Program(tree.system.name, equations.g, sizes, functions)

@@ -107,15 +107,16 @@ def _joint_forces(motion: Motion) -> list[Edge]:
 
 def _gradient(motion: Motion, energy: Edge) -> list[Edge]:
     """The rate of an energy per unit of each speed: its gradient through q' = N v (eq. 38)."""
-    g, lowering = motion.g, motion.lowering
-    slopes: list[Edge] = [ZERO] * motion.nv
-    for link in motion.tree.links:
-        start, size = link.v
-        names = coordinate_names(link.joint)
-        for k in range(size):
-            seeds = _RATES.get(link.joint.kind, _own_rate)(lowering, names, k)
-            slopes[start + k] = directional(g, [energy], seeds)[0]
-    return slopes
+    return [directional(motion.g, [energy], seeds)[0] for seeds in rates_per_speed(motion)]
+
+
+def rates_per_speed(motion: Motion) -> list[dict[Edge, Edge]]:
+    """For each speed, the rates of coordinates per unit of it: the columns of N in q' = N v."""
+    return [
+        _RATES.get(link.joint.kind, _own_rate)(motion.lowering, coordinate_names(link.joint), k)
+        for link in motion.tree.links
+        for k in range(link.v[1])
+    ]
 
 
 def coordinate_rates(motion: Motion) -> dict[Edge, Edge]:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.errors import ShapeError, SymofrosError, UnknownNameError, did_you_mean
-from symofros.runtime import manifold
+from symofros.runtime import linear, manifold
 from symofros.runtime.kernel import Array, Kernel, Unit
 from symofros.runtime.record import ModelRecord
 
@@ -231,6 +231,37 @@ class Model:
             return np.zeros(2 * self.nc)
         given = np.asarray(gains, dtype=np.float64)
         return np.repeat(given, self.nc, axis=-1) if given.shape == (2,) else given
+
+    # Derivatives. Those by q are along the manifold: column k is the change as q moves with speed k alone.
+
+    def inverse_dynamics_derivatives(
+        self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+    ) -> tuple[Array, Array]:
+        """The derivatives of `inverse_dynamics` by q and by v (..., nv, nv); that by a is M."""
+        by_q, by_v = self._call("inverse_dynamics_derivatives", "", {"q": q, "v": v, "a": a, "u": u, "t": t}, par)
+        return by_q, by_v
+
+    def forward_dynamics_derivatives(
+        self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0
+    ) -> tuple[Array, Array, Array]:
+        """The derivatives of `forward_dynamics` by q, v (..., nv, nv) and u (..., nv, nu), constraints kept."""
+        found = linear.accelerations(self, q, v, u, par=par, t=t)
+        return found.by_q, found.by_v, found.by_u
+
+    def linearize(
+        self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0
+    ) -> tuple[Array, Array]:
+        """A (..., 2 nv, 2 nv) and B (..., 2 nv, nu) of the state's small changes: x' = A x + B u.
+
+        x = (difference of q along the manifold, difference of v). Exact: differentiated on the graph.
+        """
+        return linear.state_matrices(self, q, v, u, par=par, t=t)
+
+    def residual_derivatives(
+        self, q: Given, v: Given, a: Given, u: Given, lam: Given, *, par: Given | None = None, t: Given = 0.0
+    ) -> list[Array]:
+        """Of R = (M a + h - Q - G^T lam; G a - gamma) by q, v and u, and of G v - b by q."""
+        return self._call("residual_derivatives", "", {"q": q, "v": v, "a": a, "u": u, "lam": lam, "t": t}, par)
 
     # Constraints: phi(q) = 0, G v = b, G v' = gamma.
 

@@ -58,6 +58,7 @@ class ModelRecord:
         segments: The configuration manifold, in order.
         periodic: Coordinates that are angles, so that unbounded ones are sampled in one turn.
         constraint_names: One a condition: the constraint's name, and which of its conditions.
+        speed_conditions: Those of them that bind speeds only.
         closures: Of frames, for checks of their rotations.
     """
 
@@ -77,6 +78,7 @@ class ModelRecord:
     segments: tuple[Segment, ...]
     periodic: tuple[bool, ...]
     constraint_names: tuple[str, ...] = ()
+    speed_conditions: tuple[str, ...] = ()
     closures: tuple[ClosureRecord, ...] = ()
 
     @property

@@ -65,7 +65,7 @@ def assemble(
         AssemblyError: No such configuration was found; names the constraint that is worst.
         UnknownNameError: `held` names something that is not a speed.
     """
-    free = _free(model, held)
+    free = free_speeds(model, held)
     q = model.neutral() if q is None else np.array(q, dtype=np.float64)
     wished = np.zeros(model.nv) if v is None else np.array(v, dtype=np.float64)
 
@@ -107,7 +107,12 @@ def assemble(
     return Assembled(q, speeds, float(np.abs(phi).max(initial=0.0)), count, rank)
 
 
-def _free(model: Model, held: Collection[str]) -> Array:
+def free_speeds(model: Model, held: Collection[str]) -> Array:
+    """Indices of the speeds that are not held.
+
+    Raises:
+        UnknownNameError: A name is not that of a speed.
+    """
     for name in held:
         if name not in model.names.v:
             raise UnknownNameError(
@@ -142,14 +147,13 @@ def _check_rotations(model: Model, q: Array, u: Given | None, par: Given | None)
         )
         cosines = np.diag(R_A.T @ R_B)
         blocked = closure.rotations
-        judged = (
-            range(3) if len(blocked) == 3 else [k for k in range(3) if k not in blocked] if len(blocked) == 2 else ()
-        )
+        judged = {3: [0, 1, 2], 2: [k for k in range(3) if k not in blocked]}.get(len(blocked), [])
         worst = min((float(cosines[k]) for k in judged), default=1.0)
         if worst < 0.0:
+            angle = np.degrees(np.arccos(max(worst, -1.0)))
             raise AssemblyError(
                 f"model '{model.record.name}': closure '{closure.name}' is closed the wrong way round\n"
-                f"  found:  axes that must be parallel are {np.degrees(np.arccos(max(worst, -1.0))):.0f} degrees apart\n"
+                f"  found:  axes that are to be parallel are {angle:.0f} degrees apart\n"
                 "  rule:   conditions on rotations hold up to a right angle from the closed posture\n"
                 "  remedy: start from a guess on the right side"
             )
