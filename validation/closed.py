@@ -22,7 +22,7 @@ from validation.quantities import CONSTRAINED
 
 AXES = "xyz"
 # As in our solver: what is smaller, relative to the largest, repeats other conditions.
-RANK = 1e-10
+RANK = 1e-6
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Forward dynamics under constraints in NumPy: what the interpreter does in place of the C solver."""
+"""M a = r + G^T lam, G a = c for G of any rank, in NumPy: what the interpreter does in place of the C solver."""
 
 from __future__ import annotations
 
@@ -6,12 +6,17 @@ import numpy as np
 
 from symofros.runtime.kernel import Array
 
-# Singular values below this share of the largest belong to conditions that repeat others.
-RANK = 1e-10
+# Singular values of G in the metric of M, below this share of the largest, belong to conditions that repeat others. A
+# redundant condition that has drifted by d [m or rad] shows one of about d, and would ask for accelerations that
+# contradict the others: so the share is above what integration drifts by, and below what a posture needs to be told
+# from a singular one. The C solver's SYM_RANK is the same.
+RANK = 1e-6
+# What is left of a diagonal entry beyond rounding; SYM_PIVOT in C.
+PIVOT = 1e-13
 
 
 def constrained(M: Array, r: Array, G: Array, c: Array) -> list[Array]:
-    """M a = r + G^T lam, G a = c for each state: a, lam and the rank of G.
+    """The solution for each state: a, lam and the rank of G.
 
     Args:
         M: (n, nv, nv).
@@ -19,28 +24,42 @@ def constrained(M: Array, r: Array, G: Array, c: Array) -> list[Array]:
         G: (n, nc, nv).
         c: (n, nc).
     """
-    found = [_one(*state) for state in zip(M, r, G, c, strict=True)]
+    found = [solve(*state) for state in zip(M, r, G, c, strict=True)]
     a, lam, rank = zip(*found, strict=True)
     return [np.array(a), np.array(lam), np.array(rank, dtype=np.float64)]
 
 
-def _one(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
-    try:
-        L = np.linalg.cholesky(M)
-        regular = bool(np.all(np.diag(L) ** 2 > 1e-13 * np.diag(M)))
-    except np.linalg.LinAlgError:
-        regular = False
-    if not regular:
+def solve(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
+    """The solution for one state, of one or several right-hand sides.
+
+    Args:
+        M: (nv, nv).
+        r: (nv,) or (nv, k).
+        G: (nc, nv).
+        c: (nc,) or (nc, k).
+
+    Returns:
+        a and lam, shaped like r and c, and the rank of G; NaN and -1 where no acceleration exists.
+    """
+    L = _factor(M)
+    if L is None:
         # G^T G adds nothing along motions that the constraints allow.
-        rho = np.diag(M).max() / max((G * G).sum(axis=1).max(), 1e-300)
-        M, r = M + rho * G.T @ G, r + rho * G.T @ c
-        try:
-            L = np.linalg.cholesky(M)
-        except np.linalg.LinAlgError:
-            return np.full(len(r), np.nan), np.full(len(c), np.nan), -1
+        rho = np.diag(M).max() / max((G * G).sum(axis=1).max(initial=0.0), 1e-300)
+        L, r = _factor(M + rho * G.T @ G), r + rho * G.T @ c
+    if L is None:
+        return np.full_like(r, np.nan), np.full_like(c, np.nan), -1
     Y, y = np.linalg.solve(L, G.T), np.linalg.solve(L, r)
-    U, s, Vt = np.linalg.svd(Y, full_matrices=False)
+    _, s, Vt = np.linalg.svd(Y, full_matrices=False)
     rank = int(np.sum(s > RANK * s.max(initial=0.0)))
     kept = Vt[:rank]
-    lam = kept.T @ ((kept @ (c - Y.T @ y)) / s[:rank] ** 2)
+    sizes = s[:rank] if c.ndim == 1 else s[:rank, None]
+    lam = kept.T @ ((kept @ (c - Y.T @ y)) / sizes**2)
     return np.linalg.solve(L.T, y + Y @ lam), lam, rank
+
+
+def _factor(M: Array) -> Array | None:
+    try:
+        L = np.linalg.cholesky(M)
+    except np.linalg.LinAlgError:
+        return None
+    return L if bool(np.all(np.diag(L) ** 2 > PIVOT * np.diag(M))) else None

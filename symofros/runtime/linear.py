@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from symofros.runtime.constrained import solve
 from symofros.runtime.kernel import Array
 
 if TYPE_CHECKING:
     from symofros.runtime.model import Given, Model
-
-# Singular values below this share of the largest belong to conditions that repeat others.
-RANK = 1e-10
 
 
 @dataclass(frozen=True)
@@ -39,15 +37,12 @@ def accelerations(model: Model, q: Given, v: Given, u: Given, **more: Any) -> Ac
     by_q, by_v, by_u, rate_by_q = model.residual_derivatives(q, v, a, u, lam, **more)
     M = model.mass_matrix(q, u=u, par=more.get("par"))
     batch = by_q.shape[:-2]
-    K = np.zeros((*batch, nv + nc, nv + nc))
-    K[..., :nv, :nv] = M
-    if nc:
-        G = model.constraint_jacobian(q, u=u, **more)
-        K[..., nv:, :nv] = G
-        K[..., :nv, nv:] = -np.swapaxes(G, -1, -2)
+    G = model.constraint_jacobian(q, u=u, **more) if nc else np.zeros((*batch, 0, nv))
     right = -np.concatenate([by_q, by_v, by_u], axis=-1)
-    # Conditions that repeat others make the matrix singular, and their multipliers of least norm.
-    solved = np.linalg.pinv(K, rcond=RANK) @ right if nc else np.linalg.solve(K, right)
+    count = right.shape[-1]
+    flat = [np.broadcast_to(x, (*batch, *x.shape[-2:])).reshape(-1, *x.shape[-2:]) for x in (M, right, G)]
+    pairs = [solve(m, r[:nv], g, r[nv:])[:2] for m, r, g in zip(*flat, strict=True)]
+    solved = np.array([np.concatenate(pair) for pair in pairs]).reshape(*batch, nv + nc, count)
     a_by_q, a_by_v, a_by_u = np.split(solved[..., :nv, :], [nv, 2 * nv], axis=-1)
     lam_by_q, lam_by_v, lam_by_u = np.split(solved[..., nv:, :], [nv, 2 * nv], axis=-1)
     return Accelerations(a_by_q, a_by_v, a_by_u, lam_by_q, lam_by_v, lam_by_u, rate_by_q)

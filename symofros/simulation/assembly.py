@@ -8,11 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.errors import AssemblyError, UnknownNameError, did_you_mean
+from symofros.runtime.constrained import RANK
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Given, Model
 
-# Singular values below this share of the largest are taken for redundant conditions.
-RANK = 1e-10
 # No step turns or slides further than this at once: beyond it the linearisation says nothing.
 LARGEST_STEP = 0.5
 

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from symofros.runtime.constrained import RANK
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Given, Model
 
 Complex = npt.NDArray[np.complex128]
-# As elsewhere: what is smaller, relative to the largest, repeats other conditions.
-RANK = 1e-10
 
 
 @dataclass(frozen=True)
