@@ -71,6 +71,13 @@ class CompilerMissingWarning(UserWarning):
     """No C compiler was found; a slower way is used."""
 
 
+def near_name(name: str, known: Iterable[str]) -> str:
+    """The question whether the nearest known name, capitals apart, was meant; "" where none is near."""
+    alike = {other.lower(): other for other in known}
+    near = difflib.get_close_matches(name.lower(), alike, n=1, cutoff=0.5)
+    return f"did you mean '{alike[near[0]]}'?" if near else ""
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """The remedy for a misspelt name: the nearest known one, or the list of them.
 
@@ -82,9 +89,9 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
         "did you mean 'tip'?", or "use one of: …", or "" when nothing is known.
     """
     known = list(known)
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    near = near_name(name, known)
     if near:
-        return f"did you mean '{near[0]}'?"
+        return near
     if not known:
         return ""
     shown = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")

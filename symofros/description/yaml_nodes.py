@@ -109,12 +109,29 @@ def compose(data: bytes, file: str) -> tuple[Node, list[Problem]]:
             builder.take(event)
     except MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
-        raise YamlFault(_not_yaml(f"{error.problem or error.context}", f"{file}:{line}")) from None
+        raise YamlFault(_not_yaml(_plainly(f"{error.problem or error.context}"), f"{file}:{line}")) from None
     except (YAMLError, ValueError, OverflowError) as error:  # The scanner lets chr() complain about bad escapes.
         raise YamlFault(_not_yaml(" ".join(str(error).split())[:200], file)) from None
     if builder.root is None:
         raise YamlFault(Problem("the file is empty", "no document", "a description is a YAML mapping", "", file))
     return builder.root, builder.problems
+
+
+# What the scanner calls things -> what their writer would.
+_PLAINLY = {
+    "expected <block end>, but found '<block mapping start>'": "an entry indented unlike its neighbours",
+    "expected <block end>, but found '<block sequence start>'": "a '-' indented unlike its neighbours",
+    "mapping values are not allowed here": "a ':' where no entry can begin",
+    "found character '\\t' that cannot start any token": "a tab; indentation is by blanks",
+    "found unexpected end of stream": "a quotation that never ends",
+    "but got '<stream end>'": "but the file ends",
+}
+
+
+def _plainly(text: str) -> str:
+    for theirs, ours in _PLAINLY.items():
+        text = text.replace(theirs, ours)
+    return text
 
 
 def _not_yaml(found: str, where: str) -> Problem:

@@ -83,6 +83,6 @@ def massless_tip_problems(system: System, numbers: Numbers) -> Iterator[Problem]
                 f"body '{body.name}': joint '{joint.name}' moves no mass",
                 "no inertia on this body or on anything it carries",
                 "each moving joint carries some inertia, or the mass matrix is singular",
-                "give an inertia, make the joint fixed, or waive: [massless_tip]",
+                "give an inertia, make the joint fixed, or waive: [massless_tip] (for URDF: waive=['massless_tip'] to load)",
                 system.origin.get(("body", body.name), ""),
             )  # fmt: skip

@@ -35,7 +35,13 @@ def test_a_sound_system_has_no_problems() -> None:
 def test_unknown_frame() -> None:
     problem = only(arm().with_bodies(body("arm2", sf.Joint("q2", "revolute", "arm1", "tipp"))))
     assert "frame 'tipp' is not on body 'arm1'" in problem.what
-    assert problem.found == "tip" and problem.remedy == "did you mean 'tip'?"
+    assert problem.found == "frames of 'arm1': tip" and problem.remedy == "did you mean 'tip'?"
+
+
+def test_a_frame_of_another_body() -> None:
+    problem = only(arm().with_bodies(body("hand", sf.Joint("q3", "revolute", "world", "tip"))))
+    assert "frame 'tip' is not on body" in problem.what
+    assert problem.remedy == "it is on body 'arm1': write parent: arm1"
 
 
 def test_disconnected_body() -> None:
@@ -47,7 +53,15 @@ def test_disconnected_body() -> None:
 def test_cycle() -> None:
     stated = sf.System("loop", [body("a", sf.Joint("qa", "revolute", "b")), body("b", sf.Joint("qb", "revolute", "a"))])
     problem = only(stated)
-    assert "cycle" in problem.what and "a -> b -> a" in problem.what and "closure" in problem.remedy
+    assert "cycle" in problem.what and "a -> b -> a" in problem.what and "'qa', 'qb'" in problem.found
+    assert "'world'" in problem.remedy and "closure" in problem.remedy
+
+
+def test_a_long_cycle_is_named_in_short() -> None:
+    names = [f"b{i}" for i in range(500)]
+    bodies = [body(name, sf.Joint(f"q{name}", "revolute", names[i - 1])) for i, name in enumerate(names)]
+    problem = only(sf.System("loop", bodies))
+    assert "500 bodies" in problem.found and len(str(problem)) < 1000
 
 
 def test_a_body_that_carries_itself() -> None:
@@ -57,7 +71,7 @@ def test_a_body_that_carries_itself() -> None:
 
 def test_two_bases() -> None:
     problem = only(arm().with_bodies(sf.RigidBody("ground"), sf.RigidBody("floor")))
-    assert "two bases" in problem.what and "'ground', 'floor'" in problem.found
+    assert "two bases" in problem.what and "'ground', 'floor'" in problem.what and "2 bodies" in problem.found
     assert "joint" in problem.remedy
 
 
