@@ -18,7 +18,7 @@ from symofros.description.schema import BodyEntry, InputEntry, NativeFile, Syste
 from symofros.description.system import Input, Parameter, RigidBody, System
 from symofros.description.yaml_nodes import Node, YamlFault, compose
 from symofros.description.yaml_writer import write_yaml as write_yaml
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 
 MAX_BYTES = 4 << 20
 MAX_INCLUDE_DEPTH = 10
@@ -69,6 +69,7 @@ class _Merger:
     broken: set[str] = field(default_factory=set)
     incomplete: bool = False
     seen: set[Path] = field(default_factory=set)
+    bytes_left: int = field(default_factory=lambda: MAX_BYTES)
 
     def reading(self, default_name: str) -> Reading:
         problems, broken = tuple(self.problems), frozenset(self.broken)
@@ -84,7 +85,7 @@ class _Merger:
         """Read one file, after the files it includes."""
         self.seen.add(path.resolve())
         try:
-            root, problems = compose(read_bytes(path, MAX_BYTES), shown)
+            root, problems = compose(self.bytes_of(path), shown)
             file, faults, broken = _validate(root, shown)
         except (YamlFault, DescriptionError) as error:
             self.problems += [error.problem] if isinstance(error, YamlFault) else error.problems
@@ -100,6 +101,12 @@ class _Merger:
             where = f"{shown}:{root.at(('include', i)).line}"
             self.include(text, path, shown, here, where)
         self.merge(file, root, shown, bool(including))
+
+    def bytes_of(self, path: Path) -> bytes:
+        """A file's content; the limit is on the main file and all it includes together."""
+        data = read_bytes(path, self.bytes_left)
+        self.bytes_left -= len(data)
+        return data
 
     def include(self, text: str, path: Path, shown: str, here: tuple[Path, ...], where: str) -> None:
         """Follow one include, if it is allowed; a file that is included twice counts once."""
@@ -187,7 +194,7 @@ def _validate(root: Node, shown: str) -> tuple[NativeFile | None, list[Problem],
         return NativeFile.model_validate(data), [], set()
     except ValidationError as error:
         faults = error.errors(include_url=False)
-    problems = [problem_of(fault, f"{shown}:{line_of(fault, root)}") for fault in faults]
+    problems = first_of(problem_of(fault, f"{shown}:{line_of(fault, root)}") for fault in faults)
     broken: set[str] = set()
     for path in map(path_of, faults):
         section = path[0] if path else ""

@@ -33,7 +33,7 @@ _TOKEN = re.compile(
     r"|(?P<sign>\*\*|[-+*/^(),]))",
     re.ASCII,
 )
-_WORD = re.compile(r"[A-Za-z0-9_.]+", re.ASCII)
+_WORD = re.compile(r"\.?[0-9][A-Za-z0-9_.]*", re.ASCII)
 _DUNDER = re.compile(r"(?:^|\.)__|__(?:$|\.)")
 
 

@@ -57,8 +57,9 @@ def read_bytes(path: Path, limit: int) -> bytes:
     if len(data) > limit:
         raise DescriptionError(
             Problem(
-                f"'{path}' is too large", f"more than {limit} bytes", f"at most {limit >> 20} MiB",
-                "split it, or check that it is the file you meant",
+                f"'{path}' is too large", f"more than {limit} bytes",
+                "a description with all it includes is at most 4 MiB long, a URDF 16 MiB",
+                "check that it is the file you meant",
             )
         )  # fmt: skip
     return data

@@ -24,9 +24,11 @@ from ruamel.yaml.events import (
     SequenceStartEvent,
 )
 
-from symofros.errors import Problem
+from symofros.errors import MAX_PROBLEMS, Problem
 
 MAX_DEPTH = 50
+# Ten thousand bodies of thirty values each have fewer.
+MAX_NODES = 500_000
 
 _WORDS: dict[str, bool | None] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL")),
@@ -108,8 +110,11 @@ def compose(data: bytes, file: str) -> tuple[Node, list[Problem]]:
         for event in YAML(typ="safe", pure=True).parse(text):
             builder.take(event)
     except MarkedYAMLError as error:
-        line = error.problem_mark.line + 1 if error.problem_mark else 1
-        raise YamlFault(_not_yaml(_plainly(f"{error.problem or error.context}"), f"{file}:{line}")) from None
+        found = f"{error.problem or error.context}"
+        # What the end of the file cuts short is mended where it begins.
+        mark = (error.context_mark if "stream" in found else None) or error.problem_mark
+        line = mark.line + 1 if mark else 1
+        raise YamlFault(_not_yaml(_plainly(found), f"{file}:{line}")) from None
     except (YAMLError, ValueError, OverflowError) as error:  # The scanner lets chr() complain about bad escapes.
         raise YamlFault(_not_yaml(" ".join(str(error).split())[:200], file)) from None
     if builder.root is None:
@@ -159,6 +164,7 @@ class _Builder:
     problems: list[Problem] = field(default_factory=list)
     open: list[tuple[Node, list[tuple[str, int]]]] = field(default_factory=list)
     documents: int = 0
+    nodes: int = 0
 
     def take(self, event: Event) -> None:
         """One more parsing event."""
@@ -211,6 +217,10 @@ class _Builder:
         self.open[-1][1].append((event.value, line))
 
     def put(self, node: Node) -> None:
+        self.nodes += 1
+        if self.nodes > MAX_NODES:
+            raise self.fault("too many values", f"more than {MAX_NODES}", f"at most {MAX_NODES} in a file", node.line,
+                             "check that it is the file you meant")  # fmt: skip
         if not self.open:
             self.root = node
             return
@@ -225,6 +235,8 @@ class _Builder:
             owner.value[name] = node
 
     def duplicate(self, name: str, first: int, second: int) -> None:
+        if len(self.problems) >= MAX_PROBLEMS:
+            return
         self.problems.append(
             Problem(f"'{name:.60}' appears twice", f"lines {first} and {second}", "a name is given once in its mapping",
                     "rename or remove one of them", f"{self.file}:{second}")

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
+from itertools import chain
 
 import numpy as np
 
 from symofros.description.forces import Load
 from symofros.description.system import WORLD, Joint, RigidBody, System
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 from symofros.expr.expression import CONSTANTS
 from symofros.expr.ops import FUNCTIONS
 from symofros.topology.coordinates import coordinate_names, speed_symbols
@@ -43,17 +44,16 @@ def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]
             them is not reported again.
     """
     checker = _Checker(system, frozenset(broken))
-    problems = [
-        *checker.names(), *checker.structure(), *checker.acting(), *formula_problems(system, checker.broken)
-    ]  # fmt: skip
+    formulas = formula_problems(system, checker.broken)
+    problems = first_of(chain(checker.names(), checker.structure(), checker.acting(), formulas))
     if not problems and not broken:
         numbers = Numbers(system)
-        problems = [*checker.values(numbers)]
+        problems = first_of(checker.values(numbers))
         if not problems:
-            problems = [*inertia_problems(system, numbers), *massless_tip_problems(system, numbers)]
+            problems = first_of(chain(inertia_problems(system, numbers), massless_tip_problems(system, numbers)))
     elif not any("cycle" in p.what for p in problems):
         # Physics of single bodies can be judged even where the tree can't.
-        problems += inertia_problems(system, Numbers(system))
+        problems += first_of(inertia_problems(system, Numbers(system)))
     # Two joints of one name, for instance, have the same fault in the same place.
     return list(dict.fromkeys(problems))
 

@@ -146,6 +146,35 @@ def test_coordinates_and_parameters_share_their_names() -> None:
     assert "joint 'q1': the name of its speed is taken" in problem.what
 
 
+def test_two_joints_of_one_name_are_told_apart_once() -> None:
+    system = arm(parameters=[sf.Parameter("L1", 1.0), sf.Parameter("q2", 1.0)]).with_bodies(
+        body("hand", sf.Joint("q2", "revolute"))
+    )
+    twice, taken = find_problems(system)
+    assert "'arm2', 'hand'" in twice.found and "name of its coordinate is taken" in taken.what
+
+
+@pytest.mark.parametrize("rotation", [("1e300*1e300", 0, 0), ("log(-1)", 0, 0)])
+def test_a_rotation_by_no_finite_angle(rotation: tuple[str, int, int]) -> None:
+    joint = sf.Joint("q3", "revolute", rotation=sf.Rotation("rpy", rotation))
+    assert "not a finite number" in only(arm().with_bodies(body("hand", joint))).what
+
+
+@pytest.mark.parametrize("size", [0.0, 1e308])
+def test_directions_that_are_none(size: float) -> None:
+    """Zero, or so long that the length overflows: the mechanism would be NaN."""
+    axis = (size, size, size)
+    assert "has no direction" in only(arm().with_bodies(body("b", sf.Joint("q3", "revolute", axis=axis)))).what
+    turned = sf.Joint("q3", "revolute", rotation=sf.Rotation("quaternion", (*axis, size)))
+    assert "has no direction" in only(arm().with_bodies(body("b", turned))).what
+
+
+def test_forces_on_a_prescribed_motion_are_named() -> None:
+    joint = sf.Joint("q3", "revolute", prescribed=True, actuated=True, effort=(1.0,))
+    problem = only(arm().with_bodies(body("hand", joint)))
+    assert problem.found == "prescribed, and actuated, effort" and "drop actuated, effort" in problem.remedy
+
+
 def test_values_that_are_not_finite() -> None:
     stated = arm(parameters=[sf.Parameter("L1", 0.0)]).with_bodies(
         body("arm2", inertia=sf.Inertia("1/L1", (0, 0, 0), (1, 1, 1)))

@@ -80,13 +80,13 @@ def as_data(result: FuzzResult, seed: int, seconds: float) -> dict[str, Any]:
 def as_markdown(data: dict[str, Any]) -> str:
     """The report."""
     faults = data["faults"]
-    verdict = f"{len(faults)} crashed or hung a reader." if faults else "None crashed or hung a reader."
+    read, refused = (sum(row[answer] for row in data["kinds"].values()) for answer in ("read", "refused"))
     versions = ", ".join(f"{name} {version}" for name, version in data["versions"].items())
     lines = [
         "# Fuzz test of the readers",
         "",
-        f"**{data['inputs']} hostile inputs; each was either read or refused with a description of its faults: "
-        f"{'no' if faults else 'yes'}. {verdict}**",
+        f"**{data['inputs']} hostile inputs: {refused} refused with a description of their faults, {read} read, "
+        f"{len(faults)} crashed or hung a reader.**",
         "",
         "An input is one of the package's own descriptions with one to four random changes: of bytes, words, numbers, "
         "pieces, lines, or a hostile snippet (code, bombs, document types, endless numbers) put in. A fault is any "
