@@ -265,7 +265,8 @@ class Model:
             shown = ", ".join(f"{group} {np.shape(x)}" for group, x in given.items() if x is not None)
             raise ShapeError(
                 f"{name}: batch dimensions do not broadcast\n  found:  {shown}\n"
-                "  rule:   all but the last dimension of each array broadcast together"
+                "  rule:   all but the last dimension of each array broadcast together\n"
+                "  remedy: give each array the same leading dimensions, or none"
             ) from None
 
     def _make(self, name: str, frame: str) -> Kernel:
@@ -286,7 +287,7 @@ class Model:
         except (TypeError, ValueError):
             raise ShapeError(
                 f"model '{self.record.name}': {group} is not an array of numbers\n  found:  {type(values).__name__}\n"
-                f"  rule:   {group} is a float64 array of shape (..., {size})"
+                f"  rule:   {group} is a float64 array of shape (..., {size})" + self._hint(group)
             ) from None
         if group == "t":
             return array[..., np.newaxis]
