@@ -114,7 +114,9 @@ class _Merger:
             target = (path.resolve().parent / text).resolve()
             problem = self.refusal(text, target, here)
         except (OSError, ValueError) as error:  # A NUL character, or a loop of links.
-            problem = Problem("include: not a path", str(error), "an include is a relative path")
+            problem = Problem(
+                "include: not a path", str(error), "an include is a relative path", "name a file of this folder"
+            )
         if problem:
             self.problems.append(Problem(problem.what, problem.found, problem.rule, problem.remedy, where))
             self.incomplete = True
@@ -130,14 +132,16 @@ class _Merger:
                            "copy the file there")  # fmt: skip
         if target.suffix not in SUFFIXES:
             return Problem(f"{what} is not a native description", target.suffix or "no suffix",
-                           f"included files end in {' or '.join(SUFFIXES)}")  # fmt: skip
+                           f"included files end in {' or '.join(SUFFIXES)}",
+                           "rename it, or load it by itself")  # fmt: skip
         if target in here:
             names = " -> ".join(file.name for file in [*here[here.index(target) :], target])
             return Problem(f"{what} closes a cycle", names, "files include each other in one direction",
                            "remove one of the includes")  # fmt: skip
         if len(here) > MAX_INCLUDE_DEPTH or len(self.seen) >= MAX_FILES:
             return Problem(f"{what} goes too far", f"{len(here)} levels, {len(self.seen)} files",
-                           f"at most {MAX_INCLUDE_DEPTH} levels and {MAX_FILES} files")  # fmt: skip
+                           f"at most {MAX_INCLUDE_DEPTH} levels and {MAX_FILES} files",
+                           "put parts together in fewer files")  # fmt: skip
         if not target.is_file():
             there = [file.name for file in target.parent.glob("*.y*ml")] if target.parent.is_dir() else []
             return Problem(f"{what}: there is no such file", text[:100], "an included file exists",

@@ -59,7 +59,8 @@ def read_urdf(path: str | os.PathLike[str], *, floating_base: bool = False, snap
         return Reading(None, error.problems)
     if root.tag != "robot":
         problem = Problem("the file is not a URDF", f"the root element is <{root.tag:.60}>",
-                          "the root element is <robot>", "", f"{file}:{root.line}")  # fmt: skip
+                          "the root element is <robot>", "check that it is the file you meant",
+                          f"{file}:{root.line}")  # fmt: skip
         return Reading(None, (problem,))
     try:
         return _Importer(Values(file, snap_tol), root, floating_base).reading()

@@ -92,7 +92,12 @@ class _Builder:
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         if len(self.open) >= MAX_DEPTH:
-            raise self.fault(f"nested deeper than {MAX_DEPTH}", f"<{tag}>", "a robot file needs fewer than ten", "")
+            raise self.fault(
+                f"nested deeper than {MAX_DEPTH}",
+                f"<{tag}>",
+                "a robot file needs fewer than ten",
+                "check that it is the file you meant",
+            )
         element = Element(tag, attributes, self.parser.CurrentLineNumber)
         if self.open:
             self.open[-1].children.append(element)

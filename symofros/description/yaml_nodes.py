@@ -118,7 +118,11 @@ def compose(data: bytes, file: str) -> tuple[Node, list[Problem]]:
     except (YAMLError, ValueError, OverflowError) as error:  # The scanner lets chr() complain about bad escapes.
         raise YamlFault(_not_yaml(" ".join(str(error).split())[:200], file)) from None
     if builder.root is None:
-        raise YamlFault(Problem("the file is empty", "no document", "a description is a YAML mapping", "", file))
+        raise YamlFault(
+            Problem(
+                "the file is empty", "no document", "a description is a YAML mapping", "begin with symofros: 1", file
+            )
+        )
     return builder.root, builder.problems
 
 
@@ -180,7 +184,7 @@ class _Builder:
             self.open.append((node, []))
             if len(self.open) > MAX_DEPTH:
                 raise self.fault(f"nested deeper than {MAX_DEPTH}", f"{len(self.open)} levels",
-                                 "the format needs fewer than ten", line)  # fmt: skip
+                                 "the format needs fewer than ten", line, "close the brackets")  # fmt: skip
         elif isinstance(event, (MappingEndEvent, SequenceEndEvent)):
             self.open.pop()
 
