@@ -208,7 +208,12 @@ def requested(tree: SpanningTree, options: Options) -> list[Request]:
     requests += [Request(name, frame) for name in options.functions if name in FRAME_FUNCTIONS for frame in wanted]
     if not requests:
         raise DescriptionError(
-            Problem("options: nothing to generate", "no functions", "functions name at least one, and frames of it")
+            Problem(
+                "options: nothing to generate",
+                "no functions",
+                "functions name at least one, and frames of it",
+                "name some, or leave functions out",
+            )
         )
     return requests
 

@@ -8,6 +8,11 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import islice
+
+# Nobody reads more, and hostile files have millions.
+MAX_PROBLEMS = 100
+_CANDIDATES = 1000
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,17 @@ class Problem:
         head = f"{self.where}: {self.what}" if self.where else self.what
         parts = [("found", self.found), ("rule", self.rule), ("remedy", self.remedy)]
         return "\n".join([head, *(f"  {label + ':':<8}{text}" for label, text in parts if text)])
+
+
+def first_of(problems: Iterable[Problem]) -> list[Problem]:
+    """The first MAX_PROBLEMS of the problems, and one that says that there are more; the rest are never made."""
+    endless = iter(problems)
+    first = list(islice(endless, MAX_PROBLEMS))
+    if next(endless, None) is not None:
+        first.append(Problem("there are more faults than are listed", f"more than {MAX_PROBLEMS}",
+                             f"the first {MAX_PROBLEMS} of a kind are listed", "mend these first",
+                             first[-1].where))  # fmt: skip
+    return first
 
 
 class SymofrosError(Exception):
@@ -83,6 +99,13 @@ class InconsistentModelWarning(UserWarning):
     """A model leaves out terms of the order of those it keeps; it is for studies only."""
 
 
+def near_name(name: str, known: Iterable[str]) -> str:
+    """The question whether the nearest known name, capitals apart, was meant; "" where none is near."""
+    alike = {other.lower(): other for other in islice(known, _CANDIDATES)}
+    near = difflib.get_close_matches(name.lower(), alike, n=1, cutoff=0.5)
+    return f"did you mean '{alike[near[0]]}'?" if near else ""
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """The remedy for a misspelt name: the nearest known one, or the list of them.
 
@@ -94,9 +117,9 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
         "did you mean 'tip'?", or "use one of: …", or "" when nothing is known.
     """
     known = list(known)
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    near = near_name(name, known)
     if near:
-        return f"did you mean '{near[0]}'?"
+        return near
     if not known:
         return ""
     shown = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")

@@ -20,6 +20,7 @@ from symofros.topology.graph import find_problems
 from symofros.topology.numbers import Numbers
 from symofros.topology.physics import inertia_problems
 
+_PATHS = "check the path; a relative one starts at the current folder"
 _READABLE = (*files.SUFFIXES, ".urdf", ".xml")
 
 
@@ -108,9 +109,11 @@ def _missing(file: Path) -> Problem:
     try:
         there = sorted(other.name for other in file.parent.iterdir() if other.suffix.lower() in _READABLE)
     except OSError:
-        return Problem(f"'{file}' does not exist", f"nor does the folder '{file.parent}'", "the file exists")
-    return Problem(f"'{file}' does not exist", f"{len(there)} descriptions in that folder", "the file exists",
-                   did_you_mean(file.name, there))  # fmt: skip
+        return Problem(f"'{file}' does not exist", f"nor does the folder '{file.parent}'",
+                       "a description is an existing file", _PATHS)  # fmt: skip
+    found = f"in its folder: {', '.join(there[:12])}" if there else "no description in its folder"
+    return Problem(f"'{file}' does not exist", found, "a description is an existing file",
+                   did_you_mean(file.name, there) or _PATHS)  # fmt: skip
 
 
 def _accept_inertias(reading: Reading) -> Reading:

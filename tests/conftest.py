@@ -14,6 +14,7 @@ os.environ.setdefault("SYMOFROS_CACHE", str(Path(__file__).parent.parent / ".pyt
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run tests that take minutes")
+    parser.addoption("--update-golden", action="store_true", help="rewrite the expected texts that tests compare with")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

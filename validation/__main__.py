@@ -22,7 +22,7 @@ from validation.junit import to_junit
 from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
-from validation.studies import fuzz, mutation_report, oracle, timing_report
+from validation.studies import fuzz_report, mutation_report, oracle, timing_report
 
 
 class Exit(IntEnum):
@@ -145,7 +145,7 @@ def verdict(record: Record) -> Exit:
     return Exit.AGREE if record.ok else Exit.BAD_INPUT
 
 
-fuzz.register(app)
+fuzz_report.register(app)
 mutation_report.register(app)
 oracle.register(app)
 timing_report.register(app)

@@ -9,7 +9,7 @@ from pydantic_core import ErrorDetails
 
 from symofros.description.schema import VERSION, json_schema
 from symofros.description.yaml_nodes import Node
-from symofros.errors import Problem, did_you_mean
+from symofros.errors import Problem, did_you_mean, near_name
 
 Path = tuple[str | int, ...]
 
@@ -62,7 +62,8 @@ def problem_of(error: ErrorDetails, where: str) -> Problem:
         known = _known_keys(path[:-1])
         key = _short(path[-1])
         return Problem(_about(path[:-1], f"unknown entry '{key}'"), f"'{key}'",
-                       f"the entries here are {', '.join(known)}", did_you_mean(key, known), where)  # fmt: skip
+                       f"the entries here are {', '.join(known)}", near_name(key, known) or "remove it, or rename it",
+                       where)  # fmt: skip
     if kind == "missing":
         return _missing(path, error["input"], where)
     if kind == "literal_error":
@@ -81,8 +82,9 @@ def _missing(path: Path, owner: Any, where: str) -> Problem:
                        "a description states the version of its format", f"begin with: symofros: {VERSION}",
                        where)  # fmt: skip
     found = ", ".join(map(_short, owner)) if isinstance(owner, Mapping) and owner else "nothing"
+    choices = " | ".join(str(choice) for schema in _schemas(path) for choice in _choices(schema))
     return Problem(_about(path[:-1], f"entry '{path[-1]}' is missing"), found,
-                   f"'{path[-1]}' is always given here", f"add it: {path[-1]}: …", where)  # fmt: skip
+                   f"'{path[-1]}' is always given here", f"add {path[-1]}: {choices or '…'}", where)  # fmt: skip
 
 
 def _not_a_choice(path: Path, value: Any, where: str) -> Problem:
@@ -99,10 +101,11 @@ def _wrong_count(path: Path, kind: str, context: Mapping[str, Any], where: str) 
     count = context.get("actual_length") or "too many"
     limit = context["min_length" if kind == "too_short" else "max_length"]
     rule = f"at {'least' if kind == 'too_short' else 'most'} {limit}"
+    remedy = "add entries" if kind == "too_short" else "remove entries"
     sizes = {(s.get("minItems"), s.get("maxItems")) for s in _schemas(path)}
     if sizes == {(limit, limit)}:
-        rule = f"{limit} entries, in order"
-    return Problem(_about(path, "wrong number of entries"), f"{count} entries", rule, "", where)
+        rule, remedy = f"{limit} entries, in order", f"give all {limit}, zeros included"
+    return Problem(_about(path, "wrong number of entries"), f"{count} entries", rule, remedy, where)
 
 
 def _short(value: Any) -> str:

@@ -54,7 +54,9 @@ def moments_mapping(stated: Any) -> Any:
         return stated
     if len(stated) not in (3, 6):
         rule = "three (Ixx, Iyy, Izz) or six (then Ixy, Ixz, Iyz)"
-        raise fault(Problem("wrong number of entries", f"{len(stated)} entries", rule))
+        raise fault(
+            Problem("wrong number of entries", f"{len(stated)} entries", rule, "give three, or all six, zeros included")
+        )
     return dict(zip(MOMENTS, stated, strict=False))
 
 

@@ -19,7 +19,7 @@ from symofros.description.schema import BodyEntry, InputEntry, NativeFile, Syste
 from symofros.description.system import Body, Input, Parameter, System
 from symofros.description.yaml_nodes import Node, YamlFault, compose
 from symofros.description.yaml_writer import write_yaml as write_yaml
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 
 MAX_BYTES = 4 << 20
 MAX_INCLUDE_DEPTH = 10
@@ -73,6 +73,7 @@ class _Merger:
     broken: set[str] = field(default_factory=set)
     incomplete: bool = False
     seen: set[Path] = field(default_factory=set)
+    bytes_left: int = field(default_factory=lambda: MAX_BYTES)
 
     def reading(self, default_name: str) -> Reading:
         problems, broken = tuple(self.problems), frozenset(self.broken)
@@ -88,7 +89,7 @@ class _Merger:
         """Read one file, after the files it includes."""
         self.seen.add(path.resolve())
         try:
-            root, problems = compose(read_bytes(path, MAX_BYTES), shown)
+            root, problems = compose(self.bytes_of(path), shown)
             file, faults, broken = _validate(root, shown)
         except (YamlFault, DescriptionError) as error:
             self.problems += [error.problem] if isinstance(error, YamlFault) else error.problems
@@ -105,13 +106,21 @@ class _Merger:
             self.include(text, path, shown, here, where)
         self.merge(file, root, shown, bool(including))
 
+    def bytes_of(self, path: Path) -> bytes:
+        """A file's content; the limit is on the main file and all it includes together."""
+        data = read_bytes(path, self.bytes_left)
+        self.bytes_left -= len(data)
+        return data
+
     def include(self, text: str, path: Path, shown: str, here: tuple[Path, ...], where: str) -> None:
         """Follow one include, if it is allowed; a file that is included twice counts once."""
         try:
             target = (path.resolve().parent / text).resolve()
             problem = self.refusal(text, target, here)
         except (OSError, ValueError) as error:  # A NUL character, or a loop of links.
-            problem = Problem("include: not a path", str(error), "an include is a relative path")
+            problem = Problem(
+                "include: not a path", str(error), "an include is a relative path", "name a file of this folder"
+            )
         if problem:
             self.problems.append(Problem(problem.what, problem.found, problem.rule, problem.remedy, where))
             self.incomplete = True
@@ -127,14 +136,16 @@ class _Merger:
                            "copy the file there")  # fmt: skip
         if target.suffix not in SUFFIXES:
             return Problem(f"{what} is not a native description", target.suffix or "no suffix",
-                           f"included files end in {' or '.join(SUFFIXES)}")  # fmt: skip
+                           f"included files end in {' or '.join(SUFFIXES)}",
+                           "rename it, or load it by itself")  # fmt: skip
         if target in here:
             names = " -> ".join(file.name for file in [*here[here.index(target) :], target])
             return Problem(f"{what} closes a cycle", names, "files include each other in one direction",
                            "remove one of the includes")  # fmt: skip
         if len(here) > MAX_INCLUDE_DEPTH or len(self.seen) >= MAX_FILES:
             return Problem(f"{what} goes too far", f"{len(here)} levels, {len(self.seen)} files",
-                           f"at most {MAX_INCLUDE_DEPTH} levels and {MAX_FILES} files")  # fmt: skip
+                           f"at most {MAX_INCLUDE_DEPTH} levels and {MAX_FILES} files",
+                           "put parts together in fewer files")  # fmt: skip
         if not target.is_file():
             there = [file.name for file in target.parent.glob("*.y*ml")] if target.parent.is_dir() else []
             return Problem(f"{what}: there is no such file", text[:100], "an included file exists",
@@ -197,7 +208,7 @@ def _validate(root: Node, shown: str) -> tuple[NativeFile | None, list[Problem],
         return NativeFile.model_validate(data), [], set()
     except ValidationError as error:
         faults = error.errors(include_url=False)
-    problems = [problem_of(fault, f"{shown}:{line_of(fault, root)}") for fault in faults]
+    problems = first_of(problem_of(fault, f"{shown}:{line_of(fault, root)}") for fault in faults)
     broken: set[str] = set()
     for path in map(path_of, faults):
         section = path[0] if path else ""

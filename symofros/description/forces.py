@@ -141,7 +141,9 @@ class Load:
         object.__setattr__(self, "force", as_vector(self.force, "load: force"))
         object.__setattr__(self, "torque", as_vector(self.torque, "load: torque"))
         if self.axes not in ("body", "world"):
-            raise DescriptionError(Problem(f"load: axes '{self.axes}'", str(self.axes), "axes are 'body' or 'world'"))
+            raise DescriptionError(
+                Problem(f"load: axes '{self.axes}'", str(self.axes), "axes are 'body' or 'world'", "choose one")
+            )
 
 
 Anchor = tuple[str, str | None]

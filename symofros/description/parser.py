@@ -28,12 +28,16 @@ MAX_DEPTH = 100
 MAX_HEIGHT = 300
 
 _TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z_.]))"
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.]))"
     r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*(?:\[\d{1,6}\])?)"
     r"|(?P<sign>\*\*|[-+*/^(),]))",
     re.ASCII,
 )
+_WORD = re.compile(r"\.?[0-9][A-Za-z0-9_.]*", re.ASCII)
 _DUNDER = re.compile(r"(?:^|\.)__|__(?:$|\.)")
+
+
+_PRODUCTS = "write products with '*', and numbers without units: they are in SI, angles in radians"
 
 
 class ExpressionError(SymofrosError, ValueError):
@@ -55,8 +59,8 @@ class ExpressionError(SymofrosError, ValueError):
         return Problem(
             f"{what}: {self.reason}",
             f"'{self.excerpt}' (character {self.position + 1})",
-            "a formula holds numbers, names, + - * / ^, parentheses and the functions " + ", ".join(sorted(FUNCTIONS)),
-            self.remedy,
+            "a formula holds numbers, names, + - * / ^ ( ) and functions such as sin, sqrt, max; nothing in it is run",
+            self.remedy or "write a number, or a formula such as L1/2 + 0.1*cos(q1)",
             where,
         )
 
@@ -174,6 +178,9 @@ def parse(text: str) -> Expression:
         match = _TOKEN.match(text, at)
         if match is None or match.lastgroup is None:
             at += len(text[at:]) - len(text[at:].lstrip())
+            word = _WORD.match(text, at)
+            if word is not None:
+                raise ExpressionError(text, f"'{word.group():.60}' is neither a number nor a name", at, _PRODUCTS)
             raise ExpressionError(text, f"{text[at]!r} is not allowed in a formula", at)
         kind, found, start = match.lastgroup, match.group(match.lastgroup), match.start(match.lastgroup)
         if kind == "name" and _DUNDER.search(found):
@@ -184,7 +191,7 @@ def parse(text: str) -> Expression:
     reader = _Reader(text, tokens)
     expression = reader.sum()
     if reader.token[0] != "end":
-        raise reader.fail(f"'{reader.token[1]}' unexpected", "write products with '*'")
+        raise reader.fail(f"'{reader.token[1]}' unexpected", _PRODUCTS)
     if _height(expression) > MAX_HEIGHT:
         raise ExpressionError(text, f"a chain of more than {MAX_HEIGHT} operations", 0, "group terms by parentheses")
     return expression

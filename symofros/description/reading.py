@@ -48,17 +48,22 @@ def read_bytes(path: Path, limit: int) -> bytes:
     try:
         if not path.is_file():
             found = "a folder" if path.is_dir() else "no such file"
-            raise DescriptionError(Problem(f"'{path}' can't be read", found, "a description is a file"))
+            raise DescriptionError(
+                Problem(f"'{path}' can't be read", found, "a description is a file", "check the path")
+            )
         with path.open("rb") as stream:
             data = stream.read(limit + 1)
     except (OSError, ValueError) as error:  # ValueError: a NUL character in the path.
         reason = getattr(error, "strerror", None) or str(error)
-        raise DescriptionError(Problem(f"{str(path)!r} can't be read", reason, "a description is a file")) from None
+        raise DescriptionError(
+            Problem(f"{str(path)!r} can't be read", reason, "a description is a file", "check the path")
+        ) from None
     if len(data) > limit:
         raise DescriptionError(
             Problem(
-                f"'{path}' is too large", f"more than {limit} bytes", f"at most {limit >> 20} MiB",
-                "split it, or check that it is the file you meant",
+                f"'{path}' is too large", f"more than {limit} bytes",
+                "a description with all it includes is at most 4 MiB long, a URDF 16 MiB",
+                "check that it is the file you meant",
             )
         )  # fmt: skip
     return data

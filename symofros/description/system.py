@@ -91,12 +91,15 @@ class Inertia:
                     "inertia: wrong number of entries",
                     f"{len(moments)} entries",
                     "three (Ixx, Iyy, Izz) or six (then Ixy, Ixz, Iyz)",
+                    "give three, or all six, zeros included",
                 )
             )
         object.__setattr__(self, "moments", moments)
         if self.about not in ("center_of_mass", "body"):
             raise DescriptionError(
-                Problem(f"inertia: about '{self.about}'", self.about, "about is 'center_of_mass' or 'body'")
+                Problem(
+                    f"inertia: about '{self.about}'", self.about, "about is 'center_of_mass' or 'body'", "choose one"
+                )
             )
         if self.about == "body" and not self.rotation.is_identity:
             raise DescriptionError(

@@ -16,10 +16,11 @@ from symofros.description.urdf_values import Values
 from symofros.description.xml_nodes import Element, XmlFault, parse_xml
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
-MAX_BYTES = 64 << 20
+MAX_BYTES = 16 << 20
 # Rounding of the last printed digit of a double: snapping by default must not change a model by more than that, because
 # imports are compared with other engines' at 1e-12. Who knows that a file's 1.5708 means pi/2 passes 1e-4.
 SNAP_TOL = 1e-14
+MAX_LINKS = 10_000
 ROOT_JOINT = "root_joint"
 
 _KINDS: dict[str, JointKind] = {
@@ -58,9 +59,13 @@ def read_urdf(path: str | os.PathLike[str], *, floating_base: bool = False, snap
         return Reading(None, error.problems)
     if root.tag != "robot":
         problem = Problem("the file is not a URDF", f"the root element is <{root.tag:.60}>",
-                          "the root element is <robot>", "", f"{file}:{root.line}")  # fmt: skip
+                          "the root element is <robot>", "check that it is the file you meant",
+                          f"{file}:{root.line}")  # fmt: skip
         return Reading(None, (problem,))
-    return _Importer(Values(file, snap_tol), root, floating_base).reading()
+    try:
+        return _Importer(Values(file, snap_tol), root, floating_base).reading()
+    except DescriptionError as error:
+        return Reading(None, error.problems)
 
 
 @dataclass
@@ -85,6 +90,10 @@ class _Importer:
 
     def reading(self) -> Reading:
         name = self.values.attribute(self.robot, "name", "the file") or ""
+        count = sum(1 for _ in self.robot.all("link"))
+        if count > MAX_LINKS:
+            self.values.fault(self.robot, "too many links", f"{count} links", f"at most {MAX_LINKS}", "split the robot")
+            return Reading(None, tuple(self.values.problems))
         for element in self.robot.all("link"):
             self.link(element)
         for element in self.robot.all("joint"):

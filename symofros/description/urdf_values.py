@@ -10,7 +10,7 @@ from symofros.description.remarks import Remarks
 from symofros.description.system import Inertia, Limits
 from symofros.description.values import IDENTITY, Rotation
 from symofros.description.xml_nodes import Element
-from symofros.errors import Problem
+from symofros.errors import MAX_PROBLEMS, DescriptionError, Problem, first_of
 
 Triple = tuple[float, float, float]
 
@@ -46,8 +46,14 @@ class Values:
         return f"{self.file}:{element.line}"
 
     def fault(self, element: Element, what: str, found: str, rule: str, remedy: str = "") -> None:
-        """Note a problem."""
+        """Note a problem.
+
+        Raises:
+            DescriptionError: There are more than anybody reads.
+        """
         self.problems.append(Problem(what, found, rule, remedy, self.where(element)))
+        if len(self.problems) > MAX_PROBLEMS:
+            raise DescriptionError(first_of(self.problems))
 
     def attribute(self, element: Element, name: str, owner: str) -> str | None:
         """An attribute that must be there."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from symofros.description.parser import ExpressionError, parse
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.expr.expression import Expression
 
 Value = float | Expression
@@ -52,7 +52,12 @@ def as_value(value: Any, what: str = "value") -> Value:
             frozen = freeze(value)
         except ValueError as error:
             raise DescriptionError(
-                Problem(f"{what}: {error}", str(value), "formulas use the op table's functions only")
+                Problem(
+                    f"{what}: {error}",
+                    str(value),
+                    "formulas use the op table's functions only",
+                    "rewrite it with these functions",
+                )
             ) from None
         return frozen.number if frozen.kind == "number" else frozen
     raise DescriptionError(
@@ -60,6 +65,7 @@ def as_value(value: Any, what: str = "value") -> Value:
             f"{what}: neither a number nor a formula",
             f"{value!r:.80} of type {type(value).__name__}",
             "a value is a number, a formula such as 'L1/2', or a SymPy expression",
+            "convert it to one of these",
         )
     )
 
@@ -73,7 +79,12 @@ def as_values(values: Iterable[Any], size: int, what: str) -> tuple[Value, ...]:
     listed = list(values) if not isinstance(values, str) else [values]
     if len(listed) != size:
         raise DescriptionError(
-            Problem(f"{what}: wrong number of entries", f"{len(listed)} entries", f"{size} entries, in order")
+            Problem(
+                f"{what}: wrong number of entries",
+                f"{len(listed)} entries",
+                f"{size} entries, in order",
+                f"give all {size}, zeros included",
+            )
         )
     return tuple(as_value(value, f"{what}[{i}]") for i, value in enumerate(listed))
 
@@ -107,7 +118,12 @@ class Rotation:
         size = _ROTATION_SIZE.get(self.kind)
         if size is None:
             raise DescriptionError(
-                Problem(f"rotation: unknown kind '{self.kind}'", self.kind, f"one of {', '.join(_ROTATION_SIZE)}")
+                Problem(
+                    f"rotation: unknown kind '{self.kind}'",
+                    f"'{self.kind}'",
+                    f"one of {', '.join(_ROTATION_SIZE)}",
+                    did_you_mean(str(self.kind), _ROTATION_SIZE),
+                )
             )
         object.__setattr__(self, "values", as_values(self.values, size, f"rotation ({self.kind})"))
 

@@ -65,8 +65,11 @@ def parse_xml(data: bytes, file: str) -> Element:
     try:
         builder.parser.Parse(data, True)
     except expat.ExpatError as error:
+        found = f"{expat.ErrorString(error.code)}, column {error.offset + 1}"
+        if builder.open:
+            found += f"; <{builder.open[-1].tag:.60}> of line {builder.open[-1].line} is not closed"
         raise XmlFault(
-            Problem("the text is not well-formed XML", f"{expat.ErrorString(error.code)}, column {error.offset + 1}",
+            Problem("the text is not well-formed XML", found,
                     "a robot file is one XML document", "mind unclosed elements and quotes near this line",
                     f"{file}:{error.lineno}")
         ) from None  # fmt: skip
@@ -96,7 +99,12 @@ class _Builder:
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         if len(self.open) >= MAX_DEPTH:
-            raise self.fault(f"nested deeper than {MAX_DEPTH}", f"<{tag}>", "a robot file needs fewer than ten", "")
+            raise self.fault(
+                f"nested deeper than {MAX_DEPTH}",
+                f"<{tag}>",
+                "a robot file needs fewer than ten",
+                "check that it is the file you meant",
+            )
         element = Element(tag, attributes, self.parser.CurrentLineNumber, file=self.file)
         if self.open:
             self.open[-1].children.append(element)

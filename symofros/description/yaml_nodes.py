@@ -24,9 +24,11 @@ from ruamel.yaml.events import (
     SequenceStartEvent,
 )
 
-from symofros.errors import Problem
+from symofros.errors import MAX_PROBLEMS, Problem
 
 MAX_DEPTH = 50
+# Ten thousand bodies of thirty values each have fewer.
+MAX_NODES = 500_000
 
 _WORDS: dict[str, bool | None] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL")),
@@ -108,13 +110,37 @@ def compose(data: bytes, file: str) -> tuple[Node, list[Problem]]:
         for event in YAML(typ="safe", pure=True).parse(text):
             builder.take(event)
     except MarkedYAMLError as error:
-        line = error.problem_mark.line + 1 if error.problem_mark else 1
-        raise YamlFault(_not_yaml(f"{error.problem or error.context}", f"{file}:{line}")) from None
+        found = f"{error.problem or error.context}"
+        # What the end of the file cuts short is mended where it begins.
+        mark = (error.context_mark if "stream" in found else None) or error.problem_mark
+        line = mark.line + 1 if mark else 1
+        raise YamlFault(_not_yaml(_plainly(found), f"{file}:{line}")) from None
     except (YAMLError, ValueError, OverflowError) as error:  # The scanner lets chr() complain about bad escapes.
         raise YamlFault(_not_yaml(" ".join(str(error).split())[:200], file)) from None
     if builder.root is None:
-        raise YamlFault(Problem("the file is empty", "no document", "a description is a YAML mapping", "", file))
+        raise YamlFault(
+            Problem(
+                "the file is empty", "no document", "a description is a YAML mapping", "begin with symofros: 1", file
+            )
+        )
     return builder.root, builder.problems
+
+
+# What the scanner calls things -> what their writer would.
+_PLAINLY = {
+    "expected <block end>, but found '<block mapping start>'": "an entry indented unlike its neighbours",
+    "expected <block end>, but found '<block sequence start>'": "a '-' indented unlike its neighbours",
+    "mapping values are not allowed here": "a ':' where no entry can begin",
+    "found character '\\t' that cannot start any token": "a tab; indentation is by blanks",
+    "found unexpected end of stream": "a quotation that never ends",
+    "but got '<stream end>'": "but the file ends",
+}
+
+
+def _plainly(text: str) -> str:
+    for theirs, ours in _PLAINLY.items():
+        text = text.replace(theirs, ours)
+    return text
 
 
 def _not_yaml(found: str, where: str) -> Problem:
@@ -142,6 +168,7 @@ class _Builder:
     problems: list[Problem] = field(default_factory=list)
     open: list[tuple[Node, list[tuple[str, int]]]] = field(default_factory=list)
     documents: int = 0
+    nodes: int = 0
 
     def take(self, event: Event) -> None:
         """One more parsing event."""
@@ -157,7 +184,7 @@ class _Builder:
             self.open.append((node, []))
             if len(self.open) > MAX_DEPTH:
                 raise self.fault(f"nested deeper than {MAX_DEPTH}", f"{len(self.open)} levels",
-                                 "the format needs fewer than ten", line)  # fmt: skip
+                                 "the format needs fewer than ten", line, "close the brackets")  # fmt: skip
         elif isinstance(event, (MappingEndEvent, SequenceEndEvent)):
             self.open.pop()
 
@@ -194,6 +221,10 @@ class _Builder:
         self.open[-1][1].append((event.value, line))
 
     def put(self, node: Node) -> None:
+        self.nodes += 1
+        if self.nodes > MAX_NODES:
+            raise self.fault("too many values", f"more than {MAX_NODES}", f"at most {MAX_NODES} in a file", node.line,
+                             "check that it is the file you meant")  # fmt: skip
         if not self.open:
             self.root = node
             return
@@ -208,6 +239,8 @@ class _Builder:
             owner.value[name] = node
 
     def duplicate(self, name: str, first: int, second: int) -> None:
+        if len(self.problems) >= MAX_PROBLEMS:
+            return
         self.problems.append(
             Problem(f"'{name:.60}' appears twice", f"lines {first} and {second}", "a name is given once in its mapping",
                     "rename or remove one of them", f"{self.file}:{second}")

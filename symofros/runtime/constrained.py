@@ -49,6 +49,8 @@ def solve(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
     if L is None:
         return np.full_like(r, np.nan), np.full_like(c, np.nan), -1
     Y, y = np.linalg.solve(L, G.T), np.linalg.solve(L, r)
+    if not len(G):
+        return np.linalg.solve(L.T, y), c, 0
     _, s, Vt = np.linalg.svd(Y, full_matrices=False)
     rank = int(np.sum(s > RANK * s.max(initial=0.0)))
     kept = Vt[:rank]
@@ -59,7 +61,7 @@ def solve(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
 
 def _factor(M: Array) -> Array | None:
     try:
-        L = np.linalg.cholesky(M)
+        L: Array = np.linalg.cholesky(M)
     except np.linalg.LinAlgError:
         return None
     return L if bool(np.all(np.diag(L) ** 2 > PIVOT * np.diag(M))) else None

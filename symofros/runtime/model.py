@@ -10,7 +10,7 @@ from typing import Any, Literal, overload
 import numpy as np
 import numpy.typing as npt
 
-from symofros.errors import ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime import linear, manifold
 from symofros.runtime.kernel import Array, Kernel, Unit
 from symofros.runtime.record import ModelRecord
@@ -110,13 +110,9 @@ class Model:
         par = self._par.copy()
         for name, value in values.items():
             if name not in self.record.par_names:
-                remedy = did_you_mean(name, self.record.par_names) or "constants are hard-coded: recompile"
-                raise UnknownNameError(
-                    f"model '{self.record.name}': no run-time parameter '{name}'\n  remedy: {remedy}"
-                )
-            if not np.isfinite(value):
-                raise ValueError(f"parameter '{name}': {value!r} is not a finite number")
-            par[self.record.par_names.index(name)] = value
+                raise self._unknown("run-time parameter", name, self.record.par_names,
+                                    "constants are hard-coded: change them in the description")  # fmt: skip
+            par[self.record.par_names.index(name)] = self._finite(name, value)
         other = Model(self.record, self._build, (), par)
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
@@ -339,8 +335,23 @@ class Model:
             return frame
         if frame in self.record.frame_aliases:
             return self.record.frame_aliases[frame]
-        remedy = did_you_mean(frame, self.record.frame_names)
-        raise UnknownNameError(f"model '{self.record.name}': no frame '{frame}'\n  remedy: {remedy}")
+        raise self._unknown("frame", frame, self.record.frame_names, "frames are listed in model.names.frames")
+
+    def _unknown(self, kind: str, name: str, known: tuple[str, ...], rule: str) -> UnknownNameError:
+        found = f"{len(known)} {kind}s" + (": " + ", ".join(known[:12]) if known else "")
+        what = f"model '{self.record.name}': no {kind} '{name}'"
+        return UnknownNameError(str(Problem(what, found, rule, did_you_mean(name, known) or "use another model")))
+
+    def _finite(self, name: str, value: float) -> float:
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            number = np.nan
+        if not np.isfinite(number):
+            what = f"model '{self.record.name}': parameter '{name}' is not a finite number"
+            raise ValueError(str(Problem(what, repr(value)[:80], "a parameter is one finite number",
+                                         "pass par=… to a function for values that vary by state")))  # fmt: skip
+        return number
 
     def _one(self, name: str, given: Mapping[str, Given | None], par: Given | None, frame: str = "") -> Array:
         return self._call(name, self._frame(frame) if frame else "", given, par)[0]
@@ -381,7 +392,8 @@ class Model:
             shown = ", ".join(f"{group} {np.shape(x)}" for group, x in given.items() if x is not None)
             raise ShapeError(
                 f"{name}: batch dimensions do not broadcast\n  found:  {shown}\n"
-                "  rule:   all but the last dimension of each array broadcast together"
+                "  rule:   all but the last dimension of each array broadcast together\n"
+                "  remedy: give each array the same leading dimensions, or none"
             ) from None
 
     def _make(self, name: str, frame: str) -> Kernel:
@@ -402,7 +414,7 @@ class Model:
         except (TypeError, ValueError):
             raise ShapeError(
                 f"model '{self.record.name}': {group} is not an array of numbers\n  found:  {type(values).__name__}\n"
-                f"  rule:   {group} is a float64 array of shape (..., {size})"
+                f"  rule:   {group} is a float64 array of shape (..., {size})" + self._hint(group)
             ) from None
         if group == "t":
             return array[..., np.newaxis]

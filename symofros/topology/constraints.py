@@ -9,6 +9,7 @@ from symofros.description.forces import Anchor
 from symofros.description.system import WORLD, Body, System
 from symofros.errors import Problem, did_you_mean
 from symofros.topology.coordinates import speed_symbols
+from symofros.topology.frames import frame_remedy, frames_of
 from symofros.topology.numbers import Numbers
 
 
@@ -32,10 +33,9 @@ def anchor_problems(
             yield Problem(f"{what}: no body '{name}'", f"'{name}'", "it joins frames of bodies, or of 'world'",
                           did_you_mean(name, [WORLD, *bodies]), where)  # fmt: skip
     elif frame is not None and frame not in {item.name for item in body.frames}:
-        known = [item.name for item in body.frames]
-        yield Problem(f"{what}: frame '{frame}' is not on body '{name}'", ", ".join(known) or "no frames",
-                      "it joins frames that exist on their bodies", did_you_mean(frame, known) or "add the frame",
-                      where)  # fmt: skip
+        yield Problem(f"{what}: frame '{frame}' is not on body '{name}'", frames_of(body),
+                      "it joins frames that exist on their bodies",
+                      frame_remedy(bodies.values(), body, frame, "body: ") or "add the frame", where)  # fmt: skip
 
 
 def constraint_problems(

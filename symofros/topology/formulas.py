@@ -174,6 +174,14 @@ _RULES: dict[Scope, str] = {
 }
 
 
+_REMEDIES: dict[Scope, str] = {
+    "parameters": "declare a parameter for it; what moves acts through loads, efforts, virtual power and potentials",
+    "configuration": "state forces that depend on speeds or inputs as loads, efforts or virtual power",
+    "motion": "",
+    "joint": "name it under the joint's coordinates, or use a parameter",
+}
+
+
 def formula_problems(system: System, broken: frozenset[str]) -> Iterator[Problem]:
     """Formulas that use unknown names, or names that exist but may not be used there."""
     known = _known(system)
@@ -183,7 +191,7 @@ def formula_problems(system: System, broken: frozenset[str]) -> Iterator[Problem
             where = system.origin.get(stated.key, "")
             if name in known.motion:
                 yield Problem(f"{stated.what}: '{name}' may not be used here", f"'{stated.value}'",
-                              _RULES[stated.scope], "", where)  # fmt: skip
+                              _RULES[stated.scope], _REMEDIES[stated.scope], where)  # fmt: skip
             else:
                 remedy = did_you_mean(name, allowed) if allowed else f"declare it under parameters: {name}"
                 yield Problem(f"{stated.what}: unknown symbol '{name}'", f"'{stated.value}'", _RULES["motion"], remedy,

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
+from itertools import chain
+
+import numpy as np
 
 from symofros.description.beam import STATION, Beam, BeamLoad
 from symofros.description.forces import Load
 from symofros.description.system import WORLD, Body, Joint, RigidBody, System
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 from symofros.expr.expression import CONSTANTS
 from symofros.expr.ops import FUNCTIONS
 from symofros.topology.beams import beam_number_problems, beam_problems
 from symofros.topology.constraints import anchor_problems, constraint_number_problems, constraint_problems
 from symofros.topology.coordinates import coordinate_names, speed_symbols
 from symofros.topology.formulas import TIME, formula_problems, power_problems, stated_values
+from symofros.topology.frames import frame_remedy, frames_of
 from symofros.topology.joints import IDENTIFIER, joint_number_problems, joint_problems
 from symofros.topology.numbers import Numbers
 from symofros.topology.physics import inertia_problems, massless_tip_problems
 
 _MAX_NAME = 200
+_SHOWN = 12  # Names listed in a message.
 
 
 def check(system: System) -> None:
@@ -33,6 +38,7 @@ def check(system: System) -> None:
         raise DescriptionError(problems)
 
 
+@np.errstate(all="ignore")  # Numbers that overflow are found as numbers that are not finite.
 def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]:
     """Every problem of a description.
 
@@ -42,18 +48,23 @@ def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]
             them is not reported again.
     """
     checker = _Checker(system, frozenset(broken))
-    problems = [
-        *checker.names(), *checker.structure(), *checker.acting(), *formula_problems(system, checker.broken)
-    ]  # fmt: skip
+    formulas = formula_problems(system, checker.broken)
+    problems = first_of(chain(checker.names(), checker.structure(), checker.acting(), formulas))
     if not problems and not broken:
         numbers = Numbers(system)
-        problems = [*checker.values(numbers)]
+        problems = first_of(checker.values(numbers))
         if not problems:
-            problems = [*inertia_problems(system, numbers), *massless_tip_problems(system, numbers)]
+            problems = first_of(chain(inertia_problems(system, numbers), massless_tip_problems(system, numbers)))
     elif not any("cycle" in p.what for p in problems):
         # Physics of single bodies can be judged even where the tree can't.
-        problems += inertia_problems(system, Numbers(system))
-    return problems
+        problems += first_of(inertia_problems(system, Numbers(system)))
+    # Two joints of one name, for instance, have the same fault in the same place.
+    return list(dict.fromkeys(problems))
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first few names, each in quotes."""
+    return ", ".join(f"'{name}'" for name in names[:_SHOWN]) + (", …" if len(names) > _SHOWN else "")
 
 
 class _Checker:
@@ -73,7 +84,7 @@ class _Checker:
 
     def names(self) -> Iterator[Problem]:
         yield from self._unique("body", [body.name for body in self.system.bodies])
-        yield from self._unique("joint", [joint.name for joint in self.joints])
+        yield from self._joints_unique()
         for body in self.system.bodies:
             yield from self._unique("frame", [frame.name for frame in body.frames], body.name)
             if body.name == WORLD and body.joint is not None:
@@ -97,6 +108,18 @@ class _Checker:
                 yield "frame", frame.name
         for joint in self.joints:
             yield "joint", joint.name
+
+    def _joints_unique(self) -> Iterator[Problem]:
+        bodies: dict[str, list[str]] = {}
+        for body in self.system.bodies:
+            if body.joint is not None:
+                bodies.setdefault(body.joint.name, []).append(body.name)
+        for name, owners in bodies.items():
+            if len(owners) > 1:
+                yield Problem(
+                    f"joint '{name}' appears {len(owners)} times", f"it carries bodies {listed(owners)}",
+                    "names of joints are unique", "rename all but one", self.where("joint", name),
+                )  # fmt: skip
 
     def _unique(self, kind: str, names: list[str], owner: str = "") -> Iterator[Problem]:
         on = f" on body '{owner}'" if owner else ""
@@ -142,9 +165,9 @@ class _Checker:
 
     def structure(self) -> Iterator[Problem]:
         if self.extra_bases:
-            names = ", ".join(f"'{body.name}'" for body in [self.base, *self.extra_bases])
+            bases = [body.name for body in [self.base, *self.extra_bases]]
             yield Problem(
-                f"two bases: bodies {names} have no joint", names,
+                f"two bases: bodies {listed(bases)} have no joint", f"{len(bases)} bodies without a joint",
                 "one body at most has no joint, and is the base; every other is connected by its joint",
                 "give the others a joint (kind: free for one that floats)",
                 self.where("body", self.extra_bases[0].name),
@@ -172,11 +195,11 @@ class _Checker:
                     did_you_mean(joint.parent, [WORLD, *self.bodies]), where,
                 )  # fmt: skip
         elif joint.frame is not None and joint.frame not in {frame.name for frame in parent.frames}:
-            frames = [frame.name for frame in parent.frames]
             yield Problem(
                 f"joint '{joint.name}': frame '{joint.frame}' is not on body '{parent.name}'",
-                ", ".join(frames) or "no frames", "a joint sits in a named frame of its parent, or in its body frame",
-                did_you_mean(joint.frame, frames) or "add the frame, or drop the entry", where,
+                frames_of(parent), "a joint sits in a named frame of its parent, or in its body frame",
+                frame_remedy(self.system.bodies, parent, joint.frame, "parent: ")
+                or "add the frame, or drop the entry", where,
             )  # fmt: skip
         yield from joint_problems(joint, self.bodies, where)
         if isinstance(body, Beam):
@@ -186,18 +209,23 @@ class _Checker:
         """Follow each body's parents; a body met again on the same walk is on a cycle."""
         done: set[str] = {self.base.name, WORLD}
         for start in self.bodies:
-            walk: list[str] = []
+            walk: dict[str, None] = {}  # In order; a list would take square time on a long chain.
             name = start
             while name in self.bodies and name not in done and name not in walk:
-                walk.append(name)
+                walk[name] = None
                 joint = self.bodies[name].joint
                 name = joint.parent if joint is not None else WORLD
             if name in walk:
-                loop = walk[walk.index(name) :]
+                loop = list(walk)[list(walk).index(name) :]
+                shown = [*loop, name] if len(loop) <= _SHOWN else [*loop[:_SHOWN], "…", name]
+                joints = [joint.name for body in loop if (joint := self.bodies[body].joint) is not None]
                 yield Problem(
-                    f"cycle of joints: bodies {' -> '.join([*loop, name])} carry each other",
-                    f"{len(loop)} bodies", "joints form a tree that starts at the base",
-                    "cut the loop at one joint and close it with a closure", self.where("body", name),
+                    f"cycle of joints: bodies {' -> '.join(shown)} carry each other",
+                    f"{len(loop)} bodies; their joints are {listed(joints)}",
+                    "joints form a tree that starts at the base",
+                    "give one of these joints a parent that none of the bodies carries, such as 'world'; "
+                    "a loop of the mechanism itself is cut at one joint and closed by a closure",
+                    self.where("body", name),
                 )  # fmt: skip
             done.update(walk)
 
@@ -229,7 +257,7 @@ class _Checker:
             return
         frames = ["body", "center_of_mass", *(frame.name for frame in body.frames)]
         if load.at not in frames:
-            yield Problem(f"body '{body.name}': load at '{load.at}', which is not on it", f"'{load.at}'",
+            yield Problem(f"body '{body.name}': load at '{load.at}', which is not on it", frames_of(body),
                           "a load acts at 'body', 'center_of_mass' or a frame of its body",
                           did_you_mean(load.at, frames), where)  # fmt: skip
         if load.at == "center_of_mass" and body.inertia is None:

@@ -42,10 +42,11 @@ def joint_problems(joint: Joint, bodies: Collection[str], where: str) -> Iterato
     if limits and limits.lower is not None and limits.upper is not None and limits.lower > limits.upper:
         yield Problem(f"joint '{joint.name}': limits crossed", f"lower {limits.lower}, upper {limits.upper}",
                       "lower <= upper", "swap them", where)  # fmt: skip
-    if joint.prescribed and (joint.actuated or joint.effort or joint.elements):
-        yield Problem(f"joint '{joint.name}': forces on a prescribed motion", "prescribed: true",
-                      "a motion that is given is not moved by forces", "drop the forces, or set the motion free",
-                      where)  # fmt: skip
+    forces = [name for name in ("actuated", "effort", "elements") if getattr(joint, name)]
+    if joint.prescribed and forces:
+        yield Problem(f"joint '{joint.name}': forces on a prescribed motion", f"prescribed, and {', '.join(forces)}",
+                      "a motion that is given is not moved by forces",
+                      f"drop {', '.join(forces)}, or drop prescribed", where)  # fmt: skip
     yield from element_problems(joint, where)
     yield from _rotor_problems(joint, bodies, where)
     if joint.kind == "general":

@@ -48,14 +48,16 @@ class Numbers:
         return np.array([self.value(value) for value in values])
 
     def rotation(self, rotation: Rotation) -> Array:
-        """The 3x3 matrix of a rotation."""
+        """The 3x3 matrix of a rotation; NaN where it has none."""
         x = self.values(rotation)
+        if not np.all(np.isfinite(x)):
+            return np.full((3, 3), math.nan)
         if rotation.kind == "matrix":
             return x.reshape(3, 3)
         if rotation.kind == "rpy":
             return _about(2, x[2]) @ _about(1, x[1]) @ _about(0, x[0])
         norm = float(np.linalg.norm(x if rotation.kind == "quaternion" else x[:3]))
-        if not norm > 0.0:
+        if not 0.0 < norm < math.inf:
             return np.full((3, 3), math.nan)
         if rotation.kind == "quaternion":
             vector, scalar = x[:3] / norm, x[3] / norm
@@ -76,10 +78,12 @@ class Numbers:
 
     def rotation_problems(self, what: str, rotation: Any, where: str) -> Iterator[Problem]:
         """A rotation that is none."""
+        if not np.all(np.isfinite(self.values(rotation))):
+            return  # Reported as values that are not finite.
         R = self.rotation(rotation)
         if not np.all(np.isfinite(R)):
             yield Problem(f"{what}: has no direction", f"{rotation.kind} {_show(rotation)}",
-                          "axis and quaternion are not zero", "give a direction", where)  # fmt: skip
+                          "axis and quaternion are neither zero nor endless", "give a direction", where)  # fmt: skip
             return
         error = float(np.abs(R @ R.T - np.eye(3)).max())
         if error > ROTATION_TOLERANCE or np.linalg.det(R) < 0.0:
@@ -91,10 +95,10 @@ class Numbers:
             )  # fmt: skip
 
     def axis_problems(self, joint: Joint, where: str) -> Iterator[Problem]:
-        """An axis of no length."""
-        if not np.linalg.norm(self.values(joint.axis)) > 1e-9:
+        """An axis of no length, or of one that overflows."""
+        if not 1e-9 < np.linalg.norm(self.values(joint.axis)) < math.inf:
             yield Problem(f"joint '{joint.name}': the axis has no direction", _show(joint.axis),
-                          "the axis of a joint is not the zero vector", "give a direction such as [0, 0, 1]",
+                          "the axis of a joint is neither zero nor endless", "give a direction such as [0, 0, 1]",
                           where)  # fmt: skip
 
 

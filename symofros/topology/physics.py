@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -78,11 +78,12 @@ def massless_tip_problems(system: System, numbers: Numbers) -> Iterator[Problem]
     parent_of = {body.name: body.joint.parent for body in system.bodies if body.joint is not None}
     for body in system.bodies:
         own, moments = _weight(body, numbers)
-        name: str | None = body.name
-        while name is not None:
-            mass[name] = mass.get(name, 0.0) + own
-            turning[name] = turning.get(name, 0.0) + own + moments
-            name = parent_of.get(name)
+        mass[body.name], turning[body.name] = own, own + moments
+    for name in _tips_first(parent_of):
+        parent = parent_of[name]
+        if parent in mass:
+            mass[parent] += mass[name]
+            turning[parent] += turning[name]
     for body in system.bodies:
         joint = body.joint
         if joint is None or joint.kind == "fixed" or "massless_tip" in body.waive:
@@ -93,6 +94,17 @@ def massless_tip_problems(system: System, numbers: Numbers) -> Iterator[Problem]
                 f"body '{body.name}': joint '{joint.name}' moves no mass",
                 "no inertia on this body or on anything it carries",
                 "each moving joint carries some inertia, or the mass matrix is singular",
-                "give an inertia, make the joint fixed, or waive: [massless_tip]",
+                "give an inertia, make the joint fixed, or waive: [massless_tip] or load(…, waive=['massless_tip'])",
                 system.origin.get(("body", body.name), ""),
             )  # fmt: skip
+
+
+def _tips_first(parent_of: Mapping[str, str]) -> list[str]:
+    """The bodies that have a parent, each before its parent."""
+    children: dict[str, list[str]] = {}
+    for name, parent in parent_of.items():
+        children.setdefault(parent, []).append(name)
+    order = [name for parent, names in children.items() if parent not in parent_of for name in names]
+    for name in order:
+        order.extend(children.get(name, ()))
+    return order[::-1]

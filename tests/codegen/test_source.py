@@ -68,6 +68,42 @@ def test_any_name_makes_legal_c(name: str, tmp_path: Path) -> None:
     assert model.mass_matrix([0.0]).shape == (1, 1)
 
 
+@pytest.mark.parametrize(
+    "name",
+    [
+        "int",
+        "double",
+        "while",
+        "restrict",
+        "main",
+        "NULL",
+        "M",
+        "q",
+        "v",
+        "u",
+        "par",
+        "pre",
+        "h",
+        "sym_model",
+        "_t",
+        "EOF",
+    ],
+)
+def test_parameters_inputs_and_coordinates_may_be_words_of_c(name: str) -> None:
+    """Each names another thing in turn; what the C computes does not depend on what its things are called."""
+    inertia = sf.Inertia(f"2*{name}", (0.1, 0, 0), (1, 1, 1))
+    as_parameter = sf.System(name, [sf.RigidBody("b", sf.Joint("x_", "prismatic"), inertia)],
+                             [sf.Parameter(name, 3.0)])  # fmt: skip
+    assert sf.compile(as_parameter).mass_matrix([0.0]) == 6.0
+    solid = sf.Inertia(2.0, (0.1, 0, 0), (1, 1, 1))
+    as_input = sf.System("s", [sf.RigidBody("b", sf.Joint("x_", "prismatic", effort=(f"3*{name}",)), solid)],
+                         inputs=[sf.Input(name)])  # fmt: skip
+    assert sf.compile(as_input).generalized_force([0.0], [0.0], [2.0]) == 6.0
+    joint = sf.Joint(name, "prismatic", effort=(f"-3*{name} - d{name}",))
+    as_coordinate = sf.System("s", [sf.RigidBody(name, joint, solid, [sf.Frame(f"{name}_tip")])])
+    assert sf.compile(as_coordinate).generalized_force([1.0], [2.0], []) == -5.0
+
+
 def test_names_are_readable() -> None:
     assert identifier("SSRMS arm") == "SSRMS_arm"
     assert identifier("2R") == "m2R"

@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import symofros as sf
 from symofros.description.parser import MAX_DEPTH, MAX_LENGTH, ExpressionError, parse
 from symofros.expr.expression import Expression, evaluate
 
@@ -89,6 +90,27 @@ def test_hostile_sizes_take_bounded_time(text: str) -> None:
     assert time.process_time() - start < 1.0
 
 
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("2 kg", "'kg' unexpected"), ("25kg", "'25kg' is neither a number nor a name"), ("0.5m/s", "'0.5m' is neither"),
+        ("1e5x", "'1e5x' is neither"), ("1.2.3", "'1.2.3' is neither"),
+    ],
+)  # fmt: skip
+def test_a_number_with_its_unit_is_told_to_do_without(text: str, reason: str) -> None:
+    with pytest.raises(ExpressionError) as caught:
+        parse(text)
+    assert caught.value.reason.startswith(reason) and "without units" in caught.value.remedy
+
+
+def test_every_refusal_has_a_remedy() -> None:
+    for text in ("__import__('os')", "a b", "1 +", "", "sin", "foo(1)", "a @ b", "1e999", "sin(1, 2)"):
+        with pytest.raises(ExpressionError) as caught:
+            parse(text)
+        problem = caught.value.problem("mass")
+        assert problem.found and "nothing in it is run" in problem.rule and problem.remedy
+
+
 def test_limits() -> None:
     with pytest.raises(ExpressionError, match=f"longer than {MAX_LENGTH}"):
         parse("1" * (MAX_LENGTH + 1))
@@ -97,12 +119,17 @@ def test_limits() -> None:
     assert evaluate(parse("1" + "+1" * 200), {}) == 201
 
 
+@settings(max_examples=200)
 @given(st.text(max_size=60))
 def test_random_text_never_crashes(text: str) -> None:
+    """Any text is a formula, or is refused as a description's fault where a formula is expected."""
     try:
-        parse(text)
-    except ExpressionError:
-        pass
+        value = sf.formula(text)
+    except sf.DescriptionError as error:
+        problem = error.problems[0]
+        assert problem.found and problem.rule and problem.remedy
+    else:
+        assert isinstance(value, float) or value.symbols() is not None
 
 
 @given(st.text(alphabet="ab1.+-*/^(), sincosq_[]e", max_size=80))

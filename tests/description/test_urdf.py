@@ -97,7 +97,7 @@ def test_impossible_inertias_load_with_a_note(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "line", "part"),
     [
-        (("</robot>", ""), 0, "XML"),
+        (("</robot>", ""), 0, "<robot> of line 1 is not closed"),
         (('<robot name="arm">', '<!DOCTYPE r [<!ENTITY a "b">]><robot name="arm">'), 1, ""),
         (("robot", "model"), 1, "<model>"),
         (('type="revolute"', 'type="revolut"'), 5, "did you mean 'revolute'?"),

@@ -35,7 +35,13 @@ def test_a_sound_system_has_no_problems() -> None:
 def test_unknown_frame() -> None:
     problem = only(arm().with_bodies(body("arm2", sf.Joint("q2", "revolute", "arm1", "tipp"))))
     assert "frame 'tipp' is not on body 'arm1'" in problem.what
-    assert problem.found == "tip" and problem.remedy == "did you mean 'tip'?"
+    assert problem.found == "frames of 'arm1': tip" and problem.remedy == "did you mean 'tip'?"
+
+
+def test_a_frame_of_another_body() -> None:
+    problem = only(arm().with_bodies(body("hand", sf.Joint("q3", "revolute", "world", "tip"))))
+    assert "frame 'tip' is not on body" in problem.what
+    assert problem.remedy == "it is on body 'arm1': write parent: arm1"
 
 
 def test_disconnected_body() -> None:
@@ -47,7 +53,15 @@ def test_disconnected_body() -> None:
 def test_cycle() -> None:
     stated = sf.System("loop", [body("a", sf.Joint("qa", "revolute", "b")), body("b", sf.Joint("qb", "revolute", "a"))])
     problem = only(stated)
-    assert "cycle" in problem.what and "a -> b -> a" in problem.what and "closure" in problem.remedy
+    assert "cycle" in problem.what and "a -> b -> a" in problem.what and "'qa', 'qb'" in problem.found
+    assert "'world'" in problem.remedy and "closure" in problem.remedy
+
+
+def test_a_long_cycle_is_named_in_short() -> None:
+    names = [f"b{i}" for i in range(500)]
+    bodies = [body(name, sf.Joint(f"q{name}", "revolute", names[i - 1])) for i, name in enumerate(names)]
+    problem = only(sf.System("loop", bodies))
+    assert "500 bodies" in problem.found and len(str(problem)) < 1000
 
 
 def test_a_body_that_carries_itself() -> None:
@@ -57,7 +71,7 @@ def test_a_body_that_carries_itself() -> None:
 
 def test_two_bases() -> None:
     problem = only(arm().with_bodies(sf.RigidBody("ground"), sf.RigidBody("floor")))
-    assert "two bases" in problem.what and "'ground', 'floor'" in problem.found
+    assert "two bases" in problem.what and "'ground', 'floor'" in problem.what and "2 bodies" in problem.found
     assert "joint" in problem.remedy
 
 
@@ -130,6 +144,35 @@ def test_names_that_formulas_could_not_use() -> None:
 def test_coordinates_and_parameters_share_their_names() -> None:
     problem = only(arm(parameters=[sf.Parameter("L1", 1.0), sf.Parameter("dq1", 1.0)]))
     assert "joint 'q1': the name of its speed is taken" in problem.what
+
+
+def test_two_joints_of_one_name_are_told_apart_once() -> None:
+    system = arm(parameters=[sf.Parameter("L1", 1.0), sf.Parameter("q2", 1.0)]).with_bodies(
+        body("hand", sf.Joint("q2", "revolute"))
+    )
+    twice, taken = find_problems(system)
+    assert "'arm2', 'hand'" in twice.found and "name of its coordinate is taken" in taken.what
+
+
+@pytest.mark.parametrize("rotation", [("1e300*1e300", 0, 0), ("log(-1)", 0, 0)])
+def test_a_rotation_by_no_finite_angle(rotation: tuple[str, int, int]) -> None:
+    joint = sf.Joint("q3", "revolute", rotation=sf.Rotation("rpy", rotation))
+    assert "not a finite number" in only(arm().with_bodies(body("hand", joint))).what
+
+
+@pytest.mark.parametrize("size", [0.0, 1e308])
+def test_directions_that_are_none(size: float) -> None:
+    """Zero, or so long that the length overflows: the mechanism would be NaN."""
+    axis = (size, size, size)
+    assert "has no direction" in only(arm().with_bodies(body("b", sf.Joint("q3", "revolute", axis=axis)))).what
+    turned = sf.Joint("q3", "revolute", rotation=sf.Rotation("quaternion", (*axis, size)))
+    assert "has no direction" in only(arm().with_bodies(body("b", turned))).what
+
+
+def test_forces_on_a_prescribed_motion_are_named() -> None:
+    joint = sf.Joint("q3", "revolute", prescribed=True, actuated=True, effort=(1.0,))
+    problem = only(arm().with_bodies(body("hand", joint)))
+    assert problem.found == "prescribed, and actuated, effort" and "drop actuated, effort" in problem.remedy
 
 
 def test_values_that_are_not_finite() -> None:

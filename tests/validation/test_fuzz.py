@@ -2,23 +2,78 @@
 
 from __future__ import annotations
 
+import json
+import time
+from itertools import islice
+from pathlib import Path
+
 import pytest
+from typer.testing import CliRunner
 
 import symofros as sf
+from validation.__main__ import app
 from validation.studies import fuzz
+from validation.studies.fuzz_inputs import CORPUS, KINDS, corpus, mutated
 
 
 def test_no_input_crashes_or_hangs_the_readers() -> None:
-    result = fuzz.fuzz(1500, seed=7)
+    result = fuzz.fuzz(900, seed=7)
     assert not result.faults, result.faults[0]
-    # Both answers occur for both readers: the inputs are neither all sound nor all rubbish.
-    assert {"file read", "file refused", "formula read", "formula refused"} == set(result.answers)
+    # Both answers occur for each reader: the inputs are neither all sound nor all rubbish.
+    for kind, answers in result.answers.items():
+        assert answers.read > 5 and answers.refused > 100 and answers.read + answers.refused == 300, kind
+    assert result.answers["yaml"].compiled and result.answers["urdf"].compiled
 
 
-def test_a_crash_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    def crash(path: object) -> sf.System:
+@pytest.mark.parametrize("name", ["everything.yaml", "arm.urdf"])
+def test_the_corpus_is_sound(name: str) -> None:
+    assert sf.load(CORPUS / name).bodies
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_inputs_are_the_same_for_the_same_seed(kind: str) -> None:
+    first = list(islice(mutated(kind, 3), 50))
+    assert first == list(islice(mutated(kind, 3), 50)) != list(islice(mutated(kind, 4), 50))
+    assert not set(first) <= set(corpus(kind))
+
+
+def test_a_crash_is_reported_with_its_input(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def crash(path: object, **options: object) -> sf.System:
         raise RecursionError("deep")
 
     monkeypatch.setattr(sf, "load", crash)
-    result = fuzz.fuzz(20, seed=0)
-    assert len(result.faults) == 2 and "RecursionError" in result.faults[0][0]
+    done = CliRunner().invoke(app, ["fuzz", "--count", "30", "--report", str(tmp_path), "--json"])
+    assert done.exit_code == 1
+    data = json.loads((tmp_path / "fuzz.json").read_text())
+    assert json.loads(done.stdout) == data and not data["ok"]
+    assert [data["kinds"][kind]["faults"] for kind in KINDS] == [10, 10, 0]
+    fault = data["faults"][0]
+    assert "RecursionError: deep" in fault["what"] and fault["input"].encode("latin-1") == next(mutated("yaml", 0))
+    assert "20 crashed or hung" in (tmp_path / "fuzz.md").read_text()
+
+
+def test_a_hang_is_interrupted_and_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    def hang(path: object, **options: object) -> sf.System:
+        while True:
+            time.sleep(0.01)
+
+    monkeypatch.setattr(sf, "load", hang)
+    monkeypatch.setattr(fuzz, "SLOWEST", 0.1)
+    result = fuzz.fuzz(3, seed=0)
+    assert [fault.kind for fault in result.faults] == ["yaml", "urdf"]
+    assert all("longer than 0.1 s" in fault.what for fault in result.faults)
+
+
+def test_a_change_by_writing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    read = iter(sf.System(name, [sf.RigidBody("b", sf.Joint("q", "free"))]) for name in "abcdef")
+    monkeypatch.setattr(sf, "load", lambda path, **options: next(read))
+    assert "another system" in fuzz.fuzz(1, seed=0).faults[0].what
+
+
+def test_the_report_counts_every_input(tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, ["fuzz", "--count", "31", "--seed", "5", "--report", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    data = json.loads((tmp_path / "fuzz.json").read_text())
+    assert data["ok"] and data["inputs"] == 31 and data["seed"] == 5 and data["peak_memory_mib"] > 10
+    assert [data["kinds"][kind]["inputs"] for kind in KINDS] == [11, 10, 10]
+    assert "31 hostile inputs" in (tmp_path / "fuzz.md").read_text()

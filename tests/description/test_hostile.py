@@ -1,0 +1,205 @@
+"""Hostile files, each read in a process of its own: refused, in bounded time and memory, and nothing is run.
+
+The bounds are far above what any case needs: they catch what hangs or swells, on the slowest machine.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import symofros as sf
+from symofros.description import files, urdf, yaml_nodes
+from symofros.errors import MAX_PROBLEMS
+
+SECONDS = 120.0
+MEBIBYTES = 700
+
+_READ = """
+import json, resource, sys
+import symofros as sf
+try:
+    sf.load(sys.argv[1])
+    answer = "read"
+except sf.DescriptionError as error:
+    answer = str(error)
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+print(json.dumps([answer, peak / (1 << (20 if sys.platform == "darwin" else 10))]))
+"""
+
+
+def body(name: str, parent: str = "world", mass: str = "1") -> str:
+    return (
+        f"  {name}: {{joint: {{name: q_{name}, kind: revolute, parent: {parent}}}, "
+        f"inertia: {{mass: {mass}, moments: [1, 1, 1]}}}}\n"
+    )
+
+
+def formula(text: str) -> str:
+    return "symofros: 1\nbodies:\n" + body("a", mass=json.dumps(text))
+
+
+def bodies(*lines: str) -> str:
+    return "symofros: 1\nbodies:\n" + "".join(lines)
+
+
+def link(name: str) -> str:
+    return f'<link name="{name}"/>'
+
+
+def joint(name: str, parent: str, child: str) -> str:
+    return f'<joint name="{name}" type="fixed"><parent link="{parent}"/><child link="{child}"/></joint>'
+
+
+XML_BOMB = (
+    '<!DOCTYPE r [<!ENTITY a0 "x">'
+    + "".join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 10}">' for i in range(1, 12))
+    + ']><robot name="&a11;"/>'
+)
+YAML_BOMB = "a0: &a0 [x]\n" + "".join(f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]\n" for i in range(1, 12))
+
+# Name -> (suffix, content, what the message says).
+CASES: dict[str, tuple[str, Callable[[], str], str]] = {
+    "code": ("yaml", lambda: formula("__import__('os').system('touch ran')"), "'__import__' is not a legal name"),
+    "attributes": ("yaml", lambda: formula("().__class__.__bases__[0].__subclasses__()"), "'.' is not allowed"),
+    "attribute of a name": ("yaml", lambda: formula("a.__class__"), "not a legal name"),
+    "call": ("yaml", lambda: formula("open('ran', 'w')"), "not allowed in a formula"),
+    "call without text": ("yaml", lambda: formula("exec(1)"), "'exec' is not a function"),
+    "tower": ("yaml", lambda: formula("9**9**9"), "not a finite number"),
+    "long formula": ("yaml", lambda: formula("1+" * 1_900_000 + "1"), "longer than 10000 characters"),
+    "deep formula": ("yaml", lambda: formula("(" * 4900 + "1" + ")" * 4900), "nested deeper than 100"),
+    "deep lists": ("yaml", lambda: "symofros: " + "[" * 5000 + "]" * 5000, "nested deeper than 50"),
+    "deep mappings": ("yaml", lambda: "{a: " * 5000 + "1" + "}" * 5000, "nested deeper than 50"),
+    "unclosed lists": ("yaml", lambda: "[" * 1_000_000, "nested deeper than 50"),
+    "billion laughs": ("yaml", lambda: YAML_BOMB, "anchors and aliases are refused"),
+    "merge keys": ("yaml", lambda: "symofros: 1\nsystem: {<<: {name: a}}\n", "merge keys are refused"),
+    "tag": ("yaml", lambda: "symofros: !!python/object/apply:os.system ['touch ran']", "tags are refused"),
+    "bodies without number": ("yaml", lambda: bodies(*(f"  b{i}:\n" for i in range(10_001))), "at most 10000"),
+    "faults without number": (
+        "yaml", lambda: bodies(*(body(f"b{i}", f"c{i}") for i in range(2500))), "there are more faults than are listed",
+    ),
+    "wrong entries without number": (
+        "yaml", lambda: bodies(*(f"  b{i}: {{jont: 1}}\n" for i in range(5000))), "there are more faults",
+    ),
+    "a cycle of thousands": (
+        "yaml", lambda: bodies(*(body(f"b{i}", f"b{(i + 1) % 2500}") for i in range(2500))), "2500 bodies",
+    ),
+    "duplicates without number": ("yaml", lambda: "symofros: 1\n" * 20_000, "appears twice"),
+    "NUL": ("yaml", lambda: formula("1").replace("mass", "ma\0ss"), "not YAML"),
+    "NUL by escape": ("yaml", lambda: formula("1").replace("a:", '"a\\0b":', 1), "unusable name"),
+    "gigantic": ("yaml", lambda: "# " + "x" * (5 << 20), "too large"),
+    "entities": ("urdf", lambda: XML_BOMB, "document types are refused"),
+    "outer entity": (
+        "urdf", lambda: '<!DOCTYPE r [<!ENTITY a SYSTEM "/etc/passwd">]><robot name="&a;"/>', "document types",
+    ),
+    "deep elements": ("urdf", lambda: '<robot name="r">' + "<a>" * 5000 + "</a>" * 5000, "nested deeper than 100"),
+    "links without number": (
+        "urdf", lambda: '<robot name="r">' + "".join(link(f"l{i}") for i in range(10_001)) + "</robot>",
+        "too many links",
+    ),
+    "wrong joints without number": (
+        "urdf",
+        lambda: '<robot name="r">'
+        + "".join(link(f"l{i}") + joint(f"j{i}", "l0", f"c{i}") for i in range(5000)) + "</robot>",
+        "there are more faults",
+    ),
+    "NUL in XML": ("urdf", lambda: '<robot name="r\0"/>', "not well-formed"),
+    "gigantic XML": ("urdf", lambda: '<robot name="r">' + " " * (17 << 20) + "</robot>", "too large"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_refused_in_bounded_time_and_memory(name: str, tmp_path: Path) -> None:
+    suffix, content, part = CASES[name]
+    path = tmp_path / f"hostile.{suffix}"
+    path.write_text(content())
+    done = subprocess.run(
+        [sys.executable, "-c", _READ, path.name], cwd=tmp_path, capture_output=True, text=True, timeout=SECONDS,
+        env={**os.environ, "PYTHONPATH": str(Path(sf.__file__).parent.parent)},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr[-2000:]
+    answer, peak = json.loads(done.stdout)
+    assert part in answer, answer[:1000]
+    assert peak < MEBIBYTES
+    # Nothing ran, and whatever the size of the file, the message is one that can be read.
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
+    assert len(answer) < 100_000 and answer.count("  rule:") <= MAX_PROBLEMS + 1
+
+
+SOUND = (Path(__file__).parent.parent.parent / "validation" / "corpus" / "everything.yaml").read_text()
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    at=st.integers(0, len(SOUND)), length=st.integers(0, 40),
+    put=st.text(max_size=20) | st.sampled_from(["{", "[", ": ", "\n", "&a", "!!x", "1e999", "q", "- ", "'", "#"]),
+)  # fmt: skip
+def test_a_changed_file_is_read_or_refused(
+    at: int, length: int, put: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "changed.yaml"
+    path.write_bytes((SOUND[:at] + put + SOUND[at + length :]).encode("utf-8", "surrogatepass"))
+    try:
+        system = sf.load(path)
+    except sf.DescriptionError as error:
+        assert error.problems and all(problem.what and problem.rule for problem in error.problems)
+        assert all(problem.where.startswith(str(path)) for problem in error.problems if problem.where)
+    else:
+        sf.save(system, path.with_name("again.yaml"))
+        assert sf.load(path.with_name("again.yaml")) == system
+
+
+def faults(path: Path) -> str:
+    with pytest.raises(sf.DescriptionError) as caught:
+        sf.load(path)
+    return str(caught.value)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+@pytest.mark.parametrize("name", ["pipe.yaml", "pipe.urdf"])
+def test_a_pipe_does_not_block_the_reader(name: str, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / name)
+    assert "can't be read" in faults(tmp_path / name)
+    (tmp_path / "main.yaml").write_text("symofros: 1\ninclude: [pipe.yaml]\n")
+    if name == "pipe.yaml":
+        assert "no such file" in faults(tmp_path / "main.yaml")
+
+
+def test_included_files_share_the_limit_on_length(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A hundred files of the largest size would be read for an hour."""
+    part = "symofros: 1\n# " + "x" * 300 + "\n"
+    for i in range(5):
+        (tmp_path / f"part{i}.yaml").write_text(part)
+    (tmp_path / "main.yaml").write_text("symofros: 1\ninclude: [part0.yaml, part1.yaml, part2.yaml, part3.yaml]\n")
+    monkeypatch.setattr(files, "MAX_BYTES", 1000)
+    assert "'part3.yaml' is too large" in faults(tmp_path / "main.yaml").replace(f"{tmp_path}{os.sep}", "")
+
+
+def test_values_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(yaml_nodes, "MAX_NODES", 100)
+    (tmp_path / "a.yaml").write_text("symofros: 1\nsystem: [" + "1, " * 200 + "]\n")
+    assert "too many values" in faults(tmp_path / "a.yaml")
+
+
+def test_links_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(urdf, "MAX_LINKS", 3)
+    (tmp_path / "a.urdf").write_text('<robot name="r">' + "".join(map(link, "abcd")) + "</robot>")
+    assert "4 links" in faults(tmp_path / "a.urdf")
+
+
+def test_a_long_chain_is_checked_in_linear_time() -> None:
+    """Each body's mass was once summed by a walk to the root."""
+    chain = [sf.RigidBody(f"b{i}", sf.Joint(f"q{i}", "revolute", f"b{i - 1}" if i else "world")) for i in range(3000)]
+    chain[-1] = sf.RigidBody("b2999", chain[-1].joint, sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+    from symofros.topology.graph import find_problems
+
+    assert find_problems(sf.System("chain", chain)) == []
+    assert len(find_problems(sf.System("chain", chain[:-1]))) == MAX_PROBLEMS + 1

@@ -1,0 +1,63 @@
+"""The form of messages: what, found, rule, remedy; suggestions; the bound on their number."""
+
+from __future__ import annotations
+
+import ast
+import pickle
+from collections.abc import Iterator
+from itertools import count
+from pathlib import Path
+
+import pytest
+
+import symofros as sf
+from symofros.errors import MAX_PROBLEMS, did_you_mean, first_of, near_name
+
+SOURCES = sorted(Path(sf.__file__).parent.rglob("*.py"))
+
+
+def statements() -> Iterator[tuple[str, list[ast.expr]]]:
+    """Every place in the source that states a problem, with its arguments."""
+    for path in SOURCES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Problem":
+                yield f"{path.name}:{node.lineno}", node.args
+
+
+def test_every_problem_has_its_four_parts() -> None:
+    stated = list(statements())
+    assert len(stated) > 60
+    for place, parts in stated:
+        assert len(parts) >= 4, f"{place}: what, found, rule, remedy"
+        empty = [i for i, part in enumerate(parts) if isinstance(part, ast.Constant) and part.value == ""]
+        assert empty in ([], [4]), f"{place}: an empty part"
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "remedy"),
+    [
+        ("tpi", ["base", "tip"], "did you mean 'tip'?"),
+        ("M", ["L", "m"], "did you mean 'm'?"),
+        ("x", ["first", "second"], "use one of: first, second"),
+        ("x", [], ""),
+        ("zz", [f"name{i}" for i in range(20)], "use one of: " + ", ".join(f"name{i}" for i in range(12)) + ", …"),
+    ],
+)
+def test_suggestions(name: str, known: list[str], remedy: str) -> None:
+    assert did_you_mean(name, known) == remedy
+    assert near_name(name, known) == (remedy if remedy.startswith("did") else "")
+
+
+def test_no_more_problems_are_made_than_are_listed() -> None:
+    made = count()
+    listed = first_of(sf.Problem(f"fault {next(made)}", "f", "r", "m", f"a.yaml:{i}") for i in range(10**9))
+    assert len(listed) == MAX_PROBLEMS + 1 and "more faults" in listed[-1].what
+    assert next(made) == MAX_PROBLEMS + 1
+    assert first_of(listed[:3]) == listed[:3]
+
+
+def test_errors_cross_process_borders() -> None:
+    error = sf.DescriptionError([sf.Problem("w", "f", "r", "m", "a.yaml:3"), sf.Problem("x")])
+    again = pickle.loads(pickle.dumps(error))
+    assert again.problems == error.problems
+    assert str(again) == "a.yaml:3: w\n  found:  f\n  rule:   r\n  remedy: m\nx"

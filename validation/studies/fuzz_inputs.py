@@ -1,0 +1,85 @@
+"""Hostile inputs for the fuzz campaign: the package's own descriptions, mutated at random from a seed."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import reference_models
+
+KINDS = ("yaml", "urdf", "formula")
+CORPUS = Path(__file__).parent.parent / "corpus"
+
+_FORMULAS = (
+    b"L1/2 + 0.1*cos(q1)", b"-k*(q1 - 0.3)^2", b"atan2(u1, max(a, b))/pi", b"2^-x*exp(-(v/0.01)^2)",
+    b"m*(L^2/12 + r^2/4)", b"1 - -x**2**y/(3*z)",
+)  # fmt: skip
+# Formulas and numbers that are hostile wherever they stand.
+_EVERYWHERE = (
+    "__import__('os').system('x')", "().__class__", "9**9**9", "\x00", "{", "}", "[", "]", "'", '"', "#", "%", "@",
+    "`", "nan", "inf", "1e400", "-1e400", "1e-400", "1e308", "1e300*1e300", "0", "-0", "-1", "0x7fffffff", "9" * 400,
+    "int", "while", "größe", "\u202e", "a" * 500, "(" * 200, "q1", "dq1", "t", "pi", "sin(", "sqrt(-1)", "1/0",
+    "log(0)", "^", "\ufeff", "\r", "\n",
+)  # fmt: skip
+_SNIPPETS: dict[str, tuple[str, ...]] = {
+    "formula": _EVERYWHERE,
+    "yaml": (
+        *_EVERYWHERE, "!!python/object:os.system", "&a", "*a", "<<: *a", "---", "\t", ":", "- ", "? ", "| ", "> ",
+        ".nan", ".inf", "-.inf", "null", "true", "[]", "{}", "include: [../../etc/passwd]", "include: [hostile.yaml]",
+        "include: ['\\0']", "kind: free", "kind: general", "kind: fixed", "parent: world", "prescribed: true",
+        "actuated: true", "symofros: 2", "about: body",
+    ),
+    "urdf": (
+        *_EVERYWHERE, '<!DOCTYPE r [<!ENTITY a "b">]>', "&a;", "&#0;", "&lt;", "<![CDATA[x]]>", "<!--", "-->", "<?x?>",
+        '<?xml version="1.0" encoding="utf-7"?>', "<link/>", "<joint/>", '<link name="base"/>', '<parent link="hand"/>',
+        'type="floating"', 'type="planar"', 'xyz="0 0 0"', "<inertial/>", "<a>" * 150, "</robot>", "xmlns:x='u'",
+    ),
+}  # fmt: skip
+_WORD = re.compile(rb"[A-Za-z_]\w*|-?\d+(?:\.\d+)?")
+
+
+def corpus(kind: str) -> list[bytes]:
+    """What mutations of a kind start from."""
+    if kind == "formula":
+        return list(_FORMULAS)
+    folders = (CORPUS, Path(reference_models.__file__).parent)
+    return [path.read_bytes() for folder in folders for path in sorted(folder.rglob(f"*.{kind}"))]
+
+
+def mutated(kind: str, seed: int) -> Iterator[bytes]:
+    """Endless mutations of the corpus of a kind, the same ones for the same seed."""
+    rng, files = random.Random(f"{kind} {seed}"), corpus(kind)
+    snippets = [snippet.encode() for snippet in _SNIPPETS[kind]]
+    while True:
+        data = rng.choice(files)
+        # Half of the inputs have a single fault: those come furthest.
+        for _ in range(rng.choice((1, 1, 1, 2, 3, 4))):
+            data = _mutate(data, snippets, rng)
+        yield data
+
+
+def _mutate(data: bytes, snippets: list[bytes], rng: random.Random) -> bytes:
+    """One change: of a byte, of a piece, of a word, of the lines' order, or a hostile snippet put in."""
+    at, kind = rng.randrange(len(data) + 1), rng.randrange(8)
+    if kind == 0:
+        return data[:at] + bytes([rng.randrange(256)]) + data[at + 1 :]
+    if kind == 1:
+        return data[:at] + data[at + rng.randint(1, 40) :]
+    if kind == 2:
+        return data[:at] + rng.choice(snippets) + data[at:]
+    if kind == 3:
+        return data[:at] + data[at : at + rng.randint(1, 60)] * rng.randint(1, 4) + data[at:]
+    if kind == 4:
+        lines = data.split(b"\n")
+        first, second = rng.randrange(len(lines)), rng.randrange(len(lines))
+        lines[first], lines[second] = lines[second], lines[first]
+        return b"\n".join(lines)
+    words = list(_WORD.finditer(data))
+    if not words:
+        return data
+    # A word or number becomes another one of the file, or something hostile: the form stays whole.
+    word = rng.choice(words)
+    other = rng.choice(words).group() if kind < 7 else rng.choice(snippets)
+    return data[: word.start()] + other + data[word.end() :]
