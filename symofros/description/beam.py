@@ -45,7 +45,8 @@ class Samples:
             raise DescriptionError(
                 Problem("sampled shape function: unusable stations",
                         f"{len(self.xi)} stations, {len(self.values)} values",
-                        "at least 4 stations that rise from 0 to 1, and one value for each")
+                        "at least 4 stations that rise from 0 to 1, and one value for each",
+                        "sort the stations, divide them by the length, and give each its value")
             )  # fmt: skip
 
 
@@ -74,11 +75,21 @@ class BeamLoad:
         object.__setattr__(self, "torque", as_vector(self.torque, "beam load: torque"))
         if self.at is not None and not 0.0 <= self.at <= 1.0:
             raise DescriptionError(
-                Problem("beam load: station off the beam", f"at {self.at!r}", "at is x/L, from 0 (root) to 1 (tip)")
+                Problem(
+                    "beam load: station off the beam",
+                    f"at {self.at!r}",
+                    "at is x/L, from 0 (root) to 1 (tip)",
+                    "divide the station by the length; leave at out for a load that is spread",
+                )
             )
         if self.axes not in ("body", "world"):
             raise DescriptionError(
-                Problem(f"beam load: axes '{self.axes}'", str(self.axes), "axes are 'body' or 'world'")
+                Problem(
+                    f"beam load: axes '{self.axes}'",
+                    str(self.axes),
+                    "axes are 'body' or 'world'",
+                    did_you_mean(str(self.axes), ("body", "world")),
+                )
             )
 
 
@@ -166,7 +177,10 @@ class Beam:
             if isinstance(count, bool) or not isinstance(count, int) or count < 0:
                 raise DescriptionError(
                     Problem(
-                        f"{what}: {direction} is not a number of functions", repr(count), "a whole number, 0 or more"
+                        f"{what}: {direction} is not a number of functions",
+                        repr(count),
+                        "a whole number, 0 or more",
+                        "0 makes the beam rigid in that direction",
                     )
                 )
 

@@ -83,7 +83,8 @@ class Folder:
         """Put what is included in the place of each <include>."""
         if depth > MAX_DEPTH:
             raise XmlFault(Problem(f"nested deeper than {MAX_DEPTH}, includes counted", f"<{element.tag:.60}>",
-                                   "a robot needs fewer", "", element.where))  # fmt: skip
+                                   "a robot needs fewer", "check that it is the file you meant",
+                                   element.where))  # fmt: skip
         children: list[Element] = []
         for child in element.children:
             if child.tag == "include":

@@ -52,4 +52,10 @@ def infinite_numbers(
                     "every number is finite", "mend the number", places.get((kind, names[i]), file),
                 )  # fmt: skip
     if not np.isfinite(model.opt.gravity).all():
-        yield Problem("gravity is not a finite number", str(model.opt.gravity), "every number is finite", "", file)
+        yield Problem(
+            "gravity is not a finite number",
+            str(model.opt.gravity),
+            "every number is finite",
+            "give finite components",
+            file,
+        )

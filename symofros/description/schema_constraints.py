@@ -41,7 +41,14 @@ class ClosureEntry(Entry):
             rule = "a rod keeps a distance; a closure blocks directions"
             raise fault(Problem("both a rod and a closure", "length with translations or rotations", rule, "keep one"))
         if self.length is None and self.translations == [] and not self.rotations:
-            raise fault(Problem("blocks nothing", "no directions", "a closure blocks at least one direction"))
+            raise fault(
+                Problem(
+                    "blocks nothing",
+                    "no directions",
+                    "a closure blocks at least one direction",
+                    "name translations, rotations or both",
+                )
+            )
         return self
 
     def build(self, name: str) -> Closure | Rod:

@@ -61,7 +61,7 @@ def solve(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
 
 def _factor(M: Array) -> Array | None:
     try:
-        L: Array = np.linalg.cholesky(M)
+        L = np.asarray(np.linalg.cholesky(M), dtype=np.float64)
     except np.linalg.LinAlgError:
         return None
     return L if bool(np.all(np.diag(L) ** 2 > PIVOT * np.diag(M))) else None

@@ -40,7 +40,8 @@ def accelerations(model: Model, q: Given, v: Given, u: Given, **more: Any) -> Ac
     G = model.constraint_jacobian(q, u=u, **more) if nc else np.zeros((*batch, 0, nv))
     right = -np.concatenate([by_q, by_v, by_u], axis=-1)
     count = right.shape[-1]
-    flat = [np.broadcast_to(x, (*batch, *x.shape[-2:])).reshape(-1, *x.shape[-2:]) for x in (M, right, G)]
+    size = int(np.prod(batch))
+    flat = [np.broadcast_to(x, (*batch, *x.shape[-2:])).reshape(size, *x.shape[-2:]) for x in (M, right, G)]
     pairs = [solve(m, r[:nv], g, r[nv:])[:2] for m, r, g in zip(*flat, strict=True)]
     solved = np.array([np.concatenate(pair) for pair in pairs]).reshape(*batch, nv + nc, count)
     a_by_q, a_by_v, a_by_u = np.split(solved[..., :nv, :], [nv, 2 * nv], axis=-1)
