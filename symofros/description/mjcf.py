@@ -122,9 +122,13 @@ def _explained(message: str, document: Document) -> Problem:
     where = document.lines[line - 1].where if 0 < line <= len(document.lines) else document.stated.file
     complaint, _, rest = _LINE.sub("", message).strip().partition("\n")
     complaint = complaint.removeprefix("XML ").removeprefix("Error: ").strip()
-    return Problem(f"MuJoCo refuses the model: {complaint:.300}", f"{rest.strip():.300}",
-                   "MuJoCo's own compiler reads MJCF files",
-                   "mend what it complains of; MuJoCo's XML reference says what each attribute may be", where)  # fmt: skip
+    return Problem(
+        f"MuJoCo refuses the model: {complaint:.300}",
+        f"{rest.strip():.300}",
+        "MuJoCo's own compiler reads MJCF files",
+        "mend what it complains of; MuJoCo's XML reference says what each attribute may be",
+        where,
+    )
 
 
 @contextmanager
