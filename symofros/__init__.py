@@ -63,7 +63,11 @@ if TYPE_CHECKING:
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
     from symofros.simulation.assembly import assemble as assemble
+    from symofros.simulation.base_parameters import base_parameters as base_parameters
     from symofros.simulation.equilibrium import equilibrium as equilibrium
+    from symofros.simulation.inverse_kinematics import Target as Target
+    from symofros.simulation.inverse_kinematics import inverse_kinematics as inverse_kinematics
+    from symofros.simulation.inverse_kinematics import joint_motion as joint_motion
     from symofros.simulation.modes import modes as modes
 
     compile = compile_system
@@ -82,6 +86,10 @@ _LAZY = {
     "save": ("symofros.loading", "save"),
     "Model": ("symofros.runtime.model", "Model"),
     "assemble": ("symofros.simulation.assembly", "assemble"),
+    "base_parameters": ("symofros.simulation.base_parameters", "base_parameters"),
+    "inverse_kinematics": ("symofros.simulation.inverse_kinematics", "inverse_kinematics"),
+    "joint_motion": ("symofros.simulation.inverse_kinematics", "joint_motion"),
+    "Target": ("symofros.simulation.inverse_kinematics", "Target"),
     "equilibrium": ("symofros.simulation.equilibrium", "equilibrium"),
     "modes": ("symofros.simulation.modes", "modes"),
 }

@@ -21,6 +21,7 @@ MODEL_FUNCTIONS = (
     "constraint_bias",
     "inverse_dynamics_derivatives",
     "residual_derivatives",
+    "regressor",
 )
 FRAME_FUNCTIONS = ("frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian", "frame_jacobian_rate")
 

@@ -11,7 +11,7 @@ from symofros.dynamics.derivatives import by_configuration, by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
 from symofros.dynamics.forces import generalized_forces, stored_energy
 from symofros.dynamics.forward import solve
-from symofros.dynamics.inertia import LinkInertia, link_inertias
+from symofros.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.dynamics.rotors import MovingRotor, rotors_of
@@ -127,6 +127,13 @@ class Equations:
         return found + bound
 
     @cached_property
+    def regressor(self) -> list[list[Edge]]:
+        """Y with M a + h = Y pi for rigid links: the sum is linear in their inertial parameters (nv x 10 links)."""
+        own = inertia_inputs(self.motion)
+        total = inertia_forces(self.motion, own, [], self.v_rate, self.gravity)
+        return by_inputs(self.motion, total, "pi", 10 * len(own))
+
+    @cached_property
     def T(self) -> Edge:
         """Kinetic energy."""
         return kinetic_energy(self.motion, self._inertias[0], self.rotors)
@@ -206,6 +213,7 @@ _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "inverse_dynamics": lambda e: (("q", "v", "a", "t"), (_vector("tau", e.required),)),
     "kinetic_energy": lambda e: (("q", "v"), (Output("T", (), (e.T,)),)),
     "potential_energy": lambda e: (("q", "t"), (Output("V", (), (e.V,)),)),
+    "regressor": lambda e: (("q", "v", "a"), (_matrix("Y", e.regressor),)),
     "inverse_dynamics_derivatives": _inverse_derivatives,
     "residual_derivatives": _residual_derivatives,
     "constraint": lambda e: (("q", "t"), (_vector("phi", [row.phi for row in e.constraints]),)),

@@ -106,6 +106,16 @@ def link_inertias(motion: Motion) -> tuple[list[LinkInertia], LinkInertia]:
     return list(own.values()), base
 
 
+def inertia_inputs(motion: Motion) -> list[LinkInertia]:
+    """Each link's inertia as ten inputs "pi": m, m c (3), then xx, xy, yy, xz, yz, zz about Bo, in the body frame B."""
+    g, found = motion.g, []
+    for i, link in enumerate(motion.links):
+        m, sx, sy, sz, xx, xy, yy, xz, yz, zz = (g.input("pi", 10 * i + k) for k in range(10))
+        S, J = Vec3(g, sx, sy, sz), Sym3(g, xx, yy, zz, xy, xz, yz)
+        found.append(LinkInertia(m, link.R_LB.times(S), _turned(link.R_LB, J)))
+    return found
+
+
 def _stated(motion: Motion, index: int) -> LinkInertia:
     """The sum of the inertias stated for a link's bodies."""
     total = no_inertia(motion.g)

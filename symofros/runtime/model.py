@@ -259,6 +259,14 @@ class Model:
         """Of R = (M a + h - Q - G^T lam; G a - gamma) by q, v and u, and of G v - b by q."""
         return self._call("residual_derivatives", "", {"q": q, "v": v, "a": a, "u": u, "lam": lam, "t": t}, par)
 
+    def regressor(self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
+        """Y (..., nv, 10 links) with M a + h = Y pi, for the links' inertial parameters pi.
+
+        Ten a link, in the order of the tree: m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the origin of its body
+        frame, along its axes; what is fixed to a body counts with it. Rotors, armatures and beams are not in pi.
+        """
+        return self._one("regressor", {"q": q, "v": v, "a": a, "u": u}, par)
+
     # Constraints: phi(q) = 0, G v = b, G v' = gamma.
 
     def constraint(self, q: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0) -> Array:

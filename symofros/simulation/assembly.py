@@ -6,12 +6,14 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.errors import AssemblyError, UnknownNameError, did_you_mean
 from symofros.runtime.constrained import RANK
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Given, Model
 
+Indices = npt.NDArray[np.intp]
 # No step turns or slides further than this at once: beyond it the linearisation says nothing.
 LARGEST_STEP = 0.5
 
@@ -106,7 +108,7 @@ def assemble(
     return Assembled(q, speeds, float(np.abs(phi).max(initial=0.0)), count, rank)
 
 
-def free_speeds(model: Model, held: Collection[str]) -> Array:
+def free_speeds(model: Model, held: Collection[str]) -> Indices:
     """Indices of the speeds that are not held.
 
     Raises:
