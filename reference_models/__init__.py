@@ -11,6 +11,7 @@ from pathlib import Path
 
 import symofros as sf
 from reference_models.rigid.chain import chain
+from reference_models.rigid.random_tree import KINDS, SERIES_KINDS, random_tree
 from reference_models.rigid.station import mss
 
 _FOLDER = Path(__file__).parent
@@ -19,6 +20,9 @@ _BUILT: dict[str, Callable[[], sf.System]] = {
     "chain7": lambda: chain(7),
     "chain22": lambda: chain(22),
     "mss": mss,
+    "random_tree1": lambda: random_tree(1, 12),
+    "random_tree2": lambda: random_tree(2, 12, ("revolute", "prismatic", "fixed")),
+    "random_tree3": lambda: random_tree(3, 12, (*KINDS, *SERIES_KINDS)),
 }
 
 

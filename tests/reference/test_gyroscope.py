@@ -19,14 +19,14 @@ def test_the_rotors_moments_are_those_of_its_momentum(rng: np.random.Generator) 
     """
     driven = reference("gyroscope")
     plain = driven.with_parameters(n=0.0)
-    I, n = driven.parameters["I"], driven.parameters["n"]
+    axial, n = driven.parameters["I"], driven.parameters["n"]
     for _ in range(10):
         q, v = rng.uniform(-3, 3, 3), rng.uniform(-20, 20, 3)
-        c, s, H = np.cos(q[1]), np.sin(q[1]), I * n * v[2]
-        expected = np.array([H * c * v[1], -H * c * v[0], I * n * c * v[0] * v[1]])
+        c, s, H = np.cos(q[1]), np.sin(q[1]), axial * n * v[2]
+        expected = np.array([H * c * v[1], -H * c * v[0], axial * n * c * v[0] * v[1]])
         found = driven.bias(q, v) - plain.bias(q, v)
         np.testing.assert_allclose(found, expected, atol=ROUNDING * np.abs(driven.bias(q, v)).max())
-        extra = np.array([[0.0, 0.0, I * n * s], [0.0, 0.0, 0.0], [I * n * s, 0.0, I * n**2]])
+        extra = np.array([[0.0, 0.0, axial * n * s], [0.0, 0.0, 0.0], [axial * n * s, 0.0, axial * n**2]])
         M = driven.mass_matrix(q)
         np.testing.assert_allclose(M - plain.mass_matrix(q), extra, atol=ROUNDING * np.abs(M).max())
 
