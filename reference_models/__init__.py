@@ -21,8 +21,8 @@ _BUILT: dict[str, Callable[[], sf.System]] = {
     "chain22": lambda: chain(22),
     "mss": mss,
     "random_tree1": lambda: random_tree(1, 12),
-    "random_tree2": lambda: random_tree(2, 12, ("revolute", "prismatic", "fixed")),
-    "random_tree3": lambda: random_tree(3, 12, (*KINDS, *SERIES_KINDS)),
+    "random_tree4": lambda: random_tree(4, 12, ("revolute", "revolute", "prismatic", "fixed")),
+    "random_tree70": lambda: random_tree(70, 12, (*KINDS, *SERIES_KINDS)),
 }
 
 

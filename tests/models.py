@@ -12,7 +12,7 @@ TREES = {f"tree{seed}": seed for seed in range(8)}
 TREES |= {f"parametrised{seed}": seed for seed in range(3)}
 TREES |= {f"joints{seed}": 100 + seed for seed in range(8)}
 REFERENCES = ("torque_free_body", "heavy_top", "gyroscope", "puma560", "stanford_arm", "friction_arm", "joint_zoo",
-              "car", "random_tree3")  # fmt: skip
+              "car", "random_tree70")  # fmt: skip
 CASES = (*TREES, *REFERENCES)
 
 

@@ -215,10 +215,12 @@ class _Check:
                 self.rows.append(self._judged(engine, MOTION_ENERGY, ours, motion.states, scales))
 
     def _drift(self, motion: Motion) -> Comparison:
-        formulas = [effort for described in self.assembly.joints for effort in described.joint.effort]
-        corners = sorted({kind for formula in formulas for kind in kinds(formula)} & _CORNERS)
-        if corners:
-            reason = f"an effort uses {', '.join(corners)}: no integrator keeps its order across a corner"
+        joints = [described.joint for described in self.assembly.joints]
+        used = sorted({kind for joint in joints for formula in joint.effort for kind in kinds(formula)} & _CORNERS)
+        cornered = sorted({type(item).__name__.lower() for joint in joints for item in joint.elements if _bends(item)})
+        if used or cornered:
+            where = f"an effort uses {', '.join(used)}" if used else f"a joint has a {', a '.join(cornered)}"
+            reason = f"{where}: no integrator keeps its order across a corner"
             return Comparison(self.subject.label, "symofros", "energy_drift", "unsupported", note=reason)
         return judge_drift(self.subject.label, motion)
 
@@ -237,6 +239,13 @@ class _Check:
             {"nq": model.nq, "nv": model.nv, "nu": model.nu, "bodies": len(system.bodies)},
             self.subject.frames, system.notes, {engine.name: engine.version for engine in engines}, self.seconds,
         )  # fmt: skip
+
+
+def _bends(element: object) -> bool:
+    """Whether a joint element's force has a corner, or, as dry friction, one that is rounded within a step."""
+    if isinstance(element, sf.Damper):
+        return element.quadratic != 0.0
+    return isinstance(element, (sf.Stop, sf.Friction))
 
 
 def with_forces(engine: SymofrosEngine, states: States) -> States:
