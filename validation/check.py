@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 
 import symofros as sf
+from validation import rotors
 from validation.adapters import ROUTES, Missing, available
 from validation.adapters import compiled as our_c
 from validation.adapters.compiled import SymofrosEngine
@@ -142,12 +143,18 @@ class _Check:
             if route.needs_urdf and self.subject.urdf is None:
                 continue
             factory = self.factories[name]
-            engine = Unsupported(factory.reason) if isinstance(factory, Missing) else factory(self.subject)
+            engine = Unsupported(factory.reason) if isinstance(factory, Missing) else self._build(name, factory)
             if isinstance(engine, Unsupported):
                 self.rows.append(Comparison(self.subject.label, name, "all", "unsupported", note=engine.reason))
             else:
                 self.seconds[name] = 0.0
                 yield engine
+
+    def _build(self, name: str, factory: EngineFactory) -> Engine | Unsupported:
+        """The engine; one that knows trees without rotors gets these from a second model of its own."""
+        if ROUTES[name].independent and rotors.has_rotors(self.subject.system):
+            return rotors.build(factory, self.subject)
+        return factory(self.subject)
 
     def _quantities(self) -> list[Quantity]:
         left_out = (frozenset() if self.subject.frames else FRAME_QUANTITIES) | (
