@@ -7,7 +7,7 @@ import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -153,7 +153,7 @@ class _Check:
     def _build(self, name: str, factory: EngineFactory) -> Engine | Unsupported:
         """The engine; one that knows trees without rotors gets these from a second model of its own."""
         if ROUTES[name].independent and rotors.has_rotors(self.subject.system):
-            return rotors.build(factory, self.subject)
+            factory = partial(rotors.build, factory)
         return factory(self.subject)
 
     def _quantities(self) -> list[Quantity]:
@@ -224,9 +224,9 @@ class _Check:
     def _drift(self, motion: Motion) -> Comparison:
         joints = [described.joint for described in self.assembly.joints]
         used = sorted({kind for joint in joints for formula in joint.effort for kind in kinds(formula)} & _CORNERS)
-        cornered = sorted({type(item).__name__.lower() for joint in joints for item in joint.elements if _bends(item)})
-        if used or cornered:
-            where = f"an effort uses {', '.join(used)}" if used else f"a joint has a {', a '.join(cornered)}"
+        bent = sorted({corner for joint in joints for item in joint.elements if (corner := _corner(item))})
+        if used or bent:
+            where = f"an effort uses {', '.join(used)}" if used else f"a joint has {', '.join(bent)}"
             reason = f"{where}: no integrator keeps its order across a corner"
             return Comparison(self.subject.label, "symofros", "energy_drift", "unsupported", note=reason)
         return judge_drift(self.subject.label, motion)
@@ -248,11 +248,11 @@ class _Check:
         )  # fmt: skip
 
 
-def _bends(element: object) -> bool:
-    """Whether a joint element's force has a corner, or, as dry friction, one that is rounded within a step."""
+def _corner(element: object) -> str:
+    """What bends a joint element's force: a corner or, in dry friction, one that is rounded within a step."""
     if isinstance(element, sf.Damper):
-        return element.quadratic != 0.0
-    return isinstance(element, (sf.Stop, sf.Friction))
+        return "a quadratic damper" if element.quadratic != 0.0 else ""
+    return {sf.Stop: "a stop", sf.Friction: "dry friction"}.get(type(element), "")
 
 
 def with_forces(engine: SymofrosEngine, states: States) -> States:
