@@ -26,7 +26,7 @@ def test_damped_bounce() -> None:
     k, c, M, a = (car.parameters[name] for name in ("k", "c", "M", "a"))
     J = M * (a**2 + 0.2) / 3
     travel = [i for i, name in enumerate(car.names.v) if name.endswith("_travel")]
-    s0, times = 1e-4, np.linspace(0.0, 0.4, 21)
+    s0, times = 1e-4, np.linspace(0.0, 0.2, 21)
     q, v = car.neutral(), np.zeros(car.nv)
     q[np.array(travel) + 1] = s0  # After the one coordinate that the free joint has more than speeds.
     y = move(car, q, v, times, rate).y[np.array(travel) + 1]
@@ -39,7 +39,7 @@ def test_damped_bounce() -> None:
     start = np.linalg.solve(vectors, np.array([s0, s0, 0.0, 0.0], dtype=complex))
     expected = (vectors @ (start[:, None] * np.exp(np.outer(values, times)))).real
     # Linear in the travel of 1e-4 m up to its square: the chassis pitches by as little.
-    np.testing.assert_allclose(y[[0, 2]], expected[:2], atol=10 * s0**2)
+    np.testing.assert_allclose(y[[0, 2]], expected[:2], atol=s0**2)
 
 
 def test_a_spinning_wheel_resists_steering() -> None:
@@ -62,7 +62,7 @@ def test_what_drives_and_steers_it_leaves_its_momentum_alone(rng: np.random.Gene
     car = reference("car").with_parameters(g=0.0)
     q, v = car.random_state(rng)
     q[7:] *= 0.1
-    y = move(car, q, v, np.linspace(0.0, 0.3, 7), rate, u=np.array([5.0, -3.0, 40.0, 60.0])).y.T
+    y = move(car, q, v, np.linspace(0.0, 0.1, 5), rate, u=np.array([5.0, -3.0, 40.0, 60.0])).y.T
     momenta = []
     for at, speed in zip(y[:, : car.nq], y[:, car.nq :], strict=True):
         linear, angular = (car.mass_matrix(at) @ speed)[:6].reshape(2, 3)

@@ -93,9 +93,9 @@ def test_turning_points_of_nutation(start: float) -> None:
         R = rotation(y[:4])
         return float(R[2] @ np.cross(y[4:], [0.0, 0.0, 1.0]))
 
-    motion = move(top, quaternion(angles), body_rates(angles, rates), np.array([0.0, 1.0]), ball, events=climbing)
+    motion = move(top, quaternion(angles), body_rates(angles, rates), np.array([0.0, 0.6]), ball, events=climbing)
     heights = np.array([rotation(y[:4])[2, 2] for y in motion.y_events[0]])
-    assert len(heights) > 8
+    assert len(heights) >= 6
     # The highest and lowest points alternate.
     first, second = heights[-2::-2], heights[-1::-2]
     low, high = sorted((first, second), key=np.mean)
@@ -106,7 +106,7 @@ def test_turning_points_of_nutation(start: float) -> None:
 def test_both_joints_move_alike() -> None:
     top, by_angles = reference("heavy_top"), by_euler_angles()
     angles, rates = np.array([0.2, 0.9, -0.4]), np.array([1.5, -2.0, 90.0])
-    times = np.linspace(0.0, 0.5, 11)
+    times = np.linspace(0.0, 0.2, 11)
     one = move(top, quaternion(angles), body_rates(angles, rates), times, ball).y
     other = move(by_angles, angles, rates, times).y
     for k in range(len(times)):

@@ -11,7 +11,7 @@ from tests.reference.motion import Array, free, move, reference, rotation
 
 # The integrator's 1e-12 a step, over the hundred or so steps of these motions.
 MOTION = 1e-9
-TIMES = np.linspace(0.0, 10.0, 101)
+TIMES = np.linspace(0.0, 6.0, 61)
 
 
 def started(model: sf.Model, w: Array) -> tuple[Array, Array]:
