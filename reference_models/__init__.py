@@ -13,6 +13,7 @@ import symofros as sf
 from reference_models.closed import spatial
 from reference_models.flexible.station import flexible_mss
 from reference_models.rigid.chain import chain
+from reference_models.rigid.random_tree import KINDS, SERIES_KINDS, random_tree
 from reference_models.rigid.station import mss
 
 _FOLDER = Path(__file__).parent
@@ -26,6 +27,9 @@ _BUILT: dict[str, Callable[[], sf.System]] = {
     "stewart": spatial.stewart,
     "delta": spatial.delta,
     "grasp": spatial.grasp,
+    "random_tree1": lambda: random_tree(1, 12),
+    "random_tree4": lambda: random_tree(4, 12, ("revolute", "revolute", "prismatic", "fixed")),
+    "random_tree70": lambda: random_tree(70, 12, (*KINDS, *SERIES_KINDS)),
 }
 
 

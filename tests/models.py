@@ -1,20 +1,26 @@
-"""The models that identities are tested on: one of each kind of structure, and random trees."""
+"""The models that identities are tested on: random trees, and reference models with what trees do not have."""
 
 from __future__ import annotations
 
 from functools import cache
 
 import symofros as sf
-from tests.trees import KINDS, MORE_KINDS, parametrised, random_tree
+from reference_models import MODELS
+from reference_models.rigid.random_tree import KINDS, MORE_KINDS, random_tree
 
-CASES = {f"tree{seed}": seed for seed in range(8)}
-CASES |= {f"parametrised{seed}": seed for seed in range(3)}
-CASES |= {f"joints{seed}": 100 + seed for seed in range(8)}
+TREES = {f"tree{seed}": seed for seed in range(8)}
+TREES |= {f"parametrised{seed}": seed for seed in range(3)}
+TREES |= {f"joints{seed}": 100 + seed for seed in range(8)}
+REFERENCES = ("torque_free_body", "heavy_top", "gyroscope", "puma560", "stanford_arm", "friction_arm", "joint_zoo",
+              "car", "random_tree70")  # fmt: skip
+CASES = (*TREES, *REFERENCES)
 
 
 @cache
 def system(case: str) -> sf.System:
-    tree = random_tree(CASES[case], kinds=MORE_KINDS if case.startswith("joints") else KINDS)
+    if case in REFERENCES:
+        return MODELS[case]
+    tree = random_tree(TREES[case], kinds=MORE_KINDS if case.startswith("joints") else KINDS)
     return parametrised(tree) if case.startswith("parametrised") else tree
 
 
@@ -22,3 +28,29 @@ def system(case: str) -> sf.System:
 def model(case: str, backend: str = "interpreter") -> sf.Model:
     """The model of a case; the interpreter is the default because identities don't need speed."""
     return sf.compile(system(case), sf.Options(backend=backend))
+
+
+def parametrised(system: sf.System, seed: int = 0) -> sf.System:
+    """The same mechanism with masses, positions and moments as run-time parameters."""
+    parameters: list[sf.Parameter] = []
+
+    def named(value: object) -> str:
+        parameters.append(sf.Parameter(f"p{len(parameters)}", float(value)))  # type: ignore[arg-type]
+        return parameters[-1].name
+
+    bodies = []
+    for body in system.bodies:
+        inertia = body.inertia
+        if inertia is not None:
+            inertia = sf.Inertia(
+                named(inertia.mass), tuple(map(named, inertia.center_of_mass)), tuple(map(named, inertia.moments)),
+                inertia.about, inertia.rotation,
+            )  # fmt: skip
+        joint = body.joint
+        if joint is not None:
+            joint = sf.Joint(
+                joint.name, joint.kind, joint.parent, joint.frame, tuple(map(named, joint.position)), joint.rotation,
+                joint.axis, joint.actuated,
+            )  # fmt: skip
+        bodies.append(sf.RigidBody(body.name, joint, inertia, body.frames))
+    return sf.System(system.name, bodies, parameters, gravity=system.gravity)

@@ -7,12 +7,13 @@ import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import cast
 
 import numpy as np
 
 import symofros as sf
+from validation import rotors
 from validation.adapters import ROUTES, Missing, available
 from validation.adapters import compiled as our_c
 from validation.adapters.compiled import SymofrosEngine
@@ -155,9 +156,12 @@ class _Check:
                 yield engine
 
     def _build(self, name: str, factory: EngineFactory) -> Engine | Unsupported:
-        """The engine; one that knows trees gets the constraints in NumPy."""
+        """The engine; one that knows trees gets rotors from a second model of its own, and constraints in NumPy."""
+        independent = ROUTES[name].independent
+        if independent and rotors.has_rotors(self.subject.system):
+            factory = partial(rotors.build, factory)
         engine = factory(self.subject)
-        if isinstance(engine, Unsupported) or not self.subject.system.constraints or not ROUTES[name].independent:
+        if isinstance(engine, Unsupported) or not self.subject.system.constraints or not independent:
             return engine
         joined = joined_frames(self.assembly, self.subject.system)
         anchored = factory(replace(self.subject, frames=joined))
@@ -232,10 +236,12 @@ class _Check:
                 self.rows.append(self._judged(engine, MOTION_ENERGY, ours, motion.states, scales))
 
     def _drift(self, motion: Motion) -> Comparison:
-        formulas = [effort for described in self.assembly.joints for effort in described.joint.effort]
-        corners = sorted({kind for formula in formulas for kind in kinds(formula)} & _CORNERS)
-        if corners:
-            reason = f"an effort uses {', '.join(corners)}: no integrator keeps its order across a corner"
+        joints = [described.joint for described in self.assembly.joints]
+        used = sorted({kind for joint in joints for formula in joint.effort for kind in kinds(formula)} & _CORNERS)
+        bent = sorted({corner for joint in joints for item in joint.elements if (corner := _corner(item))})
+        if used or bent:
+            where = f"an effort uses {', '.join(used)}" if used else f"a joint has {', '.join(bent)}"
+            reason = f"{where}: no integrator keeps its order across a corner"
             return Comparison(self.subject.label, "symofros", "energy_drift", "unsupported", note=reason)
         return judge_drift(self.subject.label, motion)
 
@@ -254,6 +260,13 @@ class _Check:
             {"nq": model.nq, "nv": model.nv, "nu": model.nu, "bodies": len(system.bodies)},
             self.subject.frames, system.notes, {engine.name: engine.version for engine in engines}, self.seconds,
         )  # fmt: skip
+
+
+def _corner(element: object) -> str:
+    """What bends a joint element's force: a corner or, in dry friction, one that is rounded within a step."""
+    if isinstance(element, sf.Damper):
+        return "a quadratic damper" if element.quadratic != 0.0 else ""
+    return {sf.Stop: "a stop", sf.Friction: "dry friction"}.get(type(element), "")
 
 
 def with_forces(engine: SymofrosEngine, states: States) -> States:

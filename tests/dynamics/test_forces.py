@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models.rigid.random_tree import MORE_KINDS, random_tree
 from symofros.description.forces import Connection, Damper, Friction, Load, Potential, Spring, Stop, VirtualPower
 from tests.identities.test_dynamics import DIFFERENCE, STEP
-from tests.trees import MORE_KINDS, random_tree
 
 SOLID = sf.Inertia(2.0, (0.1, 0, 0), (1, 1, 1))
 

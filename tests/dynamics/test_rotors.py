@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models.rigid.random_tree import random_tree
 from symofros.description.forces import Rotor
-from tests.trees import random_tree
 
 RATIO, AXIAL, TRANSVERSE, MASS = 37.0, 3e-4, 2e-4, 0.6
 # Ratios squared multiply the rotor's inertia; rounding is relative to the largest entry.

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from reference_models.rigid.random_tree import random_rotation
 from symofros.description.values import Rotation
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
@@ -19,7 +20,6 @@ from symofros.kinematics.rotations import (
 )
 from symofros.passes.count import count_operations
 from symofros.topology.numbers import Numbers
-from tests.trees import random_rotation
 
 
 def numbers(m: Mat3 | Vec3 | Sym3, g: Graph) -> np.ndarray:

@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models.rigid.random_tree import random_tree
 from symofros.runtime import toolchain
 from symofros.runtime.build import build_library
 from symofros.runtime.toolchain import find_toolchain
-from tests.trees import random_tree
 
 SCRIPT = """
 import sys, numpy as np, symofros as sf
-from tests.trees import random_tree
+from reference_models.rigid.random_tree import random_tree
 m = sf.compile(random_tree(31))
 print(repr(float(m.mass_matrix(m.neutral()).sum())))
 """

@@ -20,7 +20,7 @@ def test_sizes_and_names(m: sf.Model) -> None:
     assert (m.nq, m.nv, m.nu, m.npar) == tuple(map(len, (m.names.q, m.names.v, m.names.u, m.names.par)))
     assert m.neutral().shape == (m.nq,)
     assert "base" in m.names.frames and "base.mount" not in m.names.frames and "mount" in m.names.frames
-    assert repr(m).startswith("Model('tree0'")
+    assert repr(m).startswith("Model('random_tree0'")
 
 
 def test_leading_dimensions_broadcast(m: sf.Model, rng: np.random.Generator) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import symofros as sf
-from tests.trees import random_inertia, random_tree
+from reference_models.rigid.random_tree import random_inertia, random_tree
 from validation.assembly import Assembly, assemble
 from validation.frames import chosen_frames
 from validation.geometry import Array

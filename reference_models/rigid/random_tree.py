@@ -1,0 +1,105 @@
+"""Random mechanisms by seed: every joint kind, arbitrary axes, placements, inertias, branches, fixed bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+import symofros as sf
+
+KINDS = ("revolute", "prismatic", "ball", "continuous", "fixed", "free")
+# Joints whose partial velocities depend on q, and those that slide along the axis they turn about.
+SERIES_KINDS = ("screw", "cylindrical", "universal", "planar")
+MORE_KINDS = (*KINDS, *SERIES_KINDS, "general")
+
+Triple = tuple[float, float, float]
+
+
+def random_tree(seed: int, n: int = 6, kinds: Sequence[str] = KINDS) -> sf.System:
+    """A mechanism of n bodies on a base; equal arguments give equal mechanisms.
+
+    Args:
+        seed: Of every choice.
+        n: Number of bodies besides the base.
+        kinds: Of joints, to be drawn from; repeat one to have it more often. The first body moves.
+    """
+    rng = np.random.default_rng(seed)
+    bodies = [sf.RigidBody("base", frames=(sf.Frame("mount", _triple(rng.uniform(-1, 1, 3)), random_rotation(rng)),))]
+    for i in range(n):
+        parent = bodies[int(rng.integers(max(0, i - 1), i + 1))]
+        kind = kinds[int(rng.integers(len(kinds)))] if i else next(k for k in kinds if k != "fixed")
+        frame = parent.frames[int(rng.integers(len(parent.frames)))].name if rng.random() < 0.5 else None
+        more: dict[str, Any] = _general_joint(rng, i) if kind == "general" else {}
+        more |= {"axis2": _triple(rng.standard_normal(3))} if kind == "universal" else {}
+        more |= {"pitch": 0.2} if kind == "screw" else {}
+        more |= {"position": _triple(rng.uniform(-0.5, 0.5, 3)), "rotation": random_rotation(rng)}
+        more |= {"axis": _random_axis(rng), "actuated": kind != "fixed" and bool(rng.random() < 0.5)}
+        joint = sf.Joint(f"q{i}", kind, parent.name, frame, **more)  # type: ignore[arg-type]
+        tip = sf.Frame("tip", _triple(rng.uniform(-0.5, 0.5, 3)), random_rotation(rng))
+        bodies.append(sf.RigidBody(f"b{i}", joint, random_inertia(rng), (tip,)))
+    return sf.System(f"random_tree{seed}", tuple(bodies), gravity=_triple(rng.uniform(-10, 10, 3)))
+
+
+def random_rotation(rng: np.random.Generator) -> sf.Rotation:
+    """None, quarter turns, or anything, in every form a rotation may be stated in but a matrix."""
+    choice = rng.integers(5)
+    if choice == 0:
+        return sf.Rotation()
+    if choice == 1:
+        return sf.Rotation.rpy(*map(float, rng.choice([0.0, np.pi / 2, -np.pi / 2, np.pi], 3)))
+    if choice == 2:
+        return sf.Rotation.quaternion(*map(float, rng.standard_normal(4)))
+    if choice == 3:
+        return sf.Rotation.axis_angle(_triple(rng.standard_normal(3)), float(rng.uniform(-3, 3)))
+    return sf.Rotation.rpy(0.0, 0.0, float(rng.uniform(-3, 3)))
+
+
+def random_inertia(rng: np.random.Generator) -> sf.Inertia:
+    """The inertia of a random cloud of points, so that it is physical."""
+    points = rng.uniform(-0.3, 0.3, (6, 3))
+    masses = rng.uniform(0.1, 1.0, 6)
+    center = masses @ points / masses.sum()
+    about_body = rng.random() < 0.3
+    r = points if about_body else points - center
+    J = sum(m * (p @ p * np.eye(3) - np.outer(p, p)) for m, p in zip(masses, r, strict=True))
+    moments = tuple(float(J[i, k]) for i, k in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
+    if about_body:
+        return sf.Inertia(float(masses.sum()), _triple(center), moments, about="body")
+    # Along turned axes, the same numbers are another, equally physical, inertia.
+    return sf.Inertia(float(masses.sum()), _triple(center), moments, rotation=random_rotation(rng))
+
+
+def _random_axis(rng: np.random.Generator) -> Triple:
+    """A coordinate axis, of any length and sign, more often than not."""
+    if rng.random() < 0.6:
+        axis = np.zeros(3)
+        axis[rng.integers(3)] = rng.choice([-1.0, 1.0, 2.0])
+        return _triple(axis)
+    return _triple(rng.standard_normal(3))
+
+
+def _general_joint(rng: np.random.Generator, i: int) -> dict[str, Any]:
+    """The user's own R_PD(q), p_PD(q) in one of several forms."""
+    a, b, c = (f"x{i}", f"y{i}", f"z{i}")
+    forms: list[dict[str, Any]] = [
+        # Euler angles and a translation: six coordinates.
+        {"coordinates": (a, b, c, f"a{i}", f"b{i}", f"c{i}"), "moving_position": (a, b, c),
+         "moving_rotation": sf.Rotation.rpy(f"a{i}", f"b{i}", f"c{i}")},
+        # A point on a helix, turned by a matrix.
+        {"coordinates": (a,), "moving_position": (f"0.3*cos({a})", f"0.3*sin({a})", f"0.1*{a}"),
+         "moving_rotation": sf.Rotation.matrix([[f"cos(2*{a})", f"-sin(2*{a})", 0],
+                                                [f"sin(2*{a})", f"cos(2*{a})", 0], [0, 0, 1]])},
+        # A turn about an axis that is not a coordinate axis, coupled to a slide.
+        {"coordinates": (a, b), "moving_position": (0, f"{a}*{b}", f"{b}^2"),
+         "moving_rotation": sf.Rotation.axis_angle((1, 2, -1), f"{a} + sin({b})")},
+        # No turn at all.
+        {"coordinates": (a, b), "moving_position": (f"sin({a})", f"{b}", f"{a}*{b}")},
+    ]  # fmt: skip
+    return forms[int(rng.integers(len(forms)))]
+
+
+def _triple(values: np.ndarray) -> Triple:
+    x, y, z = values.tolist()
+    return x, y, z
