@@ -5,6 +5,7 @@
 // "time FUNCTION SIDE REPEAT NANOSECONDS" for each repeat, per state.
 
 #include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 
 #include <dlfcn.h>
@@ -111,11 +112,16 @@ class Generated {
     std::vector<double *> out_;
 };
 
-enum What { MASS_MATRIX, BIAS, BOTH };
+enum What { MASS_MATRIX, BIAS, BOTH, DERIVATIVES };
 
 void pinocchio_run(const pin::Model &model, pin::Data &data, const States &states, What what, pin::Convention convention) {
+    const VectorXd still = VectorXd::Zero(model.nv);
     for (size_t i = 0; i < states.n; ++i) {
         const auto q = row(states.q, i, model.nq);
+        if (what == DERIVATIVES) {
+            pin::computeRNEADerivatives(model, data, q, row(states.v, i, model.nv), still);
+            continue;
+        }
         if (what != BIAS) pin::crba(model, data, q, convention);
         if (what != MASS_MATRIX) pin::nonLinearEffects(model, data, q, row(states.v, i, model.nv));
     }
@@ -169,11 +175,30 @@ int main(int argc, char **argv) {
     }
     std::printf("error mass_matrix %.3e\nerror bias %.3e\n", error_M, error_h);
 
-    const char *names[] = {"mass_matrix", "bias", "mass_matrix_and_bias"};
-    Generated *generated[] = {&mass_matrix, &bias, &both};
+    // Large models go without: their derivatives take long to compile.
+    const char *names[] = {"mass_matrix", "bias", "mass_matrix_and_bias", "inverse_dynamics_derivatives"};
+    const bool with_derivatives = sym_find(symbol(), names[DERIVATIVES], nullptr) != nullptr;
+    Generated derivatives(symbol(), with_derivatives ? names[DERIVATIVES] : "bias", states);
+    if (with_derivatives) {
+        derivatives.run();
+        double error = 0.0;
+        for (size_t i = 0; i < states.n; ++i) {
+            pin::computeRNEADerivatives(model, data, row(states.q, i, model.nq), row(states.v, i, nv), VectorXd::Zero(nv));
+            const double size_q = data.dtau_dq.cwiseAbs().maxCoeff(), size_v = data.dtau_dv.cwiseAbs().maxCoeff();
+            for (int j = 0; j < nv; ++j) {
+                for (int k = 0; k < nv; ++k) {
+                    error = worst(error, derivatives.result(0)[(i * nv + j) * nv + k], data.dtau_dq(j, k), size_q);
+                    error = worst(error, derivatives.result(1)[(i * nv + j) * nv + k], data.dtau_dv(j, k), size_v);
+                }
+            }
+        }
+        std::printf("error inverse_dynamics_derivatives %.3e\n", error);
+    }
+
+    Generated *generated[] = {&mass_matrix, &bias, &both, &derivatives};
     const int repeats = std::atoi(argv[5]);
     for (int r = 0; r < repeats; ++r) {
-        for (int f = 0; f < 3; ++f) {
+        for (int f = 0; f < (with_derivatives ? 4 : 3); ++f) {
             const What what = What(f);
             const double ours = nanoseconds([&] { generated[f]->run(); }, states.n);
             const auto theirs = [&](pin::Convention c) {
@@ -181,7 +206,7 @@ int main(int argc, char **argv) {
             };
             std::printf("time %s symofros %d %.2f\n", names[f], r, ours);
             std::printf("time %s pinocchio-local %d %.2f\n", names[f], r, theirs(pin::Convention::LOCAL));
-            if (what != BIAS) std::printf("time %s pinocchio-world %d %.2f\n", names[f], r, theirs(pin::Convention::WORLD));
+            if (what == MASS_MATRIX || what == BOTH) std::printf("time %s pinocchio-world %d %.2f\n", names[f], r, theirs(pin::Convention::WORLD));
         }
     }
     return 0;
