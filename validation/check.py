@@ -115,16 +115,14 @@ class _Check:
         self.rows: list[Comparison] = []
 
     def run(self) -> ModelResult:
-        driven = [described.joint.name for described in self.assembly.joints if described.joint.prescribed]
-        if driven:
-            # No engine has such a motion, so there is nothing to compare; that is not agreement.
-            reason = f"joint '{driven[0]}': a prescribed motion, which none of the engines can represent"
-            return failed(self.subject.label, "compile", reason)
+        obstacle = self._unsampled_motion()
+        if obstacle:
+            return failed(self.subject.label, "compile", obstacle)
         start = time.perf_counter()
         self.ours = our_c.build(self.subject)
         self.seconds["symofros"] = time.perf_counter() - start
-        self.states = with_forces(self.ours, sample(self.assembly, self.ours.model.nu, self.settings.states,
-                                                    self.settings.seed))  # fmt: skip
+        sampled = sample(self.assembly, self.ours.model.nu, self.settings.states, self.settings.seed)
+        self.states = self._with_forces(self.ours, sampled)
         if self.subject.system.constraints:
             self.states = regular(self.ours, self.states)
         self.scales = typical_scales(self.ours, self.states)
@@ -140,6 +138,22 @@ class _Check:
             self._fall(engines)
         self._second_opinion()
         return self._result(engines)
+
+    def _unsampled_motion(self) -> str:
+        """What keeps a system with a prescribed motion from being compared; that is not agreement."""
+        driven = self.assembly.driven_joints
+        if not any(isinstance(body, sf.Beam) for body in self.subject.system.bodies) and driven:
+            return f"joint '{driven[0].name}': a prescribed motion, which no engine for rigid bodies can represent"
+        for joint in driven:
+            if joint.kind in ("ball", "free"):
+                return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
+        formulas = [item for item in self.subject.system.constraints if isinstance(item, sf.Nonholonomic)]
+        if driven and formulas:
+            return f"joint '{driven[0].name}': a prescribed motion beside a condition on speeds by formula"
+        return ""
+
+    def _with_forces(self, engine: SymofrosEngine, states: States) -> States:
+        return with_forces(engine, states, len(self.subject.system.inputs) + self.assembly.motors)
 
     def _engines(self) -> Iterator[Engine]:
         for name in self.settings.routes():
@@ -178,7 +192,25 @@ class _Check:
 
     def _our_side(self, engine: Engine) -> SymofrosEngine:
         """Whom an engine is compared with: one that reads the file itself knows nothing of what we made exact."""
+        if ROUTES[engine.name].keeps_all:
+            return self.everything
         return self.verbatim if ROUTES[engine.name].reads else self.ours
+
+    def _states_of(self, engine: Engine) -> States:
+        """The states with the forces of our side; as many as the engine computes in reasonable time."""
+        states = self.states if self._our_side(engine) is not self.everything else self._everything_states
+        return states[: getattr(engine, "most_states", len(states))]
+
+    @cached_property
+    def everything(self) -> SymofrosEngine:
+        """Our model with every term of its beams kept."""
+        system = our_c.keeping_all(self.subject.system)
+        same = system == self.subject.system
+        return self.ours if same else our_c.build(replace(self.subject, system=system))
+
+    @cached_property
+    def _everything_states(self) -> States:
+        return self._with_forces(self.everything, self.states)
 
     @cached_property
     def verbatim(self) -> SymofrosEngine:
@@ -186,15 +218,15 @@ class _Check:
         return self.ours if same else our_c.build_verbatim(self.subject)
 
     def _compare(self, quantity: Quantity, engines: Sequence[Engine]) -> None:
-        sides: dict[int, Array] = {}
+        sides: dict[tuple[int, int], Array] = {}
         for engine in engines:
             if quantity.name not in engine.capabilities:
                 continue
-            side = self._our_side(engine)
-            if id(side) not in sides:
-                sides[id(side)] = compute(side, quantity, self.states)
-            ours = sides[id(side)]
-            row = self._judged(engine, quantity, ours, self.states, self.scales)
+            side, states = self._our_side(engine), self._states_of(engine)
+            if (id(side), len(states)) not in sides:
+                sides[id(side), len(states)] = compute(side, quantity, states)
+            ours = sides[id(side), len(states)]
+            row = self._judged(engine, quantity, ours, states, self.scales)
             self.rows.append(replace(row, extra={"condition": self.condition}) if quantity.name == FORWARD else row)
 
     def _judged(self, engine: Engine, quantity: Quantity, ours: Array, states: States, scales: Scales) -> Comparison:
@@ -256,11 +288,18 @@ class _Check:
         )  # fmt: skip
 
 
-def with_forces(engine: SymofrosEngine, states: States) -> States:
-    """The states with our Q(q, v, u) and Q(q, v, 0): engines take forces, not formulas."""
+def with_forces(engine: SymofrosEngine, states: States, efforts: int | None = None) -> States:
+    """The states with our Q(q, v, u) and Q(q, v, 0): engines take forces, not formulas.
+
+    Args:
+        engine: Whose Q.
+        states: Without forces.
+        efforts: How many of the inputs are forces, and none in the passive Q; None: all.
+    """
     q, v, u = states.q, states.v, states.u
     force = engine.model.generalized_force
-    return replace(states, applied=force(q, v, u), passive=force(q, v, 0.0 * u))
+    motions = np.arange(u.shape[1]) >= (u.shape[1] if efforts is None else efforts)
+    return replace(states, applied=force(q, v, u), passive=force(q, v, np.where(motions, u, 0.0)))
 
 
 def sum_of_energies(engine: Engine, states: States) -> Array:

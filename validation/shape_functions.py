@@ -1,16 +1,23 @@
-"""Shape functions written anew with NumPy and SciPy, for comparison: value, slope, curvature over x [m]."""
+"""Shape functions of beams written anew with NumPy and SciPy: value, slope, curvature over x [m].
+
+Nothing is shared with `symofros.beams`: families are stated by their textbook definitions (docs/theory/beams.md,
+section 2), as polynomials, splines and modes over the whole length.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.interpolate
 import scipy.optimize
 import scipy.special
 
-Curve = Callable[[np.ndarray], np.ndarray]
+from validation.geometry import Array
+
+# Arrays in, arrays out; polynomials and splines of NumPy and SciPy are not typed more narrowly.
+Curve = Callable[[Any], Any]
 
 
 class Shape(NamedTuple):
@@ -31,10 +38,12 @@ def stretched(value: Curve, slope: Curve, curvature: Curve, L: float, factor: fl
 
 
 def of_polynomial(p: np.polynomial.Polynomial, L: float, factor: float = 1.0) -> Shape:
+    """Factor times a polynomial of xi."""
     return stretched(p, p.deriv(), p.deriv(2), L, factor)
 
 
 def monomials(first: int, count: int, L: float) -> tuple[Shape, ...]:
+    """Powers of xi from `first` on."""
     return tuple(of_polynomial(np.polynomial.Polynomial.basis(first + k), L) for k in range(count))
 
 
@@ -72,7 +81,7 @@ def spline_breaks(dropped: int, count: int, L: float) -> tuple[float, ...]:
     return tuple(L * k / spans for k in range(1, spans))
 
 
-def cantilever_roots(count: int) -> np.ndarray:
+def cantilever_roots(count: int) -> Array:
     """Of cos b cosh b = -1."""
     guess = [(k + 0.5) * np.pi for k in range(count)]
     return np.array([
@@ -81,19 +90,57 @@ def cantilever_roots(count: int) -> np.ndarray:
 
 
 def clamped_free(count: int, L: float) -> tuple[Shape, ...]:
-    """Textbook modes of a cantilever, mean square 1; good for the lowest few, where cosh - sinh has digits."""
-    found = []
-    for b in cantilever_roots(count):
-        s = (np.sinh(b) - np.sin(b)) / (np.cosh(b) + np.cos(b))
-        found.append(stretched(
-            lambda x, b=b, s=s: np.cosh(b * x) - np.cos(b * x) - s * (np.sinh(b * x) - np.sin(b * x)),
-            lambda x, b=b, s=s: b * (np.sinh(b * x) + np.sin(b * x) - s * (np.cosh(b * x) - np.cos(b * x))),
-            lambda x, b=b, s=s: b**2 * (np.cosh(b * x) + np.cos(b * x) - s * (np.sinh(b * x) + np.sin(b * x))), L,
-        ))  # fmt: skip
-    return tuple(found)
+    """Modes of a cantilever, mean square 1."""
+    return tuple(_cantilever_mode(b, L) for b in cantilever_roots(count))
+
+
+def _cantilever_mode(b: float, L: float) -> Shape:
+    """Of cosh b xi - cos b xi - s (sinh b xi - sin b xi).
+
+    cosh - s sinh is written exp(-b xi) + k sinh b xi with k = 1 - s, which is small: nothing cancels.
+    """
+    k = (np.exp(-b) + np.cos(b) + np.sin(b)) / (np.cosh(b) + np.cos(b))
+    s = 1.0 - k
+    return stretched(
+        lambda x: np.exp(-b * x) + k * np.sinh(b * x) - np.cos(b * x) + s * np.sin(b * x),
+        lambda x: b * (k * np.cosh(b * x) - np.exp(-b * x) + np.sin(b * x) + s * np.cos(b * x)),
+        lambda x: b**2 * (np.exp(-b * x) + k * np.sinh(b * x) + np.cos(b * x) - s * np.sin(b * x)),
+        L,
+    )
+
+
+def clamped_free_twist(count: int, L: float) -> tuple[Shape, ...]:
+    """Modes of a shaft that is held at its root, mean square 1."""
+    return tuple(_shaft_mode((k + 0.5) * np.pi, L) for k in range(count))
+
+
+def _shaft_mode(a: float, L: float) -> Shape:
+    return stretched(lambda x: np.sin(a * x), lambda x: a * np.cos(a * x), lambda x: -(a**2) * np.sin(a * x), L, 2**0.5)
 
 
 def through(xi: Sequence[float], values: Sequence[float], L: float, bending: bool = True) -> Shape:
     """The cubic spline through samples, without slope (twist: curvature) at the root and curvature at the tip."""
     s = scipy.interpolate.CubicSpline(xi, values, bc_type=((1 if bending else 2, 0.0), (2, 0.0)))
     return stretched(s, s.derivative(), s.derivative(2), L)
+
+
+def of_family(family: str, count: int, L: float, bending: bool) -> tuple[tuple[Shape, ...], tuple[float, ...]]:
+    """The functions of a family in one direction, and where Gauss' intervals must end.
+
+    Args:
+        family: Any but "user".
+        count: How many.
+        L: Length of the beam [m].
+        bending: Whether for a displacement; else for twist.
+    """
+    first = 2 if bending else 1
+    if family == "spline":
+        return splines(first, count, L), spline_breaks(first, count, L)
+    if family == "clamped_free":
+        # Modes are smooth; a quarter wave an interval is what Gauss' nodes integrate to rounding.
+        spans = 2 * count
+        breaks = tuple(L * k / spans for k in range(1, spans))
+        return (clamped_free if bending else clamped_free_twist)(count, L), breaks
+    if family == "hermite":
+        return (hermite(L) if bending else monomials(1, 1, L))[:count], ()
+    return {"polynomial": monomials, "legendre": legendre}[family](first, count, L), ()
