@@ -71,7 +71,9 @@ def splines(dropped: int, count: int, L: float) -> tuple[Shape, ...]:
     found = []
     for i in range(dropped, dropped + count):
         b = scipy.interpolate.BSpline(knots, np.eye(count + dropped)[i], degree)
-        found.append(stretched(b, b.derivative(), b.derivative(2), L))
+        # A single function of twist is a straight line, which SciPy differentiates only once.
+        curvature = b.derivative(2) if degree > 1 else np.zeros_like
+        found.append(stretched(b, b.derivative(), curvature, L))
     return tuple(found)
 
 

@@ -60,7 +60,13 @@ class Translation:
         if mover.kind == "elastic":
             beam = self.system.body(mover.body)
             assert isinstance(beam, sf.Beam)
-            return Node(mover.parent, self._flexible(beam), motion=lambda _: _constant(mover.X_AP), tip=solid)
+            return Node(
+                mover.parent,
+                self._flexible(beam),
+                motion=lambda _: _constant(mover.X_AP),
+                tip=solid,
+                at=self._first(mover),
+            )
         manifold: Any = mover.kind if mover.kind in ("ball", "free") else "flat"
         across = self._across(mover)
 
@@ -70,7 +76,19 @@ class Translation:
             return p_A + R_A @ p, R_A @ R
 
         rotors = tuple(self._rotors(mover))
-        return Node(mover.parent, solid, mover.part.speeds, motion, mover.joint.prescribed, manifold, rotors)
+        return Node(
+            mover.parent, solid, mover.part.speeds, motion, mover.joint.prescribed, manifold, rotors,
+            at=self._first(mover),
+        )  # fmt: skip
+
+    def _first(self, mover: Mover) -> tuple[int, int]:
+        """Its first coordinate and speed; parts of a joint need not come in the order of its coordinates."""
+        if not mover.joint.prescribed:
+            return mover.q.start, mover.v.start
+        names = [joint.name for joint in self.assembly.driven_joints]
+        before = self.assembly.driven_joints[: names.index(mover.joint.name)]
+        q, v = (sum(len(symbols(joint)) for joint in before) for symbols in (coordinate_symbols, speed_symbols))
+        return q + mover.part.first, v + mover.part.first
 
     def _across(self, mover: Mover) -> Callable[[SX], tuple[SX, SX]]:
         """Position and rotation of the moving frame in P, of the coordinates."""

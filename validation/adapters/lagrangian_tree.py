@@ -63,6 +63,7 @@ class Node:
         prescribed: Whether the joint's motion is given.
         manifold: Of the coordinates: "ball" (quaternion x, y, z, w), "free" (position, quaternion) or "flat".
         rotors: That the joint drives.
+        at: Its first coordinate and speed, among the free or the prescribed ones; None: after those of the node before.
         tip: A rigid body fixed to the tip of a beam, in the tip's frame.
     """
 
@@ -74,6 +75,7 @@ class Node:
     manifold: Manifold = "flat"
     rotors: tuple[Rotor, ...] = ()
     tip: Solid | None = None
+    at: tuple[int, int] | None = None
 
     @property
     def coordinates(self) -> int:
@@ -188,12 +190,12 @@ class Lagrangian:
         speeds: list[SX] = []
         at = {False: (0, 0), True: (0, 0)}  # Next coordinate and speed: free, prescribed.
         for node in nodes:
-            i, k = at[node.prescribed]
+            i, k = node.at or at[node.prescribed]
             at[node.prescribed] = i + node.coordinates, k + node.count
             own = self._joint(node, i, k)
             speeds.append((x.ds if node.prescribed else x.v)[k : k + node.count])
             if isinstance(node.body, Flexible):
-                i, k = at[False]
+                i, k = (i + node.coordinates, k + node.count) if not node.prescribed else at[False]
                 at[False] = i + node.modes, k + node.modes
                 self.shown.append(self._beam(node.body, own, i, k))
                 if node.tip is not None:
