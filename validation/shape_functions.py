@@ -49,12 +49,25 @@ def monomials(first: int, count: int, L: float) -> tuple[Shape, ...]:
 
 def legendre(first: int, count: int, L: float) -> tuple[Shape, ...]:
     """xi^first times Jacobi polynomials of weight xi^(2 first), 1 at the tip."""
-    variable = np.polynomial.Polynomial([-1.0, 2.0])
-    found = []
-    for k in range(count):
-        jacobi = np.polynomial.Polynomial(scipy.special.jacobi(k, 0, 2 * first).coef[::-1])
-        found.append(of_polynomial(jacobi(variable) * np.polynomial.Polynomial.basis(first), L))
-    return tuple(found)
+    return tuple(_jacobi(first, k, L) for k in range(count))
+
+
+def _jacobi(m: int, k: int, L: float) -> Shape:
+    """Of xi^m P_k(2 xi - 1); P by its recurrence, as powers of xi would cancel digits from eight functions on."""
+
+    def P(x: Any, order: int) -> Any:
+        """The derivative of that order: a product of (k + 2 m + i)/2 and a Jacobi polynomial of lower degree."""
+        if order > k:
+            return 0.0 * x
+        factor = np.prod([(k + 2 * m + i) / 2 for i in range(1, order + 1)])
+        return factor * scipy.special.eval_jacobi(k - order, order, 2 * m + order, 2 * x - 1)
+
+    return stretched(
+        lambda x: x**m * P(x, 0),
+        lambda x: m * x ** (m - 1) * P(x, 0) + 2 * x**m * P(x, 1),
+        lambda x: m * (m - 1) * x ** max(m - 2, 0) * P(x, 0) + 4 * m * x ** (m - 1) * P(x, 1) + 4 * x**m * P(x, 2),
+        L,
+    )
 
 
 def hermite(L: float) -> tuple[Shape, ...]:

@@ -17,7 +17,8 @@ import numpy as np
 import symofros as sf
 from validation.adapters.description import StatedForces
 from validation.adapters.lagrangian_model import Translation
-from validation.adapters.lagrangian_tree import GROUND, WORLD, Lagrangian, Pose, rate_of, turning_of
+from validation.adapters.lagrangian_motion import GROUND, Pose
+from validation.adapters.lagrangian_tree import WORLD, Lagrangian, rate_of, turning_of
 from validation.assembly import Assembly, assemble
 from validation.geometry import Array, skew
 from validation.interface import States, Subject, TreeEngine, Unsupported
@@ -28,7 +29,7 @@ NAME = "lagrangian"
 VERSION = f"casadi {version('casadi')}"
 
 # Evaluations of the momentum that one batch of mass matrices may take: some seconds for a model of 50 speeds.
-MOST_COLUMNS = 10_000
+MOST_COLUMNS = 20_000
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ class LagrangianEngine:
         return np.asarray(rate - self.frame_jacobian(states) @ self._speeds_turning(states)[:, None])
 
     def _speeds_turning(self, states: States) -> Array:
-        """The rate of T in v = T e' (N, nv, nv): -1/2 v x u for every u, where speeds are no rates."""
+        """The rate of T in v = T e' (N, nv, nv), where speeds are no rates (`lagrangian_motion`)."""
         turning = np.zeros((*states.v.shape, states.v.shape[1]))
         for mover in self.stated.assembly.movers:
             if mover.kind in ("ball", "free") and not mover.joint.prescribed:

@@ -13,7 +13,8 @@ import symofros as sf
 from validation import shape_functions as families
 from validation.adapters.description import evaluate
 from validation.adapters.lagrangian_beam import POINTS, SX, Flexible, Line, rotation_about
-from validation.adapters.lagrangian_tree import WORLD, Node, Rotor, Solid, Symbols, quaternion_rotation
+from validation.adapters.lagrangian_motion import Manifold, quaternion_rotation
+from validation.adapters.lagrangian_tree import WORLD, Node, Rotor, Solid, Symbols
 from validation.assembly import Assembly, Mover
 from validation.geometry import Array, Placement
 from validation.parts import coordinate_symbols, rate_symbols, speed_symbols
@@ -67,7 +68,7 @@ class Translation:
                 tip=solid,
                 at=self._first(mover),
             )
-        manifold: Any = mover.kind if mover.kind in ("ball", "free") else "flat"
+        manifold: Manifold = mover.kind if mover.kind == "ball" or mover.kind == "free" else "flat"
         across = self._across(mover)
 
         def motion(x: SX) -> tuple[SX, SX]:
