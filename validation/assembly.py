@@ -53,8 +53,8 @@ class Mover:
         parent: Index of the moving body that carries it, or BASE.
         X_AP: The joint's proximal frame in the parent's body frame.
         axis: Unit axis in P (3,); meaningless for ball and free joints.
-        q: Slice of our coordinates.
-        v: Slice of our speeds.
+        q: Slice of our coordinates; empty where the motion is prescribed.
+        v: Slice of our speeds, likewise.
         pitch: Of a screw [m/rad].
         length: Of a beam whose elastic coordinates it stands for [m].
         masses: Of the body and of everything fixed to it.
@@ -108,7 +108,7 @@ class FrameSite:
 
 @dataclass(frozen=True)
 class Described:
-    """A joint as described, with its slices of our coordinates and speeds."""
+    """A joint as described, with its slices of our coordinates and speeds; empty where its motion is prescribed."""
 
     joint: sf.Joint
     q: slice
@@ -136,6 +136,22 @@ class Assembly:
     gravity: Array
     nq: int
     nv: int
+
+    @property
+    def free_joints(self) -> list[Described]:
+        """Those whose motion is not prescribed."""
+        return [described for described in self.joints if not described.joint.prescribed]
+
+    @property
+    def driven_joints(self) -> list[sf.Joint]:
+        """Those whose motion is: their coordinates, speeds and rates are inputs after all others, joint by joint."""
+        return [described.joint for described in self.joints if described.joint.prescribed]
+
+    @property
+    def motors(self) -> int:
+        """How many inputs actuated joints add, between the named ones and prescribed motions."""
+        free = [described for described in self.free_joints if described.joint.actuated]
+        return sum(described.v.stop - described.v.start for described in free)
 
     def leaves(self) -> list[int]:
         """Moving bodies that carry no other."""
@@ -192,7 +208,7 @@ class _Builder:
                 self._add_mover(body, body.joint, mover, X_BF)
                 mover, X_BF = len(self.movers) - 1, Placement.identity()
             root = (mover, X_BF)
-            if isinstance(body, sf.Beam) and body.modes:
+            if isinstance(body, sf.Beam):
                 self._add_elastic(body, *root)
                 mover, X_BF = len(self.movers) - 1, Placement.identity()
             self._add_mass(body, mover, X_BF)
@@ -219,14 +235,18 @@ class _Builder:
         pitch = float(self.numbers([joint.pitch])[0])
         q, v = (self.joints[-1].q.stop, self.joints[-1].v.stop) if self.joints else (0, 0)
         nq, nv = sum(part.coordinates for part in parts), sum(part.speeds for part in parts)
+        if joint.prescribed:
+            nq = nv = 0
         self.joints.append(Described(joint, slice(q, q + nq), slice(v, v + nv)))
         for i, part in enumerate(parts):
             axis = self.numbers(part.axis)
             if part.coordinates == 1:
                 axis = axis / np.linalg.norm(axis)
             name = joint.name if len(parts) == 1 else coordinate_symbols(joint)[part.first]
-            q_part = slice(q + part.first, q + part.first + part.coordinates)
-            v_part = slice(v + part.first, v + part.first + part.speeds)
+            q_part, v_part = slice(q, q), slice(v, v)
+            if not joint.prescribed:
+                q_part = slice(q + part.first, q + part.first + part.coordinates)
+                v_part = slice(v + part.first, v + part.first + part.speeds)
             self.movers.append(Mover(body.name, name, joint, part, i > 0, parent, X_AP, axis, q_part, v_part, pitch))
             parent, X_AP = len(self.movers) - 1, Placement.identity()
 

@@ -7,7 +7,7 @@ import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property, partial
+from functools import partial
 from typing import cast
 
 import numpy as np
@@ -25,7 +25,9 @@ from validation.geometry import Array
 from validation.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
 from validation.motion import MOTIONS, Motion, fall, judge_drift
 from validation.quantities import CONSTRAINED, FRAME_QUANTITIES, MOTION_ENERGY, QUANTITIES, Quantity
+from validation.retained import judge_order, left_out
 from validation.sampling import DEFAULT_STATES, sample
+from validation.sides import Sides
 
 FORWARD = "forward_dynamics"
 SOLVED = (FORWARD, "multipliers")
@@ -116,18 +118,17 @@ class _Check:
         self.rows: list[Comparison] = []
 
     def run(self) -> ModelResult:
-        driven = [described.joint.name for described in self.assembly.joints if described.joint.prescribed]
-        if driven:
-            # No engine has such a motion, so there is nothing to compare; that is not agreement.
-            reason = f"joint '{driven[0]}': a prescribed motion, which none of the engines can represent"
-            return failed(self.subject.label, "compile", reason)
+        obstacle = self._unsampled_motion()
+        if obstacle:
+            return failed(self.subject.label, "compile", obstacle)
         start = time.perf_counter()
         self.ours = our_c.build(self.subject)
         self.seconds["symofros"] = time.perf_counter() - start
-        self.states = with_forces(self.ours, sample(self.assembly, self.ours.model.nu, self.settings.states,
-                                                    self.settings.seed))  # fmt: skip
+        sampled = sample(self.assembly, self.ours.model.nu, self.settings.states, self.settings.seed)
         if self.subject.system.constraints:
-            self.states = regular(self.ours, self.states)
+            sampled = regular(self.ours, sampled)
+        self.sides = Sides(self.subject, self.assembly, self.ours, sampled)
+        self.states = self.sides.states
         self.scales = typical_scales(self.ours, self.states)
         self.condition = worst_condition(self.ours, self.states)
         engines = list(self._engines())
@@ -139,13 +140,30 @@ class _Check:
             self._compare(quantity, engines)
         if self._can_be_solved() and not self.subject.system.constraints:
             self._fall(engines)
+        self._retained()
         self._second_opinion()
         return self._result(engines)
+
+    def _has_beams(self) -> bool:
+        return any(isinstance(body, sf.Beam) for body in self.subject.system.bodies)
+
+    def _unsampled_motion(self) -> str:
+        """What keeps a system with a prescribed motion from being compared; that is not agreement."""
+        driven = self.assembly.driven_joints
+        if driven and not self._has_beams():
+            return f"joint '{driven[0].name}': a prescribed motion, which no engine for rigid bodies can represent"
+        for joint in driven:
+            if joint.kind in ("ball", "free"):
+                return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
+        formulas = [item for item in self.subject.system.constraints if isinstance(item, sf.Nonholonomic)]
+        if driven and formulas:
+            return f"joint '{driven[0].name}': a prescribed motion beside a condition on speeds by formula"
+        return ""
 
     def _engines(self) -> Iterator[Engine]:
         for name in self.settings.routes():
             route = ROUTES[name]
-            if route.reads and route.reads != self.subject.format:
+            if (route.reads and route.reads != self.subject.format) or (route.beams and not self._has_beams()):
                 continue
             factory = self.factories[name]
             engine = Unsupported(factory.reason) if isinstance(factory, Missing) else self._build(name, factory)
@@ -180,31 +198,25 @@ class _Check:
         """Whether M has an inverse in all states; a file's impossible inertias may leave it none."""
         return math.isfinite(self.condition)
 
-    def _our_side(self, engine: Engine) -> SymofrosEngine:
-        """Whom an engine is compared with: one that reads the file itself knows nothing of what we made exact."""
-        return self.verbatim if ROUTES[engine.name].reads else self.ours
-
-    @cached_property
-    def verbatim(self) -> SymofrosEngine:
-        same = self.subject.verbatim == self.subject.system
-        return self.ours if same else our_c.build_verbatim(self.subject)
-
     def _compare(self, quantity: Quantity, engines: Sequence[Engine]) -> None:
-        sides: dict[int, Array] = {}
+        sides: dict[tuple[int, int], Array] = {}
         for engine in engines:
             if quantity.name not in engine.capabilities:
                 continue
-            side = self._our_side(engine)
-            if id(side) not in sides:
-                sides[id(side)] = compute(side, quantity, self.states)
-            ours = sides[id(side)]
-            row = self._judged(engine, quantity, ours, self.states, self.scales)
+            side, states = self.sides.of(engine), self.sides.states_of(engine)
+            if (id(side), len(states)) not in sides:
+                sides[id(side), len(states)] = compute(side, quantity, states)
+            ours = sides[id(side), len(states)]
+            row = self._judged(engine, quantity, ours, states, self.scales)
+            if len(states) < len(self.states) and not row.note:
+                row = replace(row, note=f"the first {len(states)} of {len(self.states)} states: each takes long")
             self.rows.append(replace(row, extra={"condition": self.condition}) if quantity.name == FORWARD else row)
 
     def _judged(self, engine: Engine, quantity: Quantity, ours: Array, states: States, scales: Scales) -> Comparison:
         start = time.perf_counter()
         reference = self._value(engine, quantity, states)
         self.seconds[engine.name] += time.perf_counter() - start
+        quantity = replace(quantity, tolerance=max(quantity.tolerance, self.sides.tolerance(engine)))
         errors = state_errors(quantity, ours, reference, scales)
         row = judge(self.subject.label, engine.name, quantity, errors)
         if quantity.name in SOLVED and not row.ok and EPS * self.condition > quantity.tolerance:
@@ -232,10 +244,13 @@ class _Check:
         scales = replace(self.scales, energy=motion.scale)
         for engine in engines:
             if {"kinetic_energy", "potential_energy"} <= engine.capabilities:
-                ours = sum_of_energies(self._our_side(engine), motion.states)
+                ours = sum_of_energies(self.sides.of(engine), motion.states)
                 self.rows.append(self._judged(engine, MOTION_ENERGY, ours, motion.states, scales))
 
     def _drift(self, motion: Motion) -> Comparison:
+        for order in left_out(self.subject.system):
+            reason = f"beams of {order.replace('_', ' ')} conserve energy only up to the terms they leave out"
+            return Comparison(self.subject.label, "symofros", "energy_drift", "unsupported", note=reason)
         joints = [described.joint for described in self.assembly.joints]
         used = sorted({kind for joint in joints for formula in joint.effort for kind in kinds(formula)} & _CORNERS)
         bent = sorted({corner for joint in joints for item in joint.elements if (corner := _corner(item))})
@@ -244,6 +259,13 @@ class _Check:
             reason = f"{where}: no integrator keeps its order across a corner"
             return Comparison(self.subject.label, "symofros", "energy_drift", "unsupported", note=reason)
         return judge_drift(self.subject.label, motion)
+
+    def _retained(self) -> None:
+        """What ties a model whose beams leave terms out to the one that engines for beams are compared with."""
+        for order in left_out(self.subject.system)[:1]:
+            everything = self.sides.everything
+            row = judge_order(self.subject.label, order, self.assembly, self.ours, everything, self.states)
+            self.rows.append(row)
 
     def _second_opinion(self) -> None:
         """Agreement with nobody is no agreement."""
@@ -267,13 +289,6 @@ def _corner(element: object) -> str:
     if isinstance(element, sf.Damper):
         return "a quadratic damper" if element.quadratic != 0.0 else ""
     return {sf.Stop: "a stop", sf.Friction: "dry friction"}.get(type(element), "")
-
-
-def with_forces(engine: SymofrosEngine, states: States) -> States:
-    """The states with our Q(q, v, u) and Q(q, v, 0): engines take forces, not formulas."""
-    q, v, u = states.q, states.v, states.u
-    force = engine.model.generalized_force
-    return replace(states, applied=force(q, v, u), passive=force(q, v, 0.0 * u))
 
 
 def sum_of_energies(engine: Engine, states: States) -> Array:

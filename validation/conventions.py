@@ -42,6 +42,8 @@ DIFFERENCES = (
     Difference("pinocchio-urdf", "continuous joint", "q = angle", "q = (cos, sin)"),
     Difference("mujoco-urdf", "angles in the model", "radians", "degrees, unless the compiler is told otherwise"),
     Difference("mujoco-mjcf", "potential energy", "of what moves", "of everything with mass, moving or not"),
+    Difference("lagrangian", "terms of beams", "up to the order described", "all: compared with our model of all"),
+    Difference("lagrangian", "functions stated by the user's formulas", "interpolated", "differentiated as they are"),
 )
 
 Encoding = Literal["same", "cos_sin", "wxyz", "free_in_world", "free_in_parent"]

@@ -5,7 +5,7 @@ Everything crosses this border in SYMOFROS conventions (`symofros/NOTATION.md`);
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Literal, Protocol
 
@@ -50,6 +50,10 @@ class States:
     def __len__(self) -> int:
         """The number of states."""
         return len(self.q)
+
+    def __getitem__(self, chosen: slice) -> States:
+        """Some of the states."""
+        return States(*(getattr(self, item.name)[chosen] for item in fields(self)))
 
     def at_rest(self) -> States:
         """The same configurations with v = 0."""

@@ -65,6 +65,11 @@ def speed_symbols(joint: sf.Joint) -> tuple[str, ...]:
     return tuple(f"d{name}" for name in coordinate_symbols(joint))
 
 
+def rate_symbols(joint: sf.Joint) -> tuple[str, ...]:
+    """What inputs call the rates of the speeds of a prescribed joint."""
+    return tuple(f"d{name}" for name in speed_symbols(joint))
+
+
 def series(joint: sf.Joint) -> list[Part]:
     """The simple joints that a joint is made of, from the parent outwards."""
     axis = joint.axis

@@ -70,7 +70,9 @@ def _render(template: str, record: Record, **more: object) -> str:
 
 def _rounded(record: Record) -> list[Comparison]:
     """The comparisons that nothing but rounding stands between."""
-    return [row for row in record.compared if row.quantity not in ("forward_dynamics", "energy_drift")]
+    return [
+        row for row in record.compared if row.quantity not in ("forward_dynamics", "energy_drift", "retained_order")
+    ]
 
 
 def _short(number: float | None) -> str:

@@ -39,7 +39,8 @@ def sample(assembly: Assembly, nu: int, count: int = DEFAULT_STATES, seed: int =
     rng = np.random.default_rng([seed, zlib.crc32(assembly.name.encode())])
     q = np.empty((count, assembly.nq))
     for mover in assembly.movers:
-        q[:, mover.q] = _coordinates(mover, rng, count)
+        if not mover.joint.prescribed:
+            q[:, mover.q] = _coordinates(mover, rng, count)
     v = rng.uniform(-SPEED, SPEED, (count, assembly.nv))
     a = rng.uniform(-ACCELERATION, ACCELERATION, (count, assembly.nv))
     u = rng.uniform(-INPUT, INPUT, (count, nu))
@@ -65,7 +66,7 @@ def _coordinates(mover: Mover, rng: np.random.Generator, count: int) -> Array:
         return rng.uniform(-SLIDE, SLIDE, (count, mover.part.coordinates))
     if mover.kind == "elastic":
         n = mover.part.coordinates
-        return rng.uniform(-DEFLECTION / n, DEFLECTION / n, (count, n)) * min(1.0, mover.length)
+        return rng.uniform(-DEFLECTION, DEFLECTION, (count, n)) / max(n, 1) * min(1.0, mover.length)
     quaternion = rng.standard_normal((count, 4))  # Normal in four directions: uniform on the sphere.
     quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
     if mover.kind == "ball":

@@ -10,7 +10,8 @@ import pytest
 
 import symofros as sf
 from tests.beams.cases import FREE, GRAVITY, L, pair, six
-from tests.beams.lagrangian import Lagrangian, Line
+from validation.adapters.lagrangian_beam import Line
+from validation.adapters.lagrangian_tree import Lagrangian
 
 TOLERANCE = 1e-13
 FORCES: dict[str, tuple[sf.BeamLoad, Line]] = {

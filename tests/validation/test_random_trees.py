@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 import symofros as sf
 from validation.adapters import interpreted, mujoco, pinocchio
 from validation.assembly import assemble
-from validation.check import with_forces
 from validation.compare import compute, state_errors, typical_scales
 from validation.interface import Subject, Unsupported
 from validation.quantities import EVERYTHING, QUANTITIES
 from validation.sampling import sample
+from validation.sides import with_forces
 
 STATES = 12
 KINDS = ("revolute", "prismatic", "ball", "free", "fixed", "universal", "cylindrical", "planar", "screw", "euler")

@@ -17,11 +17,13 @@ class Route:
         module: The adapter; its `build` is the factory.
         reads: It reads files of this format by itself, and has nothing to say of other models.
         independent: It shares no equations with us; agreement with it is evidence.
+        beams: It is asked for systems with beams only, and compared with our model that keeps all their terms.
     """
 
     module: str
     reads: Format = ""
     independent: bool = True
+    beams: bool = False
 
 
 # In the order of reports. The generated C itself is not among them: it is what they are compared with.
@@ -31,6 +33,7 @@ ROUTES: dict[str, Route] = {
     "pinocchio-urdf": Route("validation.adapters.pinocchio_urdf", reads="urdf"),
     "mujoco-urdf": Route("validation.adapters.mujoco_urdf", reads="urdf"),
     "mujoco-mjcf": Route("validation.adapters.mujoco_mjcf", reads="mjcf"),
+    "lagrangian": Route("validation.adapters.lagrangian", beams=True),
     "interpreted": Route("validation.adapters.interpreted", independent=False),
     "description": Route("validation.adapters.description", independent=False),
 }

@@ -37,11 +37,11 @@ class SymofrosEngine:
 
     def mass_matrix(self, states: States) -> Array:
         """M."""
-        return self.model.mass_matrix(states.q)
+        return self.model.mass_matrix(states.q, u=states.u)
 
     def bias(self, states: States) -> Array:
         """The bias h."""
-        return self.model.bias(states.q, states.v)
+        return self.model.bias(states.q, states.v, u=states.u)
 
     def generalized_force(self, states: States) -> Array:
         """Q."""
@@ -49,15 +49,15 @@ class SymofrosEngine:
 
     def kinetic_energy(self, states: States) -> Array:
         """T."""
-        return self.model.kinetic_energy(states.q, states.v)
+        return self.model.kinetic_energy(states.q, states.v, u=states.u)
 
     def potential_energy(self, states: States) -> Array:
         """V."""
-        return self.model.potential_energy(states.q)
+        return self.model.potential_energy(states.q, u=states.u)
 
     def inverse_dynamics(self, states: States) -> Array:
         """M a + h - Q(q, v, 0), with the model's own Q."""
-        return self.model.inverse_dynamics(states.q, states.v, states.a)
+        return self.model.inverse_dynamics(states.q, states.v, states.a, u=states.u)
 
     def forward_dynamics(self, states: States) -> Array:
         """M^-1 (Q - h), with the model's own Q."""
@@ -69,15 +69,15 @@ class SymofrosEngine:
 
     def constraint(self, states: States) -> Array:
         """Residuals of the constraints."""
-        return self.model.constraint(states.q)
+        return self.model.constraint(states.q, u=states.u)
 
     def constraint_jacobian(self, states: States) -> Array:
         """G."""
-        return self.model.constraint_jacobian(states.q)
+        return self.model.constraint_jacobian(states.q, u=states.u)
 
     def constraint_bias(self, states: States) -> Array:
         """What G v' equals."""
-        return self.model.constraint_bias(states.q, states.v)
+        return self.model.constraint_bias(states.q, states.v, u=states.u)
 
     def _frames(self, one: Callable[[str], Array]) -> Array:
         return np.stack([one(frame) for frame in self.frames], axis=1)
@@ -86,26 +86,28 @@ class SymofrosEngine:
         """Position, then rotation row by row."""
 
         def one(frame: str) -> Array:
-            p, R = self.model.frame_pose(frame, states.q)
+            p, R = self.model.frame_pose(frame, states.q, u=states.u)
             return np.concatenate([p, R.reshape(-1, 9)], axis=1)
 
         return self._frames(one)
 
     def frame_velocity(self, states: States) -> Array:
         """Linear, angular."""
-        return self._frames(lambda frame: self.model.frame_velocity(frame, states.q, states.v))
+        return self._frames(lambda frame: self.model.frame_velocity(frame, states.q, states.v, u=states.u))
 
     def frame_acceleration(self, states: States) -> Array:
         """Linear, angular."""
-        return self._frames(lambda frame: self.model.frame_acceleration(frame, states.q, states.v, states.a))
+        return self._frames(
+            lambda frame: self.model.frame_acceleration(frame, states.q, states.v, states.a, u=states.u)
+        )
 
     def frame_jacobian(self, states: States) -> Array:
         """Of the frame's velocity."""
-        return self._frames(lambda frame: self.model.frame_jacobian(frame, states.q))
+        return self._frames(lambda frame: self.model.frame_jacobian(frame, states.q, u=states.u))
 
     def frame_jacobian_rate(self, states: States) -> Array:
         """Its time derivative."""
-        return self._frames(lambda frame: self.model.frame_jacobian_rate(frame, states.q, states.v))
+        return self._frames(lambda frame: self.model.frame_jacobian_rate(frame, states.q, states.v, u=states.u))
 
 
 def build(subject: Subject) -> SymofrosEngine:
@@ -128,6 +130,12 @@ def build_verbatim(subject: Subject) -> SymofrosEngine:
     frames = subject.frames if FRAME_QUANTITIES & compared else ()
     model = sf.compile(subject.verbatim, sf.Options(functions=functions, frames=frames))
     return SymofrosEngine(NAME, model, frames)
+
+
+def keeping_all(system: sf.System) -> sf.System:
+    """The system with every term of its beams kept; itself if they do already."""
+    bodies = [replace(body, retain="all") if isinstance(body, sf.Beam) else body for body in system.bodies]
+    return replace(system, bodies=tuple(bodies))
 
 
 def build_weightless(subject: Subject) -> sf.Model | None:

@@ -12,7 +12,7 @@ import symofros as sf
 from validation.assembly import Assembly, assemble
 from validation.geometry import Array
 from validation.interface import States, Subject, Unsupported
-from validation.parts import coordinate_symbols, speed_symbols
+from validation.parts import coordinate_symbols, rate_symbols, speed_symbols
 from validation.quantities import FORCES_STATED
 
 NAME = "description"
@@ -37,14 +37,10 @@ class StatedForces:
 
     def generalized_force(self, states: States) -> Array:
         """Q (N, nv)."""
-        values: dict[str, Any] = {"pi": np.pi, "t": 0.0, **self.system.parameter_values()}
-        values |= {item.name: states.u[:, i] for i, item in enumerate(self.system.inputs)}
-        for described in self.assembly.joints:
-            values |= dict(zip(coordinate_symbols(described.joint), states.q[:, described.q].T, strict=True))
-            values |= dict(zip(speed_symbols(described.joint), states.v[:, described.v].T, strict=True))
+        values = self.values(states)
         Q = np.zeros_like(states.v)
         motor = len(self.system.inputs)
-        for described in self.assembly.joints:
+        for described in self.assembly.free_joints:
             joint, start = described.joint, described.v.start
             for i, effort in enumerate(joint.effort):
                 Q[:, start + i] += evaluate(effort, values)
@@ -58,9 +54,32 @@ class StatedForces:
                 motor += size
         return Q + self._by_power(values, Q.shape)
 
+    def stored_energy(self, states: States) -> Array:
+        """The energy of joints' springs and stops (N,) [J]."""
+        values, total = self.values(states), np.zeros(len(states))
+        for described in self.assembly.free_joints:
+            for element in described.joint.elements:
+                if isinstance(element, sf.Spring | sf.Stop):
+                    total += element_energy(element, states.q[:, described.q.start + element.coordinate], values)
+        return total
+
+    def values(self, states: States) -> dict[str, Any]:
+        """What formulas' symbols stand for, one value a state."""
+        values: dict[str, Any] = {"pi": np.pi, "t": 0.0, **self.system.parameter_values()}
+        values |= {item.name: states.u[:, i] for i, item in enumerate(self.system.inputs)}
+        for described in self.assembly.free_joints:
+            values |= dict(zip(coordinate_symbols(described.joint), states.q[:, described.q].T, strict=True))
+            values |= dict(zip(speed_symbols(described.joint), states.v[:, described.v].T, strict=True))
+        motion = len(self.system.inputs) + self.assembly.motors
+        for joint in self.assembly.driven_joints:
+            for symbol in (*coordinate_symbols(joint), *speed_symbols(joint), *rate_symbols(joint)):
+                values[symbol] = states.u[:, motion]
+                motion += 1
+        return values
+
     def _by_power(self, values: Mapping[str, Any], shape: tuple[int, ...]) -> Array:
         """Forces stated by their virtual power, each on the speed it names."""
-        speeds = [name for described in self.assembly.joints for name in speed_symbols(described.joint)]
+        speeds = [name for described in self.assembly.free_joints for name in speed_symbols(described.joint)]
         Q = np.zeros(shape)
         for power in self.system.virtual_power:
             for speed, formula in power.forces:
@@ -95,15 +114,31 @@ def element_force(element: Any, x: Any, v: Array, values: Mapping[str, Any]) -> 
     return np.asarray(-level * np.tanh(v / slow) - number("viscous") * v)
 
 
-def evaluate(formula: sf.Expression | float, values: Mapping[str, Any]) -> Any:
-    """The value of a formula where symbols are arrays."""
+def element_energy(element: sf.Spring | sf.Stop, x: Array, values: Mapping[str, Any]) -> Array:
+    """What a spring or stop stores, from its definition."""
+    if isinstance(element, sf.Spring):
+        stretch = x - evaluate(element.rest, values)
+        stiffness, cubic = evaluate(element.stiffness, values), evaluate(element.cubic, values)
+        return np.asarray(stiffness * stretch**2 / 2 + cubic * stretch**4 / 4)
+    energy = np.zeros_like(x)
+    for limit, side in ((element.upper, 1.0), (element.lower, -1.0)):
+        if limit is not None:
+            beyond = np.maximum(side * (x - evaluate(limit, values)), 0.0)
+            energy += evaluate(element.stiffness, values) * beyond**2 / 2
+    return energy
+
+
+def evaluate(
+    formula: sf.Expression | float, values: Mapping[str, Any], rules: Mapping[str, Callable[..., Any]] = _NUMPY
+) -> Any:
+    """The value of a formula where symbols are arrays, or what the rules of its operations take."""
     if not isinstance(formula, sf.Expression):
         return formula
     if formula.kind == "number":
         return formula.number
     if formula.kind == "symbol":
         return values[formula.name]
-    return _NUMPY[formula.kind](*(evaluate(arg, values) for arg in formula.args))
+    return rules[formula.kind](*(evaluate(arg, values, rules) for arg in formula.args))
 
 
 def build(subject: Subject) -> StatedForces | Unsupported:

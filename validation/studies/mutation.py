@@ -23,13 +23,13 @@ from symofros.expr.program import Function
 from validation.adapters import ROUTES, Missing, available, description
 from validation.adapters.interpreted import build as interpreted
 from validation.assembly import assemble
-from validation.check import with_forces
 from validation.compare import Scales, compute, state_errors, typical_scales
 from validation.frames import chosen_frames
 from validation.geometry import Array
 from validation.interface import Engine, States, Subject, Unsupported
 from validation.quantities import FORCES_STATED, FRAME_QUANTITIES, QUANTITIES, Quantity
 from validation.sampling import sample
+from validation.sides import with_forces
 from validation.studies.faults import Bench, Fault, faults_at
 
 STATES = 60
