@@ -1,0 +1,76 @@
+"""Assembly: loops close near the guess, what is held stays, what can't close is said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from reference_models.closed.spatial import delta_guess, stewart_guess
+
+FUNCTIONS = sf.Options(
+    functions=("constraint", "constraint_rate", "constraint_jacobian", "constraint_bias", "frame_pose")
+)
+GUESSES = {
+    "four_bar": [1.2, -1.0, 1.3],
+    "slider_crank": [0.5, -0.7, 0.4],
+    "parallelogram": [1.0, -0.9, 1.1, 1.0],
+    "bricard": [0.1, -0.1, 0.1, -0.1, 0.1],
+    "stewart": stewart_guess(),
+    "delta": delta_guess(),
+}
+
+
+@pytest.mark.parametrize("name", GUESSES)
+def test_loops_close(name: str) -> None:
+    m = sf.compile(MODELS[name], FUNCTIONS)
+    wished = np.random.default_rng(0).normal(size=m.nv)
+    found = sf.assemble(m, GUESSES[name], wished)
+    assert np.abs(m.constraint(found.q)).max() <= 1e-12 and np.abs(m.constraint_rate(found.q, found.v)).max() < 1e-10
+    # Speeds change by the least that is needed: the change has no part along motions that the constraints allow.
+    G = m.constraint_jacobian(found.q)
+    change = found.v - wished
+    assert np.linalg.norm(change - np.linalg.pinv(G, rcond=1e-8) @ (G @ change)) < 1e-9 * np.linalg.norm(wished)
+
+
+def test_what_is_held_stays() -> None:
+    m = sf.compile(MODELS["four_bar"], FUNCTIONS)
+    found = sf.assemble(m, [1.2, -1.0, 1.3], [2.0, 0.0, 0.0], held=["q1"])
+    assert found.q[0] == 1.2 and found.v[0] == 2.0 and found.v[2] == pytest.approx(2.0)
+
+
+def test_out_of_reach_names_the_condition() -> None:
+    m = sf.compile(MODELS["slider_crank"], FUNCTIONS).with_parameters(L2=0.05)
+    with pytest.raises(sf.AssemblyError, match=r"phi = .* at 'gudgeon\.y'; held: turn"):
+        sf.assemble(m, [1.5, -1.5, 0.0], held=["turn"])
+
+
+def test_speeds_that_can_not_be() -> None:
+    m = sf.compile(MODELS["four_bar"], FUNCTIONS)
+    with pytest.raises(sf.AssemblyError, match="no speeds keep it closed"):
+        sf.assemble(m, [1.2, -1.2, 1.2], [1.0, 0.0, 0.0], held=["q1", "q3"])
+
+
+def test_contradicting_closures() -> None:
+    system = MODELS["four_bar"]
+    other = sf.Rod("too_long", ("crank", "end"), ("rocker", "end"), 1.5)
+    m = sf.compile(replace(system, constraints=(*system.constraints, other)), FUNCTIONS)
+    with pytest.raises(sf.AssemblyError, match="can't be assembled"):
+        sf.assemble(m, [1.2, -1.0, 1.3])
+
+
+def test_the_wrong_way_round() -> None:
+    body = sf.RigidBody("b", sf.Joint("q", "revolute"), sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1)))
+    shut = sf.Closure("latch", ("world", None), ("b", None), (), ("z", "x", "y"))
+    m = sf.compile(sf.System("s", (body,), constraints=(shut,)), FUNCTIONS)
+    assert sf.assemble(m, [0.4]).q[0] == pytest.approx(0.0, abs=1e-12)
+    with pytest.raises(sf.AssemblyError, match="'latch' is closed the wrong way round"):
+        sf.assemble(m, [np.pi - 0.1])
+
+
+def test_unknown_names() -> None:
+    with pytest.raises(sf.UnknownNameError, match="did you mean 'q1'"):
+        sf.assemble(sf.compile(MODELS["four_bar"], FUNCTIONS), held=["q11"])
