@@ -7,7 +7,8 @@ import numpy as np
 from reference_models import MODELS
 from tests.reference.motion import Array, reference
 
-# Armstrong, Khatib and Burdick 1986, tables A1 and A2: gravity constants [N m], inertial constants [kg m^2].
+# Armstrong, Khatib and Burdick 1986, appendix: gravity constants [N m] and inertial constants [kg m^2], as they are
+# quoted from it; the print itself was not at hand, but each follows from the parameters to the digits quoted.
 G = (-37.2, -8.44, 1.02, 0.249, -0.0282)
 J = {2: 1.75, 4: 0.69, 5: 0.372, 6: 0.333, 7: 0.298, 8: -0.134, 9: 0.0238, 10: -0.0213, 11: -0.0142, 12: -0.011,
      13: -0.00379, 14: 0.00164, 15: 0.00125, 16: 0.00124, 17: 0.000642, 23: 0.00004}  # fmt: skip
@@ -57,7 +58,7 @@ def test_mass_matrix_is_the_published_one() -> None:
 def test_inertia_about_the_vertical_varies_as_published() -> None:
     """The first element as a sum of the paper's functions: coefficients by least squares against its constants.
 
-    The functions' coefficients 1 and cos(q2)^2 are left free: joint 1's own inertia is in them.
+    The coefficients of 1 and of cos(q2)^2 are left free: no print of these two constants was at hand to check them by.
     """
     puma = reference("puma560")
     functions, values = [], []
