@@ -8,13 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from symofros.atomic import write_atomically
-from symofros.description import files
-from symofros.description.files import read_yaml, write_yaml
-from symofros.description.mjcf import read_mjcf
+from symofros.description.mjcf.reader import read_mjcf
+from symofros.description.native import files
+from symofros.description.native.files import read_yaml, write_yaml
 from symofros.description.reading import Reading, in_order
 from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
-from symofros.description.urdf import SNAP_TOL, read_urdf
+from symofros.description.urdf.reader import SNAP_TOL, read_urdf
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.topology.graph import find_problems
 from symofros.topology.numbers import Numbers

@@ -11,8 +11,8 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from reference_models.rigid.random_tree import MORE_KINDS, random_tree
-from symofros.description.files import read_yaml
-from symofros.description.yaml_writer import write_yaml
+from symofros.description.native.files import read_yaml
+from symofros.description.native.yaml_writer import write_yaml
 
 HEAD = "symofros: 1\nsystem: {name: arm}\n"
 LINK = "  link: {joint: {name: q1, kind: revolute}, inertia: {mass: 1, moments: [1, 1, 1]}}\n"

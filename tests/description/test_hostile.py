@@ -17,7 +17,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
-from symofros.description import files, urdf, yaml_nodes
+from symofros.description.native import files, yaml_nodes
+from symofros.description.urdf import reader as urdf
 from symofros.errors import MAX_PROBLEMS
 
 SECONDS = 120.0

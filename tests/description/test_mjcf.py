@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.description import mjcf_files
-from symofros.description.files import read_yaml
+from symofros.description.mjcf import files as mjcf_files
+from symofros.description.native.files import read_yaml
 from tests.description.mjcf_models import MODELS, document
 from validation.geometry import quaternion_matrix
 

@@ -15,8 +15,8 @@ from symofros.description.constraints import (
     Rod,
     Rolling,
 )
-from symofros.description.fields import Entry, Formula, Name, fault
-from symofros.description.schema_forces import AnchorEntry
+from symofros.description.native.fields import Entry, Formula, Name, fault
+from symofros.description.native.schema_forces import AnchorEntry
 from symofros.errors import Problem
 
 Directions = Annotated[list[AxisName], Field(max_length=3)]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import PurePosixPath
 
-from symofros.description.mjcf_files import Folder
+from symofros.description.mjcf.files import Folder
 from symofros.description.remarks import Remarks
 from symofros.description.xml_nodes import Element
 

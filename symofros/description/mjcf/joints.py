@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 
 from symofros.description.forces import Damper, JointElement, Spring
-from symofros.description.mjcf_geometry import Array, Exact, about
-from symofros.description.mjcf_names import Names
+from symofros.description.mjcf.geometry import Array, Exact, about
+from symofros.description.mjcf.names import Names
 from symofros.description.remarks import Remarks
 from symofros.description.system import WORLD, Joint, JointKind, Limits
 

@@ -1,7 +1,7 @@
 """The native file's shape as pydantic models: the reader validates with them, the JSON Schema is made from them.
 
 Each entry knows how to become its noun (`build`), so that a new field is added in one file. After a change, rewrite
-the published schema: `python -m symofros.description.schema`.
+the published schema: `python -m symofros.description.native.schema`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
-from symofros.description.fields import (
+from symofros.description.frames import Frame
+from symofros.description.native.fields import (
     MOMENTS,
     Entry,
     Formula,
@@ -32,10 +33,9 @@ from symofros.description.fields import (
     parameter_mapping,
     three,
 )
-from symofros.description.frames import Frame
-from symofros.description.schema_beam import BeamEntry
-from symofros.description.schema_constraints import ClosureEntry, NonholonomicEntry
-from symofros.description.schema_forces import ConnectionEntry, ElementEntry, LoadEntry, RotorEntry
+from symofros.description.native.schema_beam import BeamEntry
+from symofros.description.native.schema_constraints import ClosureEntry, NonholonomicEntry
+from symofros.description.native.schema_forces import ConnectionEntry, ElementEntry, LoadEntry, RotorEntry
 from symofros.description.system import WORLD, Body, Inertia, Input, Joint, JointKind, Limits, Parameter, RigidBody
 from symofros.description.values import IDENTITY, Rotation, RotationKind
 from symofros.errors import DescriptionError, Problem

@@ -7,8 +7,8 @@ from typing import Any
 
 from pydantic_core import ErrorDetails
 
-from symofros.description.schema import VERSION, json_schema
-from symofros.description.yaml_nodes import Node
+from symofros.description.native.schema import VERSION, json_schema
+from symofros.description.native.yaml_nodes import Node
 from symofros.errors import Problem, did_you_mean, near_name
 
 Path = tuple[str | int, ...]

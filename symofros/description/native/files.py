@@ -11,14 +11,14 @@ from typing import Any
 from pydantic import ValidationError
 
 from symofros.description.constraints import Constraint
-from symofros.description.faults import line_of, path_of, problem_of
 from symofros.description.forces import Connection, Potential, VirtualPower
+from symofros.description.native.faults import line_of, path_of, problem_of
+from symofros.description.native.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
+from symofros.description.native.yaml_nodes import Node, YamlFault, compose
+from symofros.description.native.yaml_writer import write_yaml as write_yaml
 from symofros.description.reading import Reading as Reading
 from symofros.description.reading import in_order, read_bytes
-from symofros.description.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
 from symofros.description.system import Body, Input, Parameter, System
-from symofros.description.yaml_nodes import Node, YamlFault, compose
-from symofros.description.yaml_writer import write_yaml as write_yaml
 from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 
 MAX_BYTES = 4 << 20

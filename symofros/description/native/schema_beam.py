@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from symofros.description.beam import Beam, BeamLoad, Direction, Family, Retain, Samples, UserShape
-from symofros.description.fields import Entry, Formula, Name, Number, Three, fault, three
 from symofros.description.frames import Frame
+from symofros.description.native.fields import Entry, Formula, Name, Number, Three, fault, three
 from symofros.description.system import Joint
 from symofros.errors import DescriptionError
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from symofros.description.reading import Reading, in_order, read_bytes
 from symofros.description.system import WORLD, Inertia, Joint, JointKind, RigidBody, System
-from symofros.description.urdf_values import Values
+from symofros.description.urdf.values import Values
 from symofros.description.xml_nodes import Element, XmlFault, parse_xml
 from symofros.errors import DescriptionError, Problem, did_you_mean
 

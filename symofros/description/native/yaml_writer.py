@@ -14,10 +14,10 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from symofros.description.beam import Beam, BeamLoad, Samples, UserShape
 from symofros.description.constraints import AXES, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
-from symofros.description.faults import problem_of
 from symofros.description.forces import Anchor, Connection, JointElement, Load, Rotor
 from symofros.description.frames import Frame
-from symofros.description.schema import VERSION, NativeFile, default_joint_name
+from symofros.description.native.faults import problem_of
+from symofros.description.native.schema import VERSION, NativeFile, default_joint_name
 from symofros.description.system import WORLD, Body, Inertia, Joint, Limits, Parameter, System
 from symofros.description.values import ORIGIN, Rotation, Value
 from symofros.errors import DescriptionError, Problem

@@ -6,8 +6,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from symofros.description.fields import Entry, Formula, Name, Three, fault, three
 from symofros.description.forces import Connection, Damper, Friction, JointElement, Load, Rotor, Spring, Stop
+from symofros.description.native.fields import Entry, Formula, Name, Three, fault, three
 from symofros.errors import Problem
 
 Coordinate = Annotated[int, Field(ge=0, le=5)]

@@ -10,10 +10,10 @@ import numpy as np
 
 from symofros.description.forces import Load
 from symofros.description.frames import Frame
-from symofros.description.mjcf_geometry import Exact, turned
-from symofros.description.mjcf_joints import FREE, Chain, JointReader
-from symofros.description.mjcf_names import Names
-from symofros.description.mjcf_numbers import infinite_numbers
+from symofros.description.mjcf.geometry import Exact, turned
+from symofros.description.mjcf.joints import FREE, Chain, JointReader
+from symofros.description.mjcf.names import Names
+from symofros.description.mjcf.numbers import infinite_numbers
 from symofros.description.remarks import Remarks
 from symofros.description.system import WORLD, Inertia, Joint, RigidBody, System
 from symofros.errors import DescriptionError

@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
-from symofros.description.mjcf_files import Folder
-from symofros.description.mjcf_meshes import Meshes
-from symofros.description.mjcf_model import Importer, Stated
-from symofros.description.mjcf_sections import Sections
+from symofros.description.mjcf.files import Folder
+from symofros.description.mjcf.meshes import Meshes
+from symofros.description.mjcf.model import Importer, Stated
+from symofros.description.mjcf.sections import Sections
 from symofros.description.reading import Reading, in_order
 from symofros.description.remarks import Remarks
 from symofros.description.xml_nodes import Element, XmlFault

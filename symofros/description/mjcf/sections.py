@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from symofros.description.mjcf_files import MAX_ELEMENTS, Folder
+from symofros.description.mjcf.files import MAX_ELEMENTS, Folder
 from symofros.description.remarks import Remarks
 from symofros.description.xml_nodes import Element
 from symofros.errors import did_you_mean

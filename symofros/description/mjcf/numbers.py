@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.description.mjcf_names import Names
+from symofros.description.mjcf.names import Names
 from symofros.errors import Problem
 
 # What the importer computes with: array of the model -> what it is called.

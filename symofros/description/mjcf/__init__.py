@@ -1,0 +1,1 @@
+"""MJCF in: MuJoCo compiles a vetted text, its model becomes a System."""

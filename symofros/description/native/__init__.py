@@ -1,0 +1,1 @@
+"""The native file: YAML in and out, its schema, its faults."""
