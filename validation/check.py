@@ -18,7 +18,7 @@ from validation.adapters import ROUTES, Missing, available
 from validation.adapters import compiled as our_c
 from validation.adapters.compiled import SymofrosEngine
 from validation.assembly import Assembly, assemble
-from validation.closed import ConstrainedEngine, condition, joined_frames
+from validation.closed import ConstrainedEngine, condition, joined_frames, of_clear_rank
 from validation.compare import Comparison, Scales, compute, judge, state_errors, typical_scales
 from validation.frames import chosen_frames
 from validation.geometry import Array
@@ -299,8 +299,8 @@ def sum_of_energies(engine: Engine, states: States) -> Array:
 
 
 def regular(engine: SymofrosEngine, states: States) -> States:
-    """The states where constraints have a Jacobian: a disc that lies flat has no lowest point."""
-    sound = np.all(np.isfinite(engine.constraint_jacobian(states)), axis=(1, 2))
+    """The states where constraints have a Jacobian of clear rank: a disc that lies flat has no lowest point."""
+    sound = of_clear_rank(compute(engine, QUANTITIES["mass_matrix"], states), engine.constraint_jacobian(states))
     return States(*(getattr(states, item.name)[sound] for item in fields(States)))
 
 

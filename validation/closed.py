@@ -23,6 +23,8 @@ from validation.quantities import CONSTRAINED
 AXES = "xyz"
 # As in our solver: what is smaller, relative to the largest, repeats other conditions.
 RANK = 1e-6
+# Within this factor of it, one algorithm may keep a condition that another one drops.
+BORDER = 100.0
 
 
 @dataclass(frozen=True)
@@ -281,10 +283,26 @@ def condition(M: Array, G: Array) -> float:
     """By how much the multipliers amplify rounding: the square of the condition of G in the metric of M."""
     worst = 1.0
     for one, row in zip(M, G, strict=True):
-        s = np.linalg.svd(np.linalg.solve(np.linalg.cholesky(one), row.T), compute_uv=False)
+        s = _sizes(one, row)
         kept = s[s > RANK * s.max(initial=0.0)]
         worst = max(worst, float((kept[0] / kept[-1]) ** 2) if kept.size else 1.0)
     return worst
+
+
+def of_clear_rank(M: Array, G: Array) -> Array:
+    """Which states (N,) have a Jacobian whose rank every algorithm must find: no singular value near the border."""
+    clear = np.zeros(len(G), dtype=bool)
+    for i, (one, row) in enumerate(zip(M, G, strict=True)):
+        if np.all(np.isfinite(row)):
+            s = _sizes(one, row)
+            share = s / max(float(s.max(initial=0.0)), 1e-300)
+            clear[i] = not np.any((share > RANK / BORDER) & (share < RANK * BORDER))
+    return clear
+
+
+def _sizes(M: Array, G: Array) -> Array:
+    """Singular values of G in the metric of M."""
+    return np.asarray(np.linalg.svd(np.linalg.solve(np.linalg.cholesky(M), G.T), compute_uv=False))
 
 
 def _solve(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array]:
