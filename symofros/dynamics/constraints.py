@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from symofros.description.constraints import AXES, AxisName, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
 from symofros.description.forces import Anchor
-from symofros.dynamics.forces import coordinate_rates
+from symofros.dynamics.applied.forces import coordinate_rates
 from symofros.expr.derivative import directional
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
 from symofros.expr.vector import Mat3, Vec3

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symofros.dynamics.forces import rates_per_speed
+from symofros.dynamics.applied.forces import rates_per_speed
 from symofros.expr.derivative import directional
 from symofros.expr.graph import ONE, Edge
 from symofros.kinematics.links import Motion

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
+from symofros.dynamics.applied.forces import generalized_forces, stored_energy
 from symofros.dynamics.constraints import Constraints, Row
 from symofros.dynamics.derivatives import by_configuration, by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
-from symofros.dynamics.forces import generalized_forces, stored_energy
 from symofros.dynamics.forward import solve
 from symofros.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.dynamics.jourdain import inertia_forces

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from symofros.dynamics.acceleration import no_wrench
-from symofros.dynamics.beam_loads import beam_loads
+from symofros.dynamics.applied.beam_loads import beam_loads
+from symofros.dynamics.applied.elements import element_energy, element_force
+from symofros.dynamics.applied.loads import connection_energy, wrenches
 from symofros.dynamics.beams import elastic_forces
-from symofros.dynamics.elements import element_energy, element_force
 from symofros.dynamics.jourdain import virtual_power
-from symofros.dynamics.loads import connection_energy, wrenches
 from symofros.expr.derivative import directional
 from symofros.expr.graph import ONE, ZERO, Edge
 from symofros.kinematics.frames import FrameKinematics

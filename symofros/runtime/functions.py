@@ -1,0 +1,221 @@
+"""How a model's functions are called: kernels made on demand, arrays checked and broadcast."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.runtime.kernel import Array, Kernel, Unit
+from symofros.runtime.record import ModelRecord
+
+Given = npt.ArrayLike
+Key = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Names:
+    """Names of coordinates, speeds, inputs, run-time parameters, frames and constraints, in order."""
+
+    q: tuple[str, ...]
+    v: tuple[str, ...]
+    u: tuple[str, ...]
+    par: tuple[str, ...]
+    frames: tuple[str, ...]
+    constraints: tuple[str, ...]
+
+
+class Functions:
+    """The functions of one mechanism by name, with its sizes, names and parameter values.
+
+    Args:
+        record: Sizes, names, defaults.
+        build: Generates and compiles functions by key; None where all there is has been built.
+        units: Functions built already.
+        par: Values of the run-time parameters; None for the defaults.
+    """
+
+    def __init__(
+        self,
+        record: ModelRecord,
+        build: Callable[[tuple[Key, ...]], Unit] | None,
+        units: tuple[Unit, ...] = (),
+        par: Array | None = None,
+    ) -> None:
+        self.record = record
+        self._build = build
+        self._par = np.array(record.par_default if par is None else par, dtype=np.float64)
+        self._par.flags.writeable = False
+        self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
+        self._prepared: dict[Key, Array] = {}
+        self.names = Names(
+            record.q_names, record.v_names, record.u_names, record.par_names, record.frame_names,
+            record.constraint_names,
+        )  # fmt: skip
+
+    def __repr__(self) -> str:
+        """Name and sizes."""
+        return f"Model({self.record.name!r}, nq={self.nq}, nv={self.nv}, nu={self.nu}, npar={self.npar}, nc={self.nc})"
+
+    @property
+    def nq(self) -> int:
+        """Number of coordinates."""
+        return len(self.record.q_names)
+
+    @property
+    def nv(self) -> int:
+        """Number of speeds."""
+        return len(self.record.v_names)
+
+    @property
+    def nu(self) -> int:
+        """Number of inputs."""
+        return len(self.record.u_names)
+
+    @property
+    def npar(self) -> int:
+        """Number of run-time parameters."""
+        return len(self.record.par_names)
+
+    @property
+    def nc(self) -> int:
+        """Number of constraints."""
+        return self.record.nc
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """Name -> value of the run-time parameters."""
+        return MappingProxyType(dict(zip(self.record.par_names, self._par.tolist(), strict=True)))
+
+    def with_parameters(self, **values: float) -> Self:
+        """The same compiled code with other parameter values.
+
+        Raises:
+            UnknownNameError: No such run-time parameter.
+            ValueError: A value is not a finite number.
+        """
+        par = self._par.copy()
+        for name, value in values.items():
+            if name not in self.record.par_names:
+                raise self._unknown("run-time parameter", name, self.record.par_names,
+                                    "constants are hard-coded: change them in the description")  # fmt: skip
+            par[self.record.par_names.index(name)] = self._finite(name, value)
+        other = type(self)(self.record, self._build, (), par)
+        other._kernels = self._kernels  # Shared, so that what either compiles serves both.
+        return other
+
+    # How a call is made.
+
+    def _frame(self, frame: str) -> str:
+        if frame in self.record.frame_names:
+            return frame
+        if frame in self.record.frame_aliases:
+            return self.record.frame_aliases[frame]
+        raise self._unknown("frame", frame, self.record.frame_names, "frames are listed in model.names.frames")
+
+    def _unknown(self, kind: str, name: str, known: tuple[str, ...], rule: str) -> UnknownNameError:
+        found = f"{len(known)} {kind}s" + (": " + ", ".join(known[:12]) if known else "")
+        what = f"model '{self.record.name}': no {kind} '{name}'"
+        return UnknownNameError(str(Problem(what, found, rule, did_you_mean(name, known) or "use another model")))
+
+    def _finite(self, name: str, value: float) -> float:
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            number = np.nan
+        if not np.isfinite(number):
+            what = f"model '{self.record.name}': parameter '{name}' is not a finite number"
+            raise ValueError(str(Problem(what, repr(value)[:80], "a parameter is one finite number",
+                                         "pass par=… to a function for values that vary by state")))  # fmt: skip
+        return number
+
+    def _one(self, name: str, given: Mapping[str, Given | None], par: Given | None, frame: str = "") -> Array:
+        return self._call(name, self._frame(frame) if frame else "", given, par)[0]
+
+    def _call(self, name: str, frame: str, given: Mapping[str, Given | None], par: Given | None) -> list[Array]:
+        kernel = self._kernels.get((name, frame)) or self._make(name, frame)
+        arrays = [self._array(group, self._given(given[group]), size) for group, size in kernel.signature.inputs]
+        shapes = [array.shape[:-1] for array in arrays]
+        par_array = None
+        if par is not None:
+            par_array = self._array("par", par, self.npar)
+            shapes.append(par_array.shape[:-1])
+        batch = self._batch_shape(name, shapes, given)
+        n = int(np.prod(batch))
+        pre = self._pre(kernel, (name, frame), par_array, batch)
+        outputs = kernel.run(n, pre, [_flat(array, batch) for array in arrays])
+        shaped = zip(outputs, kernel.signature.outputs, strict=True)
+        return [output.reshape(batch + shape) for output, (_, shape) in shaped]
+
+    def _given(self, values: Given | None) -> Given:
+        """What was given; the default inputs where nothing was."""
+        return self.record.u_default if values is None else values
+
+    def _pre(self, kernel: Kernel, key: Key, par: Array | None, batch: tuple[int, ...]) -> Array:
+        if par is not None:
+            flat = _flat(par, batch)
+            return kernel.prepare(flat)
+        if key not in self._prepared:
+            self._prepared[key] = kernel.prepare(self._par.reshape(1, -1))
+        return self._prepared[key]
+
+    def _batch_shape(
+        self, name: str, shapes: list[tuple[int, ...]], given: Mapping[str, Given | None]
+    ) -> tuple[int, ...]:
+        try:
+            return np.broadcast_shapes(*shapes)
+        except ValueError:
+            shown = ", ".join(f"{group} {np.shape(x)}" for group, x in given.items() if x is not None)
+            raise ShapeError(
+                f"{name}: batch dimensions do not broadcast\n  found:  {shown}\n"
+                "  rule:   all but the last dimension of each array broadcast together\n"
+                "  remedy: give each array the same leading dimensions, or none"
+            ) from None
+
+    def _make(self, name: str, frame: str) -> Kernel:
+        if self._build is None:
+            what = f"{name} of frame '{frame}'" if frame else name
+            raise SymofrosError(
+                f"model '{self.record.name}': {what} was not generated\n"
+                f"  found:  {', '.join(sorted({key[0] for key in self._kernels}))}\n"
+                "  rule:   Options(functions=…, frames=…) generates what it names, and nothing else\n"
+                "  remedy: add it to the options, or leave functions out to have each made when first called"
+            )
+        self._kernels.update(self._build(((name, frame),)).kernels)
+        return self._kernels[name, frame]
+
+    def _array(self, group: str, values: Given, size: int) -> Array:
+        try:
+            array = np.asarray(values, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ShapeError(
+                f"model '{self.record.name}': {group} is not an array of numbers\n  found:  {type(values).__name__}\n"
+                f"  rule:   {group} is a float64 array of shape (..., {size})" + self._hint(group)
+            ) from None
+        if group == "t":
+            return array[..., np.newaxis]
+        if array.ndim == 0 or array.shape[-1] != size:
+            raise ShapeError(
+                f"model '{self.record.name}': {group} has the wrong shape\n  found:  {array.shape}\n"
+                f"  rule:   {group} has shape (..., {size})" + self._hint(group)
+            )
+        return array
+
+    def _hint(self, group: str) -> str:
+        names: dict[str, Any] = {"q": self.names.q, "v": self.names.v, "a": self.names.v, "u": self.names.u}
+        shown = names.get(group, ())
+        listed = ", ".join(shown[:8]) + (", …" if len(shown) > 8 else "")
+        return f"\n  remedy: its last dimension runs over {listed}" if shown else ""
+
+
+def _flat(array: Array, batch: tuple[int, ...]) -> Array:
+    """(n or 1, size), contiguous: one row where the array has no batch of its own."""
+    size = array.shape[-1]
+    if array.size == size:
+        return np.ascontiguousarray(array.reshape(1, size))
+    return np.ascontiguousarray(np.broadcast_to(array, (*batch, size))).reshape(-1, size)
