@@ -11,6 +11,7 @@ from pathlib import Path
 
 import symofros as sf
 from reference_models.closed import spatial
+from reference_models.flexible.arm import flexible_arm
 from reference_models.flexible.station import flexible_mss
 from reference_models.rigid.chain import chain
 from reference_models.rigid.random_tree import KINDS, SERIES_KINDS, random_tree
@@ -22,6 +23,7 @@ _BUILT: dict[str, Callable[[], sf.System]] = {
     "chain7": lambda: chain(7),
     "chain22": lambda: chain(22),
     "mss": mss,
+    "flexible_arm": flexible_arm,
     "flexible_mss": flexible_mss,
     "bricard": spatial.bricard,
     "stewart": spatial.stewart,

@@ -20,21 +20,25 @@ FUNCTIONS = (("mass_matrix", ""), ("bias", ""))
 
 @pytest.mark.parametrize("links", [7, 22, 52])
 def test_description_to_c_text(benchmark: BenchmarkFixture, links: int) -> None:
-    system = chain(links)
-
-    def text() -> str:
-        tree = plan(system)
-        return generate(tree, FUNCTIONS, describe(tree, sf.Options()))[1]()
-
-    benchmark.extra_info["bytes"] = len(benchmark(text))
+    benchmark.extra_info["bytes"] = len(benchmark(_text, chain(links)))
 
 
-@pytest.mark.parametrize("links", [7, 22])
+@pytest.mark.parametrize("model", ["mss", "flexible_arm", "flexible_mss"])
+def test_reference_model_to_c_text(benchmark: BenchmarkFixture, model: str) -> None:
+    benchmark.extra_info["bytes"] = len(benchmark.pedantic(_text, args=(MODELS[model],), rounds=3))
+
+
+def _text(system: sf.System) -> str:
+    tree = plan(system)
+    return generate(tree, FUNCTIONS, describe(tree, sf.Options()))[1]()
+
+
+@pytest.mark.parametrize("model", ["chain7", "chain22", "mss", "flexible_arm"])
 def test_c_compilation(
-    benchmark: BenchmarkFixture, links: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    benchmark: BenchmarkFixture, model: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """From description to loaded library, nothing cached."""
-    system, run = chain(links), iter(range(10**6))
+    system, run = MODELS[model], iter(range(10**6))
 
     def compile_anew() -> sf.Model:
         monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / str(next(run))))
@@ -43,14 +47,16 @@ def test_c_compilation(
     benchmark.pedantic(compile_anew, rounds=3)
 
 
-@pytest.mark.parametrize("model", ["rx90", "chain7", "chain22", "chain52", "mss"])
+@pytest.mark.parametrize(
+    "model", ["rx90", "chain7", "chain22", "chain52", "mss", "planar_robot", "flexible_arm", "flexible_mss"]
+)
 def test_operation_counts(benchmark: BenchmarkFixture, model: str) -> None:
     system = chain(52) if model == "chain52" else MODELS[model]
-    functions = ("mass_matrix", "bias", "inverse_dynamics")
+    functions = ("mass_matrix", "bias", "inverse_dynamics", "forward_dynamics")
     program = benchmark.pedantic(sf.program_of, args=(system, functions), rounds=1)
     for (name, _), count in count_program(program).items():
         benchmark.extra_info[name] = str(count)
-        print(f"{model:<8} {name:<17} {count}")
+        print(f"{model:<12} {name:<17} {count}")
 
 
 def test_import(benchmark: BenchmarkFixture) -> None:
