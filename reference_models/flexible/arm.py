@@ -31,9 +31,9 @@ def flexible_arm(bending: int = 3, twist: int = 1) -> sf.System:
             values = {"L": 0.8, "rhoA": 3.0, "tau": 0.001, **_SECTION}
             named = {key: f"{key}{i + 1}" for key in values}
             stated: dict[str, Any] = {key: named[key] for key in _SECTION} | {"damping": named["tau"]}
+            stated |= {"bend_y": bending, "bend_z": bending, "twist": twist}
             length, rhoA = sf.formula(named["L"]), sf.formula(named["rhoA"])
-            counts = {"bend_y": bending, "bend_z": bending, "twist": twist}
-            bodies.append(sf.Beam(name, joint, length, rhoA, **stated, **counts, frames=(sf.Frame("end"),)))
+            bodies.append(sf.Beam(name, joint, length, rhoA, **stated, frames=(sf.Frame("end"),)))
         else:
             values = {"m": 4.0 / (i + 1), "c": 0.1, "J": 0.04 / (i + 1), "a": 0.2}
             named = {key: f"{key}{i + 1}" for key in values}
