@@ -66,7 +66,7 @@ def test_compile_writes_the_source(tmp_path: Path) -> None:
 def test_the_example_of_the_file_format_is_a_model(tmp_path: Path) -> None:
     import symofros as sf
 
-    (text,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "yaml.md").read_text(), re.DOTALL)
+    text, *_ = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "yaml.md").read_text(), re.DOTALL)
     (tmp_path / "crane.yaml").write_text(text)
     model = sf.compile(sf.load(tmp_path / "crane.yaml"), sf.Options(backend="interpreter"))
     assert model.names.q == ("slew", "hoist") and model.names.u == ("winch", "slew")
