@@ -30,34 +30,16 @@ from symofros.beams.integrals import POINTS
 from symofros.beams.piecewise import Piecewise, stations
 from symofros.description.beam import STATION
 from symofros.description.values import Value
+from validation.adapters.exudyn_system import VERSION, ExudynSystem, assembled
 from validation.assembly import assemble
 from validation.conventions import Chart, Slot, times
 from validation.geometry import Array
 from validation.interface import States, Subject, Unsupported
 
 NAME = "exudyn-frf"
-VERSION: str = exudyn.__version__
 CAPABILITIES = frozenset(
     {"mass_matrix", "bias", "gravity", "generalized_force", "kinetic_energy", "inverse_dynamics", "forward_dynamics"}
 )
-
-
-@dataclass(frozen=True)
-class _Solved:
-    """An assembled Exudyn system, of which matrices and forces can be asked at any state."""
-
-    system: Any
-    solver: Any
-
-    def at(self, q: Array, v: Array) -> tuple[Array, Array]:
-        """Mass matrix and forces on the right-hand side, at coordinates relative to the reference ones."""
-        data, current = self.system.systemData, exudyn.ConfigurationType.Current
-        data.SetODE2Coordinates(q, configuration=current)
-        data.SetODE2Coordinates_t(v, configuration=current)
-        self.solver.ComputeMassMatrix(self.system)
-        M = np.array(self.solver.GetSystemMassMatrix())
-        self.solver.ComputeODE2RHS(self.system)
-        return M, np.array(self.solver.GetSystemResidual())[: len(q)]
 
 
 @dataclass(frozen=True)
@@ -71,15 +53,15 @@ class FloatingFrameEngine:
         gravity: What is felt as the frame's acceleration (3,) [m/s^2].
     """
 
-    elastic: _Solved
-    limp: _Solved
+    elastic: ExudynSystem
+    limp: ExudynSystem
     chart: Chart
     gravity: Array
     name: str = NAME
     capabilities: frozenset[str] = CAPABILITIES
     version: str = VERSION
 
-    def _evaluated(self, states: States, system: _Solved) -> tuple[Array, Array]:
+    def _evaluated(self, states: States, system: ExudynSystem) -> tuple[Array, Array]:
         """M_e and h_e for speeds (linear in world axes; angular in body axes; elastic), from Euler parameters."""
         q = self.chart.coordinates(states.q)
         v = self.chart.speeds(states.q, states.v)
@@ -142,7 +124,7 @@ def build(subject: Subject, own_weight: bool = False) -> FloatingFrameEngine | U
     chart = Chart((Slot(free, 0, 0, "free_in_world"), Slot(elastic, 7, 6)), assembly.nq, assembly.nv)
     mesh = _Mesh(beam, subject.system.parameter_values())
     load, felt = (assembly.gravity, np.zeros(3)) if own_weight else (np.zeros(3), assembly.gravity)
-    elastic_body, limp_body = (_solved(mesh, load, factor) for factor in (1.0, 0.0))
+    elastic_body, limp_body = (_body(mesh, load, factor) for factor in (1.0, 0.0))
     return FloatingFrameEngine(elastic_body, limp_body, chart, felt)
 
 
@@ -220,7 +202,7 @@ class _Mesh:
         )  # fmt: skip
 
 
-def _solved(mesh: _Mesh, gravity: Array, factor: float) -> _Solved:
+def _body(mesh: _Mesh, gravity: Array, factor: float) -> ExudynSystem:
     """Exudyn's system of the body, with its stiffness and damping times a factor."""
     body = ObjectFFRFreducedOrderInterface(mesh.interface(), roundMassMatrix=0.0, roundStiffnessMatrix=0.0)
     # Exudyn would project a stiffness of the nodes, which a beam's reduced stiffness does not come from.
@@ -229,13 +211,7 @@ def _solved(mesh: _Mesh, gravity: Array, factor: float) -> _Solved:
     container = exudyn.SystemContainer()
     system = container.AddSystem()
     body.AddObjectFFRFreducedOrder(system, stiffnessProportionalDamping=mesh.damping, gravity=list(gravity))
-    system.Assemble()
-    settings = exudyn.SimulationSettings()
-    # A straight beam without polar inertia has none about its axis: no initial accelerations to solve for.
-    settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
-    solver: Any = exudyn.MainSolverImplicitSecondOrder()
-    solver.InitializeSolver(system, settings)
-    return _Solved(system, solver)
+    return assembled(container, system)
 
 
 def _euler_parameter_rates(e: Array, nv: int) -> Array:
