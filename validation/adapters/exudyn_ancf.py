@@ -5,10 +5,10 @@ without shear, twist and rotary inertia; their cubic elements converge fast. The
 twists, which they can't, and is made of geometrically exact elements with two nodes, which shear and converge with the
 square of the element's length.
 
-All of them stretch, and ours does not. With EA as a multiple of EI/L^2 the stretch is one over that multiple; but
-forces round off at EA times 1e-16, so that more than 1e7 EI/L^2 leaves too little for Newton's method. Each function
-therefore asks Newton's method for what rounding leaves, not for Exudyn's default of 1e-10 N: below the floor Exudyn
-bisects steps in silence, a thousand times slower.
+All of them stretch, and ours does not. With EA as a multiple of EI/L^2 the stretch is one over that multiple, but a
+larger multiple is not better: it locks coarse meshes (1e5 needs 8 elements where 1e7 needs 32), and forces round off at
+EA times 1e-16. Each function therefore asks Newton's method for what rounding leaves, not for Exudyn's default of
+1e-10 N: below the floor Exudyn bisects steps in silence, a thousand times slower.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from validation.geometry import Array
 
 # Of forces, as a multiple of the axial stiffness that makes them round off.
 _ROUNDING = 1e-13
-_STEP = exudyn.DynamicSolverType.GeneralizedAlpha
+_METHOD = exudyn.DynamicSolverType.GeneralizedAlpha
 
 
 class Hub(NamedTuple):
@@ -105,8 +105,13 @@ def static_tip(length: float, EI: float, EA: float, force: tuple[float, float], 
         EA: [N].
         force: Along x and y [N].
         elements: ANCFCable2D.
+
+    Raises:
+        RuntimeError: Exudyn's solver gave up.
     """
-    system, nodes = _planar(length, EI, EA, 1.0, elements)
+    container = exudyn.SystemContainer()
+    system = container.AddSystem()
+    nodes = _planar(system, length, EI, EA, 1.0, elements)
     _hold(system, nodes[0], range(4))
     marker = system.AddMarker(items.MarkerNodePosition(nodeNumber=nodes[-1]))
     system.AddLoad(items.Force(markerNumber=marker, loadVector=[*force, 0.0]))
@@ -172,10 +177,15 @@ def spin_up(elements: int = 16, step: float = 2.5e-3, end: float = 20.0, stretch
 
     Returns:
         Times (n,) [s] and displacement along and across the undeformed beam (n, 2) [m].
+
+    Raises:
+        RuntimeError: Exudyn's solver gave up.
     """
     hub = Hub()
     EA = stretch * hub.EI / hub.length**2
-    system, nodes = _planar(hub.length, hub.EI, EA, hub.rhoA, elements)
+    container = exudyn.SystemContainer()
+    system = container.AddSystem()
+    nodes = _planar(system, hub.length, hub.EI, EA, hub.rhoA, elements)
     _hold(system, nodes[0], range(2))
     # The root's slope vector is turned, at unit length: the strain held back there is of the size of the whole stretch.
     _hold(system, nodes[0], [2], lambda mbs, t, number, offset: np.cos(hub.angle(t)) - 1.0)
@@ -191,7 +201,8 @@ def spin_up(elements: int = 16, step: float = 2.5e-3, end: float = 20.0, stretch
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = step
-    system.SolveDynamic(settings, solverType=_STEP)
+    if not system.SolveDynamic(settings, solverType=_METHOD):
+        raise RuntimeError(f"Exudyn did not finish the spin-up with {elements} elements and steps of {step} s")
     recorded = np.array(system.GetSensorStoredData(sensor))
     t, x, y = recorded[:, 0], recorded[:, 1], recorded[:, 2]
     angle = np.array([hub.angle(at) for at in t])
@@ -210,6 +221,9 @@ def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None
 
     Returns:
         Displacement of the tip (3,) [m] and the turn of its section (3, 3).
+
+    Raises:
+        RuntimeError: Exudyn's solver gave up.
     """
     strip = strip or Strip()
     container = exudyn.SystemContainer()
@@ -231,17 +245,15 @@ def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None
     return _position(system, nodes[-1]) - (strip.length, 0.0, 0.0), turn
 
 
-def _planar(length: float, EI: float, EA: float, rhoA: float, elements: int) -> tuple[Any, list[Any]]:
-    """A straight beam of equal elements along x, with its nodes."""
-    container = exudyn.SystemContainer()
-    system = container.AddSystem()
+def _planar(system: Any, length: float, EI: float, EA: float, rhoA: float, elements: int) -> list[Any]:
+    """Adds a straight beam of equal elements along x; its nodes."""
     h = length / elements
     nodes = [system.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[h * k, 0, 1, 0]))
              for k in range(elements + 1)]  # fmt: skip
     for ends in zip(nodes, nodes[1:], strict=False):
         system.AddObject(items.ObjectANCFCable2D(length=h, massPerLength=rhoA, bendingStiffness=EI,
                                                  axialStiffness=EA, nodeNumbers=list(ends)))  # fmt: skip
-    return system, nodes
+    return nodes
 
 
 def _hold(system: Any, node: Any, coordinates: Any, offset: Callable[..., float] | int = 0) -> None:
@@ -260,7 +272,8 @@ def _solve_static(system: Any, EA: float) -> None:
     settings.staticSolver.newton.absoluteTolerance = _ROUNDING * EA
     settings.staticSolver.verboseMode = 0
     settings.solution.file.write = False
-    system.SolveStatic(settings)
+    if not system.SolveStatic(settings):
+        raise RuntimeError("Exudyn found no state of rest")
 
 
 def _position(system: Any, node: Any) -> Array:
