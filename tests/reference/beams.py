@@ -9,7 +9,6 @@ import numpy as np
 import symofros as sf
 from validation.accuracy.reference import data as data
 
-
 # Of a system whose beams are clamped or driven, all that linearisation takes.
 FUNCTIONS = ("mass_matrix", "bias", "generalized_force")
 

@@ -30,7 +30,7 @@ def interpreted(
 ) -> sf.Model:
     """A model that is evaluated a few times only, so that it is not worth compiling; parameters are zero."""
     stated = sf.System(
-        "s", bodies, parameters=[sf.Parameter(name, 0.0) for name in parameters], **({"gravity": (0, 0, 0)} | more)
+        "s", bodies, parameters=tuple(sf.Parameter(name, 0.0) for name in parameters), **({"gravity": (0, 0, 0)} | more)
     )
     return sf.compile(stated, sf.Options(functions, backend="interpreter"))
 
@@ -64,7 +64,7 @@ def squares(K: Array, M: Array) -> Array:
 def spinning(direction: str, modes: int, *carried: sf.Body, **changed: Any) -> sf.Model:
     """A beam at radius "r" on a hub whose turn about z is given: bend_z is flap, bend_y is lag."""
     hub = sf.RigidBody("hub", sf.Joint("turn", "revolute", prescribed=True))
-    root = sf.Joint("root", "fixed", "hub", position=("r", 0, 0))
+    root = sf.Joint("root", "fixed", "hub", position=(sf.formula("r", "radius"), 0.0, 0.0))
     return interpreted(hub, cantilever(root, **{direction: modes}, **changed), *carried, parameters=["r"])
 
 
@@ -81,7 +81,7 @@ def motion(
     tolerance: float,
     drive: Callable[[float], Sequence[float]] = lambda t: (),
 ) -> tuple[Array, Array]:
-    """q (n, nq) and v (n, nv) at these times, by DOP853; coordinates whose rates are the speeds.
+    """Configurations (n, nq) and speeds (n, nv) at these times, by DOP853; coordinates whose rates are the speeds.
 
     Args:
         m: With forward_dynamics.

@@ -2,10 +2,31 @@
 
 from __future__ import annotations
 
-from validation.accuracy import elastica, spinning
+from validation.accuracy import (
+    buckling,
+    conditioning,
+    convergence,
+    damping,
+    elastica,
+    energy,
+    modes_needed,
+    outboard,
+    pendulum,
+    spinning,
+    spinup,
+)
 from validation.accuracy.findings import Asked
 
 STUDIES: dict[str, Asked] = {
     "spinning": spinning.study,
+    "convergence": convergence.study,
+    "modes_needed": modes_needed.study,
+    "spinup": spinup.study,
+    "outboard": outboard.study,
     "elastica": elastica.study,
+    "buckling": buckling.study,
+    "pendulum": pendulum.study,
+    "energy": energy.study,
+    "damping": damping.study,
+    "conditioning": conditioning.study,
 }

@@ -86,9 +86,7 @@ def _seen(curve: Curve, chart: Chart) -> tuple[np.ndarray, np.ndarray]:
     if chart.log_y:
         y = np.where(y > 0.0, y, np.nan)
     if chart.range_y is not None:
-        low, high = chart.range_y
-        margin = 0.0 if chart.log_y else high - low
-        y = np.where((y >= low - margin) & (y <= high + margin), y, np.nan)
+        y = np.where((y >= chart.range_y[0]) & (y <= chart.range_y[1]), y, np.nan)
     return x, y
 
 
@@ -119,8 +117,7 @@ def _curve(curve: Curve, chart: Chart, x: Axis, y: Axis) -> str:
         chosen = np.linspace(0, len(xs) - 1, _MOST).astype(int)
         xs, ys = xs[chosen], ys[chosen]
     points = [None if math.isnan(b) else (x.at(a), y.at(b)) for a, b in zip(xs.tolist(), ys.tolist(), strict=True)]
-    kept = [p for p in points if p is not None and y.end - 1 <= p[1] <= y.start + 1]
-    parts = []
+    parts: list[str] = []
     if curve.kind != "points":
         runs: list[list[str]] = [[]]
         for p in points:
@@ -128,16 +125,15 @@ def _curve(curve: Curve, chart: Chart, x: Axis, y: Axis) -> str:
                 runs.append([])
             else:
                 runs[-1].append(f"{p[0]:.1f},{p[1]:.1f}")
-        clip = f'style="clip-path: inset({y.end:.0f}px 0 {HEIGHT - y.start:.0f}px 0)"' if chart.range_y else ""
-        drawn = "".join(
+        parts += [
             f'<polyline class="plot {curve.kind} e{curve.color}" points="{" ".join(run)}"/>' for run in runs if run
-        )
-        # An invisible frame gives the group the chart's size, which the clip is measured against.
-        frame = f'<rect width="{WIDTH}" height="{HEIGHT}" fill="none"/>' if clip else ""
-        parts.append(f"<g {clip}>{frame}{drawn}</g>" if clip else drawn)
+        ]
     if curve.kind in ("points", "joined"):
         radius = 4 if curve.kind == "points" else 3
-        parts += [f'<circle class="point e{curve.color}" cx="{a:.1f}" cy="{b:.1f}" r="{radius}"/>' for a, b in kept]
+        parts += [
+            f'<circle class="point e{curve.color}" cx="{a:.1f}" cy="{b:.1f}" r="{radius}"/>'
+            for a, b in filter(None, points)
+        ]
     return "".join(parts)
 
 

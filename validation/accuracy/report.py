@@ -117,8 +117,12 @@ def _render(template: str, run: Accuracy) -> str:
         loader=jinja2.PackageLoader("validation"), undefined=jinja2.StrictUndefined, trim_blocks=True,
         lstrip_blocks=True, autoescape=jinja2.select_autoescape(["html.j2"]),
     )  # fmt: skip
-    environment.filters |= {"number": _short, "svg": lambda chart: Markup(svg(chart))}
+    environment.filters |= {"number": _short, "svg": _svg}
     return environment.get_template(template).render(run=run, versions=_versions(), machine=machine())
+
+
+def _svg(chart: Chart) -> Markup:
+    return Markup(svg(chart))
 
 
 def _short(x: float) -> str:
