@@ -51,7 +51,7 @@ def study(quick: bool) -> Study:
         Check(f"retain: all, {periods} periods: largest relative error of the energy", float(all_error.max()), KEPT,
               reason="the integrator's tolerance of 1e-12, gathered over the run"),
         Check("first order: exponent of the error in the deflection", slope, 3.0, 1.9,
-              "what is dropped is of third degree, the energy of second and of none (the spin)"),
+              "terms from the second degree on are dropped"),
         Check("first order: error in the second half over that in the first", growth, 1.5,
               reason="bounded: it does not drift"),
     )  # fmt: skip

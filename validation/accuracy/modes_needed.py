@@ -42,9 +42,9 @@ def study(quick: bool) -> Study:
         for n, ratio in worst.items()
     )  # fmt: skip
     fast = len(etas) - 1
-    answer = f"At η = {etas[fast]}, r/L = 0 the first flap frequency needs " + ", ".join(
+    answer = f"At η = {etas[fast]:g}, r/L = 0 the first flap frequency needs " + ", ".join(
         f"{words(needed['clamped_free', t][fast], len(tried))} cantilever modes or "
-        f"{words(needed['legendre', t][fast], len(tried))} polynomials for {t:.0e}" for t in TOLERANCES
+        f"{words(needed['legendre', t][fast], len(tried))} polynomials for {100 * t:g} %" for t in TOLERANCES
     ) + ". Cantilever modes serve slow beams and coarse tolerances; polynomials win otherwise."  # fmt: skip
     return Study("How many functions does a tolerance need?", answer, (figure(etas, needed, errors),), checks,
                  (source("modes_needed"),))  # fmt: skip
@@ -76,7 +76,7 @@ def figure(etas: Array, needed: dict[tuple[str, float], Array], errors: dict[str
         for k, n in enumerate((1, 2, 3, 5)) if n <= len(errors["clamped_free"])
     ), log_y=True)  # fmt: skip
     choice = Chart("functions needed", x, "number of functions  [1]", tuple(
-        Curve(f"{family}, {tolerance:.0e}", etas, needed[family, tolerance], color, kind)
+        Curve(f"{family}, {100 * tolerance:g} %", etas, needed[family, tolerance], color, kind)
         for family, kind in KINDS.items()
         for color, tolerance in enumerate(TOLERANCES)
     ))  # fmt: skip

@@ -75,7 +75,7 @@ def figure(etas: Array, found: dict[float, Array], expected: dict[float, Array],
     for color, (mass, squares) in enumerate(found.items()):
         frequency, exact = np.sqrt(squares), np.sqrt(expected[mass])
         curves += [Curve(f"m/ρAL = {mass:g}", etas, frequency, color),
-                   Curve("quadrature", etas[some], exact[some], color, "points")]  # fmt: skip
+                   Curve(f"quadrature, {mass:g}", etas[some], exact[some], color, "points")]  # fmt: skip
         growth.append(Curve(f"m/ρAL = {mass:g}", etas, frequency / frequency[0], color))
     growth.append(Curve("1, without foreshortening", etas, np.sqrt(without / without[0]), 4, "dashed"))
     charts = (

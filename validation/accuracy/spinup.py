@@ -34,7 +34,7 @@ def tip(times: Array, modes: int, **changed: Any) -> Array:
     beam = sf.Beam("b", hub, LENGTH, RHO_A, EI_z=EI, bend_y=modes, family="clamped_free", **changed)
     options = sf.Options(("forward_dynamics", "frame_pose"), ("tip",))
     m = sf.compile(sf.System("s", (beam,), gravity=(0, 0, 0)), options)
-    q, _ = motion(m, np.zeros(modes), np.zeros(modes), times, 1e-7, drive)
+    q, _ = motion(m, np.zeros(modes), np.zeros(modes), times, 1e-9, drive)
     displacement: Array = m.frame_pose("tip", q, u=np.zeros(3))[0][:, :2] - (LENGTH, 0.0)
     return displacement
 
