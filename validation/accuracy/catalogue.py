@@ -12,6 +12,7 @@ from validation.accuracy import (
     modes_needed,
     outboard,
     pendulum,
+    princeton,
     spinning,
     spinup,
 )
@@ -24,6 +25,7 @@ STUDIES: dict[str, Asked] = {
     "spinup": spinup.study,
     "outboard": outboard.study,
     "elastica": elastica.study,
+    "princeton": princeton.study,
     "buckling": buckling.study,
     "pendulum": pendulum.study,
     "energy": energy.study,
