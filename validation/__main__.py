@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 
 from symofros.atomic import write_atomically
+from validation.accuracy import command as accuracy
 from validation.adapters import ROUTES
 from validation.campaign import run
 from validation.cases import Case, named, standard_set
@@ -145,6 +146,7 @@ def verdict(record: Record) -> Exit:
     return Exit.AGREE if record.ok else Exit.BAD_INPUT
 
 
+accuracy.register(app)
 fuzz_report.register(app)
 mutation_report.register(app)
 oracle.register(app)

@@ -205,4 +205,4 @@ def _with_rates(g: Graph, q: tuple[Edge, ...], speeds: Sequence[Edge], w: Vec3, 
 
 def neutral_coordinates(joint: Joint, nq: int) -> tuple[float, ...]:
     """A configuration on the manifold: zeros, and quaternions of no rotation."""
-    return (0.0,) * (nq - 1) + ((1.0,) if joint.kind in ("ball", "free") else (0.0,))
+    return (*(0.0,) * (nq - 1), 1.0) if joint.kind in ("ball", "free") else (0.0,) * nq

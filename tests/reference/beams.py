@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import symofros as sf
+from validation.accuracy.reference import data as data
 
-DATA = Path(__file__).parent / "data"
 # Of a system whose beams are clamped or driven, all that linearisation takes.
 FUNCTIONS = ("mass_matrix", "bias", "generalized_force")
-
-
-def data(name: str) -> dict[str, Any]:
-    """A file of reference numbers; each says where they come from."""
-    found: dict[str, Any] = json.loads((DATA / f"{name}.json").read_text())["reference"]
-    return found
 
 
 def cantilever(joint: sf.Joint | None = None, **changed: Any) -> sf.Beam:

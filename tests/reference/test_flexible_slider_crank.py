@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +11,9 @@ from scipy.integrate import solve_ivp
 import symofros as sf
 from reference_models import MODELS
 from symofros.beams.shape_functions import shapes
+from validation.accuracy.reference import data
 
-DATA = json.loads((Path(__file__).parent / "data" / "flexible_slider_crank.json").read_text())
+DATA = data("flexible_slider_crank")
 RATE = 150.0  # Of the crank [rad/s].
 LARGEST = 1.865e-3  # Deflection at mid-span [m].
 FUNCTIONS = (

@@ -23,6 +23,12 @@ def test_sizes_and_names(m: sf.Model) -> None:
     assert repr(m).startswith("Model('random_tree0'")
 
 
+def test_a_beam_on_a_fixed_joint_has_only_its_own_coordinates_in_the_neutral_state() -> None:
+    beam = sf.Beam("b", sf.Joint("root", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=2)
+    m = sf.compile(sf.System("s", [beam]), sf.Options(backend="interpreter"))
+    assert np.array_equal(m.neutral(), np.zeros(m.nq))
+
+
 def test_leading_dimensions_broadcast(m: sf.Model, rng: np.random.Generator) -> None:
     q = np.array([m.random_state(rng)[0] for _ in range(6)]).reshape(2, 3, m.nq)
     v = rng.standard_normal((3, m.nv))

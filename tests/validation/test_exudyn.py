@@ -117,22 +117,28 @@ def test_what_it_cannot_represent_is_named(changed: dict[str, Any], word: str) -
 
 @pytest.mark.parametrize("alpha", [0.05, 0.75, 10])
 def test_absolute_nodal_coordinates_follow_the_elastica(alpha: float) -> None:
-    """Down to its stretch, one over EA L^2/EI; the mesh converges with order four or better before that."""
+    """Down to its stretch, one over EA L^2/EI."""
     (row,) = (row for row in data("elastica_tip_load")["table"] if row["alpha"] == alpha)
     exact = (1.0 - row["tip_shortening"], row["tip_y"])
     errors = [float(np.abs(static_tip(1.0, 1.0, 1e5, (0.0, alpha), n) - exact).max()) for n in (4, 16)]
     assert errors[1] < 1e-5 * alpha + 1e-8
-    assert errors[0] > 50 * errors[1]  # Four elements show, so elements do matter.
+    assert errors[0] > 20 * errors[1]  # Four elements show, so elements do matter.
 
 
 def test_a_pull_along_the_axis_stretches() -> None:
     assert static_tip(2.0, 1.0, 1e4, (5.0, 0.0), 4) == pytest.approx([2.0 * (1.0 + 5e-4), 0.0], abs=1e-12)
 
 
+def test_stretch_lowers_the_spinning_frequency() -> None:
+    """In the plane, by an amount in proportion to 1/EA."""
+    soft, stiff, stiffer = (spinning_frequencies(1.0, EA, 12.0, elements=8)[1][0] for EA in (1e5, 1e6, 1e7))
+    assert (stiffer - soft) / (stiffer - stiff) == pytest.approx((1e-5 - 1e-7) / (1e-6 - 1e-7), rel=0.01)
+
+
 @pytest.mark.parametrize(("eta", "tolerance"), [(0, 5e-5), (3, 6e-5), (12, 2e-4)])
 @pytest.mark.parametrize("delta", [0, 1])
 def test_absolute_nodal_coordinates_stiffen_when_they_spin(eta: int, delta: int, tolerance: float) -> None:
-    """Three frequencies in each plane; coarser meshes are measurably worse, finer EA is not what limits."""
+    """Three frequencies in each plane; with half the elements it is measurably worse."""
     (row,) = (r for r in data("spinning_cantilever")["table"] if r["eta"] == eta and r["delta"] == delta)
     worst = []
     for elements in (8, 16):
@@ -142,15 +148,15 @@ def test_absolute_nodal_coordinates_stiffen_when_they_spin(eta: int, delta: int,
 
 
 def test_spin_up_follows_the_exact_rod() -> None:
-    """Across to 0.4 mm; along it stays out by the stretch of a spinning bar, which the rod has not."""
+    """Across to 0.35 mm, an error of the time step; along it stays out by the stretch of a spinning bar."""
     rod = data("spin_up")["exact_inextensible_rod"]
     t, tip = spin_up(elements=8, step=5e-3)
     chosen = [int(np.abs(t - at).argmin()) for at in rod["t"]]
     error = tip[chosen] - np.stack([rod["tip_x"], rod["tip_y"]], axis=-1)
-    assert np.abs(error[:, 1]).max() < 4e-4
+    assert np.abs(error[:, 1]).max() < 3.5e-4
     hub = Hub()
-    stretch = hub.rate**2 * hub.rhoA * hub.length**3 / (3 * 1e5 * hub.EI / hub.length**2)
-    assert error[-1, 0] == pytest.approx(stretch, rel=0.02)
+    stretch = hub.rate**2 * hub.rhoA * hub.length**3 / (3 * 1e6 * hub.EI / hub.length**2)
+    assert error[-1, 0] == pytest.approx(stretch, rel=5e-3)
 
 
 def test_the_strip_bends_as_beams_do_under_small_loads() -> None:

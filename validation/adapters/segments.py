@@ -69,8 +69,14 @@ def segmented(system: sf.System, name: str, links: int) -> sf.System | Unsupport
     Args:
         system: With the beam.
         name: Of the beam. The link at its root keeps it; the others are name_1 to name_N.
-        links: N, the number of hinges. Their coordinates are name_1_yaw, name_1_pitch, name_1_roll and so on.
+        links: N, the number of hinges, 1 or more. Coordinates are name_1_yaw, name_1_pitch, name_1_roll and so on.
+
+    Raises:
+        ValueError: There is no hinge.
+        DescriptionError: There is no such body.
     """
+    if links < 1:
+        raise ValueError(f"{links} links: a beam is cut into one or more")
     beam = system.body(name)
     if not isinstance(beam, sf.Beam):
         return Unsupported(f"body '{name}': no beam")

@@ -1,0 +1,1 @@
+"""How accurate the beams are: one module a question, and the command that answers them all."""
