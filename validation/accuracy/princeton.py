@@ -146,7 +146,7 @@ def growth(deflection: Array, errors: dict[str, Array]) -> Figure:
     """Error against deflection."""
     words = {"all": "retain: all", "first_order": "first order"}
     chart = Chart("load at 60°: error of the tip's place", "deflection of the tip over L  [1]",
-                  "error over the deflection  [1]",
+                  "error over the displacement  [1]",
                   tuple(Curve(words[name], deflection, error, k, "joined") for k, (name, error) in
                         enumerate(errors.items())),
                   (Mark("1 %", 0.01), Mark("5 %", 0.05)), log_x=True, log_y=True)  # fmt: skip
