@@ -201,7 +201,7 @@ def spin_up(elements: int = 16, step: float = 2.5e-3, end: float = 20.0, stretch
     settings.timeIntegration.newton.useModifiedNewton = True
     settings.timeIntegration.newton.absoluteTolerance = _ROUNDING * EA
     settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
+    settings.solution.file.write, settings.solution.file.name = False, ""
     settings.solution.sensors.writePeriod = step
     if not system.SolveDynamic(settings, solverType=_METHOD):
         raise RuntimeError(f"Exudyn did not finish the spin-up with {elements} elements and steps of {step} s")
@@ -273,7 +273,7 @@ def _solve_static(system: Any, EA: float) -> None:
     settings.staticSolver.numberOfLoadSteps = 10
     settings.staticSolver.newton.absoluteTolerance = _ROUNDING * EA
     settings.staticSolver.verboseMode = 0
-    settings.solution.file.write = False
+    settings.solution.file.write, settings.solution.file.name = False, ""
     if not system.SolveStatic(settings):
         raise RuntimeError("Exudyn found no state of rest")
 
