@@ -15,13 +15,15 @@ from reference_models.flexible.arm import flexible_arm
 from reference_models.flexible.station import flexible_mss
 from reference_models.rigid.chain import chain
 from reference_models.rigid.random_tree import KINDS, SERIES_KINDS, random_tree
-from reference_models.rigid.station import mss
+from reference_models.rigid.station import mss, spdm, ssrms
 
 _FOLDER = Path(__file__).parent
 
 _BUILT: dict[str, Callable[[], sf.System]] = {
     "chain7": lambda: chain(7),
     "chain22": lambda: chain(22),
+    "ssrms": ssrms,
+    "spdm": spdm,
     "mss": mss,
     "flexible_arm": flexible_arm,
     "flexible_mss": flexible_mss,

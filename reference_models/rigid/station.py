@@ -35,18 +35,28 @@ def _arm(prefix: str, parent: str, frame: str | None, links: tuple[tuple[float, 
     return bodies
 
 
+def _two_arms(parent: str, frame: str | None) -> list[sf.RigidBody]:
+    """The SPDM: a body that rolls on its mount, and an arm on each side."""
+    joint = sf.Joint("spdm_roll", "revolute", parent, frame, axis=_UNIT["x"], actuated=True)
+    sides = (
+        sf.Frame("left", (0.6, 0.5, 0.0), sf.Rotation.rpy(0.0, 0.0, "pi/2")),
+        sf.Frame("right", (0.6, -0.5, 0.0), sf.Rotation.rpy(0.0, 0.0, "-pi/2")),
+    )
+    trunk = sf.RigidBody("spdm_body", joint, sf.Inertia(300.0, (0.4, 0.0, 0.0), (60.0, 90.0, 90.0)), sides)
+    return [trunk, *(body for side in sides for body in _arm(f"spdm_{side.name}", "spdm_body", side.name, _SPDM))]
+
+
+def ssrms() -> sf.System:
+    """The large arm alone, seven joints; weightless."""
+    return sf.System("ssrms", tuple(_arm("ssrms", "world", None, _SSRMS)), gravity=(0.0, 0.0, 0.0))
+
+
+def spdm() -> sf.System:
+    """The two-armed manipulator alone, fifteen joints; weightless."""
+    return sf.System("spdm", tuple(_two_arms("world", None)), gravity=(0.0, 0.0, 0.0))
+
+
 def mss() -> sf.System:
     """SSRMS, SPDM body, two SPDM arms; weightless, as on orbit."""
     large = _arm("ssrms", "world", None, _SSRMS)
-    joint = sf.Joint("spdm_roll", "revolute", large[-1].name, "end", axis=_UNIT["x"], actuated=True)
-    trunk = sf.RigidBody(
-        "spdm_body",
-        joint,
-        sf.Inertia(300.0, (0.4, 0.0, 0.0), (60.0, 90.0, 90.0)),
-        (
-            sf.Frame("left", (0.6, 0.5, 0.0), sf.Rotation.rpy(0.0, 0.0, "pi/2")),
-            sf.Frame("right", (0.6, -0.5, 0.0), sf.Rotation.rpy(0.0, 0.0, "-pi/2")),
-        ),
-    )
-    arms = [body for side in ("left", "right") for body in _arm(f"spdm_{side}", "spdm_body", side, _SPDM)]
-    return sf.System("mss", (*large, trunk, *arms), gravity=(0.0, 0.0, 0.0))
+    return sf.System("mss", (*large, *_two_arms(large[-1].name, "end")), gravity=(0.0, 0.0, 0.0))
