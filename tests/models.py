@@ -11,8 +11,12 @@ from reference_models.rigid.random_tree import KINDS, MORE_KINDS, random_tree
 TREES = {f"tree{seed}": seed for seed in range(8)}
 TREES |= {f"parametrised{seed}": seed for seed in range(3)}
 TREES |= {f"joints{seed}": 100 + seed for seed in range(8)}
-REFERENCES = ("torque_free_body", "heavy_top", "gyroscope", "puma560", "stanford_arm", "friction_arm", "joint_zoo",
-              "car", "random_tree70")  # fmt: skip
+# Every reference model of rigid bodies in tree topology.
+REFERENCES = (
+    "pendulum", "double_pendulum", "cart_pole", "rx90", "open_chain_5r", "space_arm", "chain7", "chain22",
+    "torque_free_body", "heavy_top", "gyroscope", "puma560", "stanford_arm", "friction_arm", "joint_zoo", "car",
+    "ssrms", "spdm", "mss", "random_tree1", "random_tree4", "random_tree70",
+)  # fmt: skip
 CASES = (*TREES, *REFERENCES)
 
 
