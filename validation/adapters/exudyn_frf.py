@@ -71,10 +71,9 @@ class FloatingFrameEngine:
         for q_k, v_k in zip(q, v, strict=True):
             T = _euler_parameter_rates(q_k[3:7], self.chart.nv)
             M, force = system.at(q_k - reference, T @ v_k)
-            # e'' = ... - |w|^2/4 e, what remains of the second rate of Euler parameters when w is constant.
+            # Where w is constant, e'' = -|w|^2/4 e: along e, where the mass matrix has nothing. Gravity remains.
             carried = np.zeros(self.chart.nq)
             carried[:3] = -self.gravity
-            carried[3:7] = -(v_k[3:6] @ v_k[3:6]) / 4.0 * q_k[3:7]
             M_all.append(T.T @ M @ T)
             h_all.append(T.T @ (M @ carried - force))
         return np.array(M_all), np.array(h_all)

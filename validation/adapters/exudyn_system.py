@@ -51,7 +51,8 @@ class ExudynSystem:
 def assembled(container: Any, system: Any) -> ExudynSystem:
     """A container's system that has all its nodes and objects, ready to be evaluated."""
     system.Assemble()
-    settings = exudyn.SimulationSettings()
+    settings: Any = exudyn.SimulationSettings()
+    settings.solution.file.write, settings.solution.file.name = False, ""
     # What has no inertia in some direction is no obstacle: nothing is solved for here.
     settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
     solver: Any = exudyn.MainSolverImplicitSecondOrder()
