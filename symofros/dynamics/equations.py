@@ -15,6 +15,7 @@ from symofros.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.dynamics.rotors import MovingRotor, rotors_of
+from symofros.errors import DescriptionError, Problem
 from symofros.expr.graph import ZERO, Edge, Graph
 from symofros.expr.program import Function, Output, Program
 from symofros.expr.substitute import substitute
@@ -86,7 +87,18 @@ class Equations:
 
     @cached_property
     def acceleration(self) -> list[Edge]:
-        """V' = M^-1 (Q - h)."""
+        """V' = M^-1 (Q - h).
+
+        Raises:
+            DescriptionError: A speed moves no mass whatever the state, and so has no acceleration.
+        """
+        for k, name in enumerate(self.tree.coordinates.v):
+            if self.M[k][k] == ZERO:
+                raise DescriptionError(
+                    Problem(f"system '{self.tree.system.name}': speed '{name}' moves no mass", "its row of M is zero",
+                            "forward dynamics divides by the inertia that each speed moves",
+                            "give it an inertia, or bind it by a constraint")
+                )  # fmt: skip
         return solve(self.g, self.M, [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)])
 
     @cached_property
