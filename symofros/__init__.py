@@ -68,7 +68,12 @@ if TYPE_CHECKING:
     from symofros.simulation.inverse_kinematics import Target as Target
     from symofros.simulation.inverse_kinematics import inverse_kinematics as inverse_kinematics
     from symofros.simulation.inverse_kinematics import joint_motion as joint_motion
+    from symofros.simulation.events import Event as Event
+    from symofros.simulation.inputs import Signal as Signal
     from symofros.simulation.modes import modes as modes
+    from symofros.simulation.outcome import Outcome as Outcome
+    from symofros.simulation.simulate import simulate as simulate
+    from symofros.simulation.trajectory import Trajectory as Trajectory
 
     compile = compile_system
 
@@ -92,6 +97,11 @@ _LAZY = {
     "Target": ("symofros.simulation.inverse_kinematics", "Target"),
     "equilibrium": ("symofros.simulation.equilibrium", "equilibrium"),
     "modes": ("symofros.simulation.modes", "modes"),
+    "Event": ("symofros.simulation.events", "Event"),
+    "Signal": ("symofros.simulation.inputs", "Signal"),
+    "Outcome": ("symofros.simulation.outcome", "Outcome"),
+    "simulate": ("symofros.simulation.simulate", "simulate"),
+    "Trajectory": ("symofros.simulation.trajectory", "Trajectory"),
 }
 
 

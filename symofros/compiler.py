@@ -18,6 +18,7 @@ import warnings
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from symofros.beams.deformation import small_coordinates
 from symofros.codegen.interpreted import InterpretedUnit
@@ -26,7 +27,9 @@ from symofros.codegen.names import identifier
 from symofros.description.beam import Beam
 from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
+from symofros.description.values import as_value
 from symofros.dynamics.equations import Request, write_program
+from symofros.dynamics.formulas import formula_program
 from symofros.errors import (
     CompileError,
     CompilerMissingWarning,
@@ -72,9 +75,9 @@ def compile_system(system: System, options: Options | None = None) -> Model:
     requests = requested(tree, options)
     _warn_inconsistent(system)
     record = describe(tree, options)
-    build = _builder(tree, record, options)
-    first = build(tuple(requests))
-    return Model(record, build if options.functions is None else None, (first,))
+    builder = _Builder(tree, record, options)
+    first = builder.functions(tuple(requests))
+    return Model(record, builder.functions if options.functions is None else None, (first,), formulas=builder.formulas)
 
 
 def plan(system: System) -> SpanningTree:
@@ -146,19 +149,29 @@ def _warn_inconsistent(system: System) -> None:
             )  # fmt: skip
 
 
-def _builder(tree: SpanningTree, record: ModelRecord, options: Options) -> Callable[[tuple[Key, ...]], Unit]:
-    """What turns requests into callable functions."""
-    toolchain = _choose_toolchain(options)
+class _Builder:
+    """What turns requests and formulas into callable functions."""
 
-    def build(requests: tuple[Key, ...]) -> Unit:
-        program, source = generate(tree, requests, record)
-        if toolchain is None:
+    def __init__(self, tree: SpanningTree, record: ModelRecord, options: Options) -> None:
+        self._tree, self._record, self._options = tree, record, options
+        self._toolchain = _choose_toolchain(options)
+
+    def functions(self, requests: tuple[Key, ...]) -> Unit:
+        """Functions of the model."""
+        return self._unit(*generate(self._tree, requests, self._record))
+
+    def formulas(self, formulas: tuple[Any, ...]) -> Unit:
+        """Numbers, formula texts or SymPy expressions over the model's names, with their derivatives."""
+        values = tuple(as_value(formula, f"system '{self._tree.system.name}': formula") for formula in formulas)
+        program = run_passes(formula_program(self._tree, values))
+        return self._unit(program, lambda: model_source(program, self._record, GENERATOR))
+
+    def _unit(self, program: Program, source: Callable[[], str]) -> Unit:
+        if self._toolchain is None:
             return InterpretedUnit(program)
         header = template("symofros_model.h")
-        path = build_library(source(), header, toolchain, options.flags)
-        return CompiledUnit(path, f"{identifier(record.name)}_model", header, record.hash)
-
-    return build
+        path = build_library(source(), header, self._toolchain, self._options.flags)
+        return CompiledUnit(path, f"{identifier(self._record.name)}_model", header, self._record.hash)
 
 
 def _choose_toolchain(options: Options) -> Toolchain | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Self
@@ -38,6 +38,7 @@ class Functions:
         build: Generates and compiles functions by key; None where all there is has been built.
         units: Functions built already.
         par: Values of the run-time parameters; None for the defaults.
+        formulas: Generates and compiles a user's formulas.
     """
 
     def __init__(
@@ -46,9 +47,11 @@ class Functions:
         build: Callable[[tuple[Key, ...]], Unit] | None,
         units: tuple[Unit, ...] = (),
         par: Array | None = None,
+        formulas: Callable[[tuple[Any, ...]], Unit] | None = None,
     ) -> None:
         self.record = record
         self._build = build
+        self._build_formulas = formulas
         self._par = np.array(record.par_default if par is None else par, dtype=np.float64)
         self._par.flags.writeable = False
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
@@ -105,9 +108,32 @@ class Functions:
                 raise self._unknown("run-time parameter", name, self.record.par_names,
                                     "constants are hard-coded: change them in the description")  # fmt: skip
             par[self.record.par_names.index(name)] = self._finite(name, value)
-        other = type(self)(self.record, self._build, (), par)
+        other = type(self)(self.record, self._build, (), par, self._build_formulas)
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
+
+    def kernel(self, name: str) -> Kernel:
+        """A function of the whole model as the thing that is called, made on demand; for loops of one's own."""
+        return self._kernels.get((name, "")) or self._make(name, "")
+
+    def formulas(self, formulas: Sequence[Any]) -> Kernel:
+        """Formulas over the model's names, compiled: (q, v, u, t) -> values, and derivatives by q and by v.
+
+        Args:
+            formulas: Numbers, texts such as "10*(sin(t) - q1) - dq1", or SymPy expressions.
+
+        Raises:
+            UnknownNameError: A formula uses a name that the mechanism lacks.
+            DescriptionError: A text is not a formula.
+        """
+        if self._build_formulas is None:
+            raise SymofrosError(f"model '{self.record.name}': a model without its description compiles no formulas")
+        return self._build_formulas(tuple(formulas)).kernels["formulas", ""]
+
+    @property
+    def parameter_values(self) -> Array:
+        """The run-time parameters (npar), read-only."""
+        return self._par
 
     # How a call is made.
 

@@ -105,6 +105,16 @@ class CompiledKernel:
             tuple(map(array, function.out[0 : function.n_out])),
         )
 
+    @property
+    def address(self) -> int:
+        """Of its sym_function, for loops in C. The library stays loaded as long as this object lives."""
+        return int(self._unit.ffi.cast("uintptr_t", self._unit.ffi.addressof(self._function)))
+
+    @property
+    def work(self) -> int:
+        """Doubles of scratch that one call needs."""
+        return int(self._function.work)
+
     def prepare(self, par: Array) -> Array:
         """The parameter-only part of the work."""
         return self._unit.prepare(par)

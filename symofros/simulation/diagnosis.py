@@ -1,0 +1,81 @@
+"""A run's last status -> its Outcome, with what was met on the way."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from symofros.simulation import stepper as native
+from symofros.simulation.outcome import Kind, Outcome
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepper import Stepper
+
+
+def diagnose(stepper: Stepper, status: int, interrupted: bool, settings: Settings) -> Outcome:
+    """How a run ended.
+
+    Args:
+        stepper: At its last state.
+        status: What C returned last.
+        interrupted: Whether Ctrl-C ended it.
+        settings: Of the run.
+    """
+    t, q, v = stepper.state
+    run, notes = stepper.run, _notes(stepper)
+
+    def outcome(kind: Kind, reason: str, advice: str = "") -> Outcome:
+        return Outcome(kind, t, reason, advice, notes)
+
+    failure = getattr(stepper, "failure", None)
+    if interrupted or isinstance(failure, KeyboardInterrupt):
+        return outcome("interrupted", "Ctrl-C; the part up to here is kept")
+    if status == native.EVENT:
+        return outcome("event", f"event '{stepper.events[run.stopped_by].name}'")
+    if status == native.CALLBACK:
+        return outcome("input failed", f"the input function raised {failure!r}", "call it by itself at this state")
+    if status == native.DIVERGED:
+        return outcome("diverged", f"a state is no longer finite; {_largest(stepper, q, v)}", _steady(settings))
+    if status == native.NO_MOTION:
+        return outcome("singular", "the mass matrix is singular beyond what the constraints bind",
+                       "give every speed an inertia or a constraint")  # fmt: skip
+    if status == native.TINY_STEP:
+        return outcome("step too small", f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below"
+                       f" rounding; {_largest(stepper, q, v)}",
+                       "look for a force that jumps or a singular posture here; loosen rtol")  # fmt: skip
+    if status == native.NO_CONVERGENCE:
+        return outcome("not converged", "the equations of an implicit step were not solved", "a smaller dt")
+    if status == native.OFF:
+        phi = stepper.model.constraint(q, u=stepper.inputs_now, par=stepper.par, t=t)
+        worst = int(np.argmax(np.abs(phi)))
+        name = stepper.model.names.constraints[worst]
+        return outcome("constraints lost", f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it",
+                       "a smaller step; the loop may be stretched to its end")  # fmt: skip
+    if status == native.GOING and t < float(run.t_end):
+        return outcome("interrupted", f"max_steps: {int(run.steps)} steps are done")
+    return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")
+
+
+def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
+    sizes = np.abs(v)
+    if not len(sizes):
+        return "there are no speeds"
+    worst = int(np.argmax(np.where(np.isfinite(sizes), sizes, math.inf)))
+    return f"the fastest speed is '{stepper.model.names.v[worst]}', {v[worst]:.3g}"
+
+
+def _steady(settings: Settings) -> str:
+    if settings.method.adaptive:
+        return "look for a force or posture that has no bound here"
+    return "a smaller dt, an adaptive or an implicit method; for stiff beams and contacts, an implicit one"
+
+
+def _notes(stepper: Stepper) -> tuple[str, ...]:
+    run = stepper.run
+    notes = []
+    if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
+        notes.append(f"a singular posture was passed at t = {run.t_rank:.6g} s: the constraints' rank fell from"
+                     f" {run.rank_max} to {run.rank_min}")  # fmt: skip
+    if run.late_steps:
+        notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")
+    return tuple(notes)

@@ -1,0 +1,46 @@
+"""Events: formulas whose zeros a run looks for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from symofros.errors import Problem
+
+_SIGNS = {"both": 0, "rising": 1, "falling": -1}
+
+
+@dataclass(frozen=True)
+class Event:
+    """A zero crossing.
+
+    Attributes:
+        formula: Of coordinates, speeds, inputs, parameters and t: text or SymPy expression.
+        direction: Which crossings count.
+        terminal: Whether the first one ends the run.
+        name: Given by the mapping it stands in.
+    """
+
+    formula: Any
+    direction: Literal["both", "rising", "falling"] = "both"
+    terminal: bool = False
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        """The direction must be known."""
+        if self.direction not in _SIGNS:
+            raise ValueError(str(Problem("event: unknown direction", repr(self.direction), ", ".join(_SIGNS),
+                                         "use one of them")))  # fmt: skip
+
+    @property
+    def sign(self) -> int:
+        """1 rising, -1 falling, 0 both."""
+        return _SIGNS[self.direction]
+
+
+def named_events(given: Mapping[str, Any] | None) -> tuple[Event, ...]:
+    """Events by name; a bare formula is an event in both directions that ends nothing."""
+    return tuple(
+        replace(event if isinstance(event, Event) else Event(event), name=name) for name, event in (given or {}).items()
+    )

@@ -1,0 +1,129 @@
+"""What a user gives as inputs of a simulation, sorted by how it is evaluated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.runtime.kernel import Array
+from symofros.runtime.model import Model
+
+
+@dataclass(frozen=True)
+class Signal:
+    """Samples of an input over time; beyond its ends the first and last value hold.
+
+    Attributes:
+        t: Times (n), increasing [s].
+        values: (n), or (n, nu) where one signal gives every input.
+        kind: "linear" between samples, or "hold" each until the next.
+    """
+
+    t: Any
+    values: Any
+    kind: Literal["linear", "hold"] = "linear"
+
+    def __post_init__(self) -> None:
+        """Samples must be numbers in the order of time."""
+        t, values = np.asarray(self.t, dtype=np.float64), np.asarray(self.values, dtype=np.float64)
+        object.__setattr__(self, "t", np.ascontiguousarray(t))
+        object.__setattr__(self, "values", np.ascontiguousarray(values))
+        good = t.ndim == 1 and len(t) > 0 and values.ndim in (1, 2) and len(values) == len(t)
+        if not good or not np.all(np.isfinite(t)) or not np.all(np.diff(t) > 0) or not np.all(np.isfinite(values)):
+            raise ShapeError(str(Problem(
+                "signal: not samples over time", f"t {t.shape}, values {values.shape}",
+                "t (n) increases, values are (n) or (n, nu), all finite", "sort the samples, drop repeated times",
+            )))  # fmt: skip
+        if self.kind not in ("linear", "hold"):
+            raise ValueError(str(Problem("signal: unknown kind", repr(self.kind), "'linear' or 'hold'", "use one")))
+
+
+Callback = Callable[[float, Array, Array], Any]
+Inputs = Mapping[str, Any] | Signal | Callback | Any
+
+
+@dataclass(frozen=True)
+class InputPlan:
+    """Inputs by how they are evaluated: constants, samples, compiled formulas, or a Python function for all.
+
+    Attributes:
+        constant: (nu); what nothing else gives.
+        signals: (index, times, values, whether linear).
+        formulas: Index of the input -> formula.
+        callback: (t, q, v) -> u (nu); nothing else counts then.
+    """
+
+    constant: Array
+    signals: list[tuple[int, Array, Array, bool]] = field(default_factory=list)
+    formulas: dict[int, Any] = field(default_factory=dict)
+    callback: Callback | None = None
+
+
+def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
+    """Sort a user's inputs.
+
+    Args:
+        model: Names them.
+        u: None (zeros), an array (nu), a Signal of all, a function (t, q, v) -> (nu), or a mapping from names to
+            numbers, formula texts and Signals.
+
+    Raises:
+        ShapeError: An array does not fit.
+        UnknownNameError: No such input.
+    """
+    names = model.names.u
+    constant = np.array(model.record.u_default, dtype=np.float64)
+    if u is None:
+        return InputPlan(constant)
+    if isinstance(u, Signal):
+        return _signal_of_all(model, u, constant)
+    if isinstance(u, Mapping):
+        return _by_name(model, u, constant)
+    if callable(u):
+        return InputPlan(constant, callback=u)
+    array = np.asarray(u, dtype=np.float64)
+    if array.shape != (len(names),):
+        raise ShapeError(str(Problem(
+            f"model '{model.record.name}': u has the wrong shape", str(array.shape),
+            f"constant inputs have shape ({len(names)},)",
+            "give a Signal or a function for inputs that vary: " + (", ".join(names[:8]) or "there are none"),
+        )))  # fmt: skip
+    return InputPlan(array)
+
+
+def _signal_of_all(model: Model, signal: Signal, constant: Array) -> InputPlan:
+    values = signal.values.reshape(len(signal.t), -1)
+    if values.shape[1] != len(constant):
+        raise ShapeError(str(Problem(
+            f"model '{model.record.name}': a signal of all inputs has the wrong shape", str(signal.values.shape),
+            f"values are (n, {len(constant)})", "give u={'name': Signal(...)} for single inputs",
+        )))  # fmt: skip
+    columns = [np.ascontiguousarray(values[:, i]) for i in range(values.shape[1])]
+    linear = signal.kind == "linear"
+    return InputPlan(constant, [(i, signal.t, column, linear) for i, column in enumerate(columns)])
+
+
+def _by_name(model: Model, given: Mapping[str, Any], constant: Array) -> InputPlan:
+    plan = InputPlan(constant)
+    names = model.names.u
+    for name, value in given.items():
+        if name not in names:
+            raise UnknownNameError(str(Problem(
+                f"model '{model.record.name}': no input '{name}'", ", ".join(names[:12]) or "none",
+                "inputs are listed in model.names.u", did_you_mean(name, names) or "declare it in the description",
+            )))  # fmt: skip
+        i = names.index(name)
+        if isinstance(value, Signal):
+            if value.values.ndim != 1:
+                raise ShapeError(str(Problem(f"input '{name}': a signal of several inputs", str(value.values.shape),
+                                             "one input takes values (n)", "pick a column")))  # fmt: skip
+            plan.signals.append((i, value.t, value.values, value.kind == "linear"))
+        elif isinstance(value, (int, float, np.floating)):
+            plan.constant[i] = value
+        else:
+            plan.formulas[i] = value
+    return plan

@@ -1,0 +1,43 @@
+"""The stepping methods by name."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from symofros.simulation.tableaus import DOP853, DORMAND_PRINCE, EXPLICIT_EULER, RK4, Tableau
+
+Kind = Literal["explicit", "semi_implicit"]
+
+
+@dataclass(frozen=True)
+class Method:
+    """A stepping method.
+
+    Attributes:
+        name: As users call it.
+        kind: Which loop of native/ makes its steps.
+        order: Of convergence.
+        adaptive: Whether it chooses its steps by an error estimate.
+        tableau: Its coefficients; those of Euler's method where a loop needs none.
+        says: One line for people.
+    """
+
+    name: str
+    kind: Kind
+    order: int
+    adaptive: bool
+    tableau: Tableau
+    says: str
+
+
+METHODS: dict[str, Method] = {
+    method.name: method
+    for method in (
+        Method("euler", "explicit", 1, False, EXPLICIT_EULER, "explicit Euler; for studies"),
+        Method("semi_implicit_euler", "semi_implicit", 1, False, EXPLICIT_EULER, "one evaluation a step; real time"),
+        Method("rk4", "explicit", 4, False, RK4, "classical Runge-Kutta; fixed step, real time"),
+        Method("dopri5", "explicit", 5, True, DORMAND_PRINCE, "Dormand-Prince 5(4); adaptive"),
+        Method("dop853", "explicit", 8, True, DOP853, "Hairer's 8(5,3); adaptive, for tight tolerances"),
+    )
+}

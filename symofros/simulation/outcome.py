@@ -1,0 +1,41 @@
+"""How a run ended: when, where, why, and what to try."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Kind = Literal[
+    "finished", "event", "interrupted", "diverged", "singular", "step too small", "input failed", "not converged",
+    "constraints lost",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended.
+
+    Attributes:
+        kind: "finished" at the end asked for, "event" at a terminal one, or what went wrong.
+        t: When [s].
+        reason: One sentence.
+        advice: What to try; empty where nothing is wrong.
+        notes: What was met on the way without ending the run, such as a singular posture.
+    """
+
+    kind: Kind
+    t: float
+    reason: str
+    advice: str = ""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether the run came to its end, or to an event that was meant to end it."""
+        return self.kind in ("finished", "event")
+
+    def __str__(self) -> str:
+        """For people."""
+        lines = [f"{self.kind} at t = {self.t:.6g} s: {self.reason}"]
+        lines += [f"  try: {self.advice}"] if self.advice else []
+        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])

@@ -1,0 +1,21 @@
+"""A progress bar over simulated time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+
+@contextmanager
+def bar(wanted: bool, t0: float, t_end: float) -> Iterator[Callable[[float], None]]:
+    """A function that shows how far a run has come; it does nothing unless wanted."""
+    if not wanted:
+        yield lambda t: None
+        return
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn  # Only those who look pay for it.
+
+    columns = (BarColumn(), TextColumn("t = {task.completed:.3f} of {task.total:.3f} s"), TimeRemainingColumn())
+    with Progress(*columns) as progress:
+        task = progress.add_task("", total=t_end)
+        progress.update(task, completed=t0)
+        yield lambda t: progress.update(task, completed=t)

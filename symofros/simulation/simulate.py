@@ -1,0 +1,131 @@
+"""sf.simulate: a model, a first state, inputs, a method -> a Trajectory."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from symofros.runtime.model import Given, Model
+from symofros.simulation import stepper as native
+from symofros.simulation.diagnosis import diagnose
+from symofros.simulation.events import named_events
+from symofros.simulation.inputs import Inputs, plan_inputs
+from symofros.simulation.progress import bar
+from symofros.simulation.settings import Settings, Stabilisation, vector
+from symofros.simulation.stepper import Stepper
+from symofros.simulation.trajectory import Found, Statistics, Trajectory
+
+# Records are taken from C in portions of this many states.
+_PORTION = 4096
+# Seconds that C may step before Python looks up: for Ctrl-C and for progress.
+_SPELL = 0.05
+
+
+def simulate(
+    model: Model,
+    q0: Given | None = None,
+    v0: Given | None = None,
+    t_end: float = 1.0,
+    *,
+    u: Inputs | None = None,
+    method: str = "rk4",
+    dt: float | None = None,
+    t0: float = 0.0,
+    par: Given | None = None,
+    rtol: float = 1e-6,
+    atol: float = 1e-9,
+    max_step: float = math.inf,
+    max_steps: int | None = None,
+    output: float | Given | None = None,
+    every: int = 1,
+    events: Mapping[str, Any] | None = None,
+    stabilisation: Stabilisation = "projection",
+    gains: Given | None = None,
+    realtime: float | bool = False,
+    progress: bool = False,
+) -> Trajectory:
+    """Move a model from a state through time; the stepping loop is C.
+
+    Args:
+        model: Compiled with backend "c".
+        q0: First configuration (nq), on the constraints (see `assemble`); the neutral one by default.
+        v0: First speeds (nv); rest by default.
+        t_end: Where to end [s].
+        u: Inputs: an array (nu), a Signal of all, a mapping from input names to numbers, formulas (of coordinates,
+            speeds, parameters and t, compiled to C) and Signals, or a function (t, q, v) -> (nu), called from the loop
+            and hence slow. Those not given are zero.
+        method: See `METHODS`: "rk4", "semi_implicit_euler", "euler" step by `dt`; "dopri5", "dop853" choose their
+            steps by `rtol` and `atol`.
+        dt: Step [s], 1e-3 where a fixed step needs one; for adaptive methods the first step.
+        t0: Where to begin [s].
+        par: Run-time parameters (npar); the model's own by default.
+        rtol: Bound of the local error of adaptive methods, of the size of each coordinate and speed.
+        atol: Bound alike, absolute.
+        max_step: Longest step of adaptive methods [s].
+        max_steps: End the run after so many steps; none by default.
+        output: What to record: None for each `every`-th step, an interval [s], or times (n).
+        every: See output.
+        events: Name -> formula or Event.
+        stabilisation: How constraints are kept: "projection" onto them after each step, "baumgarte" by gains, or
+            "none", by accelerations alone, which drifts.
+        gains: Baumgarte's, as `Model.forward_dynamics` takes them; by default both are min(20, 1/(2 dt)) [1/s].
+        realtime: Keep pace with the clock: True, or seconds of motion a second. Overruns are counted.
+        progress: Show a progress bar.
+
+    Returns:
+        The Trajectory; its `outcome` says how the run ended. What went wrong in motion is an outcome, not an
+        exception, so that the part before it is kept; so does Ctrl-C.
+
+    Raises:
+        ShapeError: An array does not fit.
+        UnknownNameError: A formula or an input's name is unknown.
+        SymofrosError: The settings contradict each other.
+    """
+    settings = Settings.of(model, method, dt, t0, t_end, rtol, atol, max_step, output, every, stabilisation, gains)
+    values = model.parameter_values if par is None else vector(model, "par", par, model.npar)
+    q = model.neutral() if q0 is None else vector(model, "q0", q0, model.nq)
+    v = np.zeros(model.nv) if v0 is None else vector(model, "v0", v0, model.nv)
+    looked_for = named_events(events)
+    stepper = Stepper(model, settings.method, plan_inputs(model, u), looked_for, values)
+    settings.apply(stepper, t0, t_end, float(realtime))
+    began = time.perf_counter()
+    status = stepper.start(q, v, max(_PORTION, len(settings.grid)))
+    records, found = [stepper.take_records()], stepper.take_events()
+    interrupted, spell = False, 64
+    with bar(progress, t0, t_end) as show:
+        try:
+            while status in (native.GOING, native.FULL):
+                left = spell if max_steps is None else min(spell, max_steps - int(stepper.run.steps))
+                if left <= 0:
+                    break
+                before = time.perf_counter()
+                status = stepper.advance(left)
+                took = time.perf_counter() - before
+                spell = max(1, spell // 2) if took > _SPELL else 2 * spell if took < _SPELL / 4 else spell
+                records.append(stepper.take_records())
+                found += stepper.take_events()
+                show(float(stepper.run.t))
+        except KeyboardInterrupt:
+            interrupted = True
+            records.append(stepper.take_records())
+    seconds = time.perf_counter() - began
+    t, q_all, v_all, u_all = (np.concatenate(parts) for parts in zip(*records, strict=True))
+    outcome = diagnose(stepper, status, interrupted, settings)
+    met = tuple(Found(looked_for[which].name, *rest) for which, *rest in found)
+    return Trajectory(
+        model, t, q_all, v_all, u_all, np.array(values), outcome, met, _statistics(stepper, seconds)
+    )
+
+
+def _statistics(stepper: Stepper, seconds: float) -> Statistics:
+    run = stepper.run
+    paced = max(1, int(run.paced_steps))
+    ranks = (int(run.rank_min), int(run.rank_max)) if stepper.model.nc else (-1, -1)
+    return Statistics(
+        stepper.method.name, int(run.steps), int(run.rejected), int(run.evaluations), int(run.jacobians), seconds,
+        int(run.late_steps), float(run.late_max), float(run.late_sum) / paced, *ranks,
+    )  # fmt: skip

@@ -1,0 +1,231 @@
+"""The stepping loop in C, in Python's hands: built once, bound to a model, advanced in spells."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import cffi
+import numpy as np
+
+from symofros.codegen.model import template
+from symofros.errors import CompileError, Problem, SymofrosError
+from symofros.runtime.build import build_library
+from symofros.runtime.kernel import Array, Kernel
+from symofros.runtime.library import CompiledKernel
+from symofros.runtime.model import Model
+from symofros.runtime.toolchain import find_toolchain
+from symofros.simulation.events import Event
+from symofros.simulation.inputs import InputPlan
+from symofros.simulation.methods import Method
+
+_PARTS = ("manifold.c", "scene.c", "explicit.c", "pace.c", "run.c")
+_SEGMENTS = {"linear": 0, "quaternion": 1, "pose": 2}
+_KINDS = {"explicit": 0, "semi_implicit": 1}
+
+GOING, DONE, FULL, EVENT = 0, 1, 2, 3
+DIVERGED, NO_MOTION, TINY_STEP, CALLBACK, NO_CONVERGENCE, OFF = -1, -2, -3, -4, -5, -6
+
+
+def _native(name: str) -> str:
+    return (files("symofros.simulation") / "native" / name).read_text(encoding="utf-8")
+
+
+@cache
+def library() -> tuple[Any, Any]:
+    """The cffi interface and the loaded library of native/, compiled at first use and cached.
+
+    Raises:
+        CompileError: There is no C compiler.
+    """
+    toolchain = find_toolchain(None)
+    if toolchain is None:
+        raise CompileError("simulation steps in C, and no C compiler was found\n"
+                           "  remedy: install gcc or clang, or `pip install ziglang`")  # fmt: skip
+    header = template("symofros_model.h")
+    stepper = _native("stepper.h").replace('#include "symofros_model.h"', "")
+    source = "\n".join(['#include <math.h>\n#include "symofros_model.h"', stepper, *map(_native, _PARTS)])
+    ffi = cffi.FFI()
+    for text in (header, stepper):
+        match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", text, re.DOTALL)
+        assert match is not None
+        ffi.cdef(match.group(1))
+    return ffi, ffi.dlopen(str(build_library(source, header, toolchain)))
+
+
+class Stepper:
+    """One run of one model.
+
+    Args:
+        model: Compiled to C.
+        method: How to step.
+        inputs: What drives it.
+        events: What to look for.
+        par: Run-time parameters (npar).
+
+    Raises:
+        SymofrosError: The model is interpreted.
+    """
+
+    def __init__(
+        self, model: Model, method: Method, inputs: InputPlan, events: Sequence[Event], par: Array
+    ) -> None:
+        self.ffi, self.native = library()
+        self.model, self.method, self.events = model, method, events
+        self.par = par
+        self._keep: list[Any] = []  # What C holds pointers to.
+        self.scene = self.ffi.new("sym_scene *")
+        self.run = self.ffi.new("sym_run *")
+        self._fill_scene(inputs)
+        self._fill_method()
+        self.run.scene = self.scene
+
+    def numbers(self, values: Any) -> Any:
+        """A C array of doubles that lives as long as the run."""
+        array = np.array(values, dtype=np.float64).reshape(-1)
+        array = array if array.size else np.zeros(1)
+        self._keep.append(array)
+        return self.ffi.cast("double *", self.ffi.from_buffer(array))
+
+    def _fill_scene(self, inputs: InputPlan) -> None:
+        model, scene, ffi = self.model, self.scene, self.ffi
+        scene.nq, scene.nv, scene.nu, scene.nc = model.nq, model.nv, model.nu, model.nc
+        segments = [(_SEGMENTS[s.kind], s.q, s.v, s.size) for s in model.record.segments]
+        scene.n_segments, scene.segments = len(segments), self._own("sym_segment[]", segments)
+        for name, size in (("q", model.nq), ("v", model.nv), ("u", model.nu), ("t", 1), ("gains", 2 * model.nc),
+                           ("a", model.nv), ("lam", model.nc), ("rank", 1)):  # fmt: skip
+            setattr(scene, name, self.numbers(np.zeros(size)))
+        scene.constant = self.numbers(inputs.constant)
+        signals = []
+        for index, t, values, linear in inputs.signals:
+            signals.append((index, int(linear), len(t), self.numbers(t), self.numbers(values)))
+        scene.n_signals, scene.signals = len(signals), self._own("sym_signal[]", signals)
+        given = sorted(inputs.formulas)
+        scene.n_law, scene.law_inputs = len(given), self._own("int32_t[]", given)
+        if given:
+            self._bind("law", model.formulas([inputs.formulas[i] for i in given]), {})
+        scene.n_events = len(self.events)
+        scene.event_direction = self._own("int32_t[]", [event.sign for event in self.events])
+        scene.event_terminal = self._own("int32_t[]", [int(event.terminal) for event in self.events])
+        if self.events:
+            self._bind("events", model.formulas([event.formula for event in self.events]), {})
+        self._bind("forward", model.kernel("forward_dynamics"), {"a": scene.a, "lam": scene.lam, "rank": scene.rank})
+        if inputs.callback is not None:
+            self._attach(inputs.callback)
+        scene.data = ffi.NULL
+
+    def _own(self, kind: str, values: Any) -> Any:
+        array = self.ffi.new(kind, values or 1)
+        self._keep.append(array)
+        return array
+
+    def _bind(self, slot: str, kernel: Kernel, outputs: dict[str, Any]) -> None:
+        """Make a model's function callable from the loop; outputs that are not placed get arrays of their own."""
+        if not isinstance(kernel, CompiledKernel):
+            raise SymofrosError(str(Problem(
+                f"model '{self.model.record.name}': simulation steps in C", "an interpreted model",
+                "the loop calls compiled functions", "compile with backend='c'",
+            )))  # fmt: skip
+        call = getattr(self.scene, slot)
+        call.function = self.ffi.cast("sym_function *", kernel.address)
+        call.pre = self.numbers(kernel.prepare(self.par.reshape(1, -1)))
+        call.work = self.numbers(np.zeros(max(1, kernel.work)))
+        for i, (name, shape) in enumerate(kernel.signature.outputs):
+            call.out[i] = outputs[name] if name in outputs else self.numbers(np.zeros(shape))
+        self._keep.append(kernel)
+        if not self.native.sym_bind(self.scene, self.ffi.addressof(self.scene, slot)):
+            raise CompileError(f"the stepping loop knows not every input of '{kernel.signature.name}'")
+
+    def _attach(self, function: Any) -> None:
+        """A Python function as the inputs; what it raises is kept and ends the run."""
+        nq, nv, nu = self.model.nq, self.model.nv, self.model.nu
+        self.failure: BaseException | None = None
+
+        def call(_data: Any, t: float, q: Any, v: Any, u: Any) -> int:
+            try:
+                found = np.asarray(function(t, self._view(q, nq).copy(), self._view(v, nv).copy()), dtype=np.float64)
+                if found.shape != (nu,):
+                    raise ValueError(f"the input function returned shape {found.shape}, not ({nu},)")
+                self._view(u, nu)[:] = found
+            except BaseException as error:  # It may not pass through C; the loop raises it again.
+                self.failure = error
+                return 1
+            return 0
+
+        kind = "int32_t(void *, double, const double *, const double *, double *)"
+        handle = self.ffi.callback(kind, call)
+        self._keep.append(handle)
+        self.scene.callback = handle
+
+    def _view(self, pointer: Any, size: int) -> Array:
+        return np.frombuffer(self.ffi.buffer(pointer, 8 * size), dtype=np.float64)
+
+    def _fill_method(self) -> None:
+        run, tableau = self.run, self.method.tableau
+        run.method, run.adaptive = _KINDS[self.method.kind], int(self.method.adaptive)
+        into = run.tableau
+        into.stages, into.dense_stages, into.last = tableau.stages, len(tableau.b), tableau.last
+        into.error_order, into.errors, into.degree = tableau.error_order, len(tableau.errors), tableau.dense.shape[1]
+        into.a, into.b, into.c = map(self.numbers, (tableau.a, tableau.b, tableau.c))
+        into.dense = self.numbers(tableau.dense)
+        zero = np.zeros(tableau.stages)
+        errors = [*tableau.errors, zero, zero]
+        into.e, into.e2 = self.numbers(errors[0]), self.numbers(errors[1])
+
+    def start(self, q: Array, v: Array, capacity: int) -> int:
+        """Place the run at its first state, with room for so many records; returns a status."""
+        run, model = self.run, self.model
+        run.q, run.v = self.numbers(q), self.numbers(v)
+        run.y = self.numbers(np.zeros(self.native.sym_work_size(run)))
+        run.event = self.numbers(np.zeros(3 * max(1, len(self.events))))
+        run.capacity, run.event_capacity = capacity, max(64, 2 * len(self.events))
+        self._records = self._room(capacity, ("record_t", 1), ("record_q", model.nq), ("record_v", model.nv),
+                                   ("record_u", model.nu))  # fmt: skip
+        self._found = self._room(run.event_capacity, ("found_t", 1), ("found_q", model.nq), ("found_v", model.nv))
+        self._which = np.zeros(run.event_capacity, dtype=np.int32)
+        run.found_which = self.ffi.cast("int32_t *", self.ffi.from_buffer(self._which))
+        return int(self.native.sym_start(run))
+
+    def _room(self, rows: int, *columns: tuple[str, int]) -> list[Array]:
+        arrays = []
+        for name, width in columns:
+            array = np.zeros((rows, max(1, width)))
+            setattr(self.run, name, self.ffi.cast("double *", self.ffi.from_buffer(array)))
+            arrays.append(array[:, :width])
+        return arrays
+
+    def advance(self, steps: int) -> int:
+        """Make at most so many steps; returns a status. Other threads run meanwhile."""
+        return int(self.native.sym_advance(self.run, steps))
+
+    def take_records(self) -> list[Array]:
+        """The records so far, t (n), q, v, u; the room is free again."""
+        n = int(self.run.n_records)
+        self.run.n_records = 0
+        t, q, v, u = (array[:n].copy() for array in self._records)
+        return [t[:, 0], q, v, u]
+
+    def take_events(self) -> list[tuple[int, float, Array, Array]]:
+        """The events found so far: which, when, q, v."""
+        n = int(self.run.n_found)
+        self.run.n_found = 0
+        t, q, v = self._found
+        return [(int(self._which[i]), float(t[i, 0]), q[i].copy(), v[i].copy()) for i in range(n)]
+
+    def set_gains(self, gains: Array) -> None:
+        """Baumgarte's gains (2 nc)."""
+        self._view(self.scene.gains, len(gains))[:] = gains
+
+    @property
+    def inputs_now(self) -> Array:
+        """The inputs last evaluated (nu)."""
+        return self._view(self.scene.u, self.model.nu).copy()
+
+    @property
+    def state(self) -> tuple[float, Array, Array]:
+        """The present t, q, v."""
+        q, v = self._view(self.run.q, self.model.nq), self._view(self.run.v, self.model.nv)
+        return float(self.run.t), q.copy(), v.copy()

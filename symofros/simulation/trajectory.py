@@ -1,0 +1,203 @@
+"""A recorded motion, and what follows from it."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symofros.atomic import write_atomically
+from symofros.errors import Problem, SymofrosError
+from symofros.runtime.kernel import Array
+from symofros.runtime.model import Model
+from symofros.simulation.outcome import Outcome
+
+
+class Found(NamedTuple):
+    """An event that was met: its name, when, and the state."""
+
+    name: str
+    t: float
+    q: Array
+    v: Array
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """What a run cost.
+
+    Attributes:
+        method: Its name.
+        steps: Accepted; `rejected` were tried in vain.
+        evaluations: Of the accelerations; `jacobians` of their derivatives.
+        seconds: On the clock, in the stepping loop.
+        late_steps: With a pace: steps that began after their time; `late_max` and `late_mean` [s] are how late the
+            clock was, sleeping included.
+        rank_min: Lowest rank of the constraints' Jacobian met, `rank_max` the highest; -1 without constraints.
+    """
+
+    method: str
+    steps: int
+    rejected: int
+    evaluations: int
+    jacobians: int
+    seconds: float
+    late_steps: int = 0
+    late_max: float = 0.0
+    late_mean: float = 0.0
+    rank_min: int = -1
+    rank_max: int = -1
+
+
+class Frames(Mapping[str, tuple[Array, Array]]):
+    """Frame name -> p_WF (n, 3) and R_WF (n, 3, 3) along a trajectory, computed when asked for."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        self._trajectory = trajectory
+
+    def __getitem__(self, name: str) -> tuple[Array, Array]:
+        """Pose over time."""
+        run = self._trajectory
+        if name not in run.model.record.frame_names and name not in run.model.record.frame_aliases:
+            raise KeyError(name)
+        return run.model.frame_pose(name, run.q, u=run.u, par=run.par)
+
+    def __iter__(self) -> Iterator[str]:
+        """Names."""
+        return iter(self._trajectory.model.names.frames)
+
+    def __len__(self) -> int:
+        """How many."""
+        return len(self._trajectory.model.names.frames)
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """States over time, of one run.
+
+    Attributes:
+        model: What moved.
+        t: Times (n) [s].
+        q: Configurations (n, nq).
+        v: Speeds (n, nv).
+        u: Inputs (n, nu).
+        par: Run-time parameters (npar).
+        outcome: How the run ended.
+        events: Events met, in the order of time.
+        statistics: What it cost.
+    """
+
+    model: Model
+    t: Array
+    q: Array
+    v: Array
+    u: Array
+    par: Array
+    outcome: Outcome
+    events: tuple[Found, ...] = ()
+    statistics: Statistics = field(default_factory=lambda: Statistics("", 0, 0, 0, 0, 0.0))
+
+    def __len__(self) -> int:
+        """Number of recorded states."""
+        return len(self.t)
+
+    @cached_property
+    def _dynamics(self) -> tuple[Array, Array]:
+        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
+        return a, lam
+
+    @property
+    def a(self) -> Array:
+        """Accelerations v' (n, nv) at the recorded states, constraints kept, without stabilising terms."""
+        return self._dynamics[0]
+
+    @property
+    def lam(self) -> Array:
+        """Multipliers (n, nc)."""
+        return self._dynamics[1]
+
+    @cached_property
+    def kinetic_energy(self) -> Array:
+        """(n) [J]."""
+        return self.model.kinetic_energy(self.q, self.v, u=self.u, par=self.par)
+
+    @cached_property
+    def potential_energy(self) -> Array:
+        """(n) [J]."""
+        return self.model.potential_energy(self.q, u=self.u, par=self.par, t=self.t)
+
+    @property
+    def energy(self) -> Array:
+        """Kinetic and potential energy together (n) [J]."""
+        total: Array = self.kinetic_energy + self.potential_energy
+        return total
+
+    @property
+    def frames(self) -> Frames:
+        """Frame name -> (p (n, 3), R (n, 3, 3))."""
+        return Frames(self)
+
+    def __getitem__(self, name: str) -> Array:
+        """A coordinate, speed ("d" and the coordinate's name, or its own) or input by name (n)."""
+        names = self.model.names
+        if name in names.q:
+            return self.q[:, names.q.index(name)]
+        if name in names.u:
+            return self.u[:, names.u.index(name)]
+        for candidate in (name, name.removeprefix("d")):
+            if candidate in names.v:
+                return self.v[:, names.v.index(candidate)]
+        raise KeyError(name)
+
+    def columns(self) -> dict[str, Array]:
+        """Time, coordinates, speeds and inputs by name (n); a speed that shares its coordinate's name bears a d."""
+        names = self.model.names
+        found = {"t": self.t} | {name: self.q[:, i] for i, name in enumerate(names.q)}
+        for i, name in enumerate(names.v):
+            found[f"d{name}" if name in names.q else name] = self.v[:, i]
+        return found | {(name if name not in found else f"u.{name}"): self.u[:, i] for i, name in enumerate(names.u)}
+
+    def save(self, path: str | Path) -> Path:
+        """Write the trajectory: .npz (arrays), .csv or .parquet (a column a name).
+
+        Raises:
+            SymofrosError: Another suffix; or Parquet without pyarrow.
+        """
+        path = Path(path)
+        if path.suffix == ".npz":
+            stream = io.BytesIO()
+            arrays: dict[str, Any] = {"t": self.t, "q": self.q, "v": self.v, "u": self.u, "par": self.par}
+            np.savez_compressed(stream, **arrays, names_q=self.model.names.q, names_v=self.model.names.v,
+                                names_u=self.model.names.u, outcome=str(self.outcome))  # fmt: skip
+            write_atomically(path, stream.getvalue())
+        elif path.suffix == ".csv":
+            text = io.StringIO(newline="")
+            writer = csv.writer(text)
+            columns = self.columns()
+            writer.writerow(columns)
+            writer.writerows(zip(*(map(repr, column.tolist()) for column in columns.values()), strict=True))
+            write_atomically(path, text.getvalue())
+        elif path.suffix == ".parquet":
+            self._save_parquet(path)
+        else:
+            raise SymofrosError(str(Problem(f"trajectory: can't save as '{path.name}'", path.suffix or "no suffix",
+                                            ".npz, .csv or .parquet", "choose one of them")))  # fmt: skip
+        return path
+
+    def _save_parquet(self, path: Path) -> None:
+        try:
+            import pyarrow  # An extra: 40 MB that only this needs.
+            import pyarrow.parquet
+        except ImportError:
+            raise SymofrosError(str(Problem("trajectory: Parquet needs pyarrow", "it is not installed",
+                                            "pyarrow writes Parquet", "pip install pyarrow, or save as .npz")
+                                    )) from None  # fmt: skip
+        stream = io.BytesIO()
+        pyarrow.parquet.write_table(pyarrow.table(self.columns()), stream)
+        write_atomically(path, stream.getvalue())
