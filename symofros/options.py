@@ -21,6 +21,9 @@ MODEL_FUNCTIONS = (
     "constraint_bias",
     "inverse_dynamics_derivatives",
     "residual_derivatives",
+    "residual",
+    "implicit_terms",
+    "momentum",
     "regressor",
 )
 FRAME_FUNCTIONS = ("frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian", "frame_jacobian_rate")

@@ -14,6 +14,7 @@ from symofros.dynamics.forward import solve
 from symofros.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
+from symofros.dynamics.momentum import coadjoint, momentum_rate
 from symofros.dynamics.rotors import MovingRotor, rotors_of
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.graph import ZERO, Edge, Graph
@@ -139,6 +140,20 @@ class Equations:
         return found + bound
 
     @cached_property
+    def momentum(self) -> list[Edge]:
+        """P = M v (nv)."""
+        return [self.g.sum(self.g.mul(m, self.g.input("v", k)) for k, m in enumerate(row)) for row in self.M]
+
+    @cached_property
+    def momentum_force(self) -> list[Edge]:
+        """F with p' = F + ad_v^T p, for which the equations of motion give F = dM/dt v + Q - h - ad_v^T p (nv)."""
+        g = self.g
+        rate = momentum_rate(self.motion, self.momentum)
+        turning = coadjoint(self.motion, self.momentum)
+        total = [g.sub(g.add(r, Q), g.add(h, c)) for r, Q, h, c in zip(rate, self.Q, self.h, turning, strict=True)]
+        return total
+
+    @cached_property
     def regressor(self) -> list[list[Edge]]:
         """Y with M a + h = Y pi for rigid links: the sum is linear in their inertial parameters (nv x 10 links)."""
         own = inertia_inputs(self.motion)
@@ -216,6 +231,25 @@ def _residual_derivatives(e: Equations) -> _Parts:
     return ("q", "v", "a", "u", "lam", "t"), outputs
 
 
+def _implicit_terms(e: Equations) -> _Parts:
+    """What an implicit step needs of the residual at a state: docs/theory/simulation.md, section 3."""
+    by_q = by_configuration(e.motion, e.residual)
+    by_v = by_inputs(e.motion, e.residual, "v", e.nv)
+    by_u = by_inputs(e.motion, e.residual, "u", len(e.tree.coordinates.u))
+    rate_by_q = by_configuration(e.motion, [row.rate for row in e.constraints])
+    G = _matrix("G", [row.G for row in e.constraints])
+    outputs = (_matrix("M", e.M), G, _matrix("dR_dq", by_q), _matrix("dR_dv", by_v), _matrix("dR_du", by_u),
+               _matrix("drate_dq", rate_by_q))  # fmt: skip
+    return ("q", "v", "a", "u", "lam", "t"), outputs
+
+
+def _residual(e: Equations) -> _Parts:
+    """M a + h - Q - G^T lam, phi and G v - b."""
+    phi = _vector("phi", [row.phi for row in e.constraints])
+    rate = _vector("phi_rate", [row.rate for row in e.constraints])
+    return ("q", "v", "a", "u", "lam", "t"), (_vector("R", e.residual[: e.nv]), phi, rate)
+
+
 _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "mass_matrix": lambda e: (("q",), (_matrix("M", e.M),)),
     "bias": lambda e: (("q", "v"), (_vector("h", e.h),)),
@@ -228,6 +262,12 @@ _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "regressor": lambda e: (("q", "v", "a"), (_matrix("Y", e.regressor),)),
     "inverse_dynamics_derivatives": _inverse_derivatives,
     "residual_derivatives": _residual_derivatives,
+    "residual": _residual,
+    "implicit_terms": _implicit_terms,
+    "momentum": lambda e: (
+        ("q", "v", "u", "t"),
+        (_vector("p", e.momentum), _vector("F", e.momentum_force), _matrix("M", e.M)),
+    ),
     "constraint": lambda e: (("q", "t"), (_vector("phi", [row.phi for row in e.constraints]),)),
     "constraint_rate": lambda e: (("q", "v", "t"), (_vector("phi_rate", [row.rate for row in e.constraints]),)),
     "constraint_jacobian": lambda e: (("q", "t"), (_matrix("G", [row.G for row in e.constraints]),)),

@@ -5,9 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from symofros.simulation.tableaus import DOP853, DORMAND_PRINCE, EXPLICIT_EULER, RK4, Tableau
+from symofros.simulation.tableaus import (
+    DOP853,
+    DORMAND_PRINCE,
+    EXPLICIT_EULER,
+    LINEAR_EULER,
+    RK4,
+    RODAS,
+    Tableau,
+)
 
-Kind = Literal["explicit", "semi_implicit"]
+Kind = Literal["explicit", "semi_implicit", "rosenbrock", "alpha", "variational"]
 
 
 @dataclass(frozen=True)
@@ -39,5 +47,9 @@ METHODS: dict[str, Method] = {
         Method("rk4", "explicit", 4, False, RK4, "classical Runge-Kutta; fixed step, real time"),
         Method("dopri5", "explicit", 5, True, DORMAND_PRINCE, "Dormand-Prince 5(4); adaptive"),
         Method("dop853", "explicit", 8, True, DOP853, "Hairer's 8(5,3); adaptive, for tight tolerances"),
+        Method("implicit_euler", "rosenbrock", 1, False, LINEAR_EULER, "one linear solve a step; stiff, real time"),
+        Method("rodas4", "rosenbrock", 4, True, RODAS, "Rosenbrock 4(3) with exact Jacobians; adaptive, stiff"),
+        Method("generalized_alpha", "alpha", 2, False, EXPLICIT_EULER, "constraints met by each step's equations"),
+        Method("variational", "variational", 2, False, EXPLICIT_EULER, "symplectic midpoint rule; long runs"),
     )
 }

@@ -22,9 +22,15 @@ from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.methods import Method
 
-_PARTS = ("manifold.c", "scene.c", "explicit.c", "pace.c", "run.c")
+_PARTS = ("manifold.c", "scene.c", "linear.c", "explicit.c", "implicit.c", "second_order.c", "pace.c", "run.c")
 _SEGMENTS = {"linear": 0, "quaternion": 1, "pose": 2}
-_KINDS = {"explicit": 0, "semi_implicit": 1}
+_KINDS = {"explicit": 0, "semi_implicit": 1, "rosenbrock": 2, "alpha": 3, "variational": 4}
+# Functions that each kind of method calls besides forward_dynamics: the slot of sym_scene, and the function's name.
+_NEEDS: dict[str, dict[str, str]] = {
+    "rosenbrock": {"terms": "implicit_terms"},
+    "alpha": {"terms": "implicit_terms", "residual": "residual"},
+    "variational": {"terms": "implicit_terms", "momentum": "momentum"},
+}
 
 GOING, DONE, FULL, EVENT = 0, 1, 2, 3
 DIVERGED, NO_MOTION, TINY_STEP, CALLBACK, NO_CONVERGENCE, OFF = -1, -2, -3, -4, -5, -6
@@ -113,6 +119,10 @@ class Stepper:
         if self.events:
             self._bind("events", model.formulas([event.formula for event in self.events]), {})
         self._bind("forward", model.kernel("forward_dynamics"), {"a": scene.a, "lam": scene.lam, "rank": scene.rank})
+        for slot, name in _NEEDS.get(self.method.kind, {}).items():
+            self._bind(slot, model.kernel(name), {})
+        on_speeds = [int(name in model.record.speed_conditions) for name in model.names.constraints]
+        scene.on_speeds = self._own("int32_t[]", on_speeds)
         if inputs.callback is not None:
             self._attach(inputs.callback)
         scene.data = ffi.NULL
@@ -171,6 +181,8 @@ class Stepper:
         into.error_order, into.errors, into.degree = tableau.error_order, len(tableau.errors), tableau.dense.shape[1]
         into.a, into.b, into.c = map(self.numbers, (tableau.a, tableau.b, tableau.c))
         into.dense = self.numbers(tableau.dense)
+        into.gamma, into.coupling, into.d = tableau.gamma, self.numbers(tableau.coupling), self.numbers(tableau.d)
+        run.rho, run.tolerance = 0.8, 1e-12
         zero = np.zeros(tableau.stages)
         errors = [*tableau.errors, zero, zero]
         into.e, into.e2 = self.numbers(errors[0]), self.numbers(errors[1])
@@ -180,6 +192,7 @@ class Stepper:
         run, model = self.run, self.model
         run.q, run.v = self.numbers(q), self.numbers(v)
         run.y = self.numbers(np.zeros(self.native.sym_work_size(run)))
+        run.pivots = self._own("int32_t[]", [0] * (2 * (model.nv + model.nc)))
         run.event = self.numbers(np.zeros(3 * max(1, len(self.events))))
         run.capacity, run.event_capacity = capacity, max(64, 2 * len(self.events))
         self._records = self._room(capacity, ("record_t", 1), ("record_q", model.nq), ("record_v", model.nv),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 import numpy as np
@@ -27,6 +27,9 @@ class Tableau:
         errors: Weights of the error estimates, (0 to 2, stages).
         error_order: Of the embedded solution.
         dense: Coefficient of x^(j+1) for each stage (m, degree); degree 0: a cubic through ends and slopes.
+        gamma: Of a Rosenbrock method, in whose terms a, b and errors weigh the solutions of the stages' systems.
+        coupling: Weights of earlier solutions in a stage's right side, over h (stages, stages).
+        d: Weights of the derivative by time (stages).
     """
 
     order: int
@@ -38,6 +41,9 @@ class Tableau:
     errors: Array
     error_order: int
     dense: Array
+    gamma: float = 0.0
+    coupling: Array = field(default_factory=lambda: np.zeros(0))
+    d: Array = field(default_factory=lambda: np.zeros(0))
 
 
 def _numbers(text: str) -> Array:
@@ -103,7 +109,32 @@ def _nested(b: Array, d: Array) -> Array:
     return total[:, 1:]
 
 
+def _linear_euler() -> Tableau:
+    """Implicit Euler with one Newton step: order 1, damps what is stiff."""
+    one = np.ones(1)
+    return Tableau(1, 1, np.zeros((1, 1)), one, np.zeros(1), 0, np.zeros((0, 1)), 0, np.zeros((1, 0)), 1.0,
+                   np.zeros((1, 1)), one)  # fmt: skip
+
+
+def _rodas() -> Tableau:
+    """RODAS of Hairer and Wanner (II, IV.10): six stages, order 4(3), stiffly accurate and L-stable."""
+    fifth = "1.221224509226641 6.019134481288629 12.53708332932087 -0.6878860361058950"
+    a = _lower(["1.544", "0.9466785280815826 0.2557011698983284",
+                "3.314825187068521 2.896124015972201 0.9986419139977817", fifth, fifth + " 1"])  # fmt: skip
+    coupling = _lower([
+        "-5.6688", "-2.430093356833875 -0.2063599157091915",
+        "-0.1073529058151375 -9.594562251023355 -20.47028614809616",
+        "7.496443313967647 -10.24680431464352 -33.99990352819905 11.70890893206160",
+        "8.083246795921522 -7.981132988064893 -31.52159432874371 16.31930543123136 -6.058818238834054",
+    ])  # fmt: skip
+    b = np.concatenate([a[5, :5], [1.0]])
+    nodes, d = _numbers("0 0.386 0.21 0.63 1 1"), _numbers("0.25 -0.1043 0.1035 -0.0362 0 0")
+    return Tableau(4, 6, a, b, nodes, 0, np.eye(6)[5:], 3, np.zeros((6, 0)), 0.25, coupling, d)
+
+
 EXPLICIT_EULER = _plain(1, [], "1")
 RK4 = _plain(4, ["1/2", "0 1/2", "0 0 1"], "1/6 1/3 1/3 1/6")
 DORMAND_PRINCE = _dormand_prince()
 DOP853 = _dop853()
+LINEAR_EULER = _linear_euler()
+RODAS = _rodas()

@@ -52,6 +52,25 @@ static void sym_retract(const sym_scene *scene, const double *q0, const double *
     }
 }
 
+/* Twists of poses in theta become shifts, in place: what the constant velocity theta moves in unit time,
+ * v + A w x v + B w x (w x v). */
+static void sym_unroll(const sym_scene *scene, double *theta) {
+    int k, i;
+    for (k = 0; k < scene->n_segments; ++k) {
+        const sym_segment *seg = &scene->segments[k];
+        double *v = theta + seg->v, once[3], twice[3];
+        const double *w = v + 3;
+        double angle2, angle, A, B;
+        if (seg->kind != 2) continue;
+        angle2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2], angle = sqrt(angle2);
+        A = angle < 1e-4 ? 0.5 - angle2 / 24.0 : (1.0 - cos(angle)) / angle2;
+        B = angle < 1e-2 ? 1.0 / 6.0 - angle2 / 120.0 + angle2 * angle2 / 5040.0 : (angle - sin(angle)) / (angle2 * angle);
+        sym_cross(w, v, once);
+        sym_cross(w, once, twice);
+        for (i = 0; i < 3; ++i) v[i] += A * once[i] + B * twice[i];
+    }
+}
+
 /* w -> the rate of the rotation vector theta: w + theta x w / 2 + c theta x (theta x w). */
 static void sym_vector_rate(const double *theta, const double *w, double *rate) {
     const double angle2 = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2], angle = sqrt(angle2);

@@ -18,9 +18,9 @@ static sym_memory sym_lay_out(const sym_run *r) {
 }
 
 SYM_EXPORT size_t sym_work_size(const sym_run *r) {
-    const size_t n = 2 * (size_t)r->scene->nv, nv = (size_t)r->scene->nv, nc = (size_t)r->scene->nc;
+    const size_t n = 2 * (size_t)r->scene->nv;
     const size_t stages = r->tableau.dense_stages > 1 ? (size_t)r->tableau.dense_stages : 1;
-    return (4 + stages) * n + 0 * (nv + nc);
+    return (4 + stages) * n + sym_implicit_size(r);
 }
 
 /* Slope at the present state into k[0], unless it is known. */
@@ -214,8 +214,12 @@ static int32_t sym_try(sym_run *r, sym_memory *m, double h, double *error) {
     } else if (r->method == SYM_METHOD_SEMI_IMPLICIT) {
         sym_semi_implicit_step(r, h, m->k, m->y1);
         status = 0;
+    } else if (r->method == SYM_METHOD_ROSENBROCK) {
+        status = sym_rosenbrock_step(r, h, m->k, m->y1, m->stage, m->size, m->rest, error);
+    } else if (r->method == SYM_METHOD_ALPHA) {
+        status = sym_alpha_step(r, h, m->y1, m->rest);
     } else {
-        status = SYM_NO_CONVERGENCE;
+        status = sym_variational_step(r, h, m->y1, m->rest);
     }
     if (status == 0 && !sym_finite(2 * r->scene->nv, m->y1)) status = SYM_DIVERGED;
     return status;

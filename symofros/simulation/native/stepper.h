@@ -30,7 +30,7 @@ typedef struct sym_call { /* a function of a model, bound to the point it is eva
     double *out[8];
 } sym_call;
 
-typedef struct sym_tableau { /* an explicit Runge-Kutta method */
+typedef struct sym_tableau { /* a Runge-Kutta method */
     int32_t stages;          /* of a step and its error estimate */
     int32_t dense_stages;    /* the same and those that dense output adds */
     int32_t last;            /* the stage at the end of the step, whose slope the next step starts with; 0: none */
@@ -41,6 +41,10 @@ typedef struct sym_tableau { /* an explicit Runge-Kutta method */
     const double *b, *c;     /* (dense_stages) */
     const double *e, *e2;    /* (stages) */
     const double *dense;     /* (dense_stages, degree): coefficient of x^(j+1) for each stage */
+    /* Of a Rosenbrock method, in whose terms a, b and e weigh the solutions of the stages' linear systems: */
+    double gamma;
+    const double *coupling;  /* (stages, stages) of earlier solutions, over h */
+    const double *d;         /* (stages) of the derivative by time */
 } sym_tableau;
 
 typedef struct sym_scene {
@@ -54,7 +58,8 @@ typedef struct sym_scene {
     /* Inputs by a caller's function; not 0 stops the run. NULL: none. */
     int32_t (*callback)(void *data, double t, const double *q, const double *v, double *u);
     void *data;
-    sym_call forward, law, events, derivatives, projection, momentum, residual;
+    sym_call forward, law, events, project, terms, residual, momentum;
+    const int32_t *on_speeds; /* (nc) whether a constraint binds speeds only */
     /* Where calls are evaluated: their inputs and outputs point here. */
     double *q, *v, *u, *t, *gains, *a, *lam, *rank;
 } sym_scene;
@@ -68,12 +73,14 @@ typedef struct sym_run {
     sym_tableau tableau;
     double t0, t_end, h, rtol, atol, h_max;
     double rho;        /* generalised alpha: spectral radius at infinite frequency */
+    double tolerance;  /* of the equations of an implicit step, relative */
     double pace;       /* seconds of clock a second of motion; 0: as fast as can be */
     const double *grid;
     int64_t n_grid, at_grid;
     /* The present state, and how the run fares. */
     double t, *q, *v;  /* (nq), (nv) */
     double *y;         /* work, sym_work_size doubles */
+    int32_t *pivots;   /* 2 (nv + nc) */
     double *event;     /* (n_events) values at the present state */
     double h_next, error_last;
     int64_t steps, rejected, evaluations, jacobians;
