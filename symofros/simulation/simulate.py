@@ -23,6 +23,7 @@ from symofros.simulation.trajectory import Found, Statistics, Trajectory
 _PORTION = 4096
 # Seconds that C may step before Python looks up: for Ctrl-C and for progress.
 _SPELL = 0.05
+_LONGEST = 1 << 20  # Steps in a spell.
 
 
 def simulate(
@@ -105,7 +106,7 @@ def simulate(
                 before = time.perf_counter()
                 status = stepper.advance(left)
                 took = time.perf_counter() - before
-                spell = max(1, spell // 2) if took > _SPELL else 2 * spell if took < _SPELL / 4 else spell
+                spell = max(1, spell // 2) if took > _SPELL else min(2 * spell, _LONGEST) if took < _SPELL / 4 else spell
                 records.append(stepper.take_records())
                 found += stepper.take_events()
                 show(float(stepper.run.t))
