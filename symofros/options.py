@@ -19,6 +19,7 @@ MODEL_FUNCTIONS = (
     "constraint_rate",
     "constraint_jacobian",
     "constraint_bias",
+    "project",
     "inverse_dynamics_derivatives",
     "residual_derivatives",
     "regressor",

@@ -11,11 +11,12 @@ from dataclasses import dataclass
 
 from symofros.description.constraints import AXES, AxisName, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
 from symofros.description.forces import Anchor
-from symofros.dynamics.applied.forces import coordinate_rates
+from symofros.dynamics.applied.forces import coordinate_rates, rates_per_speed
 from symofros.expr.derivative import directional
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.kinematics.frames import FrameKinematics
+from symofros.kinematics.links import Motion
 from symofros.topology.tree import frame_of
 
 
@@ -182,6 +183,25 @@ class Constraints:
                     if vector is not None:
                         row[k] = g.add(row[k], sign * vector.dot(Vec3(g, *part)))
         return tuple(row)
+
+
+def moved(motion: Motion) -> list[Edge]:
+    """The coordinates after a small step along the manifold: q + N step, quaternions made unit again (nq).
+
+    It leads where `Model.integrate` does but for terms of the second order, which Newton's method does not feel.
+    """
+    g, tree = motion.g, motion.tree
+    q = [g.input("q", k) for k in range(len(tree.coordinates.q))]
+    found = dict(zip(q, q, strict=True))
+    for k, rates in enumerate(rates_per_speed(motion)):
+        for coordinate, rate in rates.items():
+            found[coordinate] = g.add(found[coordinate], g.mul(rate, g.input("step", k)))
+    for link in tree.links:
+        if link.joint.kind in ("ball", "free") and not link.joint.prescribed:
+            parts = q[link.q[0] + link.q[1] - 4 : link.q[0] + link.q[1]]
+            size = g.sqrt(g.sum(g.mul(found[part], found[part]) for part in parts))
+            found |= {part: g.div(found[part], size) for part in parts}
+    return list(found.values())
 
 
 # Pairs (axis of A, axis of B, factor) of one condition.

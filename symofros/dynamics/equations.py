@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from symofros.dynamics.applied.forces import generalized_forces, stored_energy
-from symofros.dynamics.constraints import Constraints, Row
+from symofros.dynamics.constraints import Constraints, Row, moved
 from symofros.dynamics.derivatives import by_configuration, by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
 from symofros.dynamics.forward import solve
@@ -16,8 +16,8 @@ from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.dynamics.rotors import MovingRotor, rotors_of
 from symofros.errors import DescriptionError, Problem
-from symofros.expr.graph import ZERO, Edge, Graph
-from symofros.expr.program import Function, Output, Program
+from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.program import Function, Output, Program, Solver
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.kinematics.frames import FrameKinematics
@@ -170,6 +170,8 @@ class Equations:
         """
         if request.name == "forward_dynamics" and self.tree.system.constraints:
             return self._constrained(request)
+        if request.name == "project":
+            return self._project(request)
         if request.name in _FRAME_FUNCTIONS:
             inputs, outputs = _FRAME_FUNCTIONS[request.name](self, self.tree.frame(request.frame))
         else:
@@ -183,7 +185,20 @@ class Equations:
         G = [row.G for row in self.constraints]
         outputs = (_matrix("M", self.M), _vector("r", right), _matrix("G", G), _vector("c", self.stabilised))
         solved = (("a", (self.nv,)), ("lam", (len(G),)), ("rank", ()))
-        return Function(request.name, "", ("q", "v", "u", "gains", "t"), outputs, solved)
+        return Function(request.name, "", ("q", "v", "u", "gains", "t"), outputs, Solver("constrained", solved))
+
+    def _project(self, request: Request) -> Function:
+        """The nearest state on the constraints: the terms of Newton's steps, and how a step moves q."""
+        rows, nq = self.constraints, len(self.tree.coordinates.q)
+        binds = [ZERO if row.phi == ZERO else ONE for row in rows]
+        outputs = (
+            _matrix("M", self.M), Output("G", (len(rows), self.nv), tuple(edge for row in rows for edge in row.G)),
+            _vector("binds", binds), _vector("phi", [row.phi for row in rows]),
+            _vector("rate", [row.rate for row in rows]),
+        )  # fmt: skip
+        move = Function("move", "", ("q", "step"), (_vector("q_moved", moved(self.motion)),))
+        solved = (("q_on", (nq,)), ("v_on", (self.nv,)), ("residual", ()), ("rank", ()))
+        return Function(request.name, "", ("q", "v", "u", "t"), outputs, Solver("project", solved, (move,)))
 
 
 _Parts = tuple[tuple[str, ...], tuple[Output, ...]]
@@ -264,6 +279,7 @@ def write_program(tree: SpanningTree, requests: Sequence[Request]) -> Program:
     names = tree.coordinates
     sizes = {
         "q": len(names.q), "v": len(names.v), "a": len(names.v), "u": len(names.u), "par": len(names.par), "t": 1,
+        "step": len(names.v),
         "lam": sum(len(constraint.conditions) for constraint in tree.system.constraints),
         "gains": 2 * sum(len(constraint.conditions) for constraint in tree.system.constraints),
     }  # fmt: skip

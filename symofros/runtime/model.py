@@ -198,6 +198,18 @@ class Model(Functions):
         """Gamma(q, v) (..., nc): what G v' equals."""
         return self._one("constraint_bias", {"q": q, "v": v, "u": u, "t": t}, par)
 
+    def project(
+        self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+    ) -> tuple[Array, Array, Array]:
+        """The nearest state that meets the constraints: q (..., nq), v (..., nv), and what is left of |phi| (...,).
+
+        Newton's method on phi(q) = 0, then G v = b, each by the least change in the metric of M: for states that have
+        drifted. It does not judge what it reaches; `sf.assemble` starts from afar, holds coordinates, and does.
+        Conditions that repeat others are met by the same change; NaN where M and G determine none.
+        """
+        on_q, on_v, residual, _ = self._call("project", "", {"q": q, "v": v, "u": u, "t": t}, par)
+        return on_q, on_v, residual
+
     def inverse_dynamics(
         self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
     ) -> Array:
