@@ -20,6 +20,7 @@ MODEL_FUNCTIONS = (
     "constraint_jacobian",
     "constraint_bias",
     "project",
+    "closure_wrenches",
     "inverse_dynamics_derivatives",
     "residual_derivatives",
     "regressor",

@@ -15,6 +15,7 @@ from symofros.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.dynamics.rotors import MovingRotor, rotors_of
+from symofros.dynamics.wrenches import closure_wrenches
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
 from symofros.expr.program import Function, Output, Program, Solver
@@ -216,6 +217,11 @@ def _dynamics(e: Equations) -> _Parts:
     return ("q", "v", "u", "t"), (_matrix("M", e.M), _vector("h", e.h), _vector("Q", e.Q))
 
 
+def _wrenches(e: Equations) -> _Parts:
+    on_second, on_first = closure_wrenches(e.frames, e.constraints)
+    return ("q", "lam", "t"), (_matrix("on_second", on_second), _matrix("on_first", on_first))
+
+
 def _inverse_derivatives(e: Equations) -> _Parts:
     by_q = by_configuration(e.motion, e.required)
     by_v = by_inputs(e.motion, e.required, "v", e.nv)
@@ -246,6 +252,7 @@ _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "constraint": lambda e: (("q", "t"), (_vector("phi", [row.phi for row in e.constraints]),)),
     "constraint_rate": lambda e: (("q", "v", "t"), (_vector("phi_rate", [row.rate for row in e.constraints]),)),
     "constraint_jacobian": lambda e: (("q", "t"), (_matrix("G", [row.G for row in e.constraints]),)),
+    "closure_wrenches": _wrenches,
     "constraint_bias": lambda e: (("q", "v", "t"), (_vector("gamma", [row.gamma for row in e.constraints]),)),
 }
 

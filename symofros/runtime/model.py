@@ -198,6 +198,38 @@ class Model(Functions):
         """Gamma(q, v) (..., nc): what G v' equals."""
         return self._one("constraint_bias", {"q": q, "v": v, "u": u, "t": t}, par)
 
+    def closure_wrench(
+        self,
+        name: str,
+        q: Given,
+        lam: Given,
+        *,
+        on: Literal["second", "first"] = "second",
+        u: Given | None = None,
+        par: Given | None = None,
+        t: Given = 0.0,
+    ) -> Array:
+        """What a constraint exerts on a frame: force and moment about its origin, in world axes (..., 6) [N, N m].
+
+        Args:
+            name: Of a closure, rod, knife edge or rolling contact.
+            q: Configuration (..., nq).
+            lam: Multipliers of all conditions (..., nc), from `forward_dynamics`.
+            on: Its second frame, the one that follows, or its first, the reference; of a knife edge or a rolling
+                contact the second is the frame that touches, the first the world.
+            u: Inputs, for prescribed motions.
+            par: Run-time parameters.
+            t: Time.
+
+        The force on the second frame of a rod points to the first where the rod pulls: its size is the tension.
+        """
+        if name not in self.record.wrench_names:
+            raise self._unknown("constraint with a wrench", name, self.record.wrench_names,
+                                "conditions by formula have a generalized force G^T lam alone")  # fmt: skip
+        found = self._call("closure_wrenches", "", {"q": q, "lam": lam, "u": u, "t": t}, par)
+        wrench: Array = found[0 if on == "second" else 1][..., self.record.wrench_names.index(name), :]
+        return wrench
+
     def project(
         self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
     ) -> tuple[Array, Array, Array]:
