@@ -194,7 +194,7 @@ class Constraints:
                 for vector, part in ((f, column[:3]), (n, column[3:])):
                     if vector is not None:
                         row[k] = g.add(row[k], sign * vector.dot(Vec3(g, *part)))
-        return Row(phi, tuple(row), rate, gamma, tuple(Lever(body.name, *acting) for body, *acting in parts))
+        return Row(phi, tuple(row), rate, gamma, tuple(Lever(body.name, f, n, sign) for body, f, n, sign in parts))
 
 
 def moved(motion: Motion) -> list[Edge]:
