@@ -1,4 +1,4 @@
-"""What a constraint's multipliers do to the bodies it joins: forces and moments (docs/theory/constraints.md, eq. 14)."""
+"""Forces and moments of a constraint on the bodies it joins (docs/theory/constraints.md, eq. 14)."""
 
 from __future__ import annotations
 
