@@ -30,6 +30,7 @@ from symofros.description.system import System
 from symofros.description.values import as_value
 from symofros.dynamics.equations import Request, write_program
 from symofros.dynamics.formulas import formula_program
+from symofros.dynamics.wrenches import acts_on_bodies
 from symofros.errors import (
     CompileError,
     CompilerMissingWarning,
@@ -268,6 +269,7 @@ def describe(tree: SpanningTree, options: Options) -> ModelRecord:
         segments=_segments(tree), periodic=tuple(periodic),
         constraint_names=tuple(name for item in tree.system.constraints for name in item.conditions),
         speed_conditions=tuple(name for item in tree.system.constraints for name in item.on_speeds),
+        wrench_names=tuple(acts_on_bodies(tree.system.constraints)),
         closures=tuple(_closure(tree, item) for item in tree.system.constraints if isinstance(item, Closure)),
     )  # fmt: skip
 

@@ -19,6 +19,8 @@ MODEL_FUNCTIONS = (
     "constraint_rate",
     "constraint_jacobian",
     "constraint_bias",
+    "project",
+    "closure_wrenches",
     "inverse_dynamics_derivatives",
     "residual_derivatives",
     "residual",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 
 from symofros.expr.evaluate import evaluate_edges, interpret
-from symofros.expr.program import Function, Program
-from symofros.runtime.constrained import constrained
+from symofros.expr.program import Function, Program, Solver
+from symofros.runtime.constrained import constrained, project
 from symofros.runtime.kernel import Array, Kernel, Signature
 
 
@@ -43,4 +45,33 @@ class InterpretedKernel:
         """Evaluate n states."""
         named = dict(zip(self._function.inputs, inputs, strict=True)) | {"pre": pre}
         outputs = interpret(self._program, self._function, named, n)
-        return constrained(*outputs) if self._function.solve else outputs
+        solver = self._function.solver
+        return outputs if solver is None else _TWINS[solver.routine](self, solver, named, outputs)
+
+    def evaluate(self, function: Function, named: Mapping[str, Array]) -> list[Array]:
+        """The outputs of this function, or of a part of it, for one state."""
+        return [output[0] for output in interpret(self._program, function, named, 1)]
+
+    def _constrained(self, _: Solver, __: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
+        return constrained(*outputs)
+
+    def _project(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
+        """State by state."""
+        found = []
+        for k in range(len(outputs[0])):
+            state = {name: values[min(k, len(values) - 1)][None] for name, values in named.items()}
+
+            def terms(q: Array, v: Array, state: dict[str, Array] = state) -> list[Array]:
+                return self.evaluate(self._function, state | {"q": q[None], "v": v[None]})
+
+            def move(q: Array, step: Array, state: dict[str, Array] = state) -> Array:
+                return self.evaluate(solver.parts[0], state | {"q": q[None], "step": step[None]})[0]
+
+            found.append(project(terms, move, state["q"][0], state["v"][0]))
+        return [np.array(values) for values in zip(*found, strict=True)]
+
+
+_TWINS: dict[str, Callable[[InterpretedKernel, Solver, Mapping[str, Array], list[Array]], list[Array]]] = {
+    "constrained": InterpretedKernel._constrained,
+    "project": InterpretedKernel._project,
+}

@@ -10,6 +10,7 @@ from string import Template
 
 from symofros.codegen.function import FunctionText, FunctionWriter
 from symofros.codegen.names import c_string, identifier
+from symofros.codegen.solvers import ROUTINES, with_solver
 from symofros.expr.program import Function, Output, Program
 from symofros.passes.count import count_program
 from symofros.runtime.record import ModelRecord
@@ -45,9 +46,7 @@ def model_source(program: Program, record: ModelRecord, generator: str) -> str:
         generator=generator,
         hash=record.hash,
         operations=_comment("\n".join(lines)),
-        functions="\n\n".join(
-            [template("constrained.c.in"), *texts] if any(f.solve for f in program.functions) else texts
-        ),
+        functions="\n\n".join([*_routines(program), *texts]),
         tables="\n".join([*(table for table, _ in rows), _function_table(name, [row for _, row in rows])]),
         n_functions=len(rows),
         c_name=name,
@@ -65,6 +64,12 @@ def model_source(program: Program, record: ModelRecord, generator: str) -> str:
         par_default=_numbers(record.par_default),
         q_neutral=_numbers(record.q_neutral),
     )
+
+
+def _routines(program: Program) -> list[str]:
+    """The hand-written routines that the functions call, and what those rest on."""
+    called = {function.solver.routine for function in program.functions if function.solver is not None}
+    return [template(f"{name}.c.in") for name in ROUTINES if any(name in ROUTINES[other] for other in called)]
 
 
 def _init_function(program: Program, name: str) -> str:
@@ -89,8 +94,10 @@ def _init_function(program: Program, name: str) -> str:
 def _one_function(program: Program, function: Function, c_name: str) -> tuple[str, tuple[str, str]]:
     """Code, and (tables of its arrays, row of the function table)."""
     inputs = ["pre", *function.inputs]
-    writer = FunctionWriter(program, f"{c_name}_terms" if function.solve else c_name, inputs, function.outputs)
-    text = _with_solver(writer.text(), c_name, function) if function.solve else writer.text()
+    if function.solver is None:
+        text = FunctionWriter(program, c_name, inputs, function.outputs).text()
+    else:
+        text = with_solver(program, c_name, function, function.solver)
     code = "\n".join([text.code, _batch(c_name, function, len(inputs))])
     arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)
     arrays_out = ", ".join(f'{{"{name}", {len(s)}, {_rows(s)}, {_columns(s)}}}' for name, s in function.returns)
@@ -132,24 +139,6 @@ def _batch(c_name: str, function: Function, n_in: int) -> str:
 
 def _function_table(name: str, rows: Sequence[str]) -> str:
     return f"static const sym_function {name}_functions[] = {{\n" + ",\n".join(rows) + "\n};"
-
-
-def _with_solver(terms: FunctionText, c_name: str, function: Function) -> FunctionText:
-    """The terms of forward dynamics, then the solver of templates/constrained.c.in on them."""
-    n, m = function.outputs[2].shape[1], function.outputs[2].shape[0]
-    sizes = [len(output.edges) for output in function.outputs]
-    starts = [sum(sizes[:k]) for k in range(len(sizes) + 1)]
-    scratch = n * n + 2 * m * n + 2 * m * m + 2 * m
-    lines = [
-        f"static void {c_name}(const double *const *in, double *const *out, double *restrict work) {{",
-        f"    double *terms[{len(sizes)}];",
-        *(f"    terms[{k}] = work + {start};" for k, start in enumerate(starts[:-1])),
-        f"    {c_name}_terms(in, terms, work + {starts[-1]});",
-        f"    *out[2] = sym_constrained({n}, {m}, terms[0], terms[1], terms[2], terms[3], out[0], out[1],",
-        f"        work + {starts[-1]});",
-        "}",
-    ]
-    return FunctionText("\n".join([terms.code, *lines]), starts[-1] + max(terms.work, scratch))
 
 
 def _rows(shape: tuple[int, ...]) -> int:

@@ -8,15 +8,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from symofros.description.constraints import AXES, AxisName, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
 from symofros.description.forces import Anchor
-from symofros.dynamics.applied.forces import coordinate_rates
+from symofros.dynamics.applied.forces import coordinate_rates, rates_per_speed
 from symofros.expr.derivative import directional
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.kinematics.frames import FrameKinematics
+from symofros.kinematics.links import Motion
 from symofros.topology.tree import frame_of
+
+
+class Lever(NamedTuple):
+    """A part of a row: sign (force . J_v + moment . J_w) of a body's frame, in world axes."""
+
+    frame: str
+    force: Vec3 | None
+    moment: Vec3 | None
+    sign: int
 
 
 @dataclass(frozen=True)
@@ -28,18 +39,21 @@ class Row:
         G: Its row of the Jacobian (nv).
         rate: G v - b: the rate of phi, or the residual of the condition on speeds.
         gamma: What G v' must equal.
+        levers: What G is made of, and what the multiplier acts through.
     """
 
     phi: Edge
     G: tuple[Edge, ...]
     rate: Edge
     gamma: Edge
+    levers: tuple[Lever, ...] = ()
 
 
 @dataclass(frozen=True)
 class _Body:
-    """A frame in motion, in world axes: pose, velocities, accelerations at v' = 0, Jacobian rows."""
+    """A frame in motion, in world axes: name, pose, velocities, accelerations at v' = 0, Jacobian rows."""
 
+    name: str
     p: Vec3
     R: Mat3
     v: Vec3
@@ -73,7 +87,8 @@ class Constraints:
             acceleration = self.frames.acceleration(frame, [ZERO] * self.nv)
             v, w = Vec3(self.g, *velocity[:3]), Vec3(self.g, *velocity[3:])
             a, alpha = Vec3(self.g, *acceleration[:3]), Vec3(self.g, *acceleration[3:])
-            self._bodies[frame.qualified] = _Body(pose.p, pose.R, v, w, a, alpha, self.frames.jacobian(frame))
+            J = self.frames.jacobian(frame)
+            self._bodies[frame.qualified] = _Body(frame.qualified, pose.p, pose.R, v, w, a, alpha, J)
         return self._bodies[frame.qualified]
 
     # Closures.
@@ -90,12 +105,11 @@ class Constraints:
         d, d_rate = B.p - A.p, B.v - A.v
         n_rate = A.w.cross(n)
         turned = n.cross(d)  # (w x n) . d = w . (n x d)
-        G = self._combined([(B, n, None, 1), (A, n, None, -1), (A, None, turned, 1)])
-        g = self.g
+        g, parts = self.g, [(B, n, None, 1), (A, n, None, -1), (A, None, turned, 1)]
         rate = g.add(d_rate.dot(n), d.dot(n_rate))
         drift = g.add((B.a - A.a).dot(n), d.dot(A.alpha.cross(n) + A.w.cross(n_rate)))
         drift = g.add(drift, (d_rate + d_rate).dot(n_rate))
-        return Row(d.dot(n), G, rate, -drift)
+        return self._row(d.dot(n), rate, -drift, parts)
 
     def _between(self, A: _Body, B: _Body, pairs: Sequence[tuple[int, int, float]]) -> Row:
         """The sum of c a_i . b_j = 0, for axes a_i of A and b_j of B (eqs. 4, 5)."""
@@ -111,7 +125,7 @@ class Constraints:
             rate = g.add(rate, relative.dot(cross))
             drift = g.add(drift, g.add(relative_rate.dot(cross), relative.dot(cross_rate)))
             lever = lever + cross
-        return Row(phi, self._combined([(B, None, lever, 1), (A, None, lever, -1)]), rate, -drift)
+        return self._row(phi, rate, -drift, [(B, None, lever, 1), (A, None, lever, -1)])
 
     def _rod(self, rod: Rod) -> Iterator[Row]:
         """(d . d - L^2)/(2 L) = 0 (eq. 6): a polynomial, with the unit of a length."""
@@ -122,9 +136,8 @@ class Constraints:
         d, d_rate = B.p - A.p, B.v - A.v
         n = d.scaled(per_length)
         phi = g.mul(g.constant(0.5), g.sub(d.dot(n), length))
-        G = self._combined([(B, n, None, 1), (A, n, None, -1)])
         drift = g.add((B.a - A.a).dot(n), g.mul(per_length, d_rate.dot(d_rate)))
-        yield Row(phi, G, d_rate.dot(n), -drift)
+        yield self._row(phi, d_rate.dot(n), -drift, [(B, n, None, 1), (A, n, None, -1)])
 
     # Rolling and sliding.
 
@@ -133,7 +146,7 @@ class Constraints:
         B = self._body(edge.anchor)
         n = B.R.column(AXES.index(edge.axis))
         drift = self.g.add(B.a.dot(n), B.v.dot(B.w.cross(n)))
-        yield Row(ZERO, self._combined([(B, n, None, 1)]), B.v.dot(n), -drift)
+        yield self._row(ZERO, B.v.dot(n), -drift, [(B, n, None, 1)])
 
     def _rolling(self, rolling: Rolling) -> Iterator[Row]:
         """The contact point's velocity vanishes; so does its height (eqs. 8, 9)."""
@@ -157,7 +170,7 @@ class Constraints:
         drift = B.a + (B.alpha.cross(r) + B.w.cross(r_rate))
         for k, e in enumerate((Vec3.unit(g, 0), Vec3.unit(g, 1), up)):
             phi = g.sub(g.sub(B.p.z, height), drop) if k == 2 else ZERO
-            yield Row(phi, self._combined([(B, e, r.cross(e), 1)]), contact.dot(e), -drift.dot(e))
+            yield self._row(phi, contact.dot(e), -drift.dot(e), [(B, e, r.cross(e), 1)])
 
     def _stated(self, constraint: Nonholonomic) -> Iterator[Row]:
         """A(q, t) v = b(q, t), differentiated along the motion (eq. 10)."""
@@ -171,8 +184,8 @@ class Constraints:
         seeds = coordinate_rates(self.motion) | {lowering.symbol("t"): ONE}
         yield Row(ZERO, tuple(G), rate, -directional(g, [rate], seeds)[0])
 
-    def _combined(self, parts: Sequence[tuple[_Body, Vec3 | None, Vec3 | None, int]]) -> tuple[Edge, ...]:
-        """A row of G: the sum of sign (f . J_v + n . J_w) over bodies."""
+    def _row(self, phi: Edge, rate: Edge, gamma: Edge, parts: Sequence[_Part]) -> Row:
+        """A row with its G: the sum of sign (f . J_v + n . J_w) over bodies."""
         g: Graph = self.g
         row = [ZERO] * self.nv
         for body, f, n, sign in parts:
@@ -181,9 +194,30 @@ class Constraints:
                 for vector, part in ((f, column[:3]), (n, column[3:])):
                     if vector is not None:
                         row[k] = g.add(row[k], sign * vector.dot(Vec3(g, *part)))
-        return tuple(row)
+        return Row(phi, tuple(row), rate, gamma, tuple(Lever(body.name, f, n, sign) for body, f, n, sign in parts))
 
 
+def moved(motion: Motion) -> list[Edge]:
+    """The coordinates after a small step along the manifold: q + N step, quaternions made unit again (nq).
+
+    It leads where `Model.integrate` does but for terms of the second order, which Newton's method does not feel.
+    """
+    g, tree = motion.g, motion.tree
+    q = [g.input("q", k) for k in range(len(tree.coordinates.q))]
+    found = dict(zip(q, q, strict=True))
+    for k, rates in enumerate(rates_per_speed(motion)):
+        for coordinate, rate in rates.items():
+            found[coordinate] = g.add(found[coordinate], g.mul(rate, g.input("step", k)))
+    for link in tree.links:
+        if link.joint.kind in ("ball", "free") and not link.joint.prescribed:
+            parts = q[link.q[0] + link.q[1] - 4 : link.q[0] + link.q[1]]
+            size = g.sqrt(g.sum(g.mul(found[part], found[part]) for part in parts))
+            found |= {part: g.div(found[part], size) for part in parts}
+    return list(found.values())
+
+
+# A lever with its body.
+_Part = tuple[_Body, Vec3 | None, Vec3 | None, int]
 # Pairs (axis of A, axis of B, factor) of one condition.
 _Pairs = tuple[tuple[int, int, float], ...]
 

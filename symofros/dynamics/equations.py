@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from symofros.dynamics.applied.forces import generalized_forces, stored_energy
-from symofros.dynamics.constraints import Constraints, Row
+from symofros.dynamics.constraints import Constraints, Row, moved
 from symofros.dynamics.derivatives import by_configuration, by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
 from symofros.dynamics.forward import solve
@@ -16,9 +16,10 @@ from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.dynamics.momentum import coadjoint, momentum_rate
 from symofros.dynamics.rotors import MovingRotor, rotors_of
+from symofros.dynamics.wrenches import closure_wrenches
 from symofros.errors import DescriptionError, Problem
-from symofros.expr.graph import ZERO, Edge, Graph
-from symofros.expr.program import Function, Output, Program
+from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.program import Function, Output, Program, Solver
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.kinematics.frames import FrameKinematics
@@ -185,6 +186,8 @@ class Equations:
         """
         if request.name == "forward_dynamics" and self.tree.system.constraints:
             return self._constrained(request)
+        if request.name == "project":
+            return self._project(request)
         if request.name in _FRAME_FUNCTIONS:
             inputs, outputs = _FRAME_FUNCTIONS[request.name](self, self.tree.frame(request.frame))
         else:
@@ -198,7 +201,20 @@ class Equations:
         G = [row.G for row in self.constraints]
         outputs = (_matrix("M", self.M), _vector("r", right), _matrix("G", G), _vector("c", self.stabilised))
         solved = (("a", (self.nv,)), ("lam", (len(G),)), ("rank", ()))
-        return Function(request.name, "", ("q", "v", "u", "gains", "t"), outputs, solved)
+        return Function(request.name, "", ("q", "v", "u", "gains", "t"), outputs, Solver("constrained", solved))
+
+    def _project(self, request: Request) -> Function:
+        """The nearest state on the constraints: the terms of Newton's steps, and how a step moves q."""
+        rows, nq = self.constraints, len(self.tree.coordinates.q)
+        binds = [ZERO if row.phi == ZERO else ONE for row in rows]
+        outputs = (
+            _matrix("M", self.M), Output("G", (len(rows), self.nv), tuple(edge for row in rows for edge in row.G)),
+            _vector("binds", binds), _vector("phi", [row.phi for row in rows]),
+            _vector("rate", [row.rate for row in rows]),
+        )  # fmt: skip
+        move = Function("move", "", ("q", "step"), (_vector("q_moved", moved(self.motion)),))
+        solved = (("q_on", (nq,)), ("v_on", (self.nv,)), ("residual", ()), ("rank", ()))
+        return Function(request.name, "", ("q", "v", "u", "t"), outputs, Solver("project", solved, (move,)))
 
 
 _Parts = tuple[tuple[str, ...], tuple[Output, ...]]
@@ -214,6 +230,11 @@ def _matrix(name: str, rows: Sequence[Sequence[Edge]]) -> Output:
 
 def _dynamics(e: Equations) -> _Parts:
     return ("q", "v", "u", "t"), (_matrix("M", e.M), _vector("h", e.h), _vector("Q", e.Q))
+
+
+def _wrenches(e: Equations) -> _Parts:
+    on_second, on_first = closure_wrenches(e.frames, e.constraints)
+    return ("q", "lam", "t"), (_matrix("on_second", on_second), _matrix("on_first", on_first))
 
 
 def _inverse_derivatives(e: Equations) -> _Parts:
@@ -271,6 +292,7 @@ _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "constraint": lambda e: (("q", "t"), (_vector("phi", [row.phi for row in e.constraints]),)),
     "constraint_rate": lambda e: (("q", "v", "t"), (_vector("phi_rate", [row.rate for row in e.constraints]),)),
     "constraint_jacobian": lambda e: (("q", "t"), (_matrix("G", [row.G for row in e.constraints]),)),
+    "closure_wrenches": _wrenches,
     "constraint_bias": lambda e: (("q", "v", "t"), (_vector("gamma", [row.gamma for row in e.constraints]),)),
 }
 
@@ -304,6 +326,7 @@ def write_program(tree: SpanningTree, requests: Sequence[Request]) -> Program:
     names = tree.coordinates
     sizes = {
         "q": len(names.q), "v": len(names.v), "a": len(names.v), "u": len(names.u), "par": len(names.par), "t": 1,
+        "step": len(names.v),
         "lam": sum(len(constraint.conditions) for constraint in tree.system.constraints),
         "gains": 2 * sum(len(constraint.conditions) for constraint in tree.system.constraints),
     }  # fmt: skip

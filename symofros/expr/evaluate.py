@@ -43,7 +43,8 @@ def interpret(program: Program, function: Function, inputs: Mapping[str, Array],
     Returns:
         One array an output, (n, *shape).
     """
-    columns = evaluate_edges(program, function.edges(), inputs, program.pre)
+    edges = [edge for output in function.outputs for edge in output.edges]
+    columns = evaluate_edges(program, edges, inputs, program.pre)
     results, at = [], 0
     for output in function.outputs:
         size = len(output.edges)

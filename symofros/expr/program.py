@@ -23,6 +23,21 @@ class Output:
 
 
 @dataclass(frozen=True)
+class Solver:
+    """What finishes a function that its outputs only begin.
+
+    Attributes:
+        routine: The hand-written routine: codegen/templates/ROUTINE.c.in, and its twin in runtime/.
+        returns: (name, shape) of what it makes of the outputs.
+        parts: Further functions that the routine calls.
+    """
+
+    routine: str
+    returns: tuple[tuple[str, tuple[int, ...]], ...]
+    parts: tuple[Function, ...] = ()
+
+
+@dataclass(frozen=True)
 class Function:
     """One function of a model.
 
@@ -31,24 +46,28 @@ class Function:
         frame: The frame it is about, or "".
         inputs: Groups it takes, in order; "pre" is added where parameter-only work is hoisted.
         outputs: What it computes.
-        solve: What a solver makes of the outputs, (name, shape) of each, where the function is not done with them:
-            forward dynamics under constraints computes M, r, G, c and returns a, lam and the rank.
+        solver: What the outputs are handed to, where the function is not done with them: forward dynamics under
+            constraints computes M, r, G, c and returns a, lam and the rank.
     """
 
     name: str
     frame: str
     inputs: tuple[str, ...]
     outputs: tuple[Output, ...]
-    solve: tuple[tuple[str, tuple[int, ...]], ...] = ()
+    solver: Solver | None = None
 
     @property
     def returns(self) -> tuple[tuple[str, tuple[int, ...]], ...]:
         """Name and shape of each array that a caller gets."""
-        return self.solve or tuple((output.name, output.shape) for output in self.outputs)
+        if self.solver is not None:
+            return self.solver.returns
+        return tuple((output.name, output.shape) for output in self.outputs)
 
     def edges(self) -> list[Edge]:
-        """All output edges."""
-        return [edge for output in self.outputs for edge in output.edges]
+        """All output edges, those of the solver's parts last."""
+        parts = self.solver.parts if self.solver is not None else ()
+        own = [edge for output in self.outputs for edge in output.edges]
+        return own + [edge for part in parts for edge in part.edges()]
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,8 @@
-"""M a = r + G^T lam, G a = c for G of any rank, in NumPy: what the interpreter does in place of the C solver."""
+"""The routines of the C templates in NumPy, for the interpreter: M a = r + G^T lam, G a = c; projection."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
@@ -13,6 +15,8 @@ from symofros.runtime.kernel import Array
 RANK = 1e-6
 # What is left of a diagonal entry beyond rounding; SYM_PIVOT in C.
 PIVOT = 1e-13
+# Of the projection, as in C: |phi| that no step improves on, most steps, halvings of one, its largest entry.
+CLOSED, NEWTON, HALVINGS, REACH = 1e-13, 30, 30, 0.5
 
 
 def constrained(M: Array, r: Array, G: Array, c: Array) -> list[Array]:
@@ -65,3 +69,38 @@ def _factor(M: Array) -> Array | None:
     except np.linalg.LinAlgError:
         return None
     return L if bool(np.all(np.diag(L) ** 2 > PIVOT * np.diag(M))) else None
+
+
+def project(
+    terms: Callable[[Array, Array], list[Array]], move: Callable[[Array, Array], Array], q: Array, v: Array
+) -> tuple[Array, Array, float, int]:
+    """The nearest state on the constraints, in the metric of M.
+
+    Args:
+        terms: (q, v) -> M, G, binds, phi, G v - b.
+        move: (q, step) -> q.
+        q: (nq,).
+        v: (nv,).
+
+    Returns:
+        q, v, |phi| and the rank of G.
+    """
+    M, G, binds, phi, rate = terms(q, v)
+    left, closer = float(np.linalg.norm(phi)), True
+    for _ in range(NEWTON):
+        if not (closer and left > CLOSED):
+            break
+        step, _, _ = solve(M, np.zeros_like(v), G * binds[:, None], -phi)
+        step *= min(1.0, REACH / max(float(np.abs(step).max()), 1e-300))
+        closer = False
+        for half in range(HALVINGS):
+            tried = move(q, step * 0.5**half)
+            found = terms(tried, v)
+            if np.linalg.norm(found[3]) < left:
+                q, (M, G, binds, phi, rate), closer = tried, found, True
+                left = float(np.linalg.norm(phi))
+                break
+    if not len(G):
+        return q, v, left, 0
+    change, _, rank = solve(M, np.zeros_like(v), G, -rate)
+    return q, v + change, left, rank

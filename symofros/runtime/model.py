@@ -198,6 +198,50 @@ class Model(Functions):
         """Gamma(q, v) (..., nc): what G v' equals."""
         return self._one("constraint_bias", {"q": q, "v": v, "u": u, "t": t}, par)
 
+    def closure_wrench(
+        self,
+        name: str,
+        q: Given,
+        lam: Given,
+        *,
+        on: Literal["second", "first"] = "second",
+        u: Given | None = None,
+        par: Given | None = None,
+        t: Given = 0.0,
+    ) -> Array:
+        """What a constraint exerts on a frame: force and moment about its origin, in world axes (..., 6) [N, N m].
+
+        Args:
+            name: Of a closure, rod, knife edge or rolling contact.
+            q: Configuration (..., nq).
+            lam: Multipliers of all conditions (..., nc), from `forward_dynamics`.
+            on: Its second frame, the one that follows, or its first, the reference; of a knife edge or a rolling
+                contact the second is the frame that touches, the first the world.
+            u: Inputs, for prescribed motions.
+            par: Run-time parameters.
+            t: Time.
+
+        The force on the second frame of a rod points to the first where the rod pulls: its size is the tension.
+        """
+        if name not in self.record.wrench_names:
+            raise self._unknown("constraint with a wrench", name, self.record.wrench_names,
+                                "conditions by formula have a generalized force G^T lam alone")  # fmt: skip
+        found = self._call("closure_wrenches", "", {"q": q, "lam": lam, "u": u, "t": t}, par)
+        wrench: Array = found[0 if on == "second" else 1][..., self.record.wrench_names.index(name), :]
+        return wrench
+
+    def project(
+        self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+    ) -> tuple[Array, Array, Array]:
+        """The nearest state that meets the constraints: q (..., nq), v (..., nv), and what is left of |phi| (...,).
+
+        Newton's method on phi(q) = 0, then G v = b, each by the least change in the metric of M: for states that have
+        drifted. It does not judge what it reaches; `sf.assemble` starts from afar, holds coordinates, and does.
+        Conditions that repeat others are met by the same change; NaN where M and G determine none.
+        """
+        on_q, on_v, residual, _ = self._call("project", "", {"q": q, "v": v, "u": u, "t": t}, par)
+        return on_q, on_v, residual
+
     def inverse_dynamics(
         self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
     ) -> Array:

@@ -59,6 +59,7 @@ class ModelRecord:
         periodic: Coordinates that are angles, so that unbounded ones are sampled in one turn.
         constraint_names: One a condition: the constraint's name, and which of its conditions.
         speed_conditions: Those of them that bind speeds only.
+        wrench_names: Constraints that act on bodies by a wrench: all but conditions by formula.
         closures: Of frames, for checks of their rotations.
     """
 
@@ -79,6 +80,7 @@ class ModelRecord:
     periodic: tuple[bool, ...]
     constraint_names: tuple[str, ...] = ()
     speed_conditions: tuple[str, ...] = ()
+    wrench_names: tuple[str, ...] = ()
     closures: tuple[ClosureRecord, ...] = ()
 
     @property

@@ -121,6 +121,8 @@ class Stepper:
         self._bind("forward", model.kernel("forward_dynamics"), {"a": scene.a, "lam": scene.lam, "rank": scene.rank})
         for slot, name in _NEEDS.get(self.method.kind, {}).items():
             self._bind(slot, model.kernel(name), {})
+        if model.nc:
+            self._bind("project", model.kernel("project"), {})
         on_speeds = [int(name in model.record.speed_conditions) for name in model.names.constraints]
         scene.on_speeds = self._own("int32_t[]", on_speeds)
         if inputs.callback is not None:

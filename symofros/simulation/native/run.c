@@ -317,7 +317,7 @@ static int32_t sym_accept(sym_run *r, sym_memory *m, double h, double t1) {
     sym_move(r, t1, m->y1);
     r->fresh = 0;
     if (r->project) {
-        status = 0;
+        status = sym_return(r);
         if (status != 0) return status;
     } else if (ends && !stopped) { /* the last slope is the next step's first; its chart starts anew */
         memcpy(m->k + nv, m->k + (size_t)r->tableau.last * 2 * nv + nv, (size_t)nv * sizeof(double));

@@ -86,3 +86,16 @@ static void sym_here(sym_run *r) {
     memcpy(s->v, r->v, (size_t)s->nv * sizeof *s->v);
     *s->t = r->t;
 }
+
+/* The present state back onto the constraints; what is left of phi above 1e-6 counts as lost. */
+static int32_t sym_return(sym_run *r) {
+    sym_scene *s = r->scene;
+    sym_here(r);
+    if (sym_inputs(s) != 0) return SYM_CALLBACK;
+    sym_evaluate(&s->project);
+    if (!(s->project.out[3][0] >= 0.0)) return SYM_NO_MOTION;
+    if (!(s->project.out[2][0] < 1e-6)) return SYM_OFF;
+    memcpy(r->q, s->project.out[0], (size_t)s->nq * sizeof *r->q);
+    memcpy(r->v, s->project.out[1], (size_t)s->nv * sizeof *r->v);
+    return 0;
+}

@@ -1,0 +1,70 @@
+"""Functions that generated code begins and a hand-written routine finishes (templates/)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from symofros.codegen.function import FunctionText, FunctionWriter
+from symofros.expr.program import Function, Program, Solver
+
+# Routine -> the template files it needs, in the order in which C must see them; the keys are in that order, too.
+ROUTINES: dict[str, tuple[str, ...]] = {
+    "constrained": ("constrained",),
+    "project": ("constrained", "project"),
+}
+
+
+def with_solver(program: Program, c_name: str, function: Function, solver: Solver) -> FunctionText:
+    """The C text of a function and of its parts, and the call of the routine that finishes it.
+
+    Args:
+        program: Staged.
+        c_name: Of the C function.
+        function: What generated code computes.
+        solver: What is made of it.
+    """
+    terms = FunctionWriter(program, f"{c_name}_terms", ["pre", *function.inputs], function.outputs).text()
+    parts = [
+        FunctionWriter(program, f"{c_name}_{part.name}", ["pre", *part.inputs], part.outputs).text()
+        for part in solver.parts
+    ]
+    needs = max(text.work for text in (terms, *parts))
+    head = f"static void {c_name}(const double *const *in, double *const *out, double *restrict work) {{"
+    body, work = _CALLS[solver.routine](c_name, function, needs)
+    return FunctionText("\n".join([terms.code, *(part.code for part in parts), head, *body, "}"]), work)
+
+
+def _constrained(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+    """M, r, G, c -> a, lam, rank."""
+    m, n = function.outputs[2].shape
+    sizes = [len(output.edges) for output in function.outputs]
+    starts = [sum(sizes[:k]) for k in range(len(sizes) + 1)]
+    lines = [
+        f"    double *terms[{len(sizes)}];",
+        *(f"    terms[{k}] = work + {start};" for k, start in enumerate(starts[:-1])),
+        f"    {c_name}_terms(in, terms, work + {starts[-1]});",
+        f"    *out[2] = sym_constrained({n}, {m}, terms[0], terms[1], terms[2], terms[3], out[0], out[1],",
+        f"        work + {starts[-1]});",
+    ]
+    return lines, starts[-1] + max(needs, _scratch(n, m))
+
+
+def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+    """The state -> the nearest one on the constraints."""
+    m, n = function.outputs[1].shape
+    nq = function.returns[0][1][0]
+    lines = [
+        f"    *out[3] = sym_project({nq}, {n}, {m}, {c_name}_terms, {c_name}_move, in, out[0], out[1], out[2], work);"
+    ]
+    return lines, n * n + m * n + 4 * m + 2 * n + nq + max(needs, _scratch(n, m))
+
+
+def _scratch(n: int, m: int) -> int:
+    """What sym_constrained asks for."""
+    return n * n + 2 * m * n + 2 * m * m + 2 * m
+
+
+_CALLS: dict[str, Callable[[str, Function, int], tuple[list[str], int]]] = {
+    "constrained": _constrained,
+    "project": _project,
+}

@@ -1,0 +1,139 @@
+"""Projection: drifted states come back to the constraints by the least change, in C as in NumPy."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from reference_models.closed.spatial import delta_guess, stewart_guess
+
+GUESSES = {
+    "four_bar": [1.2, -1.2, 1.2],
+    "slider_crank": [0.5, -0.7, 0.4],
+    "parallelogram": [1.0, -1.0, 1.0, 1.0],
+    "bricard": [0.0] * 5,
+    "stewart": stewart_guess(),
+    "delta": delta_guess(),
+    "rolling_disc": [0, 0, 0.5, 0.5, 0.5, 0.5, 0.5],
+    "sleigh": [0.1, 0.2, 0.3],
+}
+SOLID = sf.Inertia(1.5, (0.1, -0.2, 0.05), (0.3, 0.4, 0.5))
+
+
+@cache
+def model(name: str, backend: str = "c") -> sf.Model:
+    return sf.compile(MODELS[name], sf.Options(backend=backend))
+
+
+def drifted(name: str, size: float, count: int = 5) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """A state on the constraints, and some near it."""
+    m, rng = model(name), np.random.default_rng(1)
+    at = sf.assemble(m, GUESSES[name], rng.normal(size=m.nv))
+    q = m.integrate(at.q, size * rng.normal(size=(count, m.nv)))
+    return at.q, at.v, q, at.v + size * rng.normal(size=(count, m.nv))
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-5])
+@pytest.mark.parametrize("name", GUESSES)
+def test_drift_is_undone(name: str, size: float) -> None:
+    m = model(name)
+    _, _, q, v = drifted(name, size)
+    on_q, on_v, left = m.project(q, v)
+    assert left.max() < 1e-12 and np.abs(m.constraint(on_q)).max() < 1e-12
+    assert np.abs(m.constraint_rate(on_q, on_v)).max() < 1e-12
+    assert np.abs(m.difference(q, on_q)).max() < 100 * size and np.abs(on_v - v).max() < 100 * size
+
+
+@pytest.mark.parametrize("name", GUESSES)
+def test_a_state_on_the_constraints_stays(name: str) -> None:
+    m = model(name)
+    q, v, _, _ = drifted(name, 0.0)
+    on_q, on_v, _ = m.project(q, v)
+    assert np.abs(on_q - q).max() < 1e-11 and np.abs(on_v - v).max() < 1e-11
+
+
+@pytest.mark.parametrize("name", ["four_bar", "stewart", "rolling_disc"])
+def test_the_change_is_least_in_the_metric_of_mass(name: str) -> None:
+    """M times the change has no part along what the constraints allow: exactly for v, to first order for q."""
+    m = model(name)
+    _, _, q, v = drifted(name, 1e-6, 1)
+    on_q, on_v, _ = (x[0] for x in m.project(q, v))
+    G, M = m.constraint_jacobian(on_q), m.mass_matrix(on_q)
+    binding = [i for i, row in enumerate(m.names.constraints) if row not in m.record.speed_conditions]
+    for change, rows in ((on_v - v[0], G), (m.difference(q[0], on_q), G[binding])):
+        allowed = np.linalg.svd(rows)[2][np.linalg.matrix_rank(rows, tol=1e-6) :]
+        assert np.abs(allowed @ M @ change).max() < 1e-4 * np.abs(M @ change).max()
+
+
+@pytest.mark.parametrize("name", ["four_bar", "slider_crank", "rolling_disc", "delta"])
+def test_newton_converges_to_second_order(name: str) -> None:
+    """One step leaves the square of the drift: what remains falls by four orders where the drift falls by two."""
+    m = model(name)
+
+    def after_one_step(size: float) -> float:
+        # The step of a projection is the acceleration of a constrained motion without forces.
+        q = drifted(name, size, 1)[2][0]
+        G, M = m.constraint_jacobian(q), m.mass_matrix(q)
+        binding = [i for i, row in enumerate(m.names.constraints) if row not in m.record.speed_conditions]
+        G, phi = G[binding], m.constraint(q)[binding]
+        W = np.linalg.solve(M, G.T)
+        step = -W @ np.linalg.lstsq(G @ W, phi, rcond=1e-12)[0]
+        assert np.abs(m.difference(m.project(q, np.zeros(m.nv))[0], m.integrate(q, step))).max() < 50 * size**2
+        return float(np.abs(m.constraint(m.integrate(q, step))).max())
+
+    assert after_one_step(1e-4) < 1e-2 * after_one_step(2e-3)
+
+
+@pytest.mark.parametrize("name", GUESSES)
+def test_c_is_its_twin(name: str) -> None:
+    _, _, q, v = drifted(name, 1e-6, 3)
+    for ours, twin in zip(model(name).project(q, v), model(name, "interpreter").project(q, v), strict=True):
+        assert np.abs(ours - twin).max() < 1e-11
+
+
+def test_prescribed_motion_is_followed() -> None:
+    slide = sf.RigidBody("cart", sf.Joint("x", "prismatic", axis=(1, 0, 0)), SOLID)
+    turn = sf.RigidBody("arm", sf.Joint("turn", "revolute", prescribed=True), SOLID, (sf.Frame("e", (0.5, 0, 0)),))
+    closure = sf.Closure("k", ("cart", None), ("arm", "e"), ("x",))
+    m = sf.compile(sf.System("s", (slide, turn), constraints=(closure,)))
+    q, v, _ = m.project([0.1], [0.4], u=[0.3, 2.0, -1.0])
+    assert q == pytest.approx([0.5 * np.cos(0.3)]) and v == pytest.approx([-0.5 * np.sin(0.3) * 2.0])
+
+
+@pytest.mark.parametrize("backend", ["c", "interpreter"])
+def test_a_massless_body(backend: str) -> None:
+    bars = (
+        sf.RigidBody("a", sf.Joint("q1", "revolute"), SOLID, (sf.Frame("e", (1, 0, 0)),)),
+        sf.RigidBody("b", sf.Joint("q2", "revolute", "a", "e"), None, (sf.Frame("e", (1, 0, 0)),), ("massless_tip",)),
+    )
+    rail = sf.Closure("rail", ("world", None), ("b", "e"), ("y",))
+    m = sf.compile(sf.System("s", bars, constraints=(rail,)), sf.Options(backend=backend))  # type: ignore[arg-type]
+    q, v, left = m.project([0.6, -1.2], [1.0, 0.0])
+    assert left < 1e-12 and np.abs(m.constraint_rate(q, v)).max() < 1e-12
+    # Only the massless bar moves: that costs no energy.
+    assert q[0] == pytest.approx(0.6, abs=1e-12) and v[0] == pytest.approx(1.0, abs=1e-12)
+
+
+def test_without_constraints_nothing_changes() -> None:
+    m = model("double_pendulum")
+    q, v, left = m.project([0.1, 0.2], [0.3, 0.4])
+    assert q.tolist() == [0.1, 0.2] and v.tolist() == [0.3, 0.4] and left == 0.0
+
+
+def test_nan_spoils_its_own_state_only() -> None:
+    m = model("four_bar")
+    q, v, left = m.project([[1.2, -1.1, 1.2], [np.nan, -1.1, 1.2]], np.ones(3))
+    assert np.isfinite(q[0]).all() and np.isfinite(v[0]).all() and np.isnan(left[1]) and np.isnan(v[1]).all()
+
+
+def test_what_can_not_close_says_so() -> None:
+    system = MODELS["four_bar"]
+    other = sf.Rod("too_long", ("crank", "end"), ("rocker", "end"), 1.5)
+    m = sf.compile(replace(system, constraints=(*system.constraints, other)))
+    q, _, left = m.project([1.2, -1.0, 1.3], np.zeros(3))
+    assert left > 1e-2 and np.isfinite(q).all()
