@@ -271,6 +271,7 @@ def describe(tree: SpanningTree, options: Options) -> ModelRecord:
         speed_conditions=tuple(name for item in tree.system.constraints for name in item.on_speeds),
         wrench_names=tuple(acts_on_bodies(tree.system.constraints)),
         closures=tuple(_closure(tree, item) for item in tree.system.constraints if isinstance(item, Closure)),
+        driven=len(driven),
     )  # fmt: skip
 
 

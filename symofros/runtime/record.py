@@ -61,6 +61,7 @@ class ModelRecord:
         speed_conditions: Those of them that bind speeds only.
         wrench_names: Constraints that act on bodies by a wrench: all but conditions by formula.
         closures: Of frames, for checks of their rotations.
+        driven: Inputs that prescribe motion, the last of u.
     """
 
     name: str
@@ -82,6 +83,7 @@ class ModelRecord:
     speed_conditions: tuple[str, ...] = ()
     wrench_names: tuple[str, ...] = ()
     closures: tuple[ClosureRecord, ...] = ()
+    driven: int = 0
 
     @property
     def nc(self) -> int:

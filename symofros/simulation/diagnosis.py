@@ -65,7 +65,7 @@ def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
 
 
 def _steady(settings: Settings) -> str:
-    if settings.method.adaptive:
+    if settings.adaptive:
         return "look for a force or posture that has no bound here"
     return "a smaller dt, an adaptive or an implicit method; for stiff beams and contacts, an implicit one"
 

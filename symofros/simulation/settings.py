@@ -11,6 +11,7 @@ import numpy as np
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Given, Model
+from symofros.simulation.inputs import InputPlan
 from symofros.simulation.methods import METHODS, Method
 from symofros.simulation.stepper import Stepper
 
@@ -46,6 +47,8 @@ class Settings:
 
     Attributes:
         method: The stepping method.
+        adaptive: Whether it chooses its steps.
+        stabilisation: How constraints are kept.
         dt: Step [s]; 0: an adaptive method finds its first.
         rtol: Of adaptive methods, as `atol`.
         max_step: Longest step [s]; 0: none.
@@ -56,6 +59,8 @@ class Settings:
     """
 
     method: Method
+    adaptive: bool
+    stabilisation: str
     dt: float
     rtol: float
     atol: float
@@ -68,7 +73,7 @@ class Settings:
     @classmethod
     def of(
         cls, model: Model, method: str, dt: float | None, t0: float, t_end: float, rtol: float, atol: float,
-        max_step: float, output: float | Given | None, every: int, stabilisation: str, gains: Given | None,
+        adaptive: bool | None, max_step: float, output: float | Given | None, every: int, stabilisation: str, gains: Given | None,
     ) -> Settings:  # fmt: skip
         """Settings from what `simulate` was given.
 
@@ -96,9 +101,13 @@ class Settings:
         if gains is not None and stabilisation != "baumgarte":
             raise _wrong("gains without Baumgarte", f"stabilisation '{stabilisation}'",
                          "gains act in Baumgarte's stabilisation only", "stabilisation='baumgarte'")  # fmt: skip
-        step = dt if dt is not None else 0.0 if chosen.adaptive else 1e-3
+        if adaptive and not chosen.adaptive:
+            raise _wrong(f"'{method}' does not adapt its steps", "adaptive=True", "it estimates no error",
+                         "use dopri5, dop853 or rodas4")  # fmt: skip
+        adapts = chosen.adaptive if adaptive is None else adaptive
+        step = dt if dt is not None else 0.0 if adapts else 1e-3
         return cls(
-            chosen, step, rtol, atol, max_step if math.isfinite(max_step) else 0.0, 0 if output is not None else every,
+            chosen, adapts, stabilisation, step, rtol, atol, max_step if math.isfinite(max_step) else 0.0, 0 if output is not None else every,
             _grid(output, t0, t_end), model.nc > 0 and stabilisation == "projection",
             _gains(model, stabilisation, gains, step),
         )  # fmt: skip
@@ -107,11 +116,32 @@ class Settings:
         """Write the settings into a run."""
         run = stepper.run
         run.t0 = run.t = t0
+        run.adaptive = int(self.adaptive)
         run.t_end, run.h, run.rtol, run.atol = t_end, self.dt, self.rtol, self.atol
         run.h_max, run.every, run.project = self.max_step, self.every, int(self.project)
         run.grid, run.n_grid = stepper.numbers(self.grid), len(self.grid)
         run.pace = 1.0 / realtime if realtime else 0.0
         stepper.set_gains(self.gains)
+
+
+def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
+    """Refuse what a method can't do for a model.
+
+    Raises:
+        SymofrosError: With what can.
+    """
+    name = settings.method.name
+    implicit = settings.method.kind in ("rosenbrock", "alpha", "variational")
+    if implicit and inputs.callback is not None:
+        raise _wrong(f"'{name}' needs the derivatives of the inputs", "a Python function",
+                     "implicit methods differentiate what they step", "give formulas or Signals")  # fmt: skip
+    if implicit and settings.stabilisation == "baumgarte" and model.nc:
+        raise _wrong(f"'{name}' with Baumgarte's stabilisation", "gains", "implicit methods keep constraints by"
+                     " projection or by their equations", "stabilisation='projection'")  # fmt: skip
+    if settings.method.kind == "variational" and (model.nc or model.record.driven):
+        raise _wrong("'variational' steps trees of free motion only", f"model '{model.record.name}' has constraints or"
+                     " prescribed joints", "its discrete principle is written for free coordinates",
+                     "use generalized_alpha, or rk4 with projection")  # fmt: skip
 
 
 def _grid(output: float | Given | None, t0: float, t_end: float) -> Array:

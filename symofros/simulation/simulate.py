@@ -15,7 +15,7 @@ from symofros.simulation.diagnosis import diagnose
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
 from symofros.simulation.progress import bar
-from symofros.simulation.settings import Settings, Stabilisation, vector
+from symofros.simulation.settings import Settings, Stabilisation, check_fit, vector
 from symofros.simulation.stepper import Stepper
 from symofros.simulation.trajectory import Found, Statistics, Trajectory
 
@@ -39,6 +39,7 @@ def simulate(
     par: Given | None = None,
     rtol: float = 1e-6,
     atol: float = 1e-9,
+    adaptive: bool | None = None,
     max_step: float = math.inf,
     max_steps: int | None = None,
     output: float | Given | None = None,
@@ -59,13 +60,15 @@ def simulate(
         u: Inputs: an array (nu), a Signal of all, a mapping from input names to numbers, formulas (of coordinates,
             speeds, parameters and t, compiled to C) and Signals, or a function (t, q, v) -> (nu), called from the loop
             and hence slow. Those not given are zero.
-        method: See `METHODS`: "rk4", "semi_implicit_euler", "euler" step by `dt`; "dopri5", "dop853" choose their
-            steps by `rtol` and `atol`.
+        method: Fixed steps: "rk4", "semi_implicit_euler", "euler"; implicit ones, for stiff beams and joints:
+            "implicit_euler", "generalized_alpha"; for long conservative runs, "variational". Steps chosen by `rtol`
+            and `atol`: "dopri5", "dop853" and, for stiff models, "rodas4".
         dt: Step [s], 1e-3 where a fixed step needs one; for adaptive methods the first step.
         t0: Where to begin [s].
         par: Run-time parameters (npar); the model's own by default.
         rtol: Bound of the local error of adaptive methods, of the size of each coordinate and speed.
         atol: Bound alike, absolute.
+        adaptive: False steps an adaptive method by `dt`.
         max_step: Longest step of adaptive methods [s].
         max_steps: End the run after so many steps; none by default.
         output: What to record: None for each `every`-th step, an interval [s], or times (n).
@@ -86,12 +89,16 @@ def simulate(
         UnknownNameError: A formula or an input's name is unknown.
         SymofrosError: The settings contradict each other.
     """
-    settings = Settings.of(model, method, dt, t0, t_end, rtol, atol, max_step, output, every, stabilisation, gains)
+    settings = Settings.of(
+        model, method, dt, t0, t_end, rtol, atol, adaptive, max_step, output, every, stabilisation, gains
+    )
     values = model.parameter_values if par is None else vector(model, "par", par, model.npar)
     q = model.neutral() if q0 is None else vector(model, "q0", q0, model.nq)
     v = np.zeros(model.nv) if v0 is None else vector(model, "v0", v0, model.nv)
     looked_for = named_events(events)
-    stepper = Stepper(model, settings.method, plan_inputs(model, u), looked_for, values)
+    inputs = plan_inputs(model, u)
+    check_fit(model, settings, inputs)
+    stepper = Stepper(model, settings.method, inputs, looked_for, values)
     settings.apply(stepper, t0, t_end, float(realtime))
     began = time.perf_counter()
     status = stepper.start(q, v, max(_PORTION, len(settings.grid)))

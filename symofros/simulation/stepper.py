@@ -177,7 +177,7 @@ class Stepper:
 
     def _fill_method(self) -> None:
         run, tableau = self.run, self.method.tableau
-        run.method, run.adaptive = _KINDS[self.method.kind], int(self.method.adaptive)
+        run.method = _KINDS[self.method.kind]
         into = run.tableau
         into.stages, into.dense_stages, into.last = tableau.stages, len(tableau.b), tableau.last
         into.error_order, into.errors, into.degree = tableau.error_order, len(tableau.errors), tableau.dense.shape[1]

@@ -64,8 +64,8 @@ static void sym_weighted(const sym_run *r, double g, const double *y, double *ou
     }
 }
 
-/* The matrix of a Rosenbrock step: R_q + (g X + R_v) (g - T), and -G^T beside it; the lower rows over g^2. T is the
- * derivative of the chart's rate. */
+/* The matrix of a Rosenbrock step, over g^2: R_q + (g X + R_v) (g - T), and -G^T beside it for multipliers over g^2, so
+ * that no step is too short for pivots to be told from rounding. T is the derivative of the chart's rate. */
 static int32_t sym_rosenbrock_matrix(sym_run *r, double g, sym_scratch *w) {
     const sym_scene *s = r->scene;
     const int32_t nv = s->nv, nc = s->nc, n = nv + nc;
@@ -78,10 +78,7 @@ static int32_t sym_rosenbrock_matrix(sym_run *r, double g, sym_scratch *w) {
         sym_chart_rate_by_theta(s, r->v, w->found, -1.0, w->work); /* -T e_j */
         w->work[j] += g;
         sym_weighted(r, g, w->work, w->right);
-        for (i = 0; i < n; ++i) {
-            const double scale = i < nv ? 1.0 : 1.0 / (g * g);
-            w->matrix[(size_t)i * n + j] = scale * (w->right[i] + R_q[(size_t)i * nv + j]);
-        }
+        for (i = 0; i < n; ++i) w->matrix[(size_t)i * n + j] = (w->right[i] + R_q[(size_t)i * nv + j]) / (g * g);
     }
     for (i = 0; i < nv; ++i)
         for (j = 0; j < nc; ++j) w->matrix[(size_t)i * n + nv + j] = -G[(size_t)j * nv + i];
@@ -100,7 +97,7 @@ static void sym_rosenbrock_solve(sym_run *r, double g, int32_t rank, sym_scratch
     for (i = 0; i < n; ++i) {
         const double *X = i < nv ? M + (size_t)i * nv : G + (size_t)(i - nv) * nv;
         for (j = 0; j < nv; ++j) w->right[i] += X[j] * right[nv + j];
-        if (i >= nv) w->right[i] /= g * g;
+        w->right[i] /= g * g;
     }
     sym_solve(n, rank, w->matrix, r->pivots, r->pivots + n, w->right, w->found, w->work);
     for (i = 0; i < nv; ++i) U[i] = w->found[i], U[nv + i] = g * w->found[i] - right[i];
