@@ -65,11 +65,11 @@ if TYPE_CHECKING:
     from symofros.simulation.assembly import assemble as assemble
     from symofros.simulation.base_parameters import base_parameters as base_parameters
     from symofros.simulation.equilibrium import equilibrium as equilibrium
+    from symofros.simulation.events import Event as Event
+    from symofros.simulation.inputs import Signal as Signal
     from symofros.simulation.inverse_kinematics import Target as Target
     from symofros.simulation.inverse_kinematics import inverse_kinematics as inverse_kinematics
     from symofros.simulation.inverse_kinematics import joint_motion as joint_motion
-    from symofros.simulation.events import Event as Event
-    from symofros.simulation.inputs import Signal as Signal
     from symofros.simulation.modes import modes as modes
     from symofros.simulation.outcome import Outcome as Outcome
     from symofros.simulation.simulate import simulate as simulate

@@ -28,7 +28,7 @@ ALLOWED: dict[str, set[str]] = {
         "errors", "options", "expr", "description", "beams", "topology", "kinematics", "dynamics", "passes", "codegen",
         "runtime",
     },
-    "simulation": {"runtime", "errors", "atomic"},
+    "simulation": {"runtime", "errors", "atomic", "codegen"},
     "loading": {"errors", "atomic", "description", "topology"},
     "__init__": {"errors", "options", "expr", "description", "compiler", "loading", "runtime", "simulation"},
 }  # fmt: skip

@@ -73,7 +73,8 @@ class Settings:
     @classmethod
     def of(
         cls, model: Model, method: str, dt: float | None, t0: float, t_end: float, rtol: float, atol: float,
-        adaptive: bool | None, max_step: float, output: float | Given | None, every: int, stabilisation: str, gains: Given | None,
+        adaptive: bool | None, max_step: float, output: float | Given | None, every: int, stabilisation: str,
+        gains: Given | None,
     ) -> Settings:  # fmt: skip
         """Settings from what `simulate` was given.
 
@@ -106,8 +107,9 @@ class Settings:
                          "use dopri5, dop853 or rodas4")  # fmt: skip
         adapts = chosen.adaptive if adaptive is None else adaptive
         step = dt if dt is not None else 0.0 if adapts else 1e-3
+        longest = max_step if math.isfinite(max_step) else 0.0
         return cls(
-            chosen, adapts, stabilisation, step, rtol, atol, max_step if math.isfinite(max_step) else 0.0, 0 if output is not None else every,
+            chosen, adapts, stabilisation, step, rtol, atol, longest, every if output is None else 0,
             _grid(output, t0, t_end), model.nc > 0 and stabilisation == "projection",
             _gains(model, stabilisation, gains, step),
         )  # fmt: skip
@@ -153,7 +155,7 @@ def _grid(output: float | Given | None, t0: float, t_end: float) -> Array:
         if not (math.isfinite(interval) and interval > 0):
             raise _wrong("the output interval is not positive", interval, "output > 0", "give an interval in seconds")
         count = math.floor((t_end - t0) / interval * (1 + 1e-12))
-        return t0 + interval * np.arange(count + 1)
+        return np.asarray(t0 + interval * np.arange(count + 1), dtype=np.float64)
     if times.ndim != 1 or not np.all(np.diff(times) > 0) or times.size == 0 or times[0] < t0 or times[-1] > t_end:
         raise ShapeError(str(Problem("simulation: output times do not fit", f"shape {times.shape}",
                                      f"times (n) increase from {t0} to {t_end} at most", "sort them")))  # fmt: skip

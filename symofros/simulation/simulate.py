@@ -113,7 +113,9 @@ def simulate(
                 before = time.perf_counter()
                 status = stepper.advance(left)
                 took = time.perf_counter() - before
-                spell = max(1, spell // 2) if took > _SPELL else min(2 * spell, _LONGEST) if took < _SPELL / 4 else spell
+                spell = (
+                    max(1, spell // 2) if took > _SPELL else min(2 * spell, _LONGEST) if took < _SPELL / 4 else spell
+                )
                 records.append(stepper.take_records())
                 found += stepper.take_events()
                 show(float(stepper.run.t))
@@ -123,10 +125,8 @@ def simulate(
     seconds = time.perf_counter() - began
     t, q_all, v_all, u_all = (np.concatenate(parts) for parts in zip(*records, strict=True))
     outcome = diagnose(stepper, status, interrupted, settings)
-    met = tuple(Found(looked_for[which].name, *rest) for which, *rest in found)
-    return Trajectory(
-        model, t, q_all, v_all, u_all, np.array(values), outcome, met, _statistics(stepper, seconds)
-    )
+    met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in found)
+    return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, _statistics(stepper, seconds))
 
 
 def _statistics(stepper: Stepper, seconds: float) -> Statistics:

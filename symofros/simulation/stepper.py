@@ -76,9 +76,7 @@ class Stepper:
         SymofrosError: The model is interpreted.
     """
 
-    def __init__(
-        self, model: Model, method: Method, inputs: InputPlan, events: Sequence[Event], par: Array
-    ) -> None:
+    def __init__(self, model: Model, method: Method, inputs: InputPlan, events: Sequence[Event], par: Array) -> None:
         self.ffi, self.native = library()
         self.model, self.method, self.events = model, method, events
         self.par = par

@@ -7,6 +7,7 @@ import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,6 +18,7 @@ from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.outcome import Outcome
+from symofros.simulation.plots import plot
 
 
 class Found(NamedTuple):
@@ -163,6 +165,14 @@ class Trajectory:
             found[f"d{name}" if name in names.q else name] = self.v[:, i]
         return found | {(name if name not in found else f"u.{name}"): self.u[:, i] for i, name in enumerate(names.u)}
 
+    def plot(self, *names: str) -> Any:
+        """A Matplotlib figure of coordinates (those named), speeds, inputs and energy; `.savefig(path)` writes it.
+
+        Raises:
+            SymofrosError: Matplotlib is not installed.
+        """
+        return plot(self, names)
+
     def save(self, path: str | Path) -> Path:
         """Write the trajectory: .npz (arrays), .csv or .parquet (a column a name).
 
@@ -192,12 +202,12 @@ class Trajectory:
 
     def _save_parquet(self, path: Path) -> None:
         try:
-            import pyarrow  # An extra: 40 MB that only this needs.
-            import pyarrow.parquet
+            pyarrow = import_module("pyarrow")  # An extra: 40 MB that only this needs.
+            parquet = import_module("pyarrow.parquet")
         except ImportError:
             raise SymofrosError(str(Problem("trajectory: Parquet needs pyarrow", "it is not installed",
                                             "pyarrow writes Parquet", "pip install pyarrow, or save as .npz")
                                     )) from None  # fmt: skip
         stream = io.BytesIO()
-        pyarrow.parquet.write_table(pyarrow.table(self.columns()), stream)
+        parquet.write_table(pyarrow.table(self.columns()), stream)
         write_atomically(path, stream.getvalue())

@@ -24,7 +24,7 @@ static int32_t sym_alpha_step(sym_run *r, double h, double *y1, double *rest) {
     /* s->a, s->lam: of the present state, and the first guess for the next. */
     memcpy(a0, s->a, (size_t)nv * sizeof *a0);
     for (k = 0; k < LONGEST; ++k) {
-        double change = 0.0, extent = 0.0;
+        double change = 0.0, extent = 0.0, reach = 0.0;
         for (i = 0; i < nv; ++i) {
             smooth1[i] = ((1.0 - alpha_f) * s->a[i] + alpha_f * a0[i] - alpha_m * smooth[i]) / (1.0 - alpha_m);
             y1[i] = h * r->v[i] + h * h * ((0.5 - beta) * smooth[i] + beta * smooth1[i]);
@@ -66,8 +66,10 @@ static int32_t sym_alpha_step(sym_run *r, double h, double *y1, double *rest) {
             extent = fabs(y1[nv + i]) > extent ? fabs(y1[nv + i]) : extent;
         }
         for (i = 0; i < nc; ++i) s->lam[i] += w.found[nv + i];
+        for (i = 0; i < s->nq; ++i) reach = fabs(s->q[i]) > reach ? fabs(s->q[i]) : reach;
         if (!sym_finite(n, w.found)) return SYM_DIVERGED;
-        if (change <= r->tolerance * (1.0 + extent)) {
+        /* phi is known to some rounding errors of q, and so are the speeds over h. */
+        if (change <= r->tolerance * (1.0 + extent) + (nc > 0 ? 1e-15 * (1.0 + reach) / h : 0.0)) {
             memcpy(smooth, smooth1, (size_t)nv * sizeof *smooth);
             return 0;
         }

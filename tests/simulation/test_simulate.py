@@ -1,0 +1,283 @@
+"""sf.simulate against closed forms and SciPy: inputs, outputs, events, constraints, ends."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import ellipk
+
+import symofros as sf
+from reference_models import MODELS
+
+
+@pytest.fixture(scope="module")
+def pendulum() -> sf.Model:
+    return sf.compile(MODELS["pendulum"])
+
+
+@pytest.fixture(scope="module")
+def cart_pole() -> sf.Model:
+    return sf.compile(MODELS["cart_pole"])
+
+
+@pytest.fixture(scope="module")
+def four_bar() -> sf.Model:
+    return sf.compile(MODELS["four_bar"])
+
+
+def moving_four_bar(model: sf.Model) -> tuple[np.ndarray, np.ndarray]:
+    q, v = model.random_state(np.random.default_rng(3))
+    assembled = sf.assemble(model, q, 0.3 * v)
+    return assembled.q, assembled.v
+
+
+def slope(model: sf.Model, law):
+    """The right-hand side for SciPy; q' = v."""
+    n = model.nv
+
+    def f(t: float, y: np.ndarray) -> np.ndarray:
+        return np.concatenate([y[n:], model.forward_dynamics(y[:n], y[n:], law(t, y[:n], y[n:]), t=t)])
+
+    return f
+
+
+def scipy_end(model: sf.Model, q, v, t_end: float, law) -> np.ndarray:
+    found = solve_ivp(slope(model, law), (0, t_end), [*q, *v], method="DOP853", rtol=1e-12, atol=1e-12)
+    return found.y[:, -1]
+
+
+def test_period_of_the_pendulum(pendulum: sf.Model) -> None:
+    amplitude = 1.2
+    model = sf.compile(MODELS["pendulum"])
+    # A quarter of the period: from rest at the amplitude to the lowest point.
+    run = sf.simulate(model, [amplitude], [0.0], 10.0, method="dop853", rtol=1e-12, atol=1e-12,
+                      events={"low": sf.Event("q", terminal=True)})  # fmt: skip
+    small = sf.modes(model, [0.0], [0.0], [0.0]).frequencies[0]
+    quarter = ellipk(np.sin(amplitude / 2) ** 2) / small
+    assert run.outcome.kind == "event"
+    assert run.outcome.t == pytest.approx(quarter, rel=1e-9)
+    assert run.t[-1] == run.outcome.t and abs(run.q[-1, 0]) < 1e-11
+
+
+class TestInputs:
+    def test_a_law_is_what_scipy_gets(self, cart_pole: sf.Model) -> None:
+        names = cart_pole.names
+        law = {names.u[0]: f"3*sin(2*t) - 2*{names.q[0]} - 0.5*d{names.q[0]}"}
+        run = sf.simulate(cart_pole, [0.1, 0.2], [0.0, 0.3], 1.0, u=law, method="dop853", rtol=1e-11, atol=1e-11)
+
+        def same(t, q, v):
+            return np.array([3 * np.sin(2 * t) - 2 * q[0] - 0.5 * v[0], *np.zeros(cart_pole.nu - 1)])
+
+        end = scipy_end(cart_pole, [0.1, 0.2], [0.0, 0.3], 1.0, same)
+        np.testing.assert_allclose([*run.q[-1], *run.v[-1]], end, atol=1e-9)
+        given = [same(*state)[0] for state in zip(run.t, run.q, run.v, strict=True)]
+        np.testing.assert_allclose(run.u[:, 0], given, atol=1e-14)
+
+    def test_a_function_and_its_formula_agree(self, cart_pole: sf.Model) -> None:
+        names = cart_pole.names
+        by_formula = sf.simulate(cart_pole, t_end=0.5, u={names.u[0]: "cos(t) - dx" if "x" in names.q else "cos(t)"})
+        index = names.q.index("x") if "x" in names.q else None
+
+        def call(t, q, v):
+            out = np.zeros(cart_pole.nu)
+            out[0] = np.cos(t) - (v[index] if index is not None else 0.0)
+            return out
+
+        np.testing.assert_allclose(sf.simulate(cart_pole, t_end=0.5, u=call).q, by_formula.q, atol=1e-14)
+
+    def test_samples_between_and_beyond_their_ends(self, cart_pole: sf.Model) -> None:
+        name = cart_pole.names.u[0]
+        signal = sf.Signal([0.1, 0.2, 0.3], [1.0, 3.0, 2.0])
+        run = sf.simulate(cart_pole, t_end=0.4, u={name: signal}, dt=0.01)
+        np.testing.assert_allclose(run[name], np.interp(run.t, signal.t, signal.values), atol=1e-12)
+        held = sf.simulate(cart_pole, t_end=0.4, u={name: sf.Signal([0.1, 0.2], [1.0, 3.0], "hold")}, dt=0.05)
+        np.testing.assert_array_equal(held[name][[0, 3, 5]], [1.0, 1.0, 3.0])
+
+    def test_a_failing_function_ends_the_run_and_keeps_it(self, cart_pole: sf.Model) -> None:
+        def call(t, q, v):
+            if t > 0.1:
+                raise RuntimeError("no more")
+            return np.zeros(cart_pole.nu)
+
+        run = sf.simulate(cart_pole, t_end=1.0, u=call)
+        assert run.outcome.kind == "input failed" and "no more" in run.outcome.reason
+        assert 0.09 < run.t[-1] < 0.11
+
+    @pytest.mark.parametrize(
+        ("u", "error", "words"),
+        [
+            ({"nothing": 1.0}, sf.UnknownNameError, "no input 'nothing'"),
+            ([1.0, 2.0, 3.0, 4.0], sf.ShapeError, "u has the wrong shape"),
+            ({0: "q + nonsense"}, sf.UnknownNameError, "unknown symbol 'nonsense'"),
+            ({0: "__import__('os')"}, sf.DescriptionError, "formula"),
+        ],
+    )
+    def test_what_does_not_fit(self, cart_pole: sf.Model, u, error, words) -> None:
+        given = {cart_pole.names.u[0]: u[0]} if isinstance(u, dict) and 0 in u else u
+        with pytest.raises(error, match=words):
+            sf.simulate(cart_pole, u=given)
+
+    def test_samples_out_of_order(self) -> None:
+        with pytest.raises(sf.ShapeError, match="not samples over time"):
+            sf.Signal([0.0, 0.2, 0.1], [1.0, 2.0, 3.0])
+
+
+class TestOutput:
+    @pytest.mark.parametrize("method", ["rk4", "dopri5", "dop853", "rodas4", "generalized_alpha"])
+    def test_states_between_steps(self, pendulum: sf.Model, method: str) -> None:
+        times = np.linspace(0.0, 1.0, 33)
+        run = sf.simulate(pendulum, [1.0], [0.0], 1.0, method=method, dt=2e-3, output=times, rtol=1e-9, atol=1e-9)
+        np.testing.assert_array_equal(run.t, times)
+        exact = solve_ivp(slope(pendulum, lambda t, q, v: [0.0]), (0, 1), [1.0, 0.0], "DOP853", times, rtol=1e-12,
+                          atol=1e-12)  # fmt: skip
+        bound = 1e-4 if method == "generalized_alpha" else 1e-6
+        np.testing.assert_allclose(run.q[:, 0], exact.y[0], atol=bound)
+
+    def test_interval_and_every(self, pendulum: sf.Model) -> None:
+        np.testing.assert_allclose(sf.simulate(pendulum, t_end=1.0, output=0.1).t, np.arange(11) / 10, atol=1e-12)
+        every = sf.simulate(pendulum, t_end=1.0, dt=0.01, every=30)
+        np.testing.assert_allclose(every.t, [0, 0.3, 0.6, 0.9, 1.0], atol=1e-12)
+
+    def test_many_records(self, pendulum: sf.Model) -> None:
+        run = sf.simulate(pendulum, [0.5], t_end=2.0, dt=1e-4)
+        assert len(run) == 20001 and np.all(np.diff(run.t) > 0)
+
+    def test_energy_and_acceleration(self, four_bar: sf.Model) -> None:
+        run = sf.simulate(four_bar, *moving_four_bar(four_bar), 1.0)
+        np.testing.assert_allclose(run.energy, run.energy[0], atol=1e-9 * abs(run.energy[0]) + 1e-9)
+        np.testing.assert_allclose(run.a, four_bar.forward_dynamics(run.q, run.v, run.u), atol=1e-12)
+        assert run.lam.shape == (len(run), four_bar.nc)
+        p, R = run.frames[four_bar.names.frames[-1]]
+        assert p.shape == (len(run), 3) and R.shape == (len(run), 3, 3)
+
+
+class TestEvents:
+    def test_directions(self, pendulum: sf.Model) -> None:
+        run = sf.simulate(pendulum, [1.0], [0.0], 6.0, method="dop853", rtol=1e-11, atol=1e-11, events={
+            "down": sf.Event("q", "falling"), "up": sf.Event("q", "rising"), "any": "q"})  # fmt: skip
+        names = [event.name for event in run.events]
+        assert names.count("any") == names.count("up") + names.count("down") >= 4
+        assert [e.t for e in run.events] == sorted(e.t for e in run.events)
+        assert all(abs(e.q[0]) < 1e-11 and (e.v[0] > 0) == (e.name == "up") for e in run.events if e.name != "any")
+
+    @pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler", "rodas4", "variational"])
+    def test_every_method_finds_them(self, pendulum: sf.Model, method: str) -> None:
+        fine = sf.simulate(pendulum, [1.0], [0.0], 1.0, method="dop853", rtol=1e-12, atol=1e-12, events={"low": "q"})
+        run = sf.simulate(pendulum, [1.0], [0.0], 1.0, method=method, dt=1e-3, events={"low": "q"}, rtol=1e-9)
+        assert run.events[0].t == pytest.approx(fine.events[0].t, abs=1e-3)
+
+    def test_unknown_direction(self) -> None:
+        with pytest.raises(ValueError, match="unknown direction"):
+            sf.Event("q", "sideways")  # type: ignore[arg-type]
+
+
+class TestConstraints:
+    def test_projection_keeps_them_exactly_and_nothing_lets_them_drift(self, four_bar: sf.Model) -> None:
+        q, v = moving_four_bar(four_bar)
+        left = {
+            kind: np.abs(four_bar.constraint(sf.simulate(four_bar, q, v, 5.0, dt=0.01, stabilisation=kind).q)).max()
+            for kind in ("projection", "baumgarte", "none")
+        }
+        assert left["projection"] < 1e-12
+        assert left["projection"] < left["baumgarte"] < left["none"]
+
+    def test_a_singular_posture_is_reported(self, four_bar: sf.Model) -> None:
+        """Flat at the neutral posture: all bars in one line."""
+        run = sf.simulate(four_bar, four_bar.neutral(), np.zeros(3), 0.1)
+        assert any("singular posture" in note for note in run.outcome.notes)
+
+    def test_gains_without_baumgarte(self, four_bar: sf.Model) -> None:
+        with pytest.raises(sf.SymofrosError, match="gains without Baumgarte"):
+            sf.simulate(four_bar, gains=(5.0, 5.0))
+
+
+class TestEnds:
+    def test_divergence_is_an_outcome(self, pendulum: sf.Model) -> None:
+        run = sf.simulate(pendulum, [1.0], [1e200], 1.0, method="euler", u={"q": "1e300*q*q"}, dt=0.1)
+        assert run.outcome.kind == "diverged" and not run.outcome.ok
+        assert "smaller dt" in run.outcome.advice and np.all(np.isfinite(run.q))
+
+    def test_a_jump_of_no_bound(self, pendulum: sf.Model) -> None:
+        run = sf.simulate(pendulum, [0.1], [0.0], 1.0, method="dopri5", u={"q": "1/(0.5 - t)^2"}, rtol=1e-9)
+        assert run.outcome.kind in ("step too small", "diverged")
+        assert run.t[-1] == pytest.approx(0.5, abs=1e-2)
+
+    def test_max_steps(self, pendulum: sf.Model) -> None:
+        run = sf.simulate(pendulum, t_end=100.0, max_steps=100)
+        assert run.outcome.kind == "interrupted" and run.statistics.steps == 100
+
+    def test_ctrl_c_keeps_the_part_before_it(self, pendulum: sf.Model) -> None:
+        def call(t, q, v):
+            if t > 0.2:
+                raise KeyboardInterrupt
+            return np.zeros(1)
+
+        run = sf.simulate(pendulum, t_end=1.0, u=call)
+        assert run.outcome.kind == "interrupted" and 0.19 < run.t[-1] < 0.21
+
+    def test_pace(self, pendulum: sf.Model) -> None:
+        run = sf.simulate(pendulum, [0.1], t_end=0.2, dt=0.01, realtime=True)
+        assert run.statistics.seconds > 0.18
+        assert run.statistics.late_steps <= 20
+
+    @pytest.mark.parametrize(
+        ("settings", "words"),
+        [
+            ({"method": "rk5"}, "no method 'rk5'"),
+            ({"dt": 0.0}, "step is not positive"),
+            ({"t_end": -1.0}, "no span of time"),
+            ({"method": "rk4", "adaptive": True}, "does not adapt"),
+            ({"every": 0}, "nothing would be recorded"),
+            ({"output": [0.5, 0.2]}, "output times"),
+            ({"q0": [np.nan]}, "not finite"),
+            ({"stabilisation": "hope"}, "unknown stabilisation"),
+            ({"method": "rodas4", "u": lambda t, q, v: [0.0]}, "derivatives of the inputs"),
+        ],
+    )
+    def test_settings_that_contradict(self, pendulum: sf.Model, settings, words: str) -> None:
+        with pytest.raises(sf.SymofrosError, match=words):
+            sf.simulate(pendulum, **settings)
+
+    def test_an_interpreted_model_is_refused(self) -> None:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            model = sf.compile(MODELS["pendulum"], sf.Options(backend="interpreter"))
+        with pytest.raises(sf.SymofrosError, match="interpreted model"):
+            sf.simulate(model)
+
+
+class TestStructure:
+    def test_variational_keeps_energy_where_rk4_loses_it(self) -> None:
+        """Over 2000 periods: bounded against drifting."""
+        model = sf.compile(MODELS["double_pendulum"])
+        spans = {}
+        for method in ("variational", "rk4"):
+            run = sf.simulate(model, [0.6, 0.3], [0.0, 0.0], 400.0, method=method, dt=0.02, every=10)
+            off = np.abs(run.energy - run.energy[0])
+            half = len(off) // 2
+            spans[method] = (off[:half].max(), off[half:].max())
+        early, late = spans["variational"]
+        assert late < 1.2 * early
+        early, late = spans["rk4"]
+        assert late > 1.5 * early
+
+    def test_variational_keeps_the_momentum_of_a_free_body(self) -> None:
+        model = sf.compile(MODELS["torque_free_body"])
+        q, v = model.random_state(np.random.default_rng(0))
+        run = sf.simulate(model, q, 3 * v, 20.0, method="variational", dt=0.01)
+        name = model.names.frames[-1]
+        J = model.frame_jacobian(name, run.q)
+        p = np.einsum("nij,nj->ni", model.mass_matrix(run.q), run.v)
+        # J^-T p is the wrench of momenta at the frame; its linear part is the body's momentum in the world.
+        wrench = np.linalg.solve(np.swapaxes(J, 1, 2), p[..., None])[..., 0]
+        assert np.ptp(wrench[:, :3], axis=0).max() < 1e-11
+
+    def test_quaternions_stay_of_unit_length(self) -> None:
+        model = sf.compile(MODELS["heavy_top"])
+        q, v = model.random_state(np.random.default_rng(2))
+        for method in ("rk4", "dopri5", "rodas4", "variational", "generalized_alpha", "semi_implicit_euler"):
+            run = sf.simulate(model, q, v, 2.0, method=method, dt=5e-3)
+            np.testing.assert_allclose(np.linalg.norm(run.q[:, -4:], axis=1), 1.0, atol=1e-14)
