@@ -8,7 +8,7 @@ import numpy as np
 
 from symofros.expr.evaluate import evaluate_edges, interpret
 from symofros.expr.program import Function, Program, Solver
-from symofros.runtime.constrained import constrained, project
+from symofros.runtime.constrained import constrained, differentiate, project
 from symofros.runtime.kernel import Array, Kernel, Signature
 
 
@@ -55,6 +55,14 @@ class InterpretedKernel:
     def _constrained(self, _: Solver, __: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         return constrained(*outputs)
 
+    def _differentiate(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
+        """At the motion that the terms determine."""
+        a, lam, _ = constrained(*outputs)
+        slopes = interpret(self._program, solver.parts[0], {**named, "a": a, "lam": lam}, len(a))
+        states = zip(outputs[0], outputs[2], zip(*slopes, strict=True), strict=True)
+        found = zip(*(differentiate(M, G, list(of)) for M, G, of in states), strict=True)
+        return [np.array(values) for values in found]
+
     def _project(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """State by state."""
         found = []
@@ -74,4 +82,5 @@ class InterpretedKernel:
 _TWINS: dict[str, Callable[[InterpretedKernel, Solver, Mapping[str, Array], list[Array]], list[Array]]] = {
     "constrained": InterpretedKernel._constrained,
     "project": InterpretedKernel._project,
+    "differentiate": InterpretedKernel._differentiate,
 }

@@ -11,6 +11,7 @@ from symofros.expr.program import Function, Program, Solver
 ROUTINES: dict[str, tuple[str, ...]] = {
     "constrained": ("constrained",),
     "project": ("constrained", "project"),
+    "differentiate": ("constrained", "differentiate"),
 }
 
 
@@ -37,16 +38,14 @@ def with_solver(program: Program, c_name: str, function: Function, solver: Solve
 def _constrained(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
     """M, r, G, c -> a, lam, rank."""
     m, n = function.outputs[2].shape
-    sizes = [len(output.edges) for output in function.outputs]
-    starts = [sum(sizes[:k]) for k in range(len(sizes) + 1)]
+    start = n * n + m * n
     lines = [
-        f"    double *terms[{len(sizes)}];",
-        *(f"    terms[{k}] = work + {start};" for k, start in enumerate(starts[:-1])),
-        f"    {c_name}_terms(in, terms, work + {starts[-1]});",
-        f"    *out[2] = sym_constrained({n}, {m}, terms[0], terms[1], terms[2], terms[3], out[0], out[1],",
-        f"        work + {starts[-1]});",
+        "    double *terms[4];",
+        f"    terms[0] = work, terms[1] = out[0], terms[2] = work + {n * n}, terms[3] = out[1];",
+        f"    {c_name}_terms(in, terms, work + {start});",
+        f"    *out[2] = sym_constrained({n}, {m}, terms[0], out[0], terms[2], out[1], work + {start});",
     ]
-    return lines, starts[-1] + max(needs, _scratch(n, m))
+    return lines, start + max(needs, _scratch(n, m) + m)
 
 
 def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
@@ -56,15 +55,27 @@ def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], in
     lines = [
         f"    *out[3] = sym_project({nq}, {n}, {m}, {c_name}_terms, {c_name}_move, in, out[0], out[1], out[2], work);"
     ]
-    return lines, n * n + m * n + 4 * m + 2 * n + nq + max(needs, _scratch(n, m))
+    return lines, n * n + m * n + 3 * m + n + nq + max(needs, _scratch(n, m) + m)
+
+
+def _differentiate(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+    """The state -> derivatives of a and lam."""
+    m, n = function.outputs[2].shape
+    columns = [shape[1] for _, shape in function.returns]
+    lines = [
+        f"    static const int columns[{len(columns)}] = {{{', '.join(map(str, columns))}}};",
+        f"    sym_differentiate({n}, {m}, {len(columns)}, columns, {c_name}_terms, {c_name}_slopes, in, out, work);",
+    ]
+    return lines, n * n + m * n + n + m + _scratch(n, m) + m * max(1, *columns) + needs
 
 
 def _scratch(n: int, m: int) -> int:
-    """What sym_constrained asks for."""
-    return n * n + 2 * m * n + 2 * m * m + 2 * m
+    """What sym_kkt_factor asks for."""
+    return n * n + n + 2 * m * n + 2 * m * m
 
 
 _CALLS: dict[str, Callable[[str, Function, int], tuple[list[str], int]]] = {
     "constrained": _constrained,
     "project": _project,
+    "differentiate": _differentiate,
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -94,6 +95,10 @@ class Equations:
         Raises:
             DescriptionError: A speed moves no mass whatever the state, and so has no acceleration.
         """
+        self._refuse_massless()
+        return solve(self.g, self.M, self.net)
+
+    def _refuse_massless(self) -> None:
         for k, name in enumerate(self.tree.coordinates.v):
             if self.M[k][k] == ZERO:
                 raise DescriptionError(
@@ -101,7 +106,11 @@ class Equations:
                             "forward dynamics divides by the inertia that each speed moves",
                             "give it an inertia, or bind it by a constraint")
                 )  # fmt: skip
-        return solve(self.g, self.M, [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)])
+
+    @cached_property
+    def net(self) -> list[Edge]:
+        """Q - h (nv)."""
+        return [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)]
 
     @cached_property
     def constraints(self) -> list[Row]:
@@ -188,6 +197,8 @@ class Equations:
             return self._constrained(request)
         if request.name == "project":
             return self._project(request)
+        if request.name in _SLOPES:
+            return self._differentiated(request)
         if request.name in _FRAME_FUNCTIONS:
             inputs, outputs = _FRAME_FUNCTIONS[request.name](self, self.tree.frame(request.frame))
         else:
@@ -197,19 +208,34 @@ class Equations:
 
     def _constrained(self, request: Request) -> Function:
         """Forward dynamics under constraints: the terms, for a solver that copes with any rank."""
-        right = [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)]
-        G = [row.G for row in self.constraints]
-        outputs = (_matrix("M", self.M), _vector("r", right), _matrix("G", G), _vector("c", self.stabilised))
-        solved = (("a", (self.nv,)), ("lam", (len(G),)), ("rank", ()))
+        outputs = self._terms(self.stabilised)
+        solved = (("a", (self.nv,)), ("lam", (len(self.constraints),)), ("rank", ()))
         return Function(request.name, "", ("q", "v", "u", "gains", "t"), outputs, Solver("constrained", solved))
+
+    def _terms(self, right: Sequence[Edge]) -> tuple[Output, ...]:
+        """M a = r + G^T lam, G a = c."""
+        return _matrix("M", self.M), _vector("r", self.net), self._G, _vector("c", right)
+
+    @cached_property
+    def _G(self) -> Output:
+        return _sized("G", (len(self.constraints), self.nv), [row.G for row in self.constraints])
+
+    def _differentiated(self, request: Request) -> Function:
+        """Derivatives of forward dynamics: its terms, and the slopes of its residual."""
+        if not self.constraints:
+            self._refuse_massless()
+        inputs, slopes = _SLOPES[request.name](self)
+        part = Function("slopes", "", inputs, slopes)
+        solved = tuple((output.name, output.shape) for output in slopes)
+        outputs = self._terms([row.gamma for row in self.constraints])
+        return Function(request.name, "", ("q", "v", "u", "t"), outputs, Solver("differentiate", solved, (part,)))
 
     def _project(self, request: Request) -> Function:
         """The nearest state on the constraints: the terms of Newton's steps, and how a step moves q."""
         rows, nq = self.constraints, len(self.tree.coordinates.q)
         binds = [ZERO if row.phi == ZERO else ONE for row in rows]
         outputs = (
-            _matrix("M", self.M), Output("G", (len(rows), self.nv), tuple(edge for row in rows for edge in row.G)),
-            _vector("binds", binds), _vector("phi", [row.phi for row in rows]),
+            _matrix("M", self.M), self._G, _vector("binds", binds), _vector("phi", [row.phi for row in rows]),
             _vector("rate", [row.rate for row in rows]),
         )  # fmt: skip
         move = Function("move", "", ("q", "step"), (_vector("q_moved", moved(self.motion)),))
@@ -225,7 +251,11 @@ def _vector(name: str, edges: Sequence[Edge]) -> Output:
 
 
 def _matrix(name: str, rows: Sequence[Sequence[Edge]]) -> Output:
-    return Output(name, (len(rows), len(rows[0]) if rows else 0), tuple(edge for row in rows for edge in row))
+    return _sized(name, (len(rows), len(rows[0]) if rows else 0), rows)
+
+
+def _sized(name: str, shape: tuple[int, int], rows: Sequence[Sequence[Edge]]) -> Output:
+    return Output(name, shape, tuple(edge for row in rows for edge in row))
 
 
 def _dynamics(e: Equations) -> _Parts:
@@ -247,21 +277,44 @@ def _residual_derivatives(e: Equations) -> _Parts:
     by_q = by_configuration(e.motion, e.residual)
     by_v = by_inputs(e.motion, e.residual, "v", e.nv)
     by_u = by_inputs(e.motion, e.residual, "u", len(e.tree.coordinates.u))
-    rate_by_q = by_configuration(e.motion, [row.rate for row in e.constraints])
-    outputs = (_matrix("dR_dq", by_q), _matrix("dR_dv", by_v), _matrix("dR_du", by_u), _matrix("drate_dq", rate_by_q))
-    return ("q", "v", "a", "u", "lam", "t"), outputs
+    # Sizes are stated, because a matrix without rows or columns does not show them.
+    rows, nu = len(e.residual), len(e.tree.coordinates.u)
+    outputs = (
+        _sized("by_q", (rows, e.nv), by_q), _sized("by_v", (rows, e.nv), by_v), _sized("by_u", (rows, nu), by_u),
+    )  # fmt: skip
+    return _AT_MOTION, outputs
+
+
+def _rate_derivative(e: Equations) -> _Parts:
+    by_q = by_configuration(e.motion, [row.rate for row in e.constraints])
+    return ("q", "v", "t"), (_sized("by_q", (len(e.constraints), e.nv), by_q),)
+
+
+def _residual_by_par(e: Equations) -> _Parts:
+    npar = len(e.tree.coordinates.par)
+    return _AT_MOTION, (_sized("by_par", (len(e.residual), npar), by_inputs(e.motion, e.residual, "par", npar)),)
+
+
+def _inverse_by_par(e: Equations) -> _Parts:
+    npar = len(e.tree.coordinates.par)
+    by_par = _sized("dtau_dpar", (e.nv, npar), by_inputs(e.motion, e.required, "par", npar))
+    return ("q", "v", "a", "t"), (by_par,)
+
+
+# The motion at which the residual is differentiated; the order is that of templates/differentiate.c.in.
+_AT_MOTION = ("q", "v", "a", "u", "lam", "t")
+# Functions that differentiate forward dynamics -> the slopes of the residual they need.
+_SLOPES: dict[str, Callable[[Equations], _Parts]] = {
+    "forward_dynamics_derivatives": _residual_derivatives,
+    "forward_dynamics_by_par": _residual_by_par,
+}
 
 
 def _implicit_terms(e: Equations) -> _Parts:
     """What an implicit step needs of the residual at a state: docs/theory/simulation.md, section 3."""
-    by_q = by_configuration(e.motion, e.residual)
-    by_v = by_inputs(e.motion, e.residual, "v", e.nv)
-    by_u = by_inputs(e.motion, e.residual, "u", len(e.tree.coordinates.u))
-    rate_by_q = by_configuration(e.motion, [row.rate for row in e.constraints])
-    G = _matrix("G", [row.G for row in e.constraints])
-    outputs = (_matrix("M", e.M), G, _matrix("dR_dq", by_q), _matrix("dR_dv", by_v), _matrix("dR_du", by_u),
-               _matrix("drate_dq", rate_by_q))  # fmt: skip
-    return ("q", "v", "a", "u", "lam", "t"), outputs
+    G = _sized("G", (len(e.constraints), e.nv), [row.G for row in e.constraints])
+    slopes, rate = _residual_derivatives(e)[1], _rate_derivative(e)[1][0]
+    return _AT_MOTION, (_matrix("M", e.M), G, *slopes, replace(rate, name="rate_by_q"))
 
 
 def _residual(e: Equations) -> _Parts:
@@ -282,6 +335,7 @@ _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "potential_energy": lambda e: (("q", "t"), (Output("V", (), (e.V,)),)),
     "regressor": lambda e: (("q", "v", "a"), (_matrix("Y", e.regressor),)),
     "inverse_dynamics_derivatives": _inverse_derivatives,
+    "inverse_dynamics_by_par": _inverse_by_par,
     "residual_derivatives": _residual_derivatives,
     "residual": _residual,
     "implicit_terms": _implicit_terms,
@@ -289,6 +343,7 @@ _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
         ("q", "v", "u", "t"),
         (_vector("p", e.momentum), _vector("F", e.momentum_force), _matrix("M", e.M)),
     ),
+    "constraint_rate_derivative": _rate_derivative,
     "constraint": lambda e: (("q", "t"), (_vector("phi", [row.phi for row in e.constraints]),)),
     "constraint_rate": lambda e: (("q", "v", "t"), (_vector("phi_rate", [row.rate for row in e.constraints]),)),
     "constraint_jacobian": lambda e: (("q", "t"), (_matrix("G", [row.G for row in e.constraints]),)),

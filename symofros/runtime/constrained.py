@@ -71,6 +71,18 @@ def _factor(M: Array) -> Array | None:
     return L if bool(np.all(np.diag(L) ** 2 > PIVOT * np.diag(M))) else None
 
 
+def differentiate(M: Array, G: Array, slopes: list[Array]) -> list[Array]:
+    """The derivatives of a and lam, from those of the residual by the same arguments: -K^-1 dR/dx of each.
+
+    Args:
+        M: (nv, nv).
+        G: (nc, nv).
+        slopes: dR/dx (nv + nc, k) each.
+    """
+    nv = len(M)
+    return [np.concatenate(solve(M, -slope[:nv], G, -slope[nv:])[:2]) for slope in slopes]
+
+
 def project(
     terms: Callable[[Array, Array], list[Array]], move: Callable[[Array, Array], Array], q: Array, v: Array
 ) -> tuple[Array, Array, float, int]:

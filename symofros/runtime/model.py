@@ -148,8 +148,24 @@ class Model(Functions):
         self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0
     ) -> tuple[Array, Array, Array]:
         """The derivatives of `forward_dynamics` by q, v (..., nv, nv) and u (..., nv, nu), constraints kept."""
-        found = linear.accelerations(self, q, v, u, par=par, t=t)
-        return found.by_q, found.by_v, found.by_u
+        by_q, by_v, by_u = self._call("forward_dynamics_derivatives", "", {"q": q, "v": v, "u": u, "t": t}, par)
+        return by_q[..., : self.nv, :], by_v[..., : self.nv, :], by_u[..., : self.nv, :]
+
+    def inverse_dynamics_by_par(
+        self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+    ) -> Array:
+        """The derivative of `inverse_dynamics` by the run-time parameters (..., nv, npar)."""
+        return self._one("inverse_dynamics_by_par", {"q": q, "v": v, "a": a, "u": u, "t": t}, par)
+
+    def forward_dynamics_by_par(
+        self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0
+    ) -> Array:
+        """The derivative of `forward_dynamics` by the run-time parameters (..., nv, npar), constraints kept.
+
+        The state stays as it is: where a parameter moves the constraints themselves, off which v' is judged as it is
+        for any state that has drifted, with what G a = gamma asks there.
+        """
+        return self._one("forward_dynamics_by_par", {"q": q, "v": v, "u": u, "t": t}, par)[..., : self.nv, :]
 
     def linearize(
         self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0
@@ -163,7 +179,7 @@ class Model(Functions):
     def residual_derivatives(
         self, q: Given, v: Given, a: Given, u: Given, lam: Given, *, par: Given | None = None, t: Given = 0.0
     ) -> list[Array]:
-        """Of R = (M a + h - Q - G^T lam; G a - gamma) by q, v and u, and of G v - b by q."""
+        """Of R = (M a + h - Q - G^T lam; G a - gamma) by q, v and u (..., nv + nc, nv or nu)."""
         return self._call("residual_derivatives", "", {"q": q, "v": v, "a": a, "u": u, "lam": lam, "t": t}, par)
 
     def regressor(self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
@@ -185,6 +201,12 @@ class Model(Functions):
     ) -> Array:
         """G v - b (..., nc): the rate of phi, and the residual of conditions on speeds."""
         return self._one("constraint_rate", {"q": q, "v": v, "u": u, "t": t}, par)
+
+    def constraint_rate_derivative(
+        self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+    ) -> Array:
+        """The derivative of G v - b by q (..., nc, nv); that by v is G."""
+        return self._one("constraint_rate_derivative", {"q": q, "v": v, "u": u, "t": t}, par)
 
     def constraint_jacobian(
         self, q: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0

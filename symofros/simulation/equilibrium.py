@@ -88,7 +88,7 @@ def equilibrium(
     R, scale = residual(q, lam)
     count = 0
     while _size(R[rows], scale, nc) > tolerance and count < iterations:
-        by_q, _, _, _ = model.residual_derivatives(q, v, still, u, lam, par=par, t=t)
+        by_q, _, _ = model.residual_derivatives(q, v, still, u, lam, par=par, t=t)
         G = model.constraint_jacobian(q, u=u, par=par, t=t) if nc else np.zeros((0, nv))
         K = np.zeros((nv + nc, nv + nc))
         K[:nv, :nv], K[:nv, nv:], K[nv:, :nv] = by_q[:nv], -G.T, G

@@ -70,8 +70,7 @@ def reduced(
     nv = model.nv
     if not model.nc:
         return A, B, np.eye(2 * nv)
-    a, lam, _ = model.constrained_dynamics(q, v, u, par=par, t=t)
-    rate_by_q = model.residual_derivatives(q, v, a, u, lam, par=par, t=t)[3]
+    rate_by_q = model.constraint_rate_derivative(q, v, u=u, par=par, t=t)
     G = model.constraint_jacobian(q, u=u, par=par, t=t)
     binds_coordinates = np.array([name not in model.record.speed_conditions for name in model.names.constraints])
     bound = np.block([[G[binds_coordinates], np.zeros((int(binds_coordinates.sum()), nv))], [rate_by_q, G]])

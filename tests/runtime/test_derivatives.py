@@ -1,0 +1,136 @@
+"""Derivatives of dynamics in C: against Pinocchio, against differences, against their twin in NumPy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from tests.models import system
+from validation.adapters import pinocchio as pin_adapter
+from validation.cases import robot_case
+
+pin = pytest.importorskip("pinocchio")
+# State: guesses that assembly closes, or none for trees.
+CLOSED = {
+    "four_bar": [1.2, -1.2, 1.2],
+    "slider_crank": [0.5, -0.7, 0.4],
+    "rolling_disc": [0, 0, 0.5, 0.5, 0.5, 0.5, 0.5],
+}
+OPEN = ("pendulum", "cart_pole", "rx90", "space_arm", "flexible_pendulum", "parametrised0", "parametrised2")
+
+
+@cache
+def model(name: str, backend: str = "c") -> sf.Model:
+    stated = system(name) if name.startswith("parametrised") else MODELS[name]
+    return sf.compile(stated, sf.Options(backend=backend))
+
+
+def state(name: str, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    m, rng = model(name), np.random.default_rng(seed)
+    q, v = m.random_state(rng)
+    if name in CLOSED:
+        at = sf.assemble(m, CLOSED[name], rng.normal(size=m.nv))
+        q, v = at.q, at.v
+    return q, v, rng.normal(size=m.nu)
+
+
+def sixth(function: Callable[[float], np.ndarray], step: float) -> np.ndarray:
+    """The derivative at 0 by a central difference of sixth order."""
+    weights = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
+    return np.asarray(sum(w * (function(k * step) - function(-k * step)) for k, w in weights) / step)
+
+
+@pytest.mark.parametrize(
+    ("robot", "backend"),
+    [("ur5", "c"), ("panda", "c"), ("talos", "interpreter"), pytest.param("talos", "c", marks=pytest.mark.slow)],
+)
+def test_forward_dynamics_against_pinocchio(robot: str, backend: str) -> None:
+    """Pinocchio's recursive derivatives of its articulated-body algorithm: another method for the same numbers."""
+    subject = robot_case(robot).load()
+    bodies = [replace(b, joint=b.joint and replace(b.joint, elements=())) for b in subject.system.bodies]
+    subject = replace(subject, system=replace(subject.system, bodies=tuple(bodies)))
+    options = sf.Options(("forward_dynamics_derivatives",), backend=backend)  # type: ignore[arg-type]
+    m = sf.compile(subject.system, options)
+    engine = pin_adapter.build(subject).model
+    rng = np.random.default_rng(0)
+    q, v = m.random_state(rng)
+    u = rng.normal(size=m.nu)
+    actuated = slice(m.nv - m.nu, m.nv)
+    tau = np.zeros(m.nv)
+    tau[actuated] = u
+    data = engine.createData()
+    pin.computeABADerivatives(engine, data, q, v, tau)
+    inverse = np.triu(data.Minv) + np.triu(data.Minv, 1).T
+    for ours, theirs in zip(
+        m.forward_dynamics_derivatives(q, v, u), (data.ddq_dq, data.ddq_dv, inverse[:, actuated]), strict=True
+    ):
+        assert np.abs(ours - theirs).max() < 1e-10 * np.abs(theirs).max()
+
+
+@pytest.mark.parametrize("name", [*OPEN, *CLOSED])
+def test_c_is_its_twin(name: str) -> None:
+    q, v, u = state(name)
+    c = model(name).forward_dynamics_derivatives(q, v, u)
+    twin = model(name, "interpreter").forward_dynamics_derivatives(q, v, u)
+    for ours, theirs in zip(c, twin, strict=True):
+        assert np.abs(ours - theirs).max(initial=0) < 1e-11 * max(1.0, np.abs(theirs).max(initial=0))
+
+
+@pytest.mark.parametrize("name", ["four_bar", "slider_crank", "cart_pole", "parametrised0", "parametrised2"])
+def test_by_parameters_against_differences(name: str) -> None:
+    m = model(name)
+    q, v, u = state(name)
+    a, par = np.random.default_rng(1).normal(size=m.nv), np.array(list(m.parameters.values()))
+    # Sixth order, so that rounding is what is left; parameters are of the order of one.
+    step = 1e-3
+    for exact, function in (
+        (m.forward_dynamics_by_par(q, v, u), lambda p: m.forward_dynamics(q, v, u, par=p)),
+        (m.inverse_dynamics_by_par(q, v, a), lambda p: m.inverse_dynamics(q, v, a, par=p)),
+    ):
+        numeric = np.array([sixth(lambda s: function(par + s * e), step) for e in np.eye(m.npar)]).T  # noqa: B023
+        assert exact.shape == (m.nv, m.npar)
+        assert np.abs(exact - numeric).max() < 1e-7 * max(1.0, np.abs(numeric).max())
+
+
+def test_batches_and_parameters() -> None:
+    m = model("slider_crank")
+    many = [state("slider_crank", seed) for seed in range(3)]
+    q, v, u = (np.array(x) for x in zip(*many, strict=True))
+    par = np.array(list(m.parameters.values())) * np.array([[1.0], [1.01], [1.02]])
+    together = m.forward_dynamics_derivatives(q, v, u, par=par)
+    for i, one in enumerate(many):
+        for all_of, alone in zip(together, m.forward_dynamics_derivatives(*one, par=par[i]), strict=True):
+            assert np.array_equal(all_of[i], alone)
+
+
+def test_no_parameters_no_columns() -> None:
+    m = model("four_bar", "interpreter")
+    constant = sf.compile(
+        replace(MODELS["pendulum"], parameters=tuple(replace(p, constant=True) for p in MODELS["pendulum"].parameters)),
+        sf.Options(backend="interpreter"),
+    )
+    assert constant.forward_dynamics_by_par([0.1], [0.2], np.zeros(constant.nu)).shape == (1, 0)
+    assert m.inverse_dynamics_by_par(*([np.zeros(3)] * 3)).shape == (3, m.npar)
+
+
+def test_a_massless_speed_is_refused() -> None:
+    bodies = (
+        sf.RigidBody("a", sf.Joint("q1", "revolute"), sf.Inertia(1.0, (0.5, 0, 0), (0.1, 0.1, 0.1))),
+        sf.RigidBody("b", sf.Joint("q2", "revolute", "a"), None, waive=("massless_tip",)),
+    )
+    m = sf.compile(sf.System("s", bodies), sf.Options(backend="interpreter"))
+    with pytest.raises(sf.DescriptionError, match="speed 'q2' moves no mass"):
+        m.forward_dynamics_derivatives([0.1, 0.2], [0, 0], [])
+
+
+def test_a_mass_as_a_parameter() -> None:
+    """A point mass on a slide under a force: dv'/dm = -F/m^2."""
+    body = sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True), sf.Inertia("m"))
+    m = sf.compile(sf.System("s", [body], [sf.Parameter("m", 2.0)]), sf.Options(backend="interpreter"))
+    assert m.forward_dynamics_by_par([0.0], [0.0], [3.0])[0, 0] == pytest.approx(-3.0 / 4.0, rel=1e-15)
