@@ -59,6 +59,15 @@ class Along:
             terms = {mono: _weighted(g, f, xi, w, values) for mono, f in field.terms.items()}
         return self._scaled(field, terms)
 
+    def shares(self, weight: Value) -> list[tuple[float, Edge]]:
+        """Gauss stations, and what each has of the weight's integral: for what is no polynomial of the coordinates."""
+        g = self.g
+        found = []
+        for xi, w in zip(*stations(self.knots, self.points), strict=True):
+            here = at_station(weight, self.length, xi) if isinstance(weight, Expression) else weight
+            found.append((xi, g.mul(g.constant(w), g.mul(self.lower(here), self.L))))
+        return found
+
     def at(self, field: Field, xi: float) -> Form:
         """The field at one station."""
         return field.at(self.g, self.coordinates, self.L, xi)
