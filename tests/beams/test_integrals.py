@@ -139,7 +139,7 @@ def test_uniform_integrals_are_rounded_once() -> None:
 def test_quadrature_follows_polynomials_of_any_degree(count: int) -> None:
     """A section whose formula says "uniform" in a roundabout way has the exact integrals of one that is.
 
-    Eight Legendre functions make polynomials of degree 34, whose coefficients reach 1e20 and cancel.
+    Eight Legendre functions make polynomials of degree 34, whose coefficients reach 1e23 and cancel.
     """
 
     def beam(rhoA: Any) -> BeamForms:

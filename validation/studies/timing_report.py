@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from importlib import metadata
 from pathlib import Path
@@ -53,14 +54,14 @@ def timing(
     for name in chosen or ():
         if name not in names:
             raise typer.BadParameter(f"no model '{name}'; there are {', '.join(names)}", param_hint="--model")
-    console = Console(stderr=True)
+    console, load = Console(stderr=True), _load()
     with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("timing", total=len(chosen or names))
         picked = {name: known[name] for name in chosen or known if name in known}
         run = run_timing(picked, repeats, lambda label: bar.update(task, advance=1))
         if LABEL in (chosen or names):
             _add_flexible(run, repeats)
-    data = as_data(run, repeats)
+    data = as_data(run, repeats, [*load, *_load()])
     report.mkdir(parents=True, exist_ok=True)
     write_atomically(report / "timing.json", json.dumps(data, indent=1) + "\n")
     write_atomically(report / "timing.md", as_markdown(data))
@@ -83,14 +84,19 @@ def _add_flexible(run: TimingRun, repeats: int) -> None:
         run.failures.append(str(error))
 
 
-def as_data(run: TimingRun, repeats: int) -> dict[str, Any]:
-    """The result as plain data, with what it depends on."""
+def _load() -> list[float]:
+    """Processes that ran in the last minute, on average; nothing where the system does not say."""
+    return [os.getloadavg()[0]] if hasattr(os, "getloadavg") else []
+
+
+def as_data(run: TimingRun, repeats: int, load: Sequence[float] = ()) -> dict[str, Any]:
+    """The result as plain data, with what it depends on; the machine's load before and after."""
     packages = {"symofros": "symofros", "pinocchio": "pin", "exudyn": "exudyn"}
     versions = {name: metadata.version(package) for name, package in packages.items()}
     return {
         "timings": [asdict(timing) for timing in run.timings],
         "flexible": [asdict(timing) for timing in run.flexible], "failures": run.failures, "repeats": repeats,
-        "states": STATES, "flags": list(FLAGS), "versions": versions, "machine": machine(),
+        "states": STATES, "flags": list(FLAGS), "versions": versions, "machine": machine(), "load": list(load),
     }  # fmt: skip
 
 
@@ -106,6 +112,8 @@ def as_markdown(data: dict[str, Any]) -> str:
     lines += flexible_lines(data["flexible"])
     lines += [f"\nNot timed: {failure.splitlines()[0]}" for failure in data["failures"]]
     versions = ", ".join(f"{name} {version}" for name, version in data["versions"].items())
+    shared = " and ".join(f"{load:.1f}" for load in data["load"])
+    lines += ["", f"Load of the machine before and after: {shared}; alone on it, 0 and 1."] if shared else []
     lines += ["", f"{data['states']} random states, {data['repeats']} repeats; {versions}; flags of Pinocchio's side: "
               f"`{' '.join(data['flags'])}`; {', '.join(data['machine'].values())}.", "",
               "Written by `python -m validation timing`.", ""]  # fmt: skip
