@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from symofros.beams.deformation import Deformation, deformation_of
 from symofros.beams.fields import EVERY_DEGREE, Field, Form, no_form, unit_field
-from symofros.beams.integrals import Along, Lower
+from symofros.beams.integrals import Along, Lower, points_for
 from symofros.description.beam import Beam, Retain
 from symofros.description.values import Value
 from symofros.expr.graph import Edge, Graph
@@ -162,5 +162,6 @@ def beam_forms(g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...]
     """
     shape = deformation_of(beam)
     knots = tuple(sorted({knot for function in shape.functions for knot in function.phi.knots} or {0, 1}))
-    along = Along(g, lower, beam.length, lower(beam.length), coordinates, knots)
+    along = Along(g, lower, beam.length, lower(beam.length), coordinates, knots,
+                  points_for([function.phi for function in shape.functions]))  # fmt: skip
     return BeamForms(beam, along, shape, ORDERS[beam.retain])

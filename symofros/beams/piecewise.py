@@ -6,6 +6,8 @@ few lines, and exact where the coefficients are rational.
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -85,6 +87,14 @@ class Piecewise:
         while i < len(self.pieces) - 1 and xi > self.knots[i + 1]:
             i += 1
         return _value(self.pieces[i], xi - self.knots[i])
+
+    def rounded(self, stations: Sequence[float]) -> list[float]:
+        """Values at stations, rounded once where coefficients and knots are rational, whatever cancels in between."""
+        found = []
+        for xi in stations:
+            i = max(bisect_left(self.knots, xi) - 1, 0)
+            found.append(_rounded(self.pieces[i], Fraction(xi) - self.knots[i]))
+        return found
 
     def refined(self, knots: tuple[Number, ...]) -> Piecewise:
         """The same function on finer knots, which contain its own."""
@@ -176,6 +186,20 @@ def _value(coefficients: Coefficients, s: Number) -> Number:
     for c in reversed(coefficients):
         total = total * s + c
     return total
+
+
+def _rounded(coefficients: Coefficients, s: Number) -> float:
+    """The value as the nearest double: in whole numbers over one denominator, many times faster than in fractions."""
+    exact = [c for c in coefficients if isinstance(c, Fraction)]
+    if not isinstance(s, Fraction) or len(exact) < len(coefficients):
+        return float(_value(coefficients, float(s)))
+    common = math.lcm(*(c.denominator for c in exact))
+    total, scale = 0, 1
+    for c in reversed(exact):
+        # total/scale is what Horner's rule has so far, times the common denominator.
+        total = total * s.numerator + c.numerator * (common // c.denominator) * scale * s.denominator
+        scale *= s.denominator
+    return total / (common * scale)
 
 
 def _divided(c: Number, k: int) -> Number:

@@ -202,13 +202,22 @@ def _user(shape: UserShape, bending: bool) -> Piecewise:
     if any(abs(float(x)) > 1e-8 * scale for x in root):
         rule = "phi(0) = phi'(0) = 0" if bending else "phi(0) = 0"
         raise FamilyError(f"a function has {', '.join(f'{float(x):.3g}' for x in root)} at the root; {rule}")
-    # What rounding left at the root is taken out.
-    exact = phi
-    for _ in range(order):
-        exact = exact.derivative()
-    for _ in range(order):
-        exact = exact.antiderivative()
-    return exact
+    return phi + _root_correction(phi.knots, [float(x) for x in root])
+
+
+def _root_correction(knots: tuple[Number, ...], root: list[float]) -> Piecewise:
+    """What takes a value and a slope (zero where none is given) out at the root, within the first interval alone.
+
+    The slope there is rounding of the interpolant's derivative, a thousand times its values': taken out as a straight
+    line it would spoil those.
+    """
+    h = float(knots[1] - knots[0])
+    value, slope = -root[0], -(root[1] if len(root) > 1 else 0.0)
+    if len(root) > 1:
+        cubic = (value, slope, -3 * value / h**2 - 2 * slope / h, 2 * value / h**3 + slope / h**2)
+    else:
+        cubic = (value, -value / h, 0.0, 0.0)
+    return Piecewise(knots, (cubic, *((0.0,) for _ in knots[2:])))
 
 
 def _formula(formula: Expression | float) -> Callable[[np.ndarray], np.ndarray]:

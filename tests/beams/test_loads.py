@@ -25,14 +25,20 @@ FORCES: dict[str, tuple[sf.BeamLoad, Line]] = {
     ),
 }  # fmt: skip
 TORQUES: dict[str, tuple[sf.BeamLoad, Line]] = {
-    "at the tip": (
+    "a moment at the tip": (
         sf.BeamLoad(torque=(1.0, -2.0, 0.5), at=1.0), Line(lambda x: (0, 0, 0), lambda x: (1.0, -2.0, 0.5), L)
     ),
-    "spread, in the world": (
+    "a moment within, in the world": (
+        sf.BeamLoad(torque=("p", 0, "-1"), at=0.4, axes="world"),
+        Line(lambda x: (0, 0, 0), lambda x: (3.0, 0.0, -1.0), 0.4 * L, True),
+    ),
+    "a spread moment, in the world": (
         sf.BeamLoad(torque=("x", "p", "-1"), axes="world"),
         Line(lambda x: (0, 0, 0), lambda x: (x, 3.0, -1.0), world=True),
     ),
 }  # fmt: skip
+
+ALL = FORCES | TORQUES
 
 
 def both(load: sf.BeamLoad, line: Line, retain: Any = "all") -> tuple[sf.Model, Lagrangian]:
@@ -47,21 +53,17 @@ def difference(model: sf.Model, oracle: Lagrangian, q: np.ndarray, v: np.ndarray
     return model.generalized_force(q, v, ()) - oracle(q, v).Q
 
 
-@pytest.mark.parametrize("case", FORCES)
-def test_forces_are_exact_if_everything_is_kept(case: str, rng: np.random.Generator) -> None:
-    model, oracle = both(*FORCES[case])
+@pytest.mark.parametrize("case", [*FORCES, *TORQUES])
+def test_loads_are_exact_if_everything_is_kept(case: str, rng: np.random.Generator) -> None:
+    model, oracle = both(*ALL[case])
     q, v = 0.3 * rng.standard_normal(model.nq), rng.standard_normal(model.nv)
     error = np.linalg.norm(difference(model, oracle, q, v)) / np.linalg.norm(oracle(q, v).Q)
     assert error < TOLERANCE
 
 
-@pytest.mark.parametrize(("case", "retain"), [(case, "first_order") for case in FORCES] + [
-    (f"torque {case}", retain) for case in TORQUES for retain in ("first_order", "all")
-])  # fmt: skip
-def test_what_is_cut_is_of_second_order(case: str, retain: str, rng: np.random.Generator) -> None:
-    """Moments are taken to first order in any case: sections turn by angles that are known to second order only."""
-    known = TORQUES[case.removeprefix("torque ")] if case.startswith("torque") else FORCES[case]
-    model, oracle = both(*known, retain)
+@pytest.mark.parametrize("case", [*FORCES, *TORQUES])
+def test_what_is_cut_is_of_second_order(case: str, rng: np.random.Generator) -> None:
+    model, oracle = both(*ALL[case], "first_order")
     q, v = rng.standard_normal((2, model.nq))
     elastic = np.arange(model.nq) >= 6
     errors = [
@@ -69,3 +71,21 @@ def test_what_is_cut_is_of_second_order(case: str, retain: str, rng: np.random.G
         for scale in (2.0**-6, 2.0**-7)
     ]
     assert np.log2(errors[0] / errors[1]) >= 1.9
+
+
+@pytest.mark.parametrize("axes", ["body", "world"])
+def test_a_moment_at_the_tip_is_a_torque_on_a_body_there(axes: Any, rng: np.random.Generator) -> None:
+    """In the world's axes; in those of the beam's root, it is not one in the axes of the tip."""
+    beam, _ = pair("beam", FREE, -1, (6, six), (2, 2, 2))
+    torque = (1.0, -2.0, 0.5)
+    loaded = replace(beam, loads=(sf.BeamLoad(torque=torque, at=1.0, axes=axes),))
+    joint = sf.Joint("weld", "fixed", "beam", "tip")
+    plate = sf.RigidBody("plate", joint, sf.Inertia(0.1, moments=(0.1, 0.1, 0.1)))
+    carrying = replace(plate, loads=(sf.Load(torque=torque, axes=axes),))
+    options = sf.Options(("generalized_force",), backend="interpreter")
+    one, other = (
+        sf.compile(sf.System("s", bodies, gravity=GRAVITY), options) for bodies in ([loaded, plate], [beam, carrying])
+    )
+    q, v = 0.3 * rng.standard_normal(one.nq), rng.standard_normal(one.nv)
+    error = np.abs(one.generalized_force(q, v, ()) - other.generalized_force(q, v, ())).max()
+    assert error < 1e-13 if axes == "world" else error > 0.01

@@ -114,3 +114,21 @@ def test_spin_stiffens_nothing_at_zeroth_order(axis: str, loaded: bool) -> None:
     kept, _, stiffened = linearised("first_order", axis, 5.0, loaded)
     np.testing.assert_allclose(kept, M0, rtol=1e-12)
     assert np.abs(stiffened - K0).max() > 0.01 * np.abs(K0).max()
+
+
+@pytest.mark.parametrize("loaded", [False, True])
+def test_zeroth_order_keeps_coriolis_of_what_the_tip_carries(loaded: bool) -> None:
+    """2 w x (r_T + s x c) of a mass at c from the tip, by hand; of the beam itself nothing."""
+    m, rate, c = 0.7, 3.0, np.array([0.1, 0.3])
+    stem = sf.Beam("b", sf.Joint("h", "revolute"), L, rhoA=2.0, EI_z=3.0, bend_y=1, family="polynomial",
+                   retain="zeroth_order")  # fmt: skip
+    load = sf.RigidBody("m", sf.Joint("w", "fixed", "b", "tip"), sf.Inertia(m, (*c, 0), (0.05, 0.05, 0.05)))
+    bodies = [stem, load] if loaded else [stem]
+    model = sf.compile(sf.System("s", bodies, gravity=(0, 0, 0)), sf.Options(("bias",), backend="interpreter"))
+    h = {sign: model.bias([0.0, 0.0], [rate, sign]) for sign in (1.0, -1.0)}
+    slope = 2.0 / L  # Of (x/L)^2 at the tip, per unit of its displacement.
+    velocity = np.array([-slope * c[1], 1.0 + slope * c[0]])
+    coriolis = 2.0 * rate * np.array([-velocity[1], velocity[0]])
+    x, y = c + [L, 0.0]
+    expected = m * np.array([x * coriolis[1] - y * coriolis[0], velocity @ coriolis])
+    np.testing.assert_allclose((h[1.0] - h[-1.0]) / 2.0, expected if loaded else 0.0, atol=1e-13)

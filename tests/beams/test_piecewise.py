@@ -87,3 +87,22 @@ def test_stations_integrate_across_a_kink_between_intervals() -> None:
     xi, w = stations((0, Fraction(1, 3), 1), 4)
     kinked = np.abs(np.array(xi) - 1 / 3)
     assert np.dot(w, kinked) == pytest.approx((1 / 9 + 4 / 9) / 2, rel=1e-14)
+
+
+def test_values_are_rounded_once_whatever_cancels() -> None:
+    """A Chebyshev polynomial of degree 40, 1 at most, with coefficients up to 1e15; knots of their own are kept."""
+    chebyshev = np.polynomial.chebyshev.Chebyshev.basis(40, domain=[0, 1])
+    one, two = polynomial(1), polynomial(-1, 2)
+    for _ in range(39):
+        one, two = two, polynomial(-2, 4) * two + one.scaled(-1)
+    xi = [0.0, 0.1, 0.35, 0.5, 0.77, 1.0]
+    np.testing.assert_allclose(two.rounded(xi), chebyshev(np.array(xi)), atol=1e-13)
+    assert two.rounded(xi) == [float(two(Fraction(x))) for x in xi]
+    assert max(abs(float(two(x)) - y) for x, y in zip(xi, two.rounded(xi), strict=True)) > 1.0
+    refined = two.refined((Fraction(0), Fraction(1, 3), Fraction(1, 2), Fraction(1)))
+    assert refined.rounded(xi) == two.rounded(xi)
+
+
+def test_values_of_float_coefficients_are_those_of_horners_rule() -> None:
+    phi = fitted(np.exp, 3)
+    assert phi.rounded([0.0, 1 / 3, 0.4, 1.0]) == [float(phi(x)) for x in (0.0, 1 / 3, 0.4, 1.0)]

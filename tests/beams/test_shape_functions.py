@@ -173,7 +173,9 @@ def test_samples_become_a_clamped_spline() -> None:
 def test_formulas_are_followed() -> None:
     (shape,) = shapes("user", "bend_z", 1, (sf.formula("1 - cos(pi*xi/2)"),))
     x = np.linspace(0, 1, 33)
-    np.testing.assert_allclose([float(shape.phi(s)) for s in x], 1 - np.cos(np.pi * x / 2), atol=1e-10)
+    np.testing.assert_allclose([float(shape.phi(s)) for s in x], 1 - np.cos(np.pi * x / 2), atol=3e-15)
+    root = [float(f(Fraction(0))) for f in (shape.phi, shape.phi.derivative())]
+    assert max(map(abs, root)) < 1e-18
 
 
 @pytest.mark.parametrize(("family", "direction", "count", "user", "says"), [

@@ -154,12 +154,19 @@ def test_what_it_is_not_asked_for() -> None:
 
 
 def test_forces_that_it_is_not_given_are_not_compared() -> None:
-    joint = sf.Joint("j", "revolute")
-    twisted = sf.System("s", [beam("b", joint, loads=(sf.BeamLoad(torque=(1, 0, 0), at=1.0),))])
-    loaded = sf.System("s", [beam("b", joint), sf.RigidBody("m", sf.Joint("f", "fixed", "b", "tip"), UNIT,
-                                                           loads=(sf.Load((0, 1, 0)),))])  # fmt: skip
-    for system in (twisted, loaded):
-        assert not [row for row in rows(checked(system), "generalized_force") if row.engine == "lagrangian"]
+    loaded = sf.System("s", [beam("b", sf.Joint("j", "revolute")), sf.RigidBody(
+        "m", sf.Joint("f", "fixed", "b", "tip"), UNIT, loads=(sf.Load((0, 1, 0)),))])  # fmt: skip
+    assert not [row for row in rows(checked(loaded), "generalized_force") if row.engine == "lagrangian"]
+
+
+@pytest.mark.parametrize("retain", ["all", "first_order"])
+def test_moments_on_sections_are_compared(retain: Any) -> None:
+    """At a station in the world's axes, and spread along the beam by a formula of the station."""
+    loads = sf.BeamLoad(torque=(1, -2, 0.5), at=0.4, axes="world"), sf.BeamLoad(torque=("x", 1, "-x"))
+    result = checked(sf.System("s", [beam("b", sf.Joint("j", "revolute"), loads=loads, retain=retain)]))
+    (row,) = [row for row in rows(result, "generalized_force") if row.engine == "lagrangian"]
+    assert row.status == "agree" and row.error is not None and row.error < 1e-12
+    assert result.ok
 
 
 def test_few_states_where_each_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:

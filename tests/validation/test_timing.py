@@ -43,7 +43,8 @@ def test_panda_is_timed_with_seven_joints() -> None:
 
 def test_the_report_states_ratio_flags_and_limits() -> None:
     run = TimingRun(_read("arm", 7, "g++ 12", OUTPUT.format(error="2e-15")), ["chain: no compiler"])
-    text = as_markdown(as_data(run, 3))
+    text = as_markdown(as_data(run, 3, [0.1, 1.25]))
+    assert "Load of the machine before and after: 0.1 and 1.2" in text
     assert "**3.97**" in text and "-O3" in text and "One thread" in text and "Not timed: chain" in text
 
 

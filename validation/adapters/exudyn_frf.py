@@ -171,7 +171,7 @@ class _Mesh:
             return np.array([sf.evaluate(value, {**parameters, STATION: x * L}) for x in xi])
 
         def sampled(phi: Piecewise, scale: float) -> Array:
-            return scale * np.array([float(phi(x)) for x in xi])
+            return np.array([scale * value for value in phi.rounded(xi.tolist())])
 
         self.nodes = np.zeros((len(xi), 3))
         self.nodes[:, 0] = xi * L

@@ -201,8 +201,5 @@ def _offered(system: sf.System) -> frozenset[str]:
     offered = EVERYTHING
     if system.connections or system.potentials:
         return offered - {"potential_energy"}
-    # A moment on a section does work on its rotation, which our equations take to first order (beams.md, eq. 19).
-    moments = [load.torque for body in system.bodies if isinstance(body, sf.Beam) for load in body.loads]
     loaded = any(body.loads for body in system.bodies if isinstance(body, sf.RigidBody))
-    beyond = loaded or any(value != 0.0 for moment in moments for value in moment)
-    return offered if beyond else offered | FORCES_STATED
+    return offered if loaded else offered | FORCES_STATED

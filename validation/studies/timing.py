@@ -21,6 +21,7 @@ from validation.geometry import Array
 from validation.quantities import ROUNDING
 from validation.sampling import sample
 from validation.studies.native_build import BuildError, NativeProgram, build, compilers
+from validation.studies.timing_flexible import FlexibleTiming
 
 STATES = 1000
 REPEATS = 41
@@ -79,12 +80,14 @@ class TimingRun:
     """A whole run.
 
     Attributes:
-        timings: What was measured.
+        timings: What was measured against Pinocchio.
         failures: What could not be built or disagreed, in words.
+        flexible: What was measured against Exudyn.
     """
 
     timings: list[Timing] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
+    flexible: list[FlexibleTiming] = field(default_factory=list)
 
 
 def run_timing(
@@ -98,6 +101,8 @@ def run_timing(
         done: Called with each label that is finished.
     """
     run = TimingRun()
+    if not chosen:
+        return run
     programs: list[NativeProgram] = []
     for compiler in compilers():
         try:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from importlib import metadata
 from pathlib import Path
@@ -16,8 +17,10 @@ from rich.table import Table
 
 from symofros.atomic import write_atomically
 from validation.record import machine
-from validation.studies.native_build import FLAGS
+from validation.studies.native_build import FLAGS, BuildError
 from validation.studies.timing import REPEATS, STATES, Timing, TimingRun, models, run_timing
+from validation.studies.timing_flexible import LABEL, run_flexible
+from validation.studies.timing_flexible_report import flexible_lines, show_flexible
 
 _NAMES = {
     "mass_matrix": "M",
@@ -45,36 +48,55 @@ def timing(
     report: Annotated[Path, typer.Option(help="Folder for timing.md and timing.json.")] = Path("reports"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,
 ) -> None:
-    """Time generated C against Pinocchio's C++, built in the run from its wheel's headers."""
+    """Time generated C against Pinocchio's C++, built in the run, and a flexible robot against Exudyn."""
     known = models()
+    names = [*known, LABEL]
     for name in chosen or ():
-        if name not in known:
-            raise typer.BadParameter(f"no model '{name}'; there are {', '.join(known)}", param_hint="--model")
-    console = Console(stderr=True)
+        if name not in names:
+            raise typer.BadParameter(f"no model '{name}'; there are {', '.join(names)}", param_hint="--model")
+    console, load = Console(stderr=True), _load()
     with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("timing", total=len(chosen or known))
-        picked = {name: known[name] for name in chosen or known}
+        task = bar.add_task("timing", total=len(chosen or names))
+        picked = {name: known[name] for name in chosen or known if name in known}
         run = run_timing(picked, repeats, lambda label: bar.update(task, advance=1))
-    data = as_data(run, repeats)
+        if LABEL in (chosen or names):
+            _add_flexible(run, repeats)
+    data = as_data(run, repeats, [*load, *_load()])
     report.mkdir(parents=True, exist_ok=True)
     write_atomically(report / "timing.json", json.dumps(data, indent=1) + "\n")
     write_atomically(report / "timing.md", as_markdown(data))
     if as_json:
         typer.echo(json.dumps(data))
     else:
-        _show(run.timings)
+        if run.timings:
+            _show(run.timings)
+        show_flexible(run.flexible)
         typer.echo(f"Report: {report / 'timing.md'}")
     for failure in run.failures:
         typer.echo(f"not timed: {failure}", err=True)
     raise typer.Exit(1 if run.failures else 0)
 
 
-def as_data(run: TimingRun, repeats: int) -> dict[str, Any]:
-    """The result as plain data, with what it depends on."""
-    versions = {"symofros": metadata.version("symofros"), "pinocchio": metadata.version("pin")}
+def _add_flexible(run: TimingRun, repeats: int) -> None:
+    try:
+        run.flexible += run_flexible(repeats)
+    except BuildError as error:
+        run.failures.append(str(error))
+
+
+def _load() -> list[float]:
+    """Processes that ran in the last minute, on average; nothing where the system does not say."""
+    return [os.getloadavg()[0]] if hasattr(os, "getloadavg") else []
+
+
+def as_data(run: TimingRun, repeats: int, load: Sequence[float] = ()) -> dict[str, Any]:
+    """The result as plain data, with what it depends on; the machine's load before and after."""
+    packages = {"symofros": "symofros", "pinocchio": "pin", "exudyn": "exudyn"}
+    versions = {name: metadata.version(package) for name, package in packages.items()}
     return {
-        "timings": [asdict(timing) for timing in run.timings], "failures": run.failures, "repeats": repeats,
-        "states": STATES, "flags": list(FLAGS), "versions": versions, "machine": machine(),
+        "timings": [asdict(timing) for timing in run.timings],
+        "flexible": [asdict(timing) for timing in run.flexible], "failures": run.failures, "repeats": repeats,
+        "states": STATES, "flags": list(FLAGS), "versions": versions, "machine": machine(), "load": list(load),
     }  # fmt: skip
 
 
@@ -87,8 +109,11 @@ def as_markdown(data: dict[str, Any]) -> str:
         ours, theirs = (", ".join(f"{x:.0f}" for x in row[side]) for side in ("ours", "theirs"))
         lines.append(f"| {row['model']} | {row['nv']} | {_NAMES[row['function']]} | {ours} | {theirs} | "
                      f"**{row['ratio']:.2f}** | {row['compiler']} |")  # fmt: skip
+    lines += flexible_lines(data["flexible"])
     lines += [f"\nNot timed: {failure.splitlines()[0]}" for failure in data["failures"]]
     versions = ", ".join(f"{name} {version}" for name, version in data["versions"].items())
+    shared = " and ".join(f"{load:.1f}" for load in data["load"])
+    lines += ["", f"Load of the machine before and after: {shared}; alone on it, 0 and 1."] if shared else []
     lines += ["", f"{data['states']} random states, {data['repeats']} repeats; {versions}; flags of Pinocchio's side: "
               f"`{' '.join(data['flags'])}`; {', '.join(data['machine'].values())}.", "",
               "Written by `python -m validation timing`.", ""]  # fmt: skip

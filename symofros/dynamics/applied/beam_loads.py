@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from symofros.beams.fields import Field, Form, unit_field
+from symofros.beams.fields import EVERY_DEGREE, Field, Form, unit_field
 from symofros.description.beam import BeamLoad
 from symofros.description.values import Value
 from symofros.dynamics.acceleration import Wrench, no_wrench
@@ -36,7 +36,7 @@ def beam_loads(motion: Motion, frames: FrameKinematics, beam: MovingBeam) -> tup
         weighted = partial(_at_station, beam, load.at) if load.at is not None else beam.forms.along.integral
         directions = _directions(motion, frames, beam, load)
         for d, force, torque in zip(directions, load.force, load.torque, strict=True):
-            one, forces = _along(beam, weighted, d, force, torque)
+            one, forces = _along(beam, weighted, load.at, d, force, torque)
             wrench = wrench + Wrench(R_LB.times(one.f), R_LB.times(one.n))
             modal = [g.add(a, b) for a, b in zip(modal, forces, strict=True)]
     return wrench, modal
@@ -54,7 +54,9 @@ def _directions(motion: Motion, frames: FrameKinematics, beam: MovingBeam, load:
     return [R_LB.T.times(R_WL.row(k)) for k in range(3)]
 
 
-def _along(beam: MovingBeam, weighted: Weighted, d: Vec3, force: Value, torque: Value) -> tuple[Wrench, list[Edge]]:
+def _along(
+    beam: MovingBeam, weighted: Weighted, at: float | None, d: Vec3, force: Value, torque: Value
+) -> tuple[Wrench, list[Edge]]:
     """One component of a load along a direction d: the wrench about Bo, and the elastic coordinates' forces."""
     g, forms = d.g, beam.forms
     shape, order = forms.shape, forms.order
@@ -72,6 +74,23 @@ def _along(beam: MovingBeam, weighted: Weighted, d: Vec3, force: Value, torque: 
             modal[i] = g.add(modal[i], partial_velocity.dot(d))
     if torque != 0.0:
         wrench = wrench + Wrench(Vec3(g), d.scaled(weighted(one, torque).value()))
-        for i in range(forms.beam.modes):
-            modal[i] = g.add(modal[i], vector(shape.turning[i], torque).dot(d))
+        if order == EVERY_DEGREE:
+            turned = _turned(beam, at, d, torque)
+        else:
+            turned = [vector(turning, torque).dot(d) for turning in shape.turning]
+        modal = [g.add(a, b) for a, b in zip(modal, turned, strict=True)]
     return wrench, modal
+
+
+def _turned(beam: MovingBeam, at: float | None, d: Vec3, torque: Value) -> list[Edge]:
+    """What a moment along d does to the elastic coordinates, its sections turned exactly, as the tip is (eq. 19)."""
+    g, along = d.g, beam.forms.along
+    modal = [ZERO] * beam.forms.beam.modes
+    for xi, share in along.shares(torque) if at is None else [(at, along.lower(torque))]:
+        angles = beam.forms.angles(xi)
+        (cP, sP), (cT, sT) = ((g.call("cos", x), g.call("sin", x)) for x in (form.value() for form in angles[:2]))
+        axes = Vec3.unit(g, 2), Vec3(g, -sP, cP, ZERO), Vec3(g, g.mul(cP, cT), g.mul(sP, cT), -sT)
+        for axis, angle in zip(axes, angles, strict=True):
+            moment = g.mul(share, axis.dot(d))
+            modal = [g.add(x, g.mul(part.value(), moment)) for x, part in zip(modal, angle.gradient, strict=True)]
+    return modal

@@ -1,0 +1,95 @@
+"""Times the planar flexible robot, ours and Exudyn's in turn: `python -m validation.studies.flexible_worker`.
+
+Arguments: repeats, evaluations a repeat, shape functions a strip (one or more). Prints `FlexibleTiming`s as JSON.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import asdict
+from functools import partial
+from statistics import median
+from time import perf_counter_ns
+
+import numpy as np
+
+from validation.adapters.exudyn_planar import smallest
+from validation.adapters.exudyn_system import Part
+from validation.assembly import assemble
+from validation.studies.equal_accuracy import NotTheSameError, Pair, pairs, robot
+from validation.studies.native_loop import GeneratedLoop
+from validation.studies.timing_flexible import FlexibleTiming
+
+# Elastic coordinates of the states: the strips bend by some 3 % of their lengths [m].
+_DEFLECTION = 0.01
+
+# What is timed: our functions, and the parts of Exudyn's model that hold the same.
+JOBS: dict[str, tuple[tuple[str, ...], tuple[Part, ...]]] = {
+    "M": (("mass_matrix",), ("mass_matrix",)),
+    "M + h": (("mass_matrix", "bias"), ("mass_matrix", "forces")),
+    "M + h + Q": (("dynamics",), ("mass_matrix", "forces")),
+    "M + h + Q, joints": (("dynamics",), ("mass_matrix", "forces", "joints")),
+}
+Times = list[float]
+
+
+def measure(repeats: int, counts: Iterable[int], calls: int) -> list[FlexibleTiming]:
+    """Time in this process; arguments as for `run_flexible`.
+
+    Raises:
+        NotTheSameError: The two sides are not models of one robot.
+    """
+    return [row for pair in pairs(counts) for row in _timed(pair, repeats, calls)]
+
+
+def _timed(pair: Pair, repeats: int, calls: int) -> list[FlexibleTiming]:
+    system, rng = robot(pair.functions), np.random.default_rng(0)
+    nv, n = assemble(system).nv, pair.tree.coordinates
+    q, v = _DEFLECTION * rng.standard_normal((calls, nv)), rng.standard_normal((calls, nv))
+    loop = GeneratedLoop(system, ("mass_matrix", "bias", "dynamics"), q, v)
+    theirs, empty = pair.tree.evaluated, smallest()
+    theirs.at(_DEFLECTION * rng.standard_normal(n), rng.standard_normal(n))
+    times: dict[str, tuple[Times, Times, Times]] = {quantity: ([], [], []) for quantity in JOBS}
+    for _ in range(repeats):
+        for quantity, (functions, parts) in JOBS.items():
+            runs = (
+                partial(loop.run, functions),
+                partial(theirs.repeat, parts, calls),
+                partial(empty.repeat, parts, calls),
+            )
+            for run, collected in zip(runs, times[quantity], strict=True):
+                collected.append(_nanoseconds(run) / calls)
+    return [_row(quantity, pair, nv, *collected) for quantity, collected in times.items()]
+
+
+def _row(quantity: str, pair: Pair, nv: int, ours: Times, theirs: Times, calls: Times) -> FlexibleTiming:
+    triples = list(zip(ours, theirs, calls, strict=True))
+    sizes = nv, pair.tree.coordinates, pair.tree.equations
+    return FlexibleTiming(
+        quantity, pair.functions, pair.elements, sizes, pair.error, _summary(ours), _summary(theirs), _summary(calls),
+        median(b / a for a, b, _ in triples), median((b - c) / a for a, b, c in triples),
+    )  # fmt: skip
+
+
+def _summary(times: Times) -> tuple[float, float]:
+    return min(times), median(times)
+
+
+def _nanoseconds(run: Callable[[], None]) -> int:
+    start = perf_counter_ns()
+    run()
+    return perf_counter_ns() - start
+
+
+if __name__ == "__main__":
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+    repeats, calls, *counts = map(int, sys.argv[1:])
+    try:
+        timed = measure(repeats, counts, calls)
+    except NotTheSameError as error:
+        sys.exit(str(error))
+    print(json.dumps([asdict(row) for row in timed]))

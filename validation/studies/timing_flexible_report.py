@@ -1,0 +1,65 @@
+"""The flexible robot's part of the timing report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from validation.studies.timing_flexible import CALLS, FlexibleTiming
+
+_LIMITS = (
+    "`planar_robot`: three motors with harmonic drives, the first of them elastic, and two strips that bend. Exudyn "
+    "has it as rigid bodies of three coordinates and ANCFCable2D elements, with hinges and clamps as constraints and "
+    "the rotors' spin as a constant mass matrix on the angles it couples, which is exact in the plane. Error is the "
+    "worst relative error of the robot's seven lowest elastic frequencies about a bent posture, against Exudyn's "
+    "model with 32 elements a strip; each of ours (cubic splines) is set against the coarsest mesh that errs no more. "
+    "Both errors are computed in the run.",
+    "What is not alike: friction is in our Q only, as Exudyn's law has states of its own. Exudyn's forces include the "
+    "elastic ones in every row, ours in those with Q; M + h is two of our functions, M + h + Q is one. Exudyn's M and "
+    "forces leave the joints to its solver; the last row of each model adds their errors and Jacobian, without which "
+    "they say less than ours (a clamp is a GenericJoint: six equations, of which three bind). Exudyn's strips stretch, "
+    "and stay exact at large deflections, which frequencies do not show.",
+    f"One thread on one processor, in turn. Ours is a loop in C over {CALLS} states; Exudyn's functions are called "
+    "from Python at one state that is set once, with dense matrices, by its module without range checks. The ratio "
+    "has these calls in it. The net ratio has the time of the same calls on a system of one coordinate taken off, and "
+    "with it that system's own small work, so the truth lies between the two. Both are medians over the repeats; "
+    "minima are what a calm machine gives.",
+)
+_HEAD = (
+    "| ours, functions (nv) | Exudyn, elements (coordinates + equations) | error, ours and Exudyn's | quantity | "
+    "ours, ns (min, median) | Exudyn, ns | calls, ns | ratio | net ratio |"
+)
+
+
+def flexible_lines(rows: Iterable[Mapping[str, Any]]) -> list[str]:
+    """The section in Markdown; none where nothing was timed."""
+    rows = list(rows)
+    if not rows:
+        return []
+    lines = ["", "# A flexible robot against Exudyn, at equal accuracy", ""]
+    lines += [line for text in _LIMITS for line in (text, "")]
+    lines += [_HEAD, "|---:|---:|---|---|---:|---:|---:|---:|---:|"]
+    for row in rows:
+        nv, coordinates, equations = row["sizes"]
+        ours, theirs, calls = (", ".join(f"{x:.0f}" for x in row[side]) for side in ("ours", "theirs", "calls"))
+        errors = ", ".join(f"{x:.1e}" for x in row["error"])
+        lines.append(f"| {row['functions']} ({nv}) | {row['elements']} ({coordinates} + {equations}) | {errors} | "
+                     f"{row['quantity']} | {ours} | {theirs} | {calls} | **{row['ratio']:.1f}** | "
+                     f"**{row['corrected']:.1f}** |")  # fmt: skip
+    return lines
+
+
+def show_flexible(rows: Iterable[FlexibleTiming]) -> None:
+    """The table for a terminal."""
+    rows = list(rows)
+    table = Table("functions", "elements", "quantity", "ours [ns]", "Exudyn [ns]", "ratio", "net ratio",
+                  title="planar_robot against Exudyn at equal accuracy, minimum and median a state")  # fmt: skip
+    for row in rows:
+        ours, theirs = (f"{low:.0f}, {middle:.0f}" for low, middle in (row.ours, row.theirs))
+        table.add_row(str(row.functions), str(row.elements), row.quantity, ours, theirs, f"{row.ratio:.1f}",
+                      f"{row.corrected:.1f}")  # fmt: skip
+    if rows:
+        Console().print(table)
