@@ -10,7 +10,7 @@ from symofros.dynamics.applied.forces import generalized_forces, stored_energy
 from symofros.dynamics.constraints import Constraints, Row
 from symofros.dynamics.derivatives import by_configuration, by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
-from symofros.dynamics.forward import solve
+from symofros.dynamics.forward import SingularMassMatrixError, solve
 from symofros.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
@@ -92,14 +92,21 @@ class Equations:
         Raises:
             DescriptionError: A speed moves no mass whatever the state, and so has no acceleration.
         """
+        what = f"system '{self.tree.system.name}': speed "
+        rule = "forward dynamics divides by the inertia that each speed moves"
         for k, name in enumerate(self.tree.coordinates.v):
             if self.M[k][k] == ZERO:
-                raise DescriptionError(
-                    Problem(f"system '{self.tree.system.name}': speed '{name}' moves no mass", "its row of M is zero",
-                            "forward dynamics divides by the inertia that each speed moves",
-                            "give it an inertia, or bind it by a constraint")
-                )  # fmt: skip
-        return solve(self.g, self.M, [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)])
+                raise DescriptionError(Problem(f"{what}'{name}' moves no mass", "its row of M is zero", rule,
+                                               "give it an inertia, or bind it by a constraint"))  # fmt: skip
+        try:
+            return solve(self.g, self.M, [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)])
+        except SingularMassMatrixError as error:
+            name = self.tree.coordinates.v[error.speed]
+            raise DescriptionError(
+                Problem(f"{what}'{name}' moves nothing that those after it do not move alike",
+                        "M is singular in every state", rule + " alone",
+                        "give the bodies between mass, turn one of the axes, or bind it by a constraint")
+            ) from None  # fmt: skip
 
     @cached_property
     def constraints(self) -> list[Row]:
