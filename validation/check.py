@@ -7,7 +7,7 @@ import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import cast
 
 import numpy as np
@@ -23,14 +23,15 @@ from validation.compare import Comparison, Scales, compute, judge, state_errors,
 from validation.frames import chosen_frames
 from validation.geometry import Array
 from validation.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
+from validation.loops import of_unique_multipliers
 from validation.motion import MOTIONS, Motion, fall, judge_drift
-from validation.quantities import CONSTRAINED, FRAME_QUANTITIES, MOTION_ENERGY, QUANTITIES, Quantity
+from validation.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_ENERGY, QUANTITIES, Quantity
 from validation.retained import judge_order, left_out
 from validation.sampling import DEFAULT_STATES, sample
 from validation.sides import Sides
 
 FORWARD = "forward_dynamics"
-SOLVED = (FORWARD, "multipliers")
+SOLVED = (FORWARD, "multipliers", "constraint_force", "frame_response")
 
 EPS = 2.0**-52
 
@@ -165,6 +166,8 @@ class _Check:
             route = ROUTES[name]
             if (route.reads and route.reads != self.subject.format) or (route.beams and not self._has_beams()):
                 continue
+            if route.loops and not self.subject.system.constraints:
+                continue
             factory = self.factories[name]
             engine = Unsupported(factory.reason) if isinstance(factory, Missing) else self._build(name, factory)
             if isinstance(engine, Unsupported):
@@ -176,6 +179,8 @@ class _Check:
     def _build(self, name: str, factory: EngineFactory) -> Engine | Unsupported:
         """The engine; one that knows trees gets rotors from a second model of its own, and constraints in NumPy."""
         independent = ROUTES[name].independent
+        if ROUTES[name].loops:
+            return self._closing(factory(self.subject))
         if independent and rotors.has_rotors(self.subject.system):
             factory = partial(rotors.build, factory)
         engine = factory(self.subject)
@@ -186,12 +191,18 @@ class _Check:
         # Every independent engine knows trees; the protocol of engines does not say so.
         return ConstrainedEngine(cast(TreeEngine, engine), cast(TreeEngine, anchored), self.subject, joined)
 
+    def _closing(self, engine: Engine | Unsupported) -> Engine | Unsupported:
+        """An engine that closes loops needs states where they are closed."""
+        if isinstance(engine, Unsupported) or len(self.sides.assembled):
+            return engine
+        return Unsupported("no random state leads to a posture that keeps the constraints")
+
     def _quantities(self) -> list[Quantity]:
         left_out = (frozenset() if self.subject.frames else FRAME_QUANTITIES) | (
             frozenset() if self._can_be_solved() else {FORWARD}
         )
         if not self.subject.system.constraints:
-            left_out |= CONSTRAINED
+            left_out |= CONSTRAINED | LOOPS
         return [q for q in QUANTITIES.values() if q.name not in left_out]
 
     def _can_be_solved(self) -> bool:
@@ -199,18 +210,26 @@ class _Check:
         return math.isfinite(self.condition)
 
     def _compare(self, quantity: Quantity, engines: Sequence[Engine]) -> None:
-        sides: dict[tuple[int, int], Array] = {}
+        sides: dict[tuple[int, bool, int], Array] = {}
         for engine in engines:
             if quantity.name not in engine.capabilities:
                 continue
-            side, states = self.sides.of(engine), self.sides.states_of(engine)
-            if (id(side), len(states)) not in sides:
-                sides[id(side), len(states)] = compute(side, quantity, states)
-            ours = sides[id(side), len(states)]
-            row = self._judged(engine, quantity, ours, states, self.scales)
-            if len(states) < len(self.states) and not row.note:
+            side, states, loops = self.sides.of(engine), self.sides.states_of(engine), ROUTES[engine.name].loops
+            if loops and quantity.name == "multipliers":
+                states = of_unique_multipliers(side, states)
+                if not len(states):
+                    reason = "conditions repeat each other, so multipliers are not unique; compared: Gᵀ lam"
+                    row = Comparison(self.subject.label, engine.name, quantity.name, "unsupported", note=reason)
+                    self.rows.append(row)
+                    continue
+            key = (id(side), loops, len(states))
+            if key not in sides:
+                sides[key] = compute(side, quantity, states)
+            row = self._judged(engine, quantity, sides[key], states, self.scales)
+            if len(states) < len(self.states) and not row.note and not loops:
                 row = replace(row, note=f"the first {len(states)} of {len(self.states)} states: each takes long")
-            self.rows.append(replace(row, extra={"condition": self.condition}) if quantity.name == FORWARD else row)
+            extra = {"condition": self._condition_of(engine)}
+            self.rows.append(replace(row, extra=extra) if quantity.name == FORWARD else row)
 
     def _judged(self, engine: Engine, quantity: Quantity, ours: Array, states: States, scales: Scales) -> Comparison:
         start = time.perf_counter()
@@ -219,13 +238,20 @@ class _Check:
         quantity = replace(quantity, tolerance=max(quantity.tolerance, self.sides.tolerance(engine)))
         errors = state_errors(quantity, ours, reference, scales)
         row = judge(self.subject.label, engine.name, quantity, errors)
-        if quantity.name in SOLVED and not row.ok and EPS * self.condition > quantity.tolerance:
+        condition = self._condition_of(engine)
+        if quantity.name in SOLVED and not row.ok and EPS * condition > quantity.tolerance:
             # No solution in doubles is better than eps cond(M): where that is in the way, no more is asked for.
-            note = f"condition {self.condition:.1e} allows no better"
-            row = judge(
-                self.subject.label, engine.name, replace(quantity, tolerance=EPS * self.condition), errors, note
-            )
+            note = f"condition {condition:.1e} allows no better"
+            row = judge(self.subject.label, engine.name, replace(quantity, tolerance=EPS * condition), errors, note)
         return row
+
+    def _condition_of(self, engine: Engine) -> float:
+        """Over the states that the engine is asked at."""
+        return self._closed_condition if ROUTES[engine.name].loops else self.condition
+
+    @cached_property
+    def _closed_condition(self) -> float:
+        return worst_condition(self.ours, self.sides.assembled)
 
     @staticmethod
     def _value(engine: Engine, quantity: Quantity, states: States) -> Array:

@@ -14,6 +14,9 @@ ROUNDING = 1e-12
 # that was found is reported beside the error.
 SOLVE = 1e-9
 
+# Postures are assembled to 1e-12 m; what an engine that closes loops itself measures there is this, of a centimetre.
+GAP = 1e-9
+
 # The rounding error of a sum is that of its terms. In a state where the sum happens to be small, it is judged against
 # this fraction of what the quantity typically is, not against its own vanishing size.
 SMALL = 1e-2
@@ -66,9 +69,12 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity("constraint", "phi", "m, 1", ROUNDING, 1),
         Quantity("constraint_jacobian", "G", "m, 1", ROUNDING, 2),
         Quantity("constraint_bias", "gamma", "m/s², 1/s²", ROUNDING, 1),
+        Quantity("constraint_force", "Gᵀ lam", "N m, N", SOLVE, 1, "inertia_force"),
+        Quantity("closure_gap", "|phi|", "m, 1", GAP, 0),
         Quantity("frame_pose", "p, R", "m, 1", ROUNDING, 1),
         Quantity("frame_velocity", "v, w", "m/s, rad/s", ROUNDING, 1),
         Quantity("frame_acceleration", "dv/dt, dw/dt", "m/s², rad/s²", ROUNDING, 1),
+        Quantity("frame_response", "dv/dt, dw/dt of a motion under the forces", "m/s², rad/s²", SOLVE, 1),
         Quantity("frame_jacobian", "J", "m, 1", ROUNDING, 2),
         Quantity("frame_jacobian_rate", "dJ/dt", "m/s, 1/s", ROUNDING, 2),
     )
@@ -79,10 +85,12 @@ MOTION_ENERGY = Quantity("motion_energy", "T + V on a free motion", "J", ROUNDIN
 
 FRAME_QUANTITIES = frozenset(name for name in QUANTITIES if name.startswith("frame_"))
 FORCES_STATED = frozenset({"generalized_force"})
-# What an engine that simulates offers; the forces of a description's formulas are known to the description only.
-# Quantities of mechanisms with constraints.
+# Quantities of mechanisms with constraints, at any state.
 CONSTRAINED = frozenset({"multipliers", "constraint", "constraint_jacobian", "constraint_bias"})
-EVERYTHING = frozenset(QUANTITIES) - FORCES_STATED - CONSTRAINED
+# What engines that close loops themselves are compared by, at postures where the loops are closed.
+LOOPS = frozenset({"constraint_force", "closure_gap", "frame_response"})
+# What an engine that simulates offers; the forces of a description's formulas are known to the description only.
+EVERYTHING = frozenset(QUANTITIES) - FORCES_STATED - CONSTRAINED - LOOPS
 # What an engine's own reading of a file is compared by: all of geometry and inertia enters these.
 SECOND_ROUTE = frozenset({"mass_matrix", "bias", "gravity", "kinetic_energy", "potential_energy"})
 # MJCF also has springs, dampers and sites, and MuJoCo's potential energy counts springs as ours does.

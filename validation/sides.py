@@ -13,6 +13,7 @@ from validation.adapters import compiled as our_c
 from validation.adapters.compiled import SymofrosEngine
 from validation.assembly import Assembly
 from validation.interface import Engine, States, Subject
+from validation.loops import assembled_states
 
 # A user's own shape functions are interpolated by ours; the second derivative of the interpolant, which the strain
 # takes, keeps ten digits of the formula's.
@@ -42,8 +43,15 @@ class Sides:
 
     def states_of(self, engine: Engine) -> States:
         """The states with the forces of that side; as many as the engine computes in reasonable time."""
+        if ROUTES[engine.name].loops:
+            return self.assembled[: getattr(engine, "most_states", len(self.assembled))]
         states = self._everything_states if self.of(engine) is self.everything else self.states
         return states[: getattr(engine, "most_states", len(states))]
+
+    @cached_property
+    def assembled(self) -> States:
+        """States that keep the constraints, with their forces."""
+        return with_forces(self.ours, assembled_states(self.subject.system, self.states), self._efforts)
 
     def tolerance(self, engine: Engine) -> float:
         """What no agreement can be closer than; zero for engines that take the same numbers as we do."""

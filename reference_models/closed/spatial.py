@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import cos, pi, sin
 
 import symofros as sf
@@ -14,6 +15,8 @@ Point = tuple[float, float, float]
 _CORNERS: tuple[Point, ...] = ((0, 0, 0), (1, 0, 0), (1, -1, 0), (1, -1, 1), (0, -1, 1), (0, 0, 1))
 _HINGES: tuple[Point, ...] = ((0, 1, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 0))
 _THICKNESS = 0.1
+# Of the delta robot's rods [m].
+_RADIUS = 0.005
 
 
 def _minus(a: Point, b: Point) -> Point:
@@ -74,14 +77,19 @@ def _on_circle(radius: float, degrees: float, z: float) -> Point:
     return radius * cos(degrees * pi / 180), radius * sin(degrees * pi / 180), z
 
 
-def delta(base: float = 0.2, top: float = 0.06, upper: float = 0.3, lower: float = 0.7) -> sf.System:
+def delta(
+    base: float = 0.2, top: float = 0.06, upper: float = 0.3, lower: float = 0.7, rod_mass: float = 0.0
+) -> sf.System:
     """Three cranks, each with two parallel rods of constant length to one platform: it translates, and never turns.
 
-    Source: Clavel (1988), with round dimensions of ours; the rods are massless.
+    Source: Clavel (1988), with round dimensions of ours. Rods without mass are conditions on a distance; with mass they
+    are slender bodies on universal joints, whose lower ends are ball joints to the platform.
     """
     half = 0.05
     feet = sf.Inertia(0.6, (0, 0, 0), (0.001, 0.001, 0.002))
-    frames, bodies, rods = [], [], []
+    frames: list[sf.Frame] = []
+    bodies: list[sf.Body] = []
+    rods: list[sf.Constraint] = []
     for i in range(3):
         angle = 120.0 * i
         turn = sf.Rotation.rpy(0, 0, angle * pi / 180)
@@ -94,9 +102,22 @@ def delta(base: float = 0.2, top: float = 0.06, upper: float = 0.3, lower: float
         for name, y in (("left", half), ("right", -half)):
             c, s = cos(angle * pi / 180), sin(angle * pi / 180)
             frames.append(sf.Frame(f"{name}{i}", (top * c - y * s, top * s + y * c, 0)))
-            rods.append(sf.Rod(f"rod_{name}{i}", (f"crank{i}", name), ("platform", f"{name}{i}"), lower))
+            rod, foot = f"rod_{name}{i}", ("platform", f"{name}{i}")
+            if rod_mass == 0.0:
+                rods.append(sf.Rod(rod, (f"crank{i}", name), foot, lower))
+                continue
+            bodies.append(_slender(rod, sf.Joint(f"{rod}.root", "universal", f"crank{i}", name), rod_mass, lower))
+            rods.append(sf.Closure(f"{rod}.ball", foot, (rod, "end")))
     platform = sf.RigidBody("platform", sf.Joint("pose", "free"), feet, tuple(frames))
-    return sf.System("delta", (*bodies, platform), constraints=tuple(rods))
+    return sf.System("delta_rods" if rod_mass else "delta", (*bodies, platform), constraints=tuple(rods))
+
+
+def _slender(name: str, root: sf.Joint, mass: float, length: float) -> sf.RigidBody:
+    """A rod that hangs from its root, along -z of its frame; it turns about x, then about y."""
+    across = mass * length**2 / 12
+    inertia = sf.Inertia(mass, (0, 0, -length / 2), (across, across, mass * _RADIUS**2 / 2))
+    hung = replace(root, axis=(1, 0, 0), axis2=(0, 1, 0))
+    return sf.RigidBody(name, hung, inertia, (sf.Frame("end", (0, 0, -length)),))
 
 
 def delta_guess() -> list[float]:

@@ -11,7 +11,7 @@ from symofros.dynamics.applied.forces import generalized_forces, stored_energy
 from symofros.dynamics.constraints import Constraints, Row, moved
 from symofros.dynamics.derivatives import by_configuration, by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
-from symofros.dynamics.forward import solve
+from symofros.dynamics.forward import SingularMassMatrixError, solve
 from symofros.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
@@ -26,6 +26,9 @@ from symofros.expr.vector import Vec3
 from symofros.kinematics.frames import FrameKinematics
 from symofros.kinematics.links import Motion, set_in_motion
 from symofros.topology.tree import NamedFrame, SpanningTree
+
+
+_DIVIDES = "forward dynamics divides by the inertia that each speed moves"
 
 
 class Request(NamedTuple):
@@ -96,15 +99,22 @@ class Equations:
             DescriptionError: A speed moves no mass whatever the state, and so has no acceleration.
         """
         self._refuse_massless()
-        return solve(self.g, self.M, self.net)
+        try:
+            return solve(self.g, self.M, self.net)
+        except SingularMassMatrixError as error:
+            name = self.tree.coordinates.v[error.speed]
+            raise DescriptionError(
+                Problem(f"system '{self.tree.system.name}': speed '{name}' moves nothing that those after it do not"
+                        " move alike", "M is singular in every state", f"{_DIVIDES} alone",
+                        "give the bodies between mass, turn one of the axes, or bind it by a constraint")
+            ) from None  # fmt: skip
 
     def _refuse_massless(self) -> None:
         for k, name in enumerate(self.tree.coordinates.v):
             if self.M[k][k] == ZERO:
                 raise DescriptionError(
                     Problem(f"system '{self.tree.system.name}': speed '{name}' moves no mass", "its row of M is zero",
-                            "forward dynamics divides by the inertia that each speed moves",
-                            "give it an inertia, or bind it by a constraint")
+                            _DIVIDES, "give it an inertia, or bind it by a constraint")
                 )  # fmt: skip
 
     @cached_property

@@ -10,6 +10,18 @@ from symofros.dynamics.mass_matrix import Matrix
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
 
 
+class SingularMassMatrixError(ArithmeticError):
+    """M has no inverse in any state.
+
+    Attributes:
+        speed: Index of one whose row depends on those of the speeds after it.
+    """
+
+    def __init__(self, speed: int) -> None:
+        super().__init__(f"row {speed} depends on the rows after it")
+        self.speed = speed
+
+
 def solve(g: Graph, M: Matrix, right: list[Edge]) -> list[Edge]:
     """The solution x of M x = right.
 
@@ -17,11 +29,16 @@ def solve(g: Graph, M: Matrix, right: list[Edge]) -> list[Edge]:
         g: The graph.
         M: Symmetric, with tree-shaped zeros; not changed.
         right: Right-hand side (nv).
+
+    Raises:
+        SingularMassMatrixError: A pivot is the number zero.
     """
     n = len(right)
     L = [list(row) for row in M]
     inverse: list[Edge] = [ZERO] * n
     for k in reversed(range(n)):
+        if L[k][k] == ZERO:
+            raise SingularMassMatrixError(k)
         inverse[k] = g.div(ONE, L[k][k])
         support = [i for i in range(k) if L[k][i] != ZERO]
         for i in reversed(support):

@@ -18,18 +18,21 @@ class Route:
         reads: It reads files of this format by itself, and has nothing to say of other models.
         independent: It shares no equations with us; agreement with it is evidence.
         beams: It is asked for systems with beams only, and compared with our model that keeps all their terms.
+        loops: It closes loops by itself; it is asked for systems with constraints only, at states that keep them.
     """
 
     module: str
     reads: Format = ""
     independent: bool = True
     beams: bool = False
+    loops: bool = False
 
 
 # In the order of reports. The generated C itself is not among them: it is what they are compared with.
 ROUTES: dict[str, Route] = {
     "pinocchio": Route("validation.adapters.pinocchio"),
     "mujoco": Route("validation.adapters.mujoco"),
+    "pinocchio-loops": Route("validation.adapters.pinocchio_loops", loops=True),
     "pinocchio-urdf": Route("validation.adapters.pinocchio_urdf", reads="urdf"),
     "mujoco-urdf": Route("validation.adapters.mujoco_urdf", reads="urdf"),
     "mujoco-mjcf": Route("validation.adapters.mujoco_mjcf", reads="mjcf"),

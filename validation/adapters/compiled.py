@@ -10,13 +10,14 @@ import numpy as np
 
 import symofros as sf
 from validation.adapters.reach import stores_energy
+from validation.conventions import times
 from validation.geometry import Array
 from validation.interface import States, Subject
-from validation.quantities import CONSTRAINED, FRAME_QUANTITIES, MJCF_ROUTE, QUANTITIES, SECOND_ROUTE
+from validation.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MJCF_ROUTE, QUANTITIES, SECOND_ROUTE
 
 NAME = "symofros"
 
-_FUNCTIONS = tuple(name for name in QUANTITIES if name not in ("gravity", "multipliers"))
+_FUNCTIONS = tuple(name for name in QUANTITIES if name not in {"gravity", "multipliers", *LOOPS})
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,14 @@ class SymofrosEngine:
         """What G v' equals."""
         return self.model.constraint_bias(states.q, states.v, u=states.u)
 
+    def constraint_force(self, states: States) -> Array:
+        """What constraints do to the speeds, which is unique where multipliers are not."""
+        return times(self.constraint_jacobian(states).swapaxes(-1, -2), self.multipliers(states))
+
+    def closure_gap(self, states: States) -> Array:
+        """The largest |phi|."""
+        return np.asarray(np.abs(self.constraint(states)).max(axis=1))
+
     def _frames(self, one: Callable[[str], Array]) -> Array:
         return np.stack([one(frame) for frame in self.frames], axis=1)
 
@@ -100,6 +109,10 @@ class SymofrosEngine:
         return self._frames(
             lambda frame: self.model.frame_acceleration(frame, states.q, states.v, states.a, u=states.u)
         )
+
+    def frame_response(self, states: States) -> Array:
+        """The acceleration that the forces produce."""
+        return self.frame_acceleration(replace(states, a=self.forward_dynamics(states)))
 
     def frame_jacobian(self, states: States) -> Array:
         """Of the frame's velocity."""

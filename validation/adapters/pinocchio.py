@@ -13,7 +13,7 @@ from validation.adapters.reach import armature, offered, unrepresented
 from validation.assembly import FrameSite, Mass, Mover, assemble
 from validation.conventions import Chart
 from validation.geometry import Array, Placement
-from validation.interface import States, Subject, TreeEngine, Unsupported
+from validation.interface import States, Subject, Unsupported
 from validation.quantities import EVERYTHING
 
 NAME = "pinocchio"
@@ -132,7 +132,7 @@ class PinocchioEngine:
         return self.chart.jacobian(states.q, self._each(states, result))
 
 
-def build(subject: Subject) -> TreeEngine | Unsupported:
+def build(subject: Subject) -> PinocchioEngine | Unsupported:
     """Pinocchio's model of a description; it merges what is fixed to a joint's body by itself."""
     assembly = assemble(subject.system)
     obstacle = unrepresented(subject.system, assembly, _JOINTS)

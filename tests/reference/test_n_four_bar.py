@@ -1,0 +1,183 @@
+"""N four-bars in a row: one pendulum by exact reduction, and the rank that all loops lose when the cranks lie flat.
+
+J theta'' + V cos(theta) = 0 with J = (N + 1)/3 + N and V = ((N + 1)/2 + N) g for rods of 1 kg and 1 m (IFToMM A02; Bayo
+and Avello 1994). Figures: this equation in 30 digits; singular values of the constraints' Jacobian in absolute
+coordinates, three a rod.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+import symofros as sf
+from reference_models.closed.four_bars import n_four_bar, n_four_bar_absolute
+
+Array = np.ndarray
+G0 = 9.81
+FUNCTIONS = (
+    "forward_dynamics", "constraint", "constraint_rate", "constraint_jacobian", "constraint_bias", "kinetic_energy",
+    "potential_energy", "mass_matrix", "bias", "frame_pose",
+)  # fmt: skip
+# Energy, then angle and rate of the cranks every second: cranks upright, their tips at 1 m/s.
+MOTION = {
+    1: (20.453333333333333,
+        ((1.5707963267948966, -1.0), (-1.8345566611422195, -6.875591948593148),
+         (-4.789550999536001, -1.0344348457947765), (-8.627895250355296, -6.432901064477199),
+         (-11.155206903456202, -1.1398878697002472), (-15.374480941412148, -5.6789776075033345),
+         (-17.531807600723244, -1.322794824264359), (-22.05745042398427, -4.794176957814974),
+         (-23.92564068703324, -1.5937528775165568), (-28.672795261927135, -3.92541858644424),
+         (-30.343944970932924, -1.9669347194097369))),
+    2: (35.835,
+        ((1.5707963267948966, -1.0), (-1.7670744763102644, -6.8073852408690625),
+         (-4.770237034517082, -1.0189645914372638), (-8.435555501969821, -6.558724215061276),
+         (-11.113463266717826, -1.0765111800828022), (-15.083557159849983, -6.1050675535324155),
+         (-17.46115028613698, -1.1745974803287844), (-21.7012425894724, -5.516646107381198),
+         (-23.81571585479557, -1.3164754083251056), (-28.283020387772602, -4.867357434010943),
+         (-30.179800860183718, -1.5066421808214938))),
+}  # fmt: skip
+# First time with flat cranks, and their rate then.
+FLAT = {1: (0.7084500088357472, -4.954190145725105), 2: (0.7143555292929465, -4.887739763939927)}
+# (N, angle) -> the two smallest singular values of the Jacobian in absolute coordinates.
+SINGULAR = {
+    (1, np.pi / 2): (0.4682131924621357, 0.7071067811865476),
+    (1, 0.1): (0.03919845016611606, 0.7653668647301795),
+    (1, 0.001): (0.00039223224552012377, 0.7653668647301793),
+    (1, 1e-06): (3.9223227026042794e-07, 0.7653668647301796),
+    (2, np.pi / 2): (0.41809715358959115, 0.5294753669039405),
+    (2, 0.1): (0.03650287105510587, 0.03730248248065894),
+    (2, 0.001): (0.00036514835970145724, 0.0003733549447406653),
+    (2, 1e-06): (3.651483716492148e-07, 3.7335497767556303e-07),
+    (40, np.pi / 2): (0.03650822809581856, 0.07296460518674737),
+    (40, 0.1): (0.0036357700609790902, 0.007213227446637304),
+    (40, 0.001): (3.641746402726961e-05, 7.224567748907474e-05),
+    (40, 1e-06): (3.641746994388645e-08, 7.224568880088444e-08),
+}
+
+
+@cache
+def model(n: int) -> sf.Model:
+    return sf.compile(n_four_bar(n), sf.Options(functions=FUNCTIONS))
+
+
+@cache
+def absolute(n: int) -> sf.Model:
+    functions = ("constraint", "constraint_jacobian") if n > 2 else FUNCTIONS
+    return sf.compile(n_four_bar_absolute(n), sf.Options(functions=functions, backend="interpreter"))
+
+
+def parallel(n: int, crank: float) -> Array:
+    """Coordinates (or speeds) of cranks that turn together while couplers stay level."""
+    return np.array([(-crank if i % 2 else crank) for i in range(2 * n)] + [crank])
+
+
+def places(n: int, angle: float) -> Array:
+    """The same posture in absolute coordinates."""
+    c, s = np.cos(angle), np.sin(angle)
+    rows = [row for i in range(n + 1) for row in ((i + c / 2, s / 2, angle), (i + c + 0.5, s, 0.0))]
+    return np.array(rows[:-1]).reshape(-1)
+
+
+def order(n: int) -> Array:
+    """Where each coordinate of a chain crank0, coupler0, crank1, ... stands in the model."""
+    names = [name for i in range(n + 1) for name in (f"crank{i}", f"coupler{i}")][:-1]
+    return np.array([model(n).names.q.index(name) for name in names])
+
+
+def pendulum(n: int) -> tuple[float, float]:
+    return (n + 1) / 3 + n, ((n + 1) / 2 + n) * G0
+
+
+@pytest.mark.parametrize("n", [1, 2, 5])
+def test_accelerations_are_the_pendulums(n: int, rng: np.random.Generator) -> None:
+    m, (J, V) = model(n), pendulum(n)
+    for angle, rate in rng.uniform(0.2, 2.9, (20, 2)):
+        a = m.forward_dynamics(parallel(n, angle)[order(n)], parallel(n, rate)[order(n)], [])
+        wanted = -V / J * np.cos(angle)
+        assert a == pytest.approx(parallel(n, wanted)[order(n)], abs=1e-11 * (1 + abs(wanted) + rate**2))
+
+
+@pytest.mark.parametrize("n", [1, 2])
+def test_two_sets_of_coordinates(n: int, rng: np.random.Generator) -> None:
+    """The accelerations of every mass centre, by closures at each pin."""
+    m, (J, V) = absolute(n), pendulum(n)
+    for angle, w in rng.uniform(0.2, 2.9, (5, 2)):
+        c, s = np.cos(angle), np.sin(angle)
+        crank, coupler = (-w * s / 2, w * c / 2, w), (-w * s, w * c, 0.0)
+        v = np.array([part for i in range(n + 1) for part in (crank, coupler)][:-1]).reshape(-1)
+        q = places(n, angle)
+        assert np.abs(m.constraint(q)).max() < 1e-15 and np.abs(m.constraint_rate(q, v)).max() < 1e-14
+        turn = -V / J * c
+        push = (-turn * s - w**2 * c, turn * c - w**2 * s)
+        wanted = [part for i in range(n + 1) for part in ((push[0] / 2, push[1] / 2, turn), (*push, 0.0))][:-1]
+        assert m.forward_dynamics(q, v, []) == pytest.approx(np.array(wanted).reshape(-1), abs=1e-10)
+
+
+@pytest.mark.parametrize("n", MOTION)
+def test_the_exact_motion_keeps_energy_and_closure(n: int) -> None:
+    m = model(n)
+    energy, motion = MOTION[n]
+    for angle, rate in motion:
+        q, v = parallel(n, angle)[order(n)], parallel(n, rate)[order(n)]
+        assert np.abs(m.constraint(q)).max() < 1e-13 and np.abs(m.constraint_rate(q, v)).max() < 1e-12
+        assert m.kinetic_energy(q, v) + m.potential_energy(q) == pytest.approx(energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("n", FLAT)
+def test_the_way_to_the_flat_posture(n: int) -> None:
+    """Integrated to shortly before it; the rest of the way by the energy integral."""
+    m, (J, V), i = model(n), pendulum(n), order(n)
+    t_flat, rate_flat = FLAT[n]
+
+    def near(t: float, y: Array) -> float:
+        return float(y[i[0]]) - 0.05
+
+    near.terminal = True  # type: ignore[attr-defined]
+    start = np.concatenate([parallel(n, np.pi / 2)[i], parallel(n, -1.0)[i]])
+    motion = solve_ivp(
+        lambda t, y: np.concatenate([y[m.nv :], m.forward_dynamics(y[: m.nv], y[m.nv :], [])]),
+        (0.0, 1.0), start, "DOP853", events=near, rtol=1e-12, atol=1e-12,
+    )  # fmt: skip
+    rest = quad(lambda angle: 1 / np.sqrt(rate_flat**2 - 2 * V / J * np.sin(angle)), 0.0, 0.05, epsabs=1e-13)[0]
+    assert motion.t[-1] + rest == pytest.approx(t_flat, abs=1e-9)
+    rate = motion.y[m.nv + i[0], -1]
+    assert rate**2 + 2 * V / J * np.sin(0.05) == pytest.approx(rate_flat**2, rel=1e-9)
+
+
+@pytest.mark.parametrize(("n", "angle"), SINGULAR)
+def test_singular_values(n: int, angle: float) -> None:
+    m = absolute(n)
+    G = m.constraint_jacobian(places(n, angle))
+    assert G.shape == (6 * n + 2, 6 * n + 3)
+    smallest = np.linalg.svd(G, compute_uv=False)[::-1][:2]
+    assert smallest == pytest.approx(SINGULAR[n, angle], rel=1e-6, abs=1e-14)
+
+
+@pytest.mark.parametrize("n", [1, 2, 40])
+def test_every_loop_loses_a_condition_when_flat(n: int) -> None:
+    """N + 1 ways to move where there was one, in both sets of coordinates."""
+    m = model(n) if n < 40 else sf.compile(n_four_bar(n), sf.Options(functions=("constraint_jacobian",)))
+    for matrix, full in (
+        (m.constraint_jacobian(m.neutral()), 2 * n),
+        (absolute(n).constraint_jacobian(places(n, 0.0)), 6 * n + 2),
+    ):
+        assert np.linalg.matrix_rank(matrix, tol=1e-10) == full - n
+        assert matrix.shape[1] - (full - n) == n + 1
+
+
+@pytest.mark.parametrize("n", [1, 2])
+def test_at_the_flat_posture_itself(n: int) -> None:
+    """N conditions are left; accelerations keep them, and what is not inertia and weight is a force of theirs."""
+    m, w = model(n), FLAT[n][1]
+    q, v = np.zeros(m.nv), parallel(n, w)[order(n)]
+    a, _, rank = m.constrained_dynamics(q, v, [])
+    assert rank == n
+    assert np.abs(m.constraint_jacobian(q) @ a - m.constraint_bias(q, v)).max() < 1e-10
+    M, h = m.mass_matrix(q), m.bias(q, v)
+    # What is left of M a + h lies in the rows that the constraints still have.
+    rows = m.constraint_jacobian(q)
+    left = M @ a + h
+    assert np.abs(left - np.linalg.pinv(rows, rcond=1e-9) @ rows @ left).max() < 1e-10
