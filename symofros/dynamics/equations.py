@@ -27,7 +27,6 @@ from symofros.kinematics.frames import FrameKinematics
 from symofros.kinematics.links import Motion, set_in_motion
 from symofros.topology.tree import NamedFrame, SpanningTree
 
-
 _DIVIDES = "forward dynamics divides by the inertia that each speed moves"
 
 
