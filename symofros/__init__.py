@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from symofros.simulation.inverse_kinematics import inverse_kinematics as inverse_kinematics
     from symofros.simulation.inverse_kinematics import joint_motion as joint_motion
     from symofros.simulation.modes import modes as modes
+    from symofros.simulation.state_space import state_space as state_space
 
     compile = compile_system
 
@@ -92,6 +93,7 @@ _LAZY = {
     "Target": ("symofros.simulation.inverse_kinematics", "Target"),
     "equilibrium": ("symofros.simulation.equilibrium", "equilibrium"),
     "modes": ("symofros.simulation.modes", "modes"),
+    "state_space": ("symofros.simulation.state_space", "state_space"),
 }
 
 

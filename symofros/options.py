@@ -29,7 +29,14 @@ MODEL_FUNCTIONS = (
     "residual_derivatives",
     "regressor",
 )
-FRAME_FUNCTIONS = ("frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian", "frame_jacobian_rate")
+FRAME_FUNCTIONS = (
+    "frame_pose",
+    "frame_velocity",
+    "frame_acceleration",
+    "frame_jacobian",
+    "frame_jacobian_rate",
+    "frame_derivatives",
+)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from symofros.dynamics.constraints import Constraints, Row, moved
 from symofros.dynamics.derivatives import by_configuration, by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
 from symofros.dynamics.forward import solve
+from symofros.dynamics.frame_derivatives import frame_derivatives
 from symofros.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
@@ -321,10 +322,16 @@ def _pose(e: Equations, frame: NamedFrame) -> _Parts:
     return ("q",), (_vector("p", tuple(pose.p)), Output("R", (3, 3), pose.R.entries))
 
 
+def _frame_derivatives(e: Equations, frame: NamedFrame) -> _Parts:
+    found = frame_derivatives(e.frames, frame, e.v_rate, len(e.tree.coordinates.u))
+    return ("q", "v", "a", "u"), tuple(_sized(name, (6, size), rows) for name, (size, rows) in found.items())
+
+
 _FRAME_FUNCTIONS: dict[str, Callable[[Equations, NamedFrame], _Parts]] = {
     "frame_pose": _pose,
     "frame_velocity": lambda e, f: (("q", "v"), (_vector("V", e.frames.velocity(f)),)),
     "frame_acceleration": lambda e, f: (("q", "v", "a"), (_vector("A", e.frames.acceleration(f, e.v_rate)),)),
+    "frame_derivatives": _frame_derivatives,
     "frame_jacobian": lambda e, f: (("q",), (_matrix("J", e.frames.jacobian(f)),)),
     "frame_jacobian_rate": lambda e, f: (("q", "v"), (_matrix("dJ", e.frames.jacobian_rate(f)),)),
 }
