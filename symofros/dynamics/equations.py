@@ -40,8 +40,9 @@ class Equations:
     Each property is formed when it is first needed, in one graph, so functions share what they have in common.
     """
 
-    def __init__(self, tree: SpanningTree) -> None:
+    def __init__(self, tree: SpanningTree, form: str = "multipliers") -> None:
         self.tree = tree
+        self.form = form
         self.g = Graph()
         self.nv = len(tree.coordinates.v)
         self.efforts = tree.coordinates.efforts
@@ -195,7 +196,8 @@ class Equations:
         """Forward dynamics under constraints: the terms, for a solver that copes with any rank."""
         outputs = self._terms(self.stabilised)
         solved = (("a", (self.nv,)), ("lam", (len(self.constraints),)), ("rank", ()))
-        return Function(request.name, "", ("q", "v", "u", "gains", "t"), outputs, Solver("constrained", solved))
+        routine = {"multipliers": "constrained", "null_space": "null_space"}[self.form]
+        return Function(request.name, "", ("q", "v", "u", "gains", "t"), outputs, Solver(routine, solved))
 
     def _terms(self, right: Sequence[Edge]) -> tuple[Output, ...]:
         """M a = r + G^T lam, G a = c."""
@@ -337,17 +339,18 @@ _FRAME_FUNCTIONS: dict[str, Callable[[Equations, NamedFrame], _Parts]] = {
 }
 
 
-def write_program(tree: SpanningTree, requests: Sequence[Request]) -> Program:
+def write_program(tree: SpanningTree, requests: Sequence[Request], form: str = "multipliers") -> Program:
     """Form the requested functions of a tree.
 
     Args:
         tree: The mechanism.
         requests: What to form, in order.
+        form: Of forward dynamics under constraints: "multipliers" or "null_space".
 
     Returns:
         A program that reads the groups q, v, a, u, par, t.
     """
-    equations = Equations(tree)
+    equations = Equations(tree, form)
     functions = tuple(equations.function(request) for request in requests)
     names = tree.coordinates
     sizes = {

@@ -1,4 +1,4 @@
-"""Derivatives of a frame's pose, velocity and acceleration (docs/theory/linear.md, section 3)."""
+"""Derivatives of a frame's pose, velocity and acceleration (docs/theory/linear.md, eq. 7)."""
 
 from __future__ import annotations
 

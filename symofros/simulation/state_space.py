@@ -1,4 +1,4 @@
-"""Linear state space in independent coordinates (docs/theory/linear.md, section 3)."""
+"""Linear state space in independent coordinates (docs/theory/linear.md, eq. 6)."""
 
 from __future__ import annotations
 
