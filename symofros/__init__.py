@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from symofros.simulation.outcome import Outcome as Outcome
     from symofros.simulation.simulate import simulate as simulate
     from symofros.simulation.trajectory import Trajectory as Trajectory
+    from symofros.simulation.state_space import state_space as state_space
 
     compile = compile_system
 
@@ -102,6 +103,7 @@ _LAZY = {
     "Outcome": ("symofros.simulation.outcome", "Outcome"),
     "simulate": ("symofros.simulation.simulate", "simulate"),
     "Trajectory": ("symofros.simulation.trajectory", "Trajectory"),
+    "state_space": ("symofros.simulation.state_space", "state_space"),
 }
 
 

@@ -111,7 +111,7 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
         raise CompileError("no C compiler was found\n  remedy: install gcc or clang, or `pip install ziglang`")
     tree = plan(system)
     record = describe(tree, options)
-    _, source = generate(tree, requested(tree, options), record)
+    _, source = generate(tree, requested(tree, options), record, options.constraints)
     path = build_library(source(), template("symofros_model.h"), toolchain, options.flags)
     return path, f"{identifier(record.name)}_model"
 
@@ -132,9 +132,11 @@ def program_of(system: System, functions: Iterable[str], frames: Iterable[str] =
     return run_passes(write_program(tree, requested(tree, Options(tuple(functions), tuple(frames)))))
 
 
-def generate(tree: SpanningTree, requests: Iterable[Key], record: ModelRecord) -> tuple[Program, Callable[[], str]]:
-    """Requests -> optimised Program, and its C text on demand."""
-    program = run_passes(write_program(tree, [Request(*key) for key in requests]))
+def generate(
+    tree: SpanningTree, requests: Iterable[Key], record: ModelRecord, form: str = "multipliers"
+) -> tuple[Program, Callable[[], str]]:
+    """Requests -> optimised Program, and its C text on demand; form as in `Options.constraints`."""
+    program = run_passes(write_program(tree, [Request(*key) for key in requests], form))
     return program, lambda: model_source(program, record, GENERATOR)
 
 
@@ -159,7 +161,7 @@ class _Builder:
 
     def functions(self, requests: tuple[Key, ...]) -> Unit:
         """Functions of the model."""
-        return self._unit(*generate(self._tree, requests, self._record))
+        return self._unit(*generate(self._tree, requests, self._record, self._options.constraints))
 
     def formulas(self, formulas: tuple[Any, ...]) -> Unit:
         """Numbers, formula texts or SymPy expressions over the model's names, with their derivatives."""

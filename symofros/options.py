@@ -32,7 +32,14 @@ MODEL_FUNCTIONS = (
     "momentum",
     "regressor",
 )
-FRAME_FUNCTIONS = ("frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian", "frame_jacobian_rate")
+FRAME_FUNCTIONS = (
+    "frame_pose",
+    "frame_velocity",
+    "frame_acceleration",
+    "frame_jacobian",
+    "frame_jacobian_rate",
+    "frame_derivatives",
+)
 
 
 @dataclass(frozen=True)
@@ -46,6 +53,9 @@ class Options:
         backend: "c", or "interpreter" (NumPy; slow, needs no compiler, the reference for the C code).
         flags: Flags of the C compiler, in place of the default.
         compiler: Path or name of the C compiler; None: $CC, cc, gcc, clang, then the ziglang package.
+        constraints: How forward dynamics keeps them: "multipliers" solves for the forces first, by M^-1;
+            "null_space" for the accelerations that are left free, without M^-1: more accurate where M is nearly
+            singular, and usually slower (docs/theory/constraints.md, section 8).
     """
 
     functions: tuple[str, ...] | None = None
@@ -53,3 +63,4 @@ class Options:
     backend: Literal["c", "interpreter"] = "c"
     flags: tuple[str, ...] | None = None
     compiler: str | None = None
+    constraints: Literal["multipliers", "null_space"] = "multipliers"

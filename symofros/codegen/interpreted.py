@@ -8,7 +8,7 @@ import numpy as np
 
 from symofros.expr.evaluate import evaluate_edges, interpret
 from symofros.expr.program import Function, Program, Solver
-from symofros.runtime.constrained import constrained, differentiate, project
+from symofros.runtime.constrained import constrained, differentiate, null_space, project
 from symofros.runtime.kernel import Array, Kernel, Signature
 
 
@@ -55,6 +55,9 @@ class InterpretedKernel:
     def _constrained(self, _: Solver, __: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         return constrained(*outputs)
 
+    def _null_space(self, _: Solver, __: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
+        return constrained(*outputs, solve=null_space)
+
     def _differentiate(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """At the motion that the terms determine."""
         a, lam, _ = constrained(*outputs)
@@ -81,6 +84,7 @@ class InterpretedKernel:
 
 _TWINS: dict[str, Callable[[InterpretedKernel, Solver, Mapping[str, Array], list[Array]], list[Array]]] = {
     "constrained": InterpretedKernel._constrained,
+    "null_space": InterpretedKernel._null_space,
     "project": InterpretedKernel._project,
     "differentiate": InterpretedKernel._differentiate,
 }

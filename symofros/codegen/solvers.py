@@ -10,6 +10,7 @@ from symofros.expr.program import Function, Program, Solver
 # Routine -> the template files it needs, in the order in which C must see them; the keys are in that order, too.
 ROUTINES: dict[str, tuple[str, ...]] = {
     "constrained": ("constrained",),
+    "null_space": ("constrained", "null_space"),
     "project": ("constrained", "project"),
     "differentiate": ("constrained", "differentiate"),
 }
@@ -48,6 +49,19 @@ def _constrained(c_name: str, function: Function, needs: int) -> tuple[list[str]
     return lines, start + max(needs, _scratch(n, m) + m)
 
 
+def _null_space(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+    """M, r, G, c -> a, lam, rank."""
+    m, n = function.outputs[2].shape
+    start = n * n + m * n
+    lines = [
+        "    double *terms[4];",
+        f"    terms[0] = work, terms[1] = out[0], terms[2] = work + {n * n}, terms[3] = out[1];",
+        f"    {c_name}_terms(in, terms, work + {start});",
+        f"    *out[2] = sym_null_space({n}, {m}, terms[0], out[0], terms[2], out[1], work + {start});",
+    ]
+    return lines, start + max(needs, 4 * n * n + m * n + 2 * m * m + 4 * n)
+
+
 def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
     """The state -> the nearest one on the constraints."""
     m, n = function.outputs[1].shape
@@ -76,6 +90,7 @@ def _scratch(n: int, m: int) -> int:
 
 _CALLS: dict[str, Callable[[str, Function, int], tuple[list[str], int]]] = {
     "constrained": _constrained,
+    "null_space": _null_space,
     "project": _project,
     "differentiate": _differentiate,
 }

@@ -12,6 +12,7 @@ from symofros.dynamics.constraints import Constraints, Row, moved
 from symofros.dynamics.derivatives import by_configuration, by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
 from symofros.dynamics.forward import SingularMassMatrixError, solve
+from symofros.dynamics.frame_derivatives import frame_derivatives
 from symofros.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
@@ -43,8 +44,9 @@ class Equations:
     Each property is formed when it is first needed, in one graph, so functions share what they have in common.
     """
 
-    def __init__(self, tree: SpanningTree) -> None:
+    def __init__(self, tree: SpanningTree, form: str = "multipliers") -> None:
         self.tree = tree
+        self.form = form
         self.g = Graph()
         self.nv = len(tree.coordinates.v)
         self.efforts = tree.coordinates.efforts
@@ -219,7 +221,8 @@ class Equations:
         """Forward dynamics under constraints: the terms, for a solver that copes with any rank."""
         outputs = self._terms(self.stabilised)
         solved = (("a", (self.nv,)), ("lam", (len(self.constraints),)), ("rank", ()))
-        return Function(request.name, "", ("q", "v", "u", "gains", "t"), outputs, Solver("constrained", solved))
+        routine = {"multipliers": "constrained", "null_space": "null_space"}[self.form]
+        return Function(request.name, "", ("q", "v", "u", "gains", "t"), outputs, Solver(routine, solved))
 
     def _terms(self, right: Sequence[Edge]) -> tuple[Output, ...]:
         """M a = r + G^T lam, G a = c."""
@@ -366,26 +369,33 @@ def _pose(e: Equations, frame: NamedFrame) -> _Parts:
     return ("q",), (_vector("p", tuple(pose.p)), Output("R", (3, 3), pose.R.entries))
 
 
+def _frame_derivatives(e: Equations, frame: NamedFrame) -> _Parts:
+    found = frame_derivatives(e.frames, frame, e.v_rate, len(e.tree.coordinates.u))
+    return ("q", "v", "a", "u"), tuple(_sized(name, (6, size), rows) for name, (size, rows) in found.items())
+
+
 _FRAME_FUNCTIONS: dict[str, Callable[[Equations, NamedFrame], _Parts]] = {
     "frame_pose": _pose,
     "frame_velocity": lambda e, f: (("q", "v"), (_vector("V", e.frames.velocity(f)),)),
     "frame_acceleration": lambda e, f: (("q", "v", "a"), (_vector("A", e.frames.acceleration(f, e.v_rate)),)),
+    "frame_derivatives": _frame_derivatives,
     "frame_jacobian": lambda e, f: (("q",), (_matrix("J", e.frames.jacobian(f)),)),
     "frame_jacobian_rate": lambda e, f: (("q", "v"), (_matrix("dJ", e.frames.jacobian_rate(f)),)),
 }
 
 
-def write_program(tree: SpanningTree, requests: Sequence[Request]) -> Program:
+def write_program(tree: SpanningTree, requests: Sequence[Request], form: str = "multipliers") -> Program:
     """Form the requested functions of a tree.
 
     Args:
         tree: The mechanism.
         requests: What to form, in order.
+        form: Of forward dynamics under constraints: "multipliers" or "null_space".
 
     Returns:
         A program that reads the groups q, v, a, u, par, t.
     """
-    equations = Equations(tree)
+    equations = Equations(tree, form)
     functions = tuple(equations.function(request) for request in requests)
     names = tree.coordinates
     sizes = {

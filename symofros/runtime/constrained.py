@@ -13,24 +13,13 @@ from symofros.runtime.kernel import Array
 # contradict the others: so the share is above what integration drifts by, and below what a posture needs to be told
 # from a singular one. The C solver's SYM_RANK is the same.
 RANK = 1e-6
-# What is left of a diagonal entry beyond rounding; SYM_PIVOT in C.
-PIVOT = 1e-13
+# What is left of a diagonal entry beyond rounding; SYM_PIVOT in C. Below POOR (SYM_POOR) G helps out M, which alone
+# would lose digits.
+PIVOT, POOR = 1e-13, 1e-4
 # Of the projection, as in C: |phi| that no step improves on, most steps, halvings of one, its largest entry.
 CLOSED, NEWTON, HALVINGS, REACH = 1e-13, 30, 30, 0.5
 
-
-def constrained(M: Array, r: Array, G: Array, c: Array) -> list[Array]:
-    """The solution for each state: a, lam and the rank of G.
-
-    Args:
-        M: (n, nv, nv).
-        r: (n, nv).
-        G: (n, nc, nv).
-        c: (n, nc).
-    """
-    found = [solve(*state) for state in zip(M, r, G, c, strict=True)]
-    a, lam, rank = zip(*found, strict=True)
-    return [np.array(a), np.array(lam), np.array(rank, dtype=np.float64)]
+Solution = Callable[[Array, Array, Array, Array], tuple[Array, Array, int]]
 
 
 def solve(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
@@ -45,11 +34,11 @@ def solve(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
     Returns:
         a and lam, shaped like r and c, and the rank of G; NaN and -1 where no acceleration exists.
     """
-    L = _factor(M)
+    L = _factor(M, POOR)
     if L is None:
         # G^T G adds nothing along motions that the constraints allow.
         rho = np.diag(M).max() / max((G * G).sum(axis=1).max(initial=0.0), 1e-300)
-        L, r = _factor(M + rho * G.T @ G), r + rho * G.T @ c
+        L, r = _factor(M + rho * G.T @ G, PIVOT), r + rho * G.T @ c
     if L is None:
         return np.full_like(r, np.nan), np.full_like(c, np.nan), -1
     Y, y = np.linalg.solve(L, G.T), np.linalg.solve(L, r)
@@ -63,12 +52,40 @@ def solve(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
     return np.linalg.solve(L.T, y + Y @ lam), lam, rank
 
 
-def _factor(M: Array) -> Array | None:
+def _factor(M: Array, least: float) -> Array | None:
     try:
         L = np.asarray(np.linalg.cholesky(M), dtype=np.float64)
     except np.linalg.LinAlgError:
         return None
-    return L if bool(np.all(np.diag(L) ** 2 > PIVOT * np.diag(M))) else None
+    return L if bool(np.all(np.diag(L) ** 2 > least * np.diag(M))) else None
+
+
+def null_space(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
+    """The solution for one state by a = a_p + Z w, without M^-1; arguments and result as of `solve`."""
+    U, s, Vt = np.linalg.svd(G)
+    rank = int(np.sum(s > RANK * s.max(initial=0.0)))
+    Q, Z = Vt[:rank].T, Vt[rank:].T
+    a = Q @ ((U[:, :rank].T @ c) / s[:rank])
+    B = _factor(Z.T @ M @ Z, PIVOT)
+    if B is None:
+        return np.full_like(r, np.nan), np.full_like(c, np.nan), -1
+    a = a + Z @ np.linalg.solve(B.T, np.linalg.solve(B, Z.T @ (r - M @ a)))
+    return a, U[:, :rank] @ ((Q.T @ (M @ a - r)) / s[:rank]), rank
+
+
+def constrained(M: Array, r: Array, G: Array, c: Array, *, solve: Solution = solve) -> list[Array]:
+    """The solution for each state: a, lam and the rank of G.
+
+    Args:
+        M: (n, nv, nv).
+        r: (n, nv).
+        G: (n, nc, nv).
+        c: (n, nc).
+        solve: For one state.
+    """
+    found = [solve(*state) for state in zip(M, r, G, c, strict=True)]
+    a, lam, rank = zip(*found, strict=True)
+    return [np.array(a), np.array(lam), np.array(rank, dtype=np.float64)]
 
 
 def differentiate(M: Array, G: Array, slopes: list[Array]) -> list[Array]:

@@ -1,27 +1,105 @@
-"""Linearisation: derivatives of accelerations and of the state's changes (docs/theory/linear.md)."""
+"""Linearisation: the state's small changes and what they do to outputs (docs/theory/linear.md)."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.kernel import Array
 
 if TYPE_CHECKING:
     from symofros.runtime.model import Given, Model
 
+# An output: the name of a quantity, or (frame_pose | frame_velocity | frame_acceleration, frame).
+Output = str | tuple[str, str]
+State = tuple[Any, Any, Any]
+_PLAIN = ("q", "v", "a", "lam")
+_OF_FRAMES = ("frame_pose", "frame_velocity", "frame_acceleration")
 
-def state_matrices(model: Model, q: Given, v: Given, u: Given, **more: Any) -> tuple[Array, Array]:
-    """A and B of x' = A x + B u for small changes x = (along q, of v)."""
-    by_q, by_v, by_u = model.forward_dynamics_derivatives(q, v, u, **more)
-    nv = model.nv
-    batch = by_q.shape[:-2]
-    A, B = np.zeros((*batch, 2 * nv, 2 * nv)), np.zeros((*batch, 2 * nv, by_u.shape[-1]))
-    A[..., :nv, :nv] = _turning(model, np.broadcast_to(np.asarray(v, dtype=np.float64), (*batch, nv)))
-    A[..., :nv, nv:] = np.eye(nv)
-    A[..., nv:, :nv], A[..., nv:, nv:], B[..., nv:, :] = by_q, by_v, by_u
-    return A, B
+
+class FrameDerivatives(NamedTuple):
+    """What small changes do to a frame: 6 rows in world axes, linear part first; columns run over speeds or inputs."""
+
+    pose_by_q: Array
+    pose_by_u: Array
+    velocity_by_q: Array
+    velocity_by_v: Array
+    velocity_by_u: Array
+    acceleration_by_q: Array
+    acceleration_by_v: Array
+    acceleration_by_u: Array
+
+
+class StateMatrices(NamedTuple):
+    """x' = A x + B u, y = C x + D u for small changes."""
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+
+
+def linearize(
+    model: Model, slopes: Sequence[Array], state: State, outputs: Sequence[Output], par: Given | None, t: Given
+) -> StateMatrices:
+    """The matrices of small changes x = (along q, of v); C and D have the rows of the outputs, in order.
+
+    Args:
+        model: Of the state.
+        slopes: The derivatives of (v'; lam) by q, v and u.
+        state: q, v, u.
+        outputs: See `Model.linearize`.
+        par: Run-time parameters.
+        t: Time.
+    """
+    nv, nu = model.nv, model.nu
+    batch = slopes[0].shape[:-2]
+    both = np.concatenate(slopes, axis=-1)
+    x_rows = np.zeros((*batch, 2 * nv, 2 * nv + nu))
+    x_rows[..., :] = np.eye(2 * nv, 2 * nv + nu)
+    rate = x_rows.copy()
+    rate[..., :nv, :] = x_rows[..., nv:, :]
+    rate[..., :nv, :nv] = _turning(model, np.broadcast_to(np.asarray(state[1], dtype=np.float64), (*batch, nv)))
+    rate[..., nv:, :] = both[..., :nv, :]
+    known = {"q": x_rows[..., :nv, :], "v": x_rows[..., nv:, :], "a": both[..., :nv, :], "lam": both[..., nv:, :]}
+    rows = [np.zeros((*batch, 0, 2 * nv + nu))]
+    for output in outputs:
+        if isinstance(output, tuple) and len(output) == 2 and output[0] in _OF_FRAMES:
+            rows.append(_of_frame(model, output, state, known["a"], par, t))
+        elif output in _PLAIN:
+            rows.append(known[str(output)])
+        else:
+            raise _unknown(output)
+    found = np.concatenate([np.broadcast_to(row, (*batch, *row.shape[-2:])) for row in rows], axis=-2)
+    return StateMatrices(rate[..., : 2 * nv], rate[..., 2 * nv :], found[..., : 2 * nv], found[..., 2 * nv :])
+
+
+def _unknown(output: Output) -> UnknownNameError:
+    known = (*_PLAIN, *_OF_FRAMES)
+    return UnknownNameError(str(Problem(
+        "linearize: no such output", repr(output)[:80],
+        "an output is q, v, a, lam, or (frame_pose, frame_velocity or frame_acceleration, frame)",
+        did_you_mean(str(output if isinstance(output, str) else output[0]), known) or "name one of these",
+    )))  # fmt: skip
+
+
+def _of_frame(model: Model, output: tuple[str, str], state: State, a_rows: Array, par: Given | None, t: Given) -> Array:
+    """A frame's pose, velocity or acceleration (..., 6, 2 nv + nu), by the chain rule through v'."""
+    name, frame = output
+    q, v, u = state
+    a = model.forward_dynamics(q, v, u, par=par, t=t)
+    by = model.frame_derivatives(frame, q, v, a, u=u, par=par)
+    none = np.zeros_like(by.pose_by_q)
+    if name == "frame_pose":
+        return np.concatenate([by.pose_by_q, none, by.pose_by_u], axis=-1)
+    if name == "frame_velocity":
+        return np.concatenate([by.velocity_by_q, by.velocity_by_v, by.velocity_by_u], axis=-1)
+    own = np.concatenate([by.acceleration_by_q, by.acceleration_by_v, by.acceleration_by_u], axis=-1)
+    through: Array = own + by.velocity_by_v @ a_rows
+    return through
 
 
 def _turning(model: Model, v: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal, overload
 
 import numpy as np
@@ -11,6 +12,9 @@ from symofros.runtime.functions import Functions
 from symofros.runtime.functions import Given as Given
 from symofros.runtime.functions import Key as Key
 from symofros.runtime.kernel import Array
+from symofros.runtime.linear import FrameDerivatives as FrameDerivatives
+from symofros.runtime.linear import Output as Output
+from symofros.runtime.linear import StateMatrices as StateMatrices
 
 
 class Model(Functions):
@@ -167,14 +171,46 @@ class Model(Functions):
         """
         return self._one("forward_dynamics_by_par", {"q": q, "v": v, "u": u, "t": t}, par)[..., : self.nv, :]
 
+    @overload
     def linearize(
-        self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0
-    ) -> tuple[Array, Array]:
+        self, q: Given, v: Given, u: Given, *, outputs: None = None, par: Given | None = None, t: Given = 0.0
+    ) -> tuple[Array, Array]: ...
+    @overload
+    def linearize(
+        self, q: Given, v: Given, u: Given, *, outputs: Sequence[Output], par: Given | None = None, t: Given = 0.0
+    ) -> StateMatrices: ...
+    def linearize(
+        self,
+        q: Given,
+        v: Given,
+        u: Given,
+        *,
+        outputs: Sequence[Output] | None = None,
+        par: Given | None = None,
+        t: Given = 0.0,
+    ) -> tuple[Array, Array] | StateMatrices:
         """A (..., 2 nv, 2 nv) and B (..., 2 nv, nu) of the state's small changes: x' = A x + B u.
 
-        x = (difference of q along the manifold, difference of v). Exact: differentiated on the graph.
+        With outputs C (..., p, 2 nv) and D (..., p, nu) as well: y = C x + D u.
+        x = (difference of q along the manifold, difference of v). Exact: differentiated on the graph. On constraints
+        only some x are possible: `sf.state_space` keeps those.
+
+        Args:
+            q: Configuration (..., nq).
+            v: Speeds (..., nv).
+            u: Inputs (..., nu).
+            outputs: What y stacks, in order: "q", "v", "a" (nv rows each), "lam" (nc), and ("frame_pose", frame),
+                ("frame_velocity", frame), ("frame_acceleration", frame) of 6 rows in world axes, linear part first;
+                of a pose the change of the origin and the small rotation.
+            par: Run-time parameters.
+            t: Time.
+
+        Raises:
+            UnknownNameError: No such output or frame.
         """
-        return linear.state_matrices(self, q, v, u, par=par, t=t)
+        slopes = self._call("forward_dynamics_derivatives", "", {"q": q, "v": v, "u": u, "t": t}, par)
+        found = linear.linearize(self, slopes, (q, v, u), outputs or (), par, t)
+        return found[:2] if outputs is None else found
 
     def residual_derivatives(
         self, q: Given, v: Given, a: Given, u: Given, lam: Given, *, par: Given | None = None, t: Given = 0.0
@@ -302,6 +338,13 @@ class Model(Functions):
     def frame_jacobian(self, frame: str, q: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
         """J (..., 6, nv) with frame_velocity = J v."""
         return self._one("frame_jacobian", {"q": q, "u": u}, par, frame)
+
+    def frame_derivatives(
+        self, frame: str, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None
+    ) -> FrameDerivatives:
+        """The derivatives of the frame's pose, velocity and acceleration by q, v and u; by a the last has J."""
+        given = {"q": q, "v": v, "a": a, "u": u}
+        return FrameDerivatives(*self._call("frame_derivatives", self._frame(frame), given, par))
 
     def frame_jacobian_rate(
         self, frame: str, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None

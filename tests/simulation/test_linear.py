@@ -10,7 +10,6 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.simulation.modes import reduced
 from validation.adapters import pinocchio as pin_adapter
 from validation.interface import Subject
 
@@ -52,7 +51,7 @@ def test_central_differences(name: str) -> None:
     A, B = m.linearize(q, v, u)
     # Off the constraints redundant conditions contradict each other, and there is nothing to differentiate: the
     # directions are those that the constraints allow, all of them where there are none.
-    S = reduced(m, q, v, u)[2]
+    S = sf.state_space(m, q, v, u).basis
     directions = np.block([[S, np.zeros((2 * m.nv, m.nu))], [np.zeros((m.nu, S.shape[1])), np.eye(m.nu)]]).T
     # Sixth order, so that rounding and not truncation is what is left.
     weights = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))

@@ -1,0 +1,117 @@
+"""Outputs of the linearisation against differences, and the independent changes of a constrained system."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+
+CLOSED = {
+    "four_bar": [1.2, -1.2, 1.2],
+    "slider_crank": [0.5, -0.7, 0.4],
+    "rolling_disc": [0, 0, 0.5, 0.5, 0.5, 0.5, 0.5],
+}
+OPEN = ("double_pendulum", "rx90", "space_arm", "flexible_pendulum")
+STEP = 1e-3
+SOLID = sf.Inertia(1.5, (0.1, -0.2, 0.05), (0.3, 0.4, 0.5))
+
+
+def driven() -> sf.System:
+    """An arm on a base that moves as it is told."""
+    base = sf.RigidBody("base", sf.Joint("sweep", "revolute", prescribed=True), SOLID, (sf.Frame("e", (0.5, 0, 0)),))
+    arm = sf.RigidBody("arm", sf.Joint("q", "revolute", "base", "e", axis=(0, 1, 0), actuated=True), SOLID,
+                       (sf.Frame("tip", (0.3, 0.1, 0.2)),))  # fmt: skip
+    return sf.System("driven", (base, arm))
+
+
+@cache
+def model(name: str) -> sf.Model:
+    return sf.compile(driven() if name == "driven" else MODELS[name])
+
+
+def state(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    m, rng = model(name), np.random.default_rng(0)
+    q, v = m.random_state(rng)
+    if name in CLOSED:
+        at = sf.assemble(m, CLOSED[name], rng.normal(size=m.nv))
+        q, v = at.q, at.v
+    return q, v, rng.normal(size=m.nu)
+
+
+@pytest.mark.parametrize("name", [*OPEN, *CLOSED, "driven"])
+def test_outputs_against_differences(name: str) -> None:
+    m = model(name)
+    q, v, u = state(name)
+    frame = m.names.frames[-1]
+    outputs = [
+        "q",
+        "v",
+        "a",
+        "lam",
+        *((kind, frame) for kind in ("frame_pose", "frame_velocity", "frame_acceleration")),
+    ]
+    R0 = m.frame_pose(frame, q, u=u)[1]
+
+    def y(x: np.ndarray) -> np.ndarray:
+        q1, v1, u1 = m.integrate(q, x[: m.nv]), v + x[m.nv : 2 * m.nv], u + x[2 * m.nv :]
+        a, lam = m.forward_dynamics(q1, v1, u1, multipliers=True)
+        p, R = m.frame_pose(frame, q1, u=u1)
+        turn = R @ R0.T
+        small = 0.5 * np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
+        V, A = m.frame_velocity(frame, q1, v1, u=u1), m.frame_acceleration(frame, q1, v1, a, u=u1)
+        return np.concatenate([m.difference(q, q1), v1, a, lam, p, small, V, A])
+
+    # Sixth order, so that rounding and not truncation is what is left; along what the constraints allow.
+    weights = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
+    found = sf.state_space(m, q, v, u, outputs=outputs)
+    n = found.basis.shape[1]
+    directions = np.block([[found.basis, np.zeros((2 * m.nv, m.nu))], [np.zeros((m.nu, n)), np.eye(m.nu)]]).T
+    numeric = np.array([sum(w * (y(i * e) - y(-i * e)) for i, w in weights) / STEP for e in STEP * directions]).T
+    exact = np.concatenate([found.C, found.D], axis=1)
+    assert exact.shape == numeric.shape
+    assert np.abs(exact - numeric).max() < 1e-7 * max(1.0, np.abs(numeric).max())
+
+
+@pytest.mark.parametrize(("name", "freedoms"), [("four_bar", 2), ("slider_crank", 2), ("rolling_disc", 8)])
+def test_only_what_the_constraints_allow(name: str, freedoms: int) -> None:
+    """Two states for a degree of freedom; of the disc's twelve a height and its rate go, and two rates of slip."""
+    m = model(name)
+    q, u = sf.assemble(m, CLOSED[name]).q, np.zeros(m.nu)
+    if name != "rolling_disc":  # Upright it is at rest as it stands.
+        q = sf.equilibrium(m, q, u=u).q
+    v = np.zeros(m.nv)
+    found = sf.state_space(m, q, v, u)
+    assert found.A.shape == (freedoms, freedoms)
+    assert found.basis.T @ found.basis == pytest.approx(np.eye(freedoms), abs=1e-12)
+    # About a state of rest the changes stay among themselves: nothing is projected away.
+    A, _ = m.linearize(q, v, u)
+    assert found.basis @ found.A == pytest.approx(A @ found.basis, abs=1e-8)
+
+
+def test_a_batch_of_outputs() -> None:
+    m = model("rx90")
+    q, v, u = state("rx90")
+    one = m.linearize(q, v, u, outputs=["a", ("frame_velocity", m.names.frames[-1])])
+    many = m.linearize(q, v * np.array([[1.0], [2.0]]), u, outputs=["a", ("frame_velocity", m.names.frames[-1])])
+    assert many.C.shape == (2, m.nv + 6, 2 * m.nv) and np.allclose(many.C[0], one.C) and np.allclose(many.D[0], one.D)
+
+
+def test_an_accelerometer_on_an_oscillator() -> None:
+    """On a mass of 2 kg, spring 50 N/m, damper 2 N s/m it reads x'' = -25 x - x' + u/2."""
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True, elements=(sf.Spring(50.0), sf.Damper(2.0)))
+    m = sf.compile(sf.System("s", [sf.RigidBody("b", joint, sf.Inertia(2.0))]))
+    found = m.linearize([0.0], [0.0], [0.0], outputs=[("frame_acceleration", "b")])
+    assert found.C[0] == pytest.approx([-25.0, -1.0]) and found.D[0] == pytest.approx([0.5])
+    assert not found.C[1:].any() and not found.D[1:].any()
+
+
+def test_unknown_outputs() -> None:
+    m = model("double_pendulum")
+    with pytest.raises(sf.UnknownNameError, match="did you mean 'frame_pose'"):
+        m.linearize([0, 0], [0, 0], np.zeros(m.nu), outputs=[("frame_pos", "tip")])
+    with pytest.raises(sf.UnknownNameError, match="no frame 'nowhere'"):
+        m.linearize([0, 0], [0, 0], np.zeros(m.nu), outputs=[("frame_pose", "nowhere")])
