@@ -73,8 +73,8 @@ if TYPE_CHECKING:
     from symofros.simulation.modes import modes as modes
     from symofros.simulation.outcome import Outcome as Outcome
     from symofros.simulation.simulate import simulate as simulate
-    from symofros.simulation.trajectory import Trajectory as Trajectory
     from symofros.simulation.state_space import state_space as state_space
+    from symofros.simulation.trajectory import Trajectory as Trajectory
 
     compile = compile_system
 

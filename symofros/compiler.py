@@ -28,8 +28,8 @@ from symofros.description.beam import Beam
 from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
 from symofros.description.values import as_value
-from symofros.dynamics.equations import Request, write_program
 from symofros.dynamics.formulas import formula_program
+from symofros.dynamics.functions import Request, write_program
 from symofros.dynamics.wrenches import acts_on_bodies
 from symofros.errors import (
     CompileError,

@@ -179,6 +179,9 @@ _REMEDIES: dict[Scope, str] = {
     "configuration": "state forces that depend on speeds or inputs as loads, efforts or virtual power",
     "motion": "",
     "joint": "name it under the joint's coordinates, or use a parameter",
+    "section": "use parameters and x; what moves acts through loads",
+    "spread": "",
+    "shape": "use xi alone; lengths belong to the beam",
 }
 
 

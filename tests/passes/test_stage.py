@@ -4,7 +4,7 @@ import numpy as np
 
 import symofros as sf
 from symofros.compiler import plan
-from symofros.dynamics.equations import Request, write_program
+from symofros.dynamics.functions import Request, write_program
 from symofros.expr.evaluate import needed_nodes
 from symofros.passes import run_passes
 from symofros.passes.count import count_operations, count_program

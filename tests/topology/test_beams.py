@@ -91,3 +91,18 @@ def test_softening_without_stiffening_is_warned_of() -> None:
 def test_a_clamped_beam_alone_is_a_mechanism() -> None:
     model = sf.compile(sf.System("s", [beam()]), sf.Options(functions=("mass_matrix",)))
     assert model.names.q == ("b.bend_y[0]", "b.bend_y[1]") and "tip" in model.names.frames
+
+
+@pytest.mark.parametrize(
+    ("changed", "remedy"),
+    [
+        ({"rhoA": "1 + q^2"}, "use parameters and x"),
+        ({"family": "user", "bend_y": 1, "shapes": {"bend_y": ["q*xi^2"]}}, "use xi alone"),
+    ],
+)
+def test_sections_and_shapes_do_not_move(changed: dict[str, Any], remedy: str) -> None:
+    carrier = sf.RigidBody("hub", sf.Joint("q", "revolute"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+    plain: dict[str, Any] = {"length": 2.0, "rhoA": 0.5, "EI_z": 3.0, "bend_y": 2}
+    with pytest.raises(sf.DescriptionError, match="'q' may not be used here") as caught:
+        sf.compile(sf.System("s", [carrier, sf.Beam("b", sf.Joint("root", "fixed", "hub"), **(plain | changed))]))
+    assert remedy in str(caught.value)
