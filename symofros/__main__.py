@@ -1,12 +1,14 @@
-"""Command line: symofros info | compile MODEL."""
+"""Command line: symofros info | compile | simulate MODEL."""
 
 from __future__ import annotations
 
 import json
 import time
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 import typer
 from rich.console import Console
 from rich.table import Table
@@ -18,8 +20,11 @@ from symofros.codegen.model import template
 from symofros.codegen.names import identifier
 from symofros.compiler import compile_system, describe, generate, plan, requested
 from symofros.description.system import System
+from symofros.errors import did_you_mean
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.passes.count import Operations, count_program
+from symofros.runtime.kernel import Array
+from symofros.simulation.methods import METHODS
 from symofros.topology.tree import BASE, SpanningTree
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, help="Symbolic multibody models as fast C code.")
@@ -139,6 +144,106 @@ def compile_command(
         markup=False,
     )
     for file in result.get("files", ()):
+        _out.print(f"wrote {file}", markup=False)
+
+
+def _assignments(given: list[str], what: str) -> dict[str, str]:
+    """NAME=TEXT options as a mapping."""
+    found = {}
+    for item in given:
+        name, sign, text = item.partition("=")
+        if not sign or not name or not text:
+            _err.print(f"{what} '{item}'\n  rule:   NAME=VALUE\n  remedy: for example q1=0.5", markup=False)
+            raise typer.Exit(BAD_INPUT)
+        found[name.strip()] = text.strip()
+    return found
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        _err.print(f"'{name}': '{text}' is not a number", markup=False)
+        raise typer.Exit(BAD_INPUT) from None
+
+
+def _first_state(model: sf.Model, given: dict[str, str]) -> tuple[Array, Array]:
+    """The neutral state, with what --set gives; closed where the model has loops."""
+    q, v = model.neutral(), np.zeros(model.nv)
+    for name, text in given.items():
+        value = _number(name, text)
+        if name in model.names.q:
+            q[model.names.q.index(name)] = value
+        elif name.removeprefix("d") in model.names.v:
+            v[model.names.v.index(name.removeprefix("d"))] = value
+        elif name in model.names.v:
+            v[model.names.v.index(name)] = value
+        else:
+            known = (*model.names.q, *(f"d{speed}" for speed in model.names.v))
+            _err.print(f"--set: no coordinate or speed '{name}'\n  remedy: {did_you_mean(name, known)}", markup=False)
+            raise typer.Exit(BAD_INPUT)
+    if not model.nc:
+        return q, v
+    closed = sf.assemble(model, q, v)
+    return closed.q, closed.v
+
+
+@app.command()
+def simulate(
+    model: ModelPath,
+    t_end: Annotated[float, typer.Argument(help="Where to end [s].")] = 1.0,
+    floating_base: Floating = False,
+    method: Annotated[str, typer.Option(help=", ".join(METHODS))] = "rk4",
+    dt: Annotated[float | None, typer.Option(help="Step [s]; the first one of adaptive methods.")] = None,
+    rtol: Annotated[float, typer.Option(help="Relative error of a step, adaptive methods.")] = 1e-6,
+    given: Annotated[list[str], typer.Option("--set", help="NAME=NUMBER: a first coordinate or speed (dNAME).")] = [],  # noqa: B006
+    inputs: Annotated[list[str], typer.Option("--input", help="NAME=FORMULA of coordinates, speeds and t.")] = [],  # noqa: B006
+    every: Annotated[float | None, typer.Option(help="Record at this interval [s]; each step by default.")] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write .npz, .csv or .parquet.")] = None,
+    picture: Annotated[Path | None, typer.Option(help="Write a picture: .png, .svg, .pdf.")] = None,
+    realtime: Annotated[bool, typer.Option("--realtime", help="Keep pace with the clock.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Move a model through time, and say how it went."""
+    system = _load(model, floating_base)
+    try:
+        compiled = compile_system(system)
+        q, v = _first_state(compiled, _assignments(given, "--set"))
+        run = sf.simulate(
+            compiled, q, v, t_end, u=_assignments(inputs, "--input") or None, method=method, dt=dt, rtol=rtol,
+            output=every, realtime=realtime, progress=not as_json and _err.is_terminal,
+        )  # fmt: skip
+        files = [str(run.save(output))] if output else []
+        if picture:
+            run.plot().savefig(picture, dpi=120)
+            files.append(str(picture))
+    except (sf.SymofrosError, ValueError) as error:
+        _err.print(str(error), markup=False, highlight=False, soft_wrap=True)
+        raise typer.Exit(BAD_INPUT) from None
+    _tell(run, files, as_json)
+    if not run.outcome.ok:
+        raise typer.Exit(1)
+
+
+def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:
+    """Outcome, cost and last state of a run."""
+    cost, drift = run.statistics, float(run.energy[-1] - run.energy[0])
+    last = {name: float(column[-1]) for name, column in run.columns().items()}
+    if as_json:
+        outcome = {"kind": run.outcome.kind, "t": run.outcome.t, "reason": run.outcome.reason,
+                   "advice": run.outcome.advice, "notes": list(run.outcome.notes)}  # fmt: skip
+        print(json.dumps({"ok": run.outcome.ok, "outcome": outcome, "statistics": asdict(cost), "last": last,
+                          "energy_change": drift, "files": files}, indent=1))  # fmt: skip
+        return
+    _out.print(str(run.outcome), markup=False, highlight=False, soft_wrap=True)
+    table = Table("name", "first", "last", title=f"{len(run)} states, t = {run.t[0]:g} to {run.t[-1]:g} s")
+    for name, column in run.columns().items():
+        table.add_row(name, f"{column[0]:.6g}", f"{column[-1]:.6g}")
+    _out.print(table)
+    speed = (run.t[-1] - run.t[0]) / max(cost.seconds, 1e-9)
+    _out.print(f"{cost.steps} steps, {cost.rejected} rejected, {cost.evaluations} evaluations; {cost.seconds:.3g} s,"
+               f" {speed:.3g} times real time; energy changed by {drift:.3g} J", markup=False)  # fmt: skip
+    for file in files:
         _out.print(f"wrote {file}", markup=False)
 
 

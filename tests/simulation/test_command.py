@@ -1,0 +1,62 @@
+"""`symofros simulate`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import reference_models
+from symofros.__main__ import app
+
+MODELS = Path(reference_models.__file__).parent
+PENDULUM = str(MODELS / "rigid" / "double_pendulum.yaml")
+FOUR_BAR = str(MODELS / "closed" / "four_bar.yaml")
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(app, ["simulate", *arguments])
+
+
+def test_it_says_how_the_run_went_and_writes_it(tmp_path: Path) -> None:
+    found = run(PENDULUM, "0.5", "--set", "q1=1", "--method", "dop853", "--every", "0.1", "-o", str(tmp_path / "r.csv"),
+                "--picture", str(tmp_path / "r.png"), "--json")  # fmt: skip
+    assert found.exit_code == 0
+    said = json.loads(found.stdout)
+    assert said["ok"] and said["outcome"]["kind"] == "finished" and abs(said["energy_change"]) < 1e-5
+    assert len((tmp_path / "r.csv").read_text().splitlines()) == 7
+    assert (tmp_path / "r.png").stat().st_size > 10_000
+
+
+def test_for_people() -> None:
+    found = run(PENDULUM, "0.1", "--input", "q1=3*sin(t)")
+    assert found.exit_code == 0
+    assert "finished at t = 0.1 s" in found.stdout and "times real time" in found.stdout
+
+
+def test_loops_are_closed_first() -> None:
+    found = run(FOUR_BAR, "0.1", "--json")
+    assert found.exit_code == 0 and json.loads(found.stdout)["ok"]
+
+
+def test_a_run_that_fails_ends_with_1() -> None:
+    found = run(PENDULUM, "1", "--method", "euler", "--dt", "0.5", "--input", "q1=exp(q1^2+100)*1e200")
+    assert found.exit_code == 1 and "try:" in found.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--set", "q9=1"], "no coordinate or speed 'q9'"),
+        (["--set", "q1"], "NAME=VALUE"),
+        (["--set", "q1=fast"], "is not a number"),
+        (["--input", "q1=__class__"], "formula"),
+        (["--method", "rk5"], "no method 'rk5'"),
+        (["-o", "run.xlsx"], "can't save as"),
+    ],
+)
+def test_what_does_not_fit(arguments: list[str], words: str) -> None:
+    found = run(PENDULUM, "0.01", *arguments)
+    assert found.exit_code == 2 and words in found.output
