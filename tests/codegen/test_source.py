@@ -23,9 +23,8 @@ STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1"]
 
 def source_of(stated: sf.System) -> str:
     """Every function but derivatives, which compile for long and are built on a small mechanism below."""
-    functions = [
-        name for name in MODEL_FUNCTIONS + FRAME_FUNCTIONS if "derivative" not in name and "by_par" not in name
-    ]
+    every = MODEL_FUNCTIONS + FRAME_FUNCTIONS
+    functions = [name for name in every if "derivative" not in name and "by_par" not in name]
     return source_of_functions(stated, tuple(functions))
 
 
