@@ -166,8 +166,7 @@ class Model(Functions):
     ) -> Array:
         """The derivative of `forward_dynamics` by the run-time parameters (..., nv, npar), constraints kept.
 
-        The state stays as it is: where a parameter moves the constraints themselves, off which v' is judged as it is
-        for any state that has drifted, with what G a = gamma asks there.
+        At the given state: where a parameter changes the constraints themselves, the state does not follow.
         """
         return self._one("forward_dynamics_by_par", {"q": q, "v": v, "u": u, "t": t}, par)[..., : self.nv, :]
 
