@@ -15,7 +15,7 @@ from symofros.simulation.tableaus import (
     Tableau,
 )
 
-Kind = Literal["explicit", "semi_implicit", "rosenbrock", "alpha", "variational"]
+Kind = Literal["explicit", "semi_implicit", "rosenbrock", "alpha", "variational", "cvode"]
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Method:
     Attributes:
         name: As users call it.
         kind: Which loop of native/ makes its steps.
-        order: Of convergence.
+        order: Of convergence; the highest where it varies.
         adaptive: Whether it chooses its steps by an error estimate.
         tableau: Its coefficients; those of Euler's method where a loop needs none.
         says: One line for people.
@@ -51,5 +51,7 @@ METHODS: dict[str, Method] = {
         Method("rodas4", "rosenbrock", 4, True, RODAS, "Rosenbrock 4(3) with exact Jacobians; adaptive, stiff"),
         Method("generalized_alpha", "alpha", 2, False, EXPLICIT_EULER, "constraints met by each step's equations"),
         Method("variational", "variational", 2, False, EXPLICIT_EULER, "symplectic midpoint rule; long runs"),
+        Method("cvode", "cvode", 5, True, EXPLICIT_EULER, "SUNDIALS, BDF of order 1 to 5; stiff"),
+        Method("cvode_adams", "cvode", 12, True, EXPLICIT_EULER, "SUNDIALS, Adams of order 1 to 12; smooth"),
     )
 }

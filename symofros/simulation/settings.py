@@ -140,6 +140,10 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
     if implicit and settings.stabilisation == "baumgarte" and model.nc:
         raise _wrong(f"'{name}' with Baumgarte's stabilisation", "gains", "implicit methods keep constraints by"
                      " projection or by their equations", "stabilisation='projection'")  # fmt: skip
+    if settings.method.kind == "cvode" and (settings.project or not settings.adaptive):
+        raise _wrong(f"'{name}' with projection or fixed steps", "a history of steps that would be cut",
+                     "CVODE chooses its steps, and keeps constraints by Baumgarte's gains",
+                     "stabilisation='baumgarte', or rodas4 with projection")  # fmt: skip
     if settings.method.kind == "variational" and (model.nc or model.record.driven):
         raise _wrong("'variational' steps trees of free motion only", f"model '{model.record.name}' has constraints or"
                      " prescribed joints", "its discrete principle is written for free coordinates",

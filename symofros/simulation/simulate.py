@@ -10,20 +10,14 @@ from typing import Any
 import numpy as np
 
 from symofros.runtime.model import Given, Model
-from symofros.simulation import stepper as native
 from symofros.simulation.diagnosis import diagnose
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
+from symofros.simulation.loops import run_cvode, run_own
 from symofros.simulation.progress import bar
 from symofros.simulation.settings import Settings, Stabilisation, check_fit, vector
 from symofros.simulation.stepper import Stepper
 from symofros.simulation.trajectory import Found, Statistics, Trajectory
-
-# Records are taken from C in portions of this many states.
-_PORTION = 4096
-# Seconds that C may step before Python looks up: for Ctrl-C and for progress.
-_SPELL = 0.05
-_LONGEST = 1 << 20  # Steps in a spell.
 
 
 def simulate(
@@ -62,7 +56,8 @@ def simulate(
             and hence slow. Those not given are zero.
         method: Fixed steps: "rk4", "semi_implicit_euler", "euler"; implicit ones, for stiff beams and joints:
             "implicit_euler", "generalized_alpha"; for long conservative runs, "variational". Steps chosen by `rtol`
-            and `atol`: "dopri5", "dop853" and, for stiff models, "rodas4".
+            and `atol`: "dopri5", "dop853" and, for stiff models, "rodas4"; SUNDIALS' "cvode" (stiff) and
+            "cvode_adams" where FMPy is installed.
         dt: Step [s], 1e-3 where a fixed step needs one; for adaptive methods the first step.
         t0: Where to begin [s].
         par: Run-time parameters (npar); the model's own by default.
@@ -101,32 +96,15 @@ def simulate(
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
     settings.apply(stepper, t0, t_end, float(realtime))
     began = time.perf_counter()
-    status = stepper.start(q, v, max(_PORTION, len(settings.grid)))
-    records, found = [stepper.take_records()], stepper.take_events()
-    interrupted, spell = False, 64
     with bar(progress, t0, t_end) as show:
-        try:
-            while status in (native.GOING, native.FULL):
-                left = spell if max_steps is None else min(spell, max_steps - int(stepper.run.steps))
-                if left <= 0:
-                    break
-                before = time.perf_counter()
-                status = stepper.advance(left)
-                took = time.perf_counter() - before
-                spell = (
-                    max(1, spell // 2) if took > _SPELL else min(2 * spell, _LONGEST) if took < _SPELL / 4 else spell
-                )
-                records.append(stepper.take_records())
-                found += stepper.take_events()
-                show(float(stepper.run.t))
-        except KeyboardInterrupt:
-            interrupted = True
-            records.append(stepper.take_records())
+        drive = run_cvode if settings.method.kind == "cvode" else run_own
+        recorded = drive(stepper, q, v, settings, max_steps, show)
     seconds = time.perf_counter() - began
-    t, q_all, v_all, u_all = (np.concatenate(parts) for parts in zip(*records, strict=True))
-    outcome = diagnose(stepper, status, interrupted, settings)
-    met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in found)
-    return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, _statistics(stepper, seconds))
+    outcome = diagnose(stepper, recorded.status, recorded.interrupted, settings)
+    met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
+    statistics = _statistics(stepper, seconds)
+    t, q_all, v_all, u_all = recorded.arrays()
+    return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics)
 
 
 def _statistics(stepper: Stepper, seconds: float) -> Statistics:

@@ -22,9 +22,19 @@ from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.methods import Method
 
-_PARTS = ("manifold.c", "scene.c", "linear.c", "explicit.c", "implicit.c", "second_order.c", "pace.c", "run.c")
+_PARTS = (
+    "manifold.c",
+    "scene.c",
+    "linear.c",
+    "explicit.c",
+    "implicit.c",
+    "second_order.c",
+    "pace.c",
+    "run.c",
+    "flat.c",
+)
 _SEGMENTS = {"linear": 0, "quaternion": 1, "pose": 2}
-_KINDS = {"explicit": 0, "semi_implicit": 1, "rosenbrock": 2, "alpha": 3, "variational": 4}
+_KINDS = {"explicit": 0, "semi_implicit": 1, "rosenbrock": 2, "alpha": 3, "variational": 4, "cvode": 0}
 # Functions that each kind of method calls besides forward_dynamics: the slot of sym_scene, and the function's name.
 _NEEDS: dict[str, dict[str, str]] = {
     "rosenbrock": {"terms": "implicit_terms"},

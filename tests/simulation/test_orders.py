@@ -75,7 +75,7 @@ def test_order_of_dop853() -> None:
 
 
 @pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.adaptive])
+@pytest.mark.parametrize("method", ["dopri5", "dop853", "rodas4"])
 def test_error_follows_the_tolerance(name: str, method: str) -> None:
     model, q, v = scene(name)
     exact = reference(name, SPAN)
