@@ -16,7 +16,7 @@ _CORNERS: tuple[Point, ...] = ((0, 0, 0), (1, 0, 0), (1, -1, 0), (1, -1, 1), (0,
 _HINGES: tuple[Point, ...] = ((0, 1, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 0))
 _THICKNESS = 0.1
 # Of the delta robot's rods [m].
-_RADIUS = 0.005
+_RADIUS = 0.02
 
 
 def _minus(a: Point, b: Point) -> Point:
