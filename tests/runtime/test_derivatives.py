@@ -19,6 +19,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.expr.precise import evaluate_precisely
+from symofros.simulation.modes import reduced
 from validation.adapters import pinocchio as trees
 from validation.adapters import pinocchio_loops
 from validation.adapters.compiled import SymofrosEngine
@@ -31,6 +32,7 @@ from validation.sides import with_forces
 pin = pytest.importorskip("pinocchio")
 Array = np.ndarray
 TOLERANCE = 1e-10
+FUNCTIONS = ("inverse_dynamics_derivatives", "forward_dynamics", "residual_derivatives", "mass_matrix")
 
 
 def without_forces(system: sf.System) -> sf.System:
@@ -60,7 +62,7 @@ def test_against_pinocchio(name: str) -> None:
     system = without_forces(MODELS[name])
     engine = trees.build(Subject(name, system))
     assert isinstance(engine, trees.PinocchioEngine)
-    m = sf.compile(system)
+    m = sf.compile(system, sf.Options(functions=FUNCTIONS))
     rng = np.random.default_rng(3)
     for _ in range(3):
         q, v = m.random_state(rng)
@@ -69,22 +71,27 @@ def test_against_pinocchio(name: str) -> None:
         T, data = engine.chart.transform(q[None])[0], engine.model.createData()
         q_e = engine.chart.coordinates(q[None])[0]
         pin.computeRNEADerivatives(engine.model, data, q_e, T @ v, T @ a)
+        # Copies: the next call writes there as well.
+        found = [np.array(data.dtau_dq), np.array(data.dtau_dv)]
         pin.computeABADerivatives(engine.model, data, q_e, T @ v, np.zeros(m.nv))
+        found += [np.array(data.ddq_dq), np.array(data.ddq_dv)]
         ours = [*m.inverse_dynamics_derivatives(q, v, a), *m.forward_dynamics_derivatives(q, v, np.zeros(m.nu))[:2]]
-        for one, other in zip(ours, (data.dtau_dq, data.dtau_dv, data.ddq_dq, data.ddq_dv), strict=True):
+        for one, other in zip(ours, found, strict=True):
             theirs = T.T @ np.reshape(other, one.shape) @ T
             assert np.abs(one - theirs).max() <= TOLERANCE * max(1.0, np.abs(theirs).max())
 
 
 SOLID = sf.Inertia(1.5, (0.1, -0.2, 0.05), (0.3, 0.4, 0.5))
+Z_X_Z = sf.Rotation.matrix([
+    ["cos(a)*cos(c) - sin(a)*cos(b)*sin(c)", "-cos(a)*sin(c) - sin(a)*cos(b)*cos(c)", "sin(a)*sin(b)"],
+    ["sin(a)*cos(c) + cos(a)*cos(b)*sin(c)", "-sin(a)*sin(c) + cos(a)*cos(b)*cos(c)", "-cos(a)*sin(b)"],
+    ["sin(b)*sin(c)", "sin(b)*cos(c)", "cos(b)"],
+])  # fmt: skip
 JOINTS = {
     "universal": sf.Joint("j", "universal", "base", axis=(1, 0, 0), axis2=(0, 0.6, 0.8)),
     "Euler angles": sf.Joint("j", "general", "base", coordinates=("a", "b", "c"),
                              moving_rotation=sf.Rotation.rpy("c", "b", "a")),
-    "Euler angles z-x-z": sf.Joint("j", "general", "base", coordinates=("a", "b", "c"), moving_rotation=sf.Rotation.matrix(
-        "cos(a)*cos(c) - sin(a)*cos(b)*sin(c)", "-cos(a)*sin(c) - sin(a)*cos(b)*cos(c)", "sin(a)*sin(b)",
-        "sin(a)*cos(c) + cos(a)*cos(b)*sin(c)", "-sin(a)*sin(c) + cos(a)*cos(b)*cos(c)", "-cos(a)*sin(b)",
-        "sin(b)*sin(c)", "sin(b)*cos(c)", "cos(b)")),
+    "Euler angles z-x-z": sf.Joint("j", "general", "base", coordinates=("a", "b", "c"), moving_rotation=Z_X_Z),
     "a curve": sf.Joint("j", "general", "base", coordinates=("s",), moving_position=("cos(s)", "sin(s)", "s^2/4"),
                         moving_rotation=sf.Rotation.rpy(0, 0, "s + s^3/6")),
     "planar": sf.Joint("j", "planar", "base"),
@@ -107,7 +114,7 @@ def on_an_arm(kind: str) -> sf.System:
 def test_differences_in_40_digits(kind: str) -> None:
     """Speeds are rates of coordinates here, so q + h e_k moves along speed k."""
     system = on_an_arm(kind)
-    program = sf.program_of(system, sf.Options(functions=("inverse_dynamics",)))
+    program = sf.program_of(system, ("inverse_dynamics",))
     (function,) = program.functions
     m = sf.compile(system, sf.Options(functions=("inverse_dynamics_derivatives",)))
     rng = np.random.default_rng(1)
@@ -137,7 +144,10 @@ def test_differences_in_40_digits(kind: str) -> None:
 
 # Loops.
 
-CLOSED = ("four_bar", "slider_crank", "andrews_squeezer", "stewart", "grasp")
+# Planar loops are left out: a point of Pinocchio's has a condition across the plane that repeats nothing and binds
+# nothing, its Jacobian has a row of zeros, and of that its derivatives make wrong ones (on the four-bar by their own size,
+# at rest by nothing). Ours are there checked by differences, in tests/simulation/test_linear.py.
+CLOSED = ("stewart", "delta_rods", "grasp")
 
 
 @cache
@@ -145,30 +155,25 @@ def closed(name: str) -> tuple[sf.Model, pinocchio_loops.LoopEngine, States]:
     system = without_forces(MODELS[name])
     engine = pinocchio_loops.build(Subject(name, system))
     assert isinstance(engine, pinocchio_loops.LoopEngine)
-    m = sf.compile(system)
+    functions = (*FUNCTIONS, "constraint_jacobian", "constraint_bias", "generalized_force")
+    m = sf.compile(system, sf.Options(functions=functions))
     states = assembled_states(system, sample(assemble(system), m.nu, 40))
     return m, engine, with_forces(SymofrosEngine("symofros", m), states)[:4]
 
 
 @pytest.mark.parametrize("name", CLOSED)
 def test_closed_loops_against_pinocchio(name: str) -> None:
-    """computeConstraintDynamicsDerivatives, along directions that keep the loops closed."""
+    """computeConstraintDynamicsDerivatives, along changes of q and v that keep phi = 0 and G v = 0.
+
+    Along others, points that are apart or drift apart add terms to the conditions' second rates which each side states
+    in its own way.
+    """
     m, engine, states = closed(name)
-    theirs = engine.derivatives(states)
+    theirs = np.concatenate(engine.derivatives(states)[:2], axis=2)
+    assert len(states) == 4 and np.abs(states.v).max() > 0.1
     for i in range(len(states)):
         q, v, u = states.q[i], states.v[i], states.u[i]
-        ours = m.forward_dynamics_derivatives(q, v, u)
-        G = m.constraint_jacobian(q)
-        rank = np.linalg.matrix_rank(G, tol=1e-8)
-        along = np.linalg.svd(G)[2][rank:].T
-        print(
-            name,
-            [
-                float(np.abs((one - other[i]) @ along).max() / max(1, np.abs(one @ along).max()))
-                for one, other in zip(ours[:2], theirs[:2])
-            ],
-            [
-                float(np.abs((one - other[i])).max() / max(1, np.abs(one).max()))
-                for one, other in zip(ours[:2], theirs[:2])
-            ],
-        )
+        S = reduced(m, q, v, u)[2]
+        ours = np.concatenate(m.forward_dynamics_derivatives(q, v, u)[:2], axis=1) @ S
+        # By as much as the equations of closed loops amplify rounding, a hundred times.
+        assert np.abs(ours - theirs[i] @ S).max() <= 100 * TOLERANCE * max(1.0, np.abs(ours).max())
