@@ -144,8 +144,8 @@ def test_differences_in_40_digits(kind: str) -> None:
 
 # Loops.
 
-# Where Pinocchio 4.1's derivatives agree. On the others, whose points lie off the origin of the second body, they are off
-# by their own size, at rest as well; central differences of v' side with ours.
+# Where Pinocchio 4.1's derivatives agree. On the others, whose points lie off the origin of the second body, they are
+# off by their own size, at rest as well; central differences of v' side with ours.
 AGREED = ("stewart", "grasp")
 CLOSED = (*AGREED, "delta_rods", "four_bar", "slider_crank", "andrews_squeezer")
 
