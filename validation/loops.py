@@ -9,7 +9,8 @@ import numpy as np
 
 import symofros as sf
 from validation.adapters.compiled import SymofrosEngine
-from validation.closed import condition, of_clear_rank
+from validation.closed import RANK, condition, of_clear_rank
+from validation.conventions import times
 from validation.geometry import Array
 from validation.interface import States
 
@@ -19,7 +20,9 @@ MOST = 40
 TRIED = 4 * MOST
 # By how much M, each speed measured by its own inertia, and the constraints amplify rounding. Beside a posture where a
 # joint's axes align or a loop is at its limit, engines differ by that, and by nothing of theirs.
-WORST_CONDITION = 1e8
+WORST_CONDITION_OF_M, WORST_CONDITION = 1e5, 2e4
+# Share of gamma that may be out of reach: what redundant conditions leave of the postures' own error.
+CONSISTENT = 1e-8
 
 
 # What assembly and the judgement of its postures take.
@@ -45,6 +48,7 @@ def assembled_states(system: sf.System, states: States) -> States:
         return states[:0]
     q, v = np.array([one.q for one in found]), np.array([one.v for one in found])
     sound = _sound(model, q, states.u[kept])
+    sound[sound] = _consistent(model, q[sound], v[sound], states.u[kept][sound])
     started = _chosen(states, np.array(kept)[sound])
     return replace(started, q=q[sound], v=v[sound])[:MOST]
 
@@ -59,11 +63,19 @@ def _chosen(states: States, which: Any) -> States:
     return States(*(getattr(states, item.name)[which] for item in fields(States)))
 
 
+def _consistent(model: sf.Model, q: Array, v: Array, u: Array) -> Array:
+    """Where an acceleration keeps the constraints; at a singular posture not every v with G v = b has one."""
+    G, gamma = model.constraint_jacobian(q, u=u), model.constraint_bias(q, v, u=u)
+    left = times(G @ np.asarray(np.linalg.pinv(G, rcond=RANK), dtype=np.float64), gamma) - gamma
+    return np.asarray(np.abs(left).max(axis=1) < CONSISTENT * (1.0 + np.abs(gamma).max(axis=1)))
+
+
 def _sound(model: sf.Model, q: Array, u: Array) -> Array:
     M, G = model.mass_matrix(q, u=u), model.constraint_jacobian(q, u=u)
     size = np.sqrt(np.diagonal(M, axis1=1, axis2=2))
     scaled = M / (size[:, :, None] * size[:, None, :])
     found = of_clear_rank(M, G)
     for i in np.flatnonzero(found):
-        found[i] = np.linalg.cond(scaled[i]) * condition(M[i : i + 1], G[i : i + 1]) < WORST_CONDITION
+        amplified = condition(M[i : i + 1], G[i : i + 1])
+        found[i] = np.linalg.cond(scaled[i]) < WORST_CONDITION_OF_M and amplified < WORST_CONDITION
     return found

@@ -70,9 +70,8 @@ def _render(template: str, record: Record, **more: object) -> str:
 
 def _rounded(record: Record) -> list[Comparison]:
     """The comparisons that nothing but rounding stands between."""
-    return [
-        row for row in record.compared if row.quantity not in ("forward_dynamics", "energy_drift", "retained_order")
-    ]
+    rounded = {quantity.name for quantity in (*QUANTITIES.values(), MOTION_ENERGY) if quantity.tolerance == ROUNDING}
+    return [row for row in record.compared if row.quantity in rounded]
 
 
 def _short(number: float | None) -> str:

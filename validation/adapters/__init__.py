@@ -33,6 +33,7 @@ ROUTES: dict[str, Route] = {
     "pinocchio": Route("validation.adapters.pinocchio"),
     "mujoco": Route("validation.adapters.mujoco"),
     "pinocchio-loops": Route("validation.adapters.pinocchio_loops", loops=True),
+    "exudyn-loops": Route("validation.adapters.exudyn_loops", loops=True),
     "pinocchio-urdf": Route("validation.adapters.pinocchio_urdf", reads="urdf"),
     "mujoco-urdf": Route("validation.adapters.mujoco_urdf", reads="urdf"),
     "mujoco-mjcf": Route("validation.adapters.mujoco_mjcf", reads="mjcf"),
