@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.accuracy.findings import Chart, Curve, Mark
+from validation.findings import Chart, Curve, Mark
 
 WIDTH, HEIGHT = 620, 400
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 14, 30, 50
