@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from importlib import metadata
 from typing import Any
@@ -20,7 +20,7 @@ from validation.record import machine
 DIGITS = 5
 
 
-def render(template: str, filters: dict[str, Callable[..., object]], **values: object) -> str:
+def render(template: str, filters: Mapping[str, Callable[..., object]], **values: object) -> str:
     """A template of validation/templates with its values; HTML is escaped, `number` shows a float short."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("validation"), undefined=jinja2.StrictUndefined, trim_blocks=True,
