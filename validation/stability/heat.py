@@ -6,6 +6,7 @@ import math
 from html import escape
 
 import numpy as np
+import numpy.typing as npt
 
 from validation.charts import Axis, line, shown, text
 from validation.geometry import Array
@@ -87,7 +88,7 @@ def _cell(box: tuple[float, float, float, float], value: float, ended: str, boun
     return f'<rect class="{kind}-cell" fill-opacity="{depth:.2f}" {place}/>', decade
 
 
-def _edge(good: Array, columns: list[float], rows: list[float]) -> list[str]:
+def _edge(good: npt.NDArray[np.bool_], columns: list[float], rows: list[float]) -> list[str]:
     """Lines between cells that meet the criterion and cells that don't."""
     parts = []
     ny, nx = good.shape
