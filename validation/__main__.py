@@ -23,6 +23,7 @@ from validation.junit import to_junit
 from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
+from validation.stability import command as stability
 from validation.studies import fuzz_report, mutation_report, oracle, timing_report
 
 
@@ -150,6 +151,7 @@ accuracy.register(app)
 fuzz_report.register(app)
 mutation_report.register(app)
 oracle.register(app)
+stability.register(app)
 timing_report.register(app)
 
 if __name__ == "__main__":

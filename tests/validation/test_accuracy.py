@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from validation import charts
 from validation.__main__ import app
-from validation.accuracy import catalogue, charts
+from validation.accuracy import catalogue
 from validation.accuracy.elastica import exact
-from validation.accuracy.findings import Chart, Check, Curve, Mark, Study, exponent, near
 from validation.accuracy.report import Accuracy, write_report
+from validation.findings import Chart, Check, Curve, Mark, Study, exponent, near
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,8 @@ import scipy.linalg
 
 import symofros as sf
 from validation.accuracy.beams import cantilever, interpreted, squares, stiffness_and_mass
-from validation.accuracy.findings import Chart, Check, Curve, Figure, Mark, Study, exponent, near
 from validation.accuracy.reference import data, source
+from validation.findings import Chart, Check, Curve, Figure, Mark, Study, exponent, near
 from validation.geometry import Array
 
 FAMILIES = ("legendre", "polynomial", "spline", "clamped_free")

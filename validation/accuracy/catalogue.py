@@ -16,7 +16,7 @@ from validation.accuracy import (
     spinning,
     spinup,
 )
-from validation.accuracy.findings import Asked
+from validation.findings import Asked
 
 STUDIES: dict[str, Asked] = {
     "spinning": spinning.study,

@@ -14,8 +14,8 @@ from rich.table import Table
 
 import symofros as sf
 from validation.accuracy.catalogue import STUDIES
-from validation.accuracy.findings import Study
 from validation.accuracy.report import Accuracy, as_data, write_report
+from validation.findings import Study
 
 
 def register(app: typer.Typer) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from validation.accuracy.beams import spinning, spinning_squares
-from validation.accuracy.findings import Chart, Check, Curve, Figure, Study, exponent
 from validation.accuracy.reference import data, source
+from validation.findings import Chart, Check, Curve, Figure, Study, exponent
 from validation.geometry import Array
 
 ETA, DELTA = 12, 1

@@ -6,7 +6,7 @@ import numpy as np
 
 import symofros as sf
 from validation.accuracy.beams import FIRST, cantilever, motion
-from validation.accuracy.findings import Chart, Check, Curve, Figure, Mark, Study, near
+from validation.findings import Chart, Check, Curve, Figure, Mark, Study, near
 from validation.geometry import Array
 
 # Retardation time in units of sqrt(rhoA L^4/EI): the first mode has a damping ratio of about 0.02.

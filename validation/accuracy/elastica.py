@@ -8,9 +8,9 @@ import scipy.special
 
 import symofros as sf
 from validation.accuracy.beams import cantilever, interpreted
-from validation.accuracy.findings import Chart, Check, Curve, Figure, Mark, Study, near
 from validation.accuracy.reference import data, source
 from validation.adapters.exudyn_ancf import static_tip
+from validation.findings import Chart, Check, Curve, Figure, Mark, Study, near
 from validation.geometry import Array
 
 # Relative error of the tip's deflection, in per cent, whose beginning is looked for.

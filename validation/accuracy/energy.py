@@ -6,7 +6,7 @@ import numpy as np
 
 import symofros as sf
 from validation.accuracy.beams import motion
-from validation.accuracy.findings import Chart, Check, Curve, Figure, Mark, Study, exponent
+from validation.findings import Chart, Check, Curve, Figure, Mark, Study, exponent
 from validation.geometry import Array
 
 PERIOD = 2 * np.pi / 3.516

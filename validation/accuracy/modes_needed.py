@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from validation.accuracy.beams import spinning, spinning_squares
-from validation.accuracy.findings import Chart, Check, Curve, Figure, Kind, Study
 from validation.accuracy.reference import data, source
+from validation.findings import Chart, Check, Curve, Figure, Kind, Study
 from validation.geometry import Array
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)

@@ -8,7 +8,7 @@ import scipy.special
 
 import symofros as sf
 from validation.accuracy.beams import spinning, spinning_squares
-from validation.accuracy.findings import Chart, Check, Curve, Figure, Study
+from validation.findings import Chart, Check, Curve, Figure, Study
 from validation.geometry import Array
 
 MASSES = (0.0, 0.3, 1.0, 3.0)

@@ -8,8 +8,8 @@ import numpy as np
 
 import symofros as sf
 from validation.accuracy.beams import motion
-from validation.accuracy.findings import Chart, Check, Curve, Figure, Mark, Study, near
 from validation.accuracy.reference import data, source
+from validation.findings import Chart, Check, Curve, Figure, Mark, Study, near
 from validation.geometry import Array
 
 GRAVITY, END = 9.81, 2.0

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
-from validation.accuracy.findings import Chart, Check, Curve, Figure, Mark, Study, exponent
 from validation.adapters.exudyn_ancf import Strip, princeton
+from validation.findings import Chart, Check, Curve, Figure, Mark, Study, exponent
 from validation.geometry import Array
 
 # Dowell & Traybar 1975: loads of one, two and three pounds.

@@ -8,9 +8,9 @@ import numpy as np
 import scipy.optimize
 
 from validation.accuracy.beams import FIRST, spinning, spinning_squares
-from validation.accuracy.findings import Chart, Check, Curve, Figure, Kind, Mark, Study, near
 from validation.accuracy.reference import data, source
 from validation.adapters.exudyn_ancf import spinning_frequencies
+from validation.findings import Chart, Check, Curve, Figure, Kind, Mark, Study, near
 from validation.geometry import Array
 
 PLANES = {"flap": ("bend_z", "flap"), "lag": ("bend_y", "chord")}

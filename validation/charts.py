@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.accuracy.findings import Chart, Curve, Mark
+from validation.findings import Chart, Curve, Mark
 
 WIDTH, HEIGHT = 620, 400
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 14, 30, 50
@@ -60,18 +60,18 @@ def svg(chart: Chart) -> str:
     top = _TOP + _ROW * len(rows)
     x = _axis([_seen(curve, chart)[0] for curve in chart.curves], chart, "x", _LEFT, WIDTH - _RIGHT)
     y = _axis([_seen(curve, chart)[1] for curve in chart.curves], chart, "y", HEIGHT - _BOTTOM, top)
-    parts = [_text((_LEFT + WIDTH - _RIGHT) / 2, 16, escape(chart.title), "middle", "row")]
+    parts = [text((_LEFT + WIDTH - _RIGHT) / 2, 16, escape(chart.title), "middle", "row")]
     parts += [_legend(row, 16 + _ROW * (k + 1)) for k, row in enumerate(rows)]
     for value in x.ticks():
-        parts.append(_line("grid", x.at(value), x.at(value), y.start, y.end))
-        parts.append(_text(x.at(value), y.start + 17, _number(value, x.log), "middle", "tick"))
+        parts.append(line("grid", x.at(value), x.at(value), y.start, y.end))
+        parts.append(text(x.at(value), y.start + 17, shown(value, x.log), "middle", "tick"))
     for value in y.ticks():
-        parts.append(_line("grid", x.start, x.end, y.at(value), y.at(value)))
-        parts.append(_text(x.start - 7, y.at(value) + 4, _number(value, y.log), "end", "tick"))
-    parts += [_line("axis", x.start, x.end, y.start, y.start), _line("axis", x.start, x.start, y.start, y.end)]
+        parts.append(line("grid", x.start, x.end, y.at(value), y.at(value)))
+        parts.append(text(x.start - 7, y.at(value) + 4, shown(value, y.log), "end", "tick"))
+    parts += [line("axis", x.start, x.end, y.start, y.start), line("axis", x.start, x.start, y.start, y.end)]
     parts += [_curve(curve, chart, x, y) for curve in chart.curves]
     parts += [_mark(mark, x, y) for mark in chart.marks]
-    parts.append(_text((x.start + x.end) / 2, HEIGHT - 10, escape(chart.x), "middle", "name"))
+    parts.append(text((x.start + x.end) / 2, HEIGHT - 10, escape(chart.x), "middle", "name"))
     middle = (y.start + y.end) / 2
     turned = f'transform="rotate(-90 15 {middle:.0f})"'
     parts.append(f'<text class="name" x="15" y="{middle:.0f}" text-anchor="middle" {turned}>{escape(chart.y)}</text>')
@@ -141,11 +141,11 @@ def _mark(mark: Mark, x: Axis, y: Axis) -> str:
     label = escape(mark.label)
     if mark.axis == "y":
         at = y.at(mark.at)
-        return _line("limit", x.start, x.end, at, at) + _text(x.end - 4, at - 5, label, "end", "limit-name")
+        return line("limit", x.start, x.end, at, at) + text(x.end - 4, at - 5, label, "end", "limit-name")
     at = x.at(mark.at)
     turned = f'transform="rotate(-90 {at - 5:.1f} {y.end + 6:.1f})"'
-    text = f'<text class="limit-name" x="{at - 5:.1f}" y="{y.end + 6:.1f}" text-anchor="end" {turned}>{label}</text>'
-    return _line("limit", at, at, y.start, y.end) + text
+    name = f'<text class="limit-name" x="{at - 5:.1f}" y="{y.end + 6:.1f}" text-anchor="end" {turned}>{label}</text>'
+    return line("limit", at, at, y.start, y.end) + name
 
 
 def _legend_rows(curves: tuple[Curve, ...]) -> list[list[tuple[float, Curve]]]:
@@ -165,25 +165,27 @@ def _legend(row: list[tuple[float, Curve]], y: float) -> str:
     parts = []
     for x, curve in row:
         if curve.kind != "points":
-            line = f'<line class="plot {curve.kind} e{curve.color}" x1="{x:.0f}" x2="{x + 22:.0f}"'
-            parts.append(f'{line} y1="{y - 4:.0f}" y2="{y - 4:.0f}"/>')
+            sample = f'<line class="plot {curve.kind} e{curve.color}" x1="{x:.0f}" x2="{x + 22:.0f}"'
+            parts.append(f'{sample} y1="{y - 4:.0f}" y2="{y - 4:.0f}"/>')
         if curve.kind in ("points", "joined"):
             parts.append(f'<circle class="point e{curve.color}" cx="{x + 11:.0f}" cy="{y - 4:.0f}" r="3.5"/>')
-        parts.append(_text(x + 27, y, escape(curve.label), "start", "tick"))
+        parts.append(text(x + 27, y, escape(curve.label), "start", "tick"))
     return "".join(parts)
 
 
-def _number(value: float, log: bool) -> str:
+def shown(value: float, log: bool) -> str:
+    """A value of an axis: a power of ten where the axis is logarithmic and the value far from one."""
     if log and not 1e-2 <= value < 1e4:
         decade = f"{math.floor(math.log10(value) + 1e-9)}".replace("-", "−")
         return f'10<tspan dy="-5" font-size="9">{decade}</tspan>'
     return f"{0.0 if abs(value) < 1e-12 else value:.6g}".replace("-", "−")
 
 
-def _line(kind: str, x1: float, x2: float, y1: float, y2: float) -> str:
+def line(kind: str, x1: float, x2: float, y1: float, y2: float) -> str:
+    """A straight line of a kind that the style sheet knows."""
     return f'<line class="{kind}" x1="{x1:.1f}" x2="{x2:.1f}" y1="{y1:.1f}" y2="{y2:.1f}"/>'
 
 
-def _text(x: float, y: float, text: str, anchor: str, kind: str) -> str:
-    """A text that is escaped already; the only markup in it is our own (`_number`)."""
+def text(x: float, y: float, text: str, anchor: str, kind: str) -> str:
+    """A text that is escaped already; the only markup in it is our own (`shown`)."""
     return f'<text class="{kind}" x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{text}</text>'

@@ -1,0 +1,153 @@
+"""Map -> SVG text: a cell a run, the edge between good and bad, and closed forms over it; colours from the page."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+
+import numpy as np
+import numpy.typing as npt
+
+from validation.charts import Axis, line, shown, text
+from validation.geometry import Array
+from validation.stability.scene import FINISHED, Grid, Limit, Map
+
+WIDTH, HEIGHT = 620, 430
+_RIGHT, _TOP, _BOTTOM = 14, 66, 50
+_LETTER = 6.1
+# Decades below and above the bound at which colours are full.
+_DEEP = {"good": 8.0, "bad": 4.0}
+# Decades are written so far apart [px] that they can be read.
+_APART = (22.0, 12.5)
+
+
+def svg(found: Map, x: Grid, y: Grid, quantity: str) -> str:
+    """The map as an SVG element.
+
+    Args:
+        found: By one subject.
+        x: The parameter along.
+        y: The parameter across.
+        quantity: Of the criterion, with its unit.
+    """
+    longest = max(len(y.label(value)) for value in found.y) if y.labels else 0
+    left = 46.0 + (max(_LETTER * longest, 24.0))
+    columns, across = _borders(found.x, x, left, WIDTH - _RIGHT)
+    rows, down = _borders(found.y, y, HEIGHT - _BOTTOM, _TOP)
+    parts = [text((left + WIDTH - _RIGHT) / 2, 16, escape(found.subject.name), "middle", "row")]
+    parts += _legend(found, left, quantity)
+    every_x, every_y = _stride(columns, _APART[0]), _stride(rows, _APART[1])
+    for j, line_of_cells in enumerate(found.cells):
+        for i, one in enumerate(line_of_cells):
+            box = (columns[i], rows[j + 1], columns[i + 1] - columns[i], rows[j] - rows[j + 1])
+            rectangle, sign = _cell(box, one.value, one.ended, found.bound)
+            parts.append(rectangle)
+            if i % every_x == 0 and j % every_y == 0:
+                parts.append(text(box[0] + box[2] / 2, box[1] + box[3] / 2 + 3.5, sign, "middle", "decade"))
+    parts += _edge(found.good, columns, rows)
+    parts += _named(found.x, x, across, columns, "x", rows[0])
+    parts += _named(found.y, y, down, rows, "y", left)
+    parts += [_limit(limit, across, down, k) for k, limit in enumerate(found.subject.limits)]
+    parts.append(text((left + WIDTH - _RIGHT) / 2, HEIGHT - 10, escape(x.name), "middle", "name"))
+    middle = (_TOP + HEIGHT - _BOTTOM) / 2
+    turned = f'transform="rotate(-90 15 {middle:.0f})"'
+    parts.append(f'<text class="name" x="15" y="{middle:.0f}" text-anchor="middle" {turned}>{escape(y.name)}</text>')
+    box_of_all = f'viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(found.subject.name)}"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" class="map" {box_of_all}>{"".join(parts)}</svg>'
+
+
+def _borders(values: Array, grid: Grid, start: float, end: float) -> tuple[list[float], Axis | None]:
+    """Where cells meet [px], halfway between neighbours, and the axis; None for categories, which are evenly spaced."""
+    n = len(values)
+    if grid.labels or n == 1:
+        return [start + (end - start) * k / n for k in range(n + 1)], None
+    at = np.log10(values) if grid.log else values
+    middle = (at[1:] + at[:-1]) / 2
+    ends = np.array([2 * at[0] - middle[0], *middle, 2 * at[-1] - middle[-1]])
+    axis = Axis(float(ends[0]), float(ends[-1]), start, end, grid.log)
+    return [start + (end - start) * (e - ends[0]) / (ends[-1] - ends[0]) for e in ends], axis
+
+
+def _stride(borders: list[float], apart: float) -> int:
+    """Every how many cells a decade can be written."""
+    return math.ceil(apart / float(np.median(np.abs(np.diff(borders)))) - 1e-9)
+
+
+def _cell(box: tuple[float, float, float, float], value: float, ended: str, bound: float) -> tuple[str, str]:
+    """The rectangle, and what is written into it."""
+    left, top, width, height = box
+    place = f'x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" height="{height:.1f}"'
+    if ended not in FINISHED:
+        kind = "refused" if ended == "refused" else "ended"
+        sign = "r" if ended == "refused" else "×"
+        return f'<rect class="{kind}" {place}/>', sign
+    over = math.log10(max(value, 1e-300) / bound)
+    kind = "bad" if over > 0.0 else "good"
+    depth = 0.12 + 0.78 * min(abs(over) / _DEEP[kind], 1.0)
+    decade = f"{min(max(round(math.log10(max(value, 1e-300))), -99), 99)}".replace("-", "−")
+    return f'<rect class="{kind}-cell" fill-opacity="{depth:.2f}" {place}/>', decade
+
+
+def _edge(good: npt.NDArray[np.bool_], columns: list[float], rows: list[float]) -> list[str]:
+    """Lines between cells that meet the criterion and cells that don't."""
+    parts = []
+    ny, nx = good.shape
+    for j in range(ny):
+        for i in range(nx):
+            if i + 1 < nx and good[j, i] != good[j, i + 1]:
+                parts.append(line("edge", columns[i + 1], columns[i + 1], rows[j], rows[j + 1]))
+            if j + 1 < ny and good[j, i] != good[j + 1, i]:
+                parts.append(line("edge", columns[i], columns[i + 1], rows[j + 1], rows[j + 1]))
+    return parts
+
+
+def _named(values: Array, grid: Grid, axis: Axis | None, borders: list[float], name: str, edge: float) -> list[str]:
+    if axis is None:
+        places = [(borders[k] + borders[k + 1]) / 2 for k in range(len(values))]
+        pairs = [(place, escape(grid.label(value))) for place, value in zip(places, values, strict=True)]
+    else:
+        pairs = [(axis.at(value), shown(value, axis.log)) for value in axis.ticks()]
+    if name == "x":
+        return [text(at, edge + 17, label, "middle", "tick") for at, label in pairs]
+    return [text(edge - 7, at + 4, label, "end", "tick") for at, label in pairs]
+
+
+def _limit(limit: Limit, across: Axis | None, down: Axis | None, k: int) -> str:
+    """The part of a closed form that lies on the map; its name stands in the legend."""
+    if across is None or down is None:
+        return ""
+    xs, ys = np.asarray(limit.x, float), np.asarray(limit.y, float)
+    fine = np.linspace(0.0, len(xs) - 1.0, 40 * len(xs))
+    known = np.arange(len(xs))
+
+    def along(values: Array, axis: Axis) -> Array:
+        return np.asarray(np.interp(fine, known, np.log10(values) if axis.log else values))
+
+    a, b = along(xs, across), along(ys, down)
+    inside = (a >= across.low) & (a <= across.high) & (b >= down.low) & (b <= down.high)
+    if not inside.any():
+        return ""
+    px = across.start + (a - across.low) / (across.high - across.low) * (across.end - across.start)
+    py = down.start + (b - down.low) / (down.high - down.low) * (down.end - down.start)
+    points = " ".join(f"{u:.1f},{w:.1f}" for u, w in zip(px[inside], py[inside], strict=True))
+    return f'<polyline class="form f{k}" points="{points}"/>'
+
+
+def _legend(found: Map, left: float, quantity: str) -> list[str]:
+    """What colours, signs and lines mean."""
+    bound = f"{found.bound:.3g}".replace("-", "−")
+    parts, x = [], left
+    items = [("good-cell", f"at most {bound}"), ("bad-cell", "more")]
+    ended = {c.ended for row in found.cells for c in row}
+    items += [("ended", "ended before (×)")] if ended - {*FINISHED, "refused"} else []
+    items += [("refused", "refused (r)")] if "refused" in ended else []
+    parts.append(text(left, 34, f"numbers: decade of the {escape(quantity)}", "start", "tick"))
+    for kind, label in items:
+        parts.append(f'<rect class="{kind}" fill-opacity="0.6" x="{x:.0f}" y="44" width="12" height="12"/>')
+        parts.append(text(x + 17, 54, escape(label), "start", "tick"))
+        x += 32 + _LETTER * len(label)
+    for k, limit in enumerate(found.subject.limits):
+        parts.append(f'<line class="form f{k}" x1="{x:.0f}" x2="{x + 20:.0f}" y1="50" y2="50"/>')
+        parts.append(text(x + 25, 54, escape(limit.label), "start", "tick"))
+        x += 40 + _LETTER * len(limit.label)
+    return parts

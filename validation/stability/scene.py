@@ -1,0 +1,275 @@
+"""A scene of the atlas as data: a question, two parameters, a criterion, who is asked, what follows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+import symofros as sf
+from validation.findings import Check
+from validation.geometry import Array
+
+# What an Outcome is called when nothing went wrong, here as in `symofros.Outcome`.
+FINISHED = ("finished", "event")
+# A description that is not compiled, or a state that is not assembled: an error in words, before anything moves.
+REFUSED = "refused"
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The values of one parameter.
+
+    Attributes:
+        name: With its unit.
+        values: Of the whole map, rising.
+        few: Of the quick one.
+        labels: Of categories, whose values are 0, 1, 2, ...
+        log: Whether it is drawn by its logarithm.
+    """
+
+    name: str
+    values: tuple[float, ...]
+    few: tuple[float, ...]
+    labels: tuple[str, ...] = ()
+    log: bool = True
+
+    @classmethod
+    def of(cls, name: str, labels: tuple[str, ...], few: tuple[str, ...] = ()) -> Grid:
+        """Categories."""
+        return cls(name, tuple(map(float, range(len(labels)))), tuple(float(labels.index(x)) for x in few or labels),
+                   labels, log=False)  # fmt: skip
+
+    def chosen(self, quick: bool) -> tuple[float, ...]:
+        """The values to run."""
+        return self.few if quick else self.values
+
+    def label(self, value: float) -> str:
+        """A value for people."""
+        return self.labels[int(value)] if self.labels else f"{value:.4g}"
+
+
+def decades(low: float, high: float, each: int) -> tuple[float, ...]:
+    """Values from low to high, so many a decade, evenly by their logarithms."""
+    count = round(math.log10(high / low) * each)
+    return tuple(float(f"{x:.4g}") for x in np.geomspace(low, high, count + 1))
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One run.
+
+    Attributes:
+        value: Of the criterion's quantity; NaN if the run did not come to its end.
+        ended: The kind of its Outcome, or "refused".
+        note: What was said: the reason of the end, or the first line of the refusal.
+    """
+
+    value: float
+    ended: str = "finished"
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        """A run that is said to have come to its end has a number."""
+        if self.ended in FINISHED and not math.isfinite(self.value):
+            raise ArithmeticError(f"a run is said to be {self.ended} and has no number: {self.value} {self.note}")
+
+
+def cell(run: sf.Trajectory, value: Callable[[sf.Trajectory], float]) -> Cell:
+    """What a run comes to; its notes are kept."""
+    outcome = run.outcome
+    note = "; ".join((outcome.reason, *outcome.notes))
+    if not outcome.ok:
+        return Cell(math.nan, outcome.kind, note)
+    # A criterion that overflows belongs to a run whose states grew without bound, but not to infinity.
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = float(value(run))
+    return Cell(found if math.isfinite(found) else 1e300, outcome.kind, note)
+
+
+def refused(error: Exception) -> Cell:
+    """What was not begun, in words."""
+    return Cell(math.nan, REFUSED, str(error).splitlines()[0])
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A line over the map: a closed form.
+
+    Attributes:
+        label: Its name.
+        x: Points (n); for categories, between -0.5 and their number - 0.5.
+        y: Points (n).
+    """
+
+    label: str
+    x: Array
+    y: Array
+
+
+@dataclass(frozen=True)
+class Subject:
+    """Who is asked.
+
+    Attributes:
+        name: A method, a formulation, or an engine.
+        measure: (x, y) -> what the run comes to.
+        limits: Closed forms.
+    """
+
+    name: str
+    measure: Callable[[float, float], Cell]
+    limits: tuple[Limit, ...] = ()
+
+
+@dataclass(frozen=True)
+class Map:
+    """What one subject comes to, all over the grid.
+
+    Attributes:
+        subject: Whose it is.
+        x: Values (nx).
+        y: Values (ny).
+        cells: (ny, nx).
+        bound: Of the criterion.
+    """
+
+    subject: Subject
+    x: Array
+    y: Array
+    cells: tuple[tuple[Cell, ...], ...]
+    bound: float
+
+    @cached_property
+    def values(self) -> Array:
+        """(ny, nx), NaN where a run did not come to its end."""
+        return np.array([[c.value for c in row] for row in self.cells])
+
+    @cached_property
+    def good(self) -> npt.NDArray[np.bool_]:
+        """Where the criterion is met (ny, nx)."""
+        with np.errstate(invalid="ignore"):
+            return np.asarray(self.values <= self.bound)
+
+    def count(self, *kinds: str) -> int:
+        """Runs that ended so."""
+        return sum(c.ended in kinds for row in self.cells for c in row)
+
+    @property
+    def stopped(self) -> int:
+        """Runs that ended by themselves before their end, with an Outcome, or were refused."""
+        return sum(c.ended not in FINISHED for row in self.cells for c in row)
+
+    @property
+    def wrong(self) -> int:
+        """Runs that came to their end and miss the criterion: nothing but a check of the result tells."""
+        return int((~self.good).sum()) - self.stopped
+
+    def at(self, x: float | None = None, y: float | None = None) -> Array:
+        """The values of a row, of a column, or of one cell (an array of one)."""
+        columns = slice(None) if x is None else [self._index(self.x, x)]
+        rows = slice(None) if y is None else [self._index(self.y, y)]
+        return np.asarray(self.values[rows][:, columns]).ravel()
+
+    def noted(self, x: float, y: float) -> Cell:
+        """One run."""
+        return self.cells[self._index(self.y, y)][self._index(self.x, x)]
+
+    @staticmethod
+    def _index(values: Array, value: float) -> int:
+        return int(np.argmin(np.abs(values - value)))
+
+    def edge(self, axis: str) -> list[tuple[float, float, float]]:
+        """(other parameter, last good, first bad) of each line along an axis that begins good and turns bad."""
+        along, across, good = (self.y, self.x, self.good.T) if axis == "y" else (self.x, self.y, self.good)
+        found = []
+        for other, line in zip(across, good, strict=True):
+            if line[0] and not line.all():
+                first = int(np.argmin(line))
+                found.append((float(other), float(along[first - 1]), float(along[first])))
+        return found
+
+    def miss(self, axis: str, limit: Callable[[float], float]) -> float:
+        """The largest factor by which a closed form lies outside the steps of the grid where good turns bad.
+
+        Args:
+            axis: Of the parameter that the closed form bounds.
+            limit: The other parameter -> that bound.
+
+        Returns:
+            1 where the grid can't tell the edge from the closed form; NaN where there is no edge.
+        """
+        factors = [max(low / limit(other), limit(other) / high, 1.0) for other, low, high in self.edge(axis)]
+        return max(factors, default=math.nan)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What follows from the maps.
+
+    Attributes:
+        words: With the numbers found.
+        see: What to see in the maps.
+        checks: Claims with bounds.
+    """
+
+    words: str
+    see: str
+    checks: tuple[Check, ...]
+
+
+Maps = dict[str, Map]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One page of the atlas.
+
+    Attributes:
+        question: What it asks.
+        setting: What moves, from where, for how long.
+        x: Parameter along; y: across.
+        quantity: What the criterion bounds, with its unit.
+        bound: Its bound: at most so much is good.
+        subjects: Who is asked.
+        judge: Maps by subject -> verdict.
+        advice: What to do, and what to use instead.
+        sources: Of closed forms and reference numbers.
+    """
+
+    question: str
+    setting: str
+    x: Grid
+    y: Grid
+    quantity: str
+    bound: float
+    subjects: tuple[Subject, ...]
+    judge: Callable[[Maps], Verdict]
+    advice: str
+    sources: tuple[str, ...] = field(default=())
+
+    def runs(self, quick: bool) -> int:
+        """How many runs it takes."""
+        return len(self.subjects) * len(self.x.chosen(quick)) * len(self.y.chosen(quick))
+
+
+def survey(scene: Scene, quick: bool, done: Callable[[], None] = lambda: None) -> Maps:
+    """Run every cell of every map; `done` is called after each."""
+    xs, ys = scene.x.chosen(quick), scene.y.chosen(quick)
+
+    def measured(subject: Subject, x: float, y: float) -> Cell:
+        found = subject.measure(x, y)
+        done()
+        return found
+
+    return {
+        subject.name: Map(
+            subject, np.array(xs), np.array(ys),
+            tuple(tuple(measured(subject, x, y) for x in xs) for y in ys), scene.bound,
+        )
+        for subject in scene.subjects
+    }  # fmt: skip
