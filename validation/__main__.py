@@ -24,7 +24,7 @@ from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
 from validation.stability import command as stability
-from validation.studies import fuzz_report, mutation_report, oracle, timing_report
+from validation.studies import fuzz_report, mutation_report, oracle, simulation_report, timing_report
 
 
 class Exit(IntEnum):
@@ -153,6 +153,7 @@ mutation_report.register(app)
 oracle.register(app)
 stability.register(app)
 timing_report.register(app)
+simulation_report.register(app)
 
 if __name__ == "__main__":
     app()

@@ -1,0 +1,204 @@
+"""Motions, ours and the engines' at equal accuracy: how much faster than real time, and than they."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+from time import perf_counter
+
+import numpy as np
+
+import reference_models
+import symofros as sf
+from validation.accuracy import spinup
+from validation.accuracy.reference import data
+from validation.adapters import mujoco, mujoco_motion
+from validation.adapters.exudyn_ancf import spin_up
+from validation.interface import Subject, Unsupported
+from validation.stability import four_bars
+from validation.stability.singular import ends_of_crank
+from validation.stability.soft_closures import SOLIMP
+from validation.studies.timing import models
+
+# Of each joint [N m/rad, N m s/rad]: what RK4 with a millisecond holds at the wrist, whose inertia is the smallest.
+STIFFNESS, DAMPING, TARGET = 20.0, 1.0, 0.4
+
+
+@dataclass(frozen=True)
+class Side:
+    """One way through a scene.
+
+    Attributes:
+        how: Method and step, in words.
+        error: Against the scene's reference, in its unit.
+        seconds: Minimum and median over the repeats.
+    """
+
+    how: str
+    error: float
+    seconds: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Race:
+    """One scene.
+
+    Attributes:
+        scene: What moves.
+        span: Seconds of motion.
+        measure: What errors are of, with the reference.
+        ours: Our side.
+        engine: Whose the other side is; "" where there is none.
+        theirs: The other side.
+        ratio: Median over the repeats of theirs / ours; 0 where there is no other.
+    """
+
+    scene: str
+    span: float
+    measure: str
+    ours: Side
+    engine: str = ""
+    theirs: Side | None = None
+    ratio: float = 0.0
+
+    @property
+    def real_time(self) -> float:
+        """Seconds of motion a second of ours, at our fastest."""
+        return self.span / self.ours.seconds[0]
+
+
+def done(run: sf.Trajectory) -> sf.Trajectory:
+    """A run that came to its end.
+
+    Raises:
+        ValueError: It did not, so its time means nothing.
+    """
+    if not run.outcome.ok:
+        raise ValueError(f"{run.model.record.name}: {run.outcome}")
+    return run
+
+
+Timed = Callable[[], tuple[float, float]]  # -> error, seconds
+
+
+def race(scene: str, span: float, measure: str, ours: tuple[str, Timed], repeats: int,
+         other: tuple[str, str, Timed] | None = None) -> Race:  # fmt: skip
+    """Run both sides in turn, so often."""
+    times: tuple[list[float], list[float]] = ([], [])
+    errors = [0.0, 0.0]
+    sides = [ours[1], *([other[2]] if other else [])]
+    for _ in range(repeats):
+        for k, side in enumerate(sides):
+            errors[k], seconds = side()
+            times[k].append(seconds)
+    summary = [(min(side), median(side)) if side else (0.0, 0.0) for side in times]
+    mine = Side(ours[0], errors[0], summary[0])
+    if other is None:
+        return Race(scene, span, measure, mine)
+    ratio = median(b / a for a, b in zip(*times, strict=True))
+    return Race(scene, span, measure, mine, other[0], Side(other[1], errors[1], summary[1]), ratio)
+
+
+def arm(repeats: int, span: float = 10.0, h: float = 1e-3) -> Race:
+    """A 7-joint arm under PD control, by RK4 with steps of a millisecond on both sides.
+
+    Raises:
+        ValueError: MuJoCo can't hold the arm.
+    """
+    panda = models()["panda, 7 joints"]
+    bodies = [body if body.joint is None else replace(body, joint=replace(body.joint, elements=()))
+              for body in panda.bodies]  # fmt: skip
+    system = replace(panda, bodies=tuple(bodies))
+    m = sf.compile(system)
+    engine = mujoco.build(Subject("panda7", system))
+    if isinstance(engine, Unsupported):
+        raise ValueError(f"MuJoCo: {engine.reason}")
+    q0, v0, targets = m.neutral(), np.zeros(m.nv), np.full(m.nq, TARGET)
+    joints = dict(zip(m.names.u, m.names.q, strict=True))
+    law = {u: f"{STIFFNESS}*({TARGET} - {q}) - {DAMPING}*d{q}" for u, q in joints.items()}
+    exact = done(sf.simulate(m, q0, v0, span, u=law, method="dop853", rtol=1e-12, atol=1e-12)).q[-1]
+
+    def ours() -> tuple[float, float]:
+        run = done(sf.simulate(m, q0, v0, span, u=law, method="rk4", dt=h, every=100))
+        return float(np.abs(run.q[-1] - exact).max()), run.statistics.seconds
+
+    def theirs() -> tuple[float, float]:
+        q, _, seconds = mujoco_motion.servo(engine, q0, v0, targets, STIFFNESS, DAMPING, h, round(span / h))
+        return float(np.abs(q - exact).max()), seconds
+
+    step = f"RK4, {1e3 * h:g} ms"
+    return race("panda, 7 joints, PD control", span, "joints at the end, against dop853 at 1e-12 [rad]", (step, ours),
+                repeats, ("MuJoCo, mj_step", step, theirs))  # fmt: skip
+
+
+def four_bar(repeats: int, span: float = 10.0) -> Race:
+    """A four-bar through its singular posture twice a turn; MuJoCo's closures are soft."""
+    m = four_bars.linkage(1)
+    q, v = four_bars.state(m, *four_bars.START)
+    h_ours, h_theirs = 5e-3, 1e-4
+
+    def ours() -> tuple[float, float]:
+        run = done(sf.simulate(m, q, v, span, method="rk4", dt=h_ours, every=100))
+        end = np.array([np.cos(run.q[-1, 0]), np.sin(run.q[-1, 0])])
+        return float(four_bars.tip_error(1, span, end)), run.statistics.seconds
+
+    def theirs() -> tuple[float, float]:
+        text = four_bars.mjcf(1, "RK4", h_theirs, "0.002 1", SOLIMP)
+        began = perf_counter()
+        moved = mujoco_motion.move(text, np.zeros(m.nq), v, span, samples=1)
+        return float(four_bars.tip_error(1, span, ends_of_crank(moved.q))), perf_counter() - began
+
+    return race("four-bar through its singular posture", span, "tip of the crank at the end, exact [m]",
+                (f"RK4, {1e3 * h_ours:g} ms, projection", ours), repeats,
+                ("MuJoCo, mj_step", f"RK4, {1e3 * h_theirs:g} ms, stiff soft closures", theirs))  # fmt: skip
+
+
+def planar_robot(repeats: int, span: float = 2.0, h: float = 1e-3) -> Race:
+    """The paper's robot, friction and all, let go with turning joints."""
+    m = sf.compile(reference_models.MODELS["planar_robot"])
+    v0 = np.zeros(m.nv)
+    v0[[m.names.v.index(name) for name in ("q1", "q2", "q3")]] = 0.5, -0.8, 0.6
+    exact = sf.simulate(m, None, v0, span, method="rodas4", rtol=1e-9, atol=1e-10).q[-1]
+
+    def ours() -> tuple[float, float]:
+        run = done(sf.simulate(m, None, v0, span, method="rk4", dt=h, every=100))
+        return float(np.abs(run.q[-1] - exact).max()), run.statistics.seconds
+
+    return race("planar flexible robot with friction", span, "coordinates at the end, against rodas4 at 1e-9 [rad, m]",
+                (f"RK4, {1e3 * h:g} ms", ours), repeats)  # fmt: skip
+
+
+def spinning_beam(repeats: int, span: float = 15.0, meshes: Sequence[tuple[int, float]] = ((2, 0.05), (4, 0.05),
+                  (4, 0.025), (8, 0.025), (8, 0.0125), (16, 0.0025))) -> Race:  # fmt: skip
+    """Spin-up: three modes against the coarsest of Exudyn's meshes and steps that errs no more."""
+    rod = data("spin_up")["exact_inextensible_rod"]
+    times = np.array([t for t in rod["t"] if t <= span])
+    exact = np.stack([rod["tip_x"], rod["tip_y"]], axis=-1)[: len(times)]
+    hub = sf.Joint("hub", "revolute", prescribed=True)
+    beam = sf.Beam("b", hub, spinup.LENGTH, spinup.RHO_A, EI_z=spinup.EI, bend_y=3, family="clamped_free")
+    m = sf.compile(sf.System("spin_up", (beam,), gravity=(0, 0, 0)))
+    k, rate = 2 * np.pi / spinup.END, spinup.RATE / spinup.END
+    law = {"hub": f"{rate!r}*(t^2/2 + (cos({k!r}*t) - 1)/{k * k!r})", "dhub": f"{rate!r}*(t - sin({k!r}*t)/{k!r})",
+           "ddhub": f"{rate!r}*(1 - cos({k!r}*t))"}  # fmt: skip
+
+    def ours() -> tuple[float, float]:
+        run = done(sf.simulate(m, t_end=span, u=law, method="rk4", dt=2e-2, output=times))
+        c, s = np.cos(run["hub"]), np.sin(run["hub"])
+        place = run.frames["tip"][0]
+        tip = np.stack([c * place[:, 0] + s * place[:, 1] - spinup.LENGTH, c * place[:, 1] - s * place[:, 0]], axis=-1)
+        return float(np.abs(tip - exact).max()), run.statistics.seconds
+
+    def exudyn(elements: int, step: float) -> tuple[float, float]:
+        began = perf_counter()
+        t, tip = spin_up(elements, step, span, spinup.STRETCH)
+        seconds = perf_counter() - began
+        at = np.searchsorted(t, times - 1e-6)
+        return float(np.abs(tip[np.minimum(at, len(t) - 1)] - exact).max()), seconds
+
+    bound = ours()[0]
+    chosen = next((mesh for mesh in meshes if exudyn(*mesh)[0] <= bound), meshes[-1])
+    return race("spin-up of a beam on a driven hub", span, "tip over the run, against the exact rod [m]",
+                ("3 modes, RK4, 20 ms", ours), repeats,
+                ("Exudyn, ANCFCable2D", f"{chosen[0]} elements, generalised alpha, {1e3 * chosen[1]:g} ms",
+                 lambda: exudyn(*chosen)))  # fmt: skip
