@@ -46,6 +46,7 @@ from symofros.kinematics.joint import neutral_coordinates
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS, Options
 from symofros.passes import run_passes
 from symofros.runtime.build import build_library
+from symofros.runtime.functions import Rate
 from symofros.runtime.kernel import Unit
 from symofros.runtime.library import CompiledUnit
 from symofros.runtime.model import Key, Model
@@ -165,7 +166,9 @@ class _Builder:
 
     def formulas(self, formulas: tuple[Any, ...]) -> Unit:
         """Numbers, formula texts or SymPy expressions over the model's names, with their derivatives."""
-        values = tuple(as_value(formula, f"system '{self._tree.system.name}': formula") for formula in formulas)
+        stated = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
+        what = f"system '{self._tree.system.name}': formula"
+        values = [(as_value(item.formula, what), item.order) for item in stated]
         program = run_passes(formula_program(self._tree, values))
         return self._unit(program, lambda: model_source(program, self._record, GENERATOR))
 

@@ -30,6 +30,19 @@ class Names:
     constraints: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class Rate:
+    """A formula of t and parameters, differentiated by t.
+
+    Attributes:
+        formula: Text or SymPy expression.
+        order: How often.
+    """
+
+    formula: Any
+    order: int
+
+
 class Functions:
     """The functions of one mechanism by name, with its sizes, names and parameter values.
 
@@ -120,7 +133,7 @@ class Functions:
         """Formulas over the model's names, compiled: (q, v, u, t) -> values, and derivatives by q and by v.
 
         Args:
-            formulas: Numbers, texts such as "10*(sin(t) - q1) - dq1", or SymPy expressions.
+            formulas: Numbers, texts such as "10*(sin(t) - q1) - dq1", SymPy expressions, or Rates of them.
 
         Raises:
             UnknownNameError: A formula uses a name that the mechanism lacks.

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.runtime.functions import Rate
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model
 
@@ -126,4 +127,28 @@ def _by_name(model: Model, given: Mapping[str, Any], constant: Array) -> InputPl
             plan.constant[i] = value
         else:
             plan.formulas[i] = value
+    _complete_motions(model, given, plan)
     return plan
+
+
+def _complete_motions(model: Model, given: Mapping[str, Any], plan: InputPlan) -> None:
+    """The rates of prescribed motions: of numbers zero, of formulas of t their derivatives; otherwise they are asked for.
+
+    A motion whose speeds did not belong to its places would be silently wrong.
+    """
+    names = model.names.u
+    driven = names[len(names) - model.record.driven :]
+    for name in driven:
+        if name not in given or f"d{name}" not in driven or f"d{name}" in given:
+            continue
+        value = given[name]
+        if isinstance(value, (int, float, np.floating)):
+            continue
+        if isinstance(value, Signal):
+            raise UnknownNameError(str(Problem(
+                f"model '{model.record.name}': input '{name}' prescribes a motion without its speeds", "a Signal",
+                f"samples of '{name}' say nothing of 'd{name}' between them", f"give 'd{name}' as well, or a formula",
+            )))  # fmt: skip
+        plan.formulas[names.index(f"d{name}")] = Rate(value, 1)
+        if f"dd{name}" in driven and f"dd{name}" not in given:
+            plan.formulas[names.index(f"dd{name}")] = Rate(value, 2)

@@ -53,7 +53,7 @@ def simulate(
         t_end: Where to end [s].
         u: Inputs: an array (nu), a Signal of all, a mapping from input names to numbers, formulas (of coordinates,
             speeds, parameters and t, compiled to C) and Signals, or a function (t, q, v) -> (nu), called from the loop
-            and hence slow. Those not given are zero.
+            and hence slow. Those not given are zero, but for the rates of a prescribed motion that is a formula of t.
         method: Fixed steps: "rk4", "semi_implicit_euler", "euler"; implicit ones, for stiff beams and joints:
             "implicit_euler", "generalized_alpha"; for long conservative runs, "variational". Steps chosen by `rtol`
             and `atol`: "dopri5", "dop853" and, for stiff models, "rodas4"; SUNDIALS' "cvode" (stiff) and

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import threading
 import warnings
 
 import numpy as np
@@ -105,6 +108,23 @@ class TestInputs:
         run = sf.simulate(cart_pole, t_end=1.0, u=call)
         assert run.outcome.kind == "input failed" and "no more" in run.outcome.reason
         assert 0.09 < run.t[-1] < 0.11
+
+    def test_rates_of_a_prescribed_motion(self) -> None:
+        """A hub that is driven by a formula: its rates come by themselves, and as if they were given."""
+        hub = sf.RigidBody(
+            "hub", sf.Joint("turn", "revolute", axis=(0, 1, 0), prescribed=True), frames=[sf.Frame("end", (1, 0, 0))]
+        )
+        bar = sf.RigidBody("bar", sf.Joint("q", "revolute", "hub", "end", axis=(0, 1, 0)),
+                           sf.Inertia(1.0, (0.5, 0, 0), (0, 0.1, 0.1)))  # fmt: skip
+        model = sf.compile(sf.System("driven", [hub, bar]))
+        alone = sf.simulate(model, t_end=0.5, u={"turn": "sin(3*t)^2"})
+        stated = {"turn": "sin(3*t)^2", "dturn": "3*sin(6*t)", "ddturn": "18*cos(6*t)"}
+        np.testing.assert_allclose(alone.q, sf.simulate(model, t_end=0.5, u=stated).q, atol=1e-12)
+        np.testing.assert_allclose(alone["dturn"], 3 * np.sin(6 * alone.t), atol=1e-13)
+        with pytest.raises(sf.UnknownNameError, match="without its speeds"):
+            sf.simulate(model, u={"turn": sf.Signal([0, 1], [0, 1])})
+        with pytest.raises(sf.DescriptionError, match="depends on 'q'"):
+            sf.simulate(model, u={"turn": "q"})
 
     @pytest.mark.parametrize(
         ("u", "error", "words"),
@@ -251,6 +271,16 @@ class TestEnds:
             model = sf.compile(MODELS["pendulum"], sf.Options(backend="interpreter"))
         with pytest.raises(sf.SymofrosError, match="interpreted model"):
             sf.simulate(model)
+
+
+def test_a_real_ctrl_c() -> None:
+    """The signal reaches Python between two spells of C, within a tenth of a second or so."""
+    model = sf.compile(MODELS["double_pendulum"])
+    sf.simulate(model, t_end=1e-3)  # Compiled beforehand.
+    timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    run = sf.simulate(model, [1.0, 0.5], t_end=1e5, dt=1e-3, every=10_000)
+    assert run.outcome.kind == "interrupted" and 0 < run.t[-1] < 1e5 and len(run) > 1
 
 
 class TestStructure:
