@@ -132,7 +132,7 @@ def _by_name(model: Model, given: Mapping[str, Any], constant: Array) -> InputPl
 
 
 def _complete_motions(model: Model, given: Mapping[str, Any], plan: InputPlan) -> None:
-    """The rates of prescribed motions: of numbers zero, of formulas of t their derivatives; otherwise they are asked for.
+    """The rates of prescribed motions: of numbers zero, of formulas of t their derivatives; of samples, asked for.
 
     A motion whose speeds did not belong to its places would be silently wrong.
     """

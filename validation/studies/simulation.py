@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from statistics import median
 from time import perf_counter
 
@@ -16,6 +17,7 @@ from validation.accuracy.reference import data
 from validation.adapters import mujoco, mujoco_motion
 from validation.adapters.exudyn_ancf import spin_up
 from validation.interface import Subject, Unsupported
+from validation.reference import References
 from validation.stability import four_bars
 from validation.stability.singular import ends_of_crank
 from validation.stability.soft_closures import SOLIMP
@@ -202,3 +204,67 @@ def spinning_beam(repeats: int, span: float = 15.0, meshes: Sequence[tuple[int, 
                 ("3 modes, RK4, 20 ms", ours), repeats,
                 ("Exudyn, ANCFCable2D", f"{chosen[0]} elements, generalised alpha, {1e3 * chosen[1]:g} ms",
                  lambda: exudyn(*chosen)))  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Benchmark:
+    """One of the multibody benchmarks of the IFToMM library.
+
+    Attributes:
+        name: Its name there.
+        span: Seconds of motion.
+        how: Method and tolerance or step.
+        measure: What `error` is of.
+        error: Found.
+        threshold: The library's, or what the reference is good to.
+        seconds: Of the stepping, the least of the repeats.
+    """
+
+    name: str
+    span: float
+    how: str
+    measure: str
+    error: float
+    threshold: float
+    seconds: float
+
+
+def iftomm(repeats: int) -> list[Benchmark]:
+    """A01 to A05, each to its end; tests/reference/test_iftomm.py compares whole motions."""
+    pendulum = sf.RigidBody("bob", sf.Joint("q", "revolute", axis=(0, -1, 0)), sf.Inertia(1.0, (1, 0, 0), (0, 0, 0)))
+    governor = sf.compile(reference_models.MODELS["flyball_governor"])
+    bricard = sf.compile(reference_models.MODELS["bricard"])
+    andrews = sf.compile(reference_models.MODELS["andrews_squeezer"])
+    known = References(Path(__file__).parent / "data").data("iftomm")
+    start = np.array([known["andrews"]["start"][name] for name in andrews.names.q])
+    end = np.array([known["andrews"]["end"][name] for name in andrews.names.q])
+    rows = known["four_bar_energy_J"], known["governor_slider_m"], known["bricard_q"]
+    row = four_bars.linkage(2)
+    places = four_bars.state(row, *four_bars.START)
+    energy = "energy over the run [J]"
+
+    def drift(run: sf.Trajectory) -> float:
+        return float(np.abs(run.energy - run.energy[0]).max())
+
+    scenes: list[tuple[str, float, str, str, float, Callable[[], sf.Trajectory], Callable[[sf.Trajectory], float]]] = [
+        ("A01 simple pendulum", 10.0, "rk4, 5 ms", energy, known["pendulum_energy_J"],
+         lambda: sf.simulate(sf.compile(sf.System("a01", (pendulum,))), [np.pi], t_end=10.0, dt=5e-3), drift),
+        ("A02 two four-bars, singular twice a turn", 10.0, "rk4, 5 ms, projection", energy, rows[0],
+         lambda: sf.simulate(row, *places, 10.0, dt=5e-3, every=10), drift),
+        ("A03 Andrews' squeezer", 0.03, "dop853, 1e-10", "angles at 0.03 s, relative, IVP test set", 1e-8,
+         lambda: sf.simulate(andrews, start, t_end=0.03, method="dop853", rtol=1e-10, atol=1e-10),
+         lambda run: float(np.abs(run.q[-1] / end - 1.0).max())),
+        ("A04 Bricard, over-constrained", 10.0, "rk4, 5 ms, projection", "coordinates at 10 s [rad]", 1e-5,
+         lambda: sf.simulate(bricard, t_end=10.0, dt=5e-3, every=100),
+         lambda run: float(np.abs(run.q[-1] - rows[2]).max())),
+        ("A05 flyball governor, stiff", 10.0, "rodas4, 1e-6", "slider at 10 s [m]", 1e-4,
+         lambda: sf.simulate(governor, [0, np.pi / 6, np.pi / 6, 0.5], [2 * np.pi, 0, 0, 0], 10.0, method="rodas4",
+                             rtol=1e-6, atol=1e-6),
+         lambda run: abs(float(run["s"][-1]) - rows[1])),
+    ]  # fmt: skip
+    found = []
+    for name, span, how, measure, threshold, move, judge in scenes:
+        runs = [done(move()) for _ in range(repeats)]
+        seconds = min(run.statistics.seconds for run in runs)
+        found.append(Benchmark(name, span, how, measure, judge(runs[-1]), threshold, seconds))
+    return found
