@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import pytest
 
 import reference_models
 from validation.assembly import assemble
 from validation.studies.native_build import BuildError
 from validation.studies.timing import TimingRun, _read, models, time_model, tree_text
+from validation.studies.timing_mujoco import time_mujoco
+from validation.studies.timing_mujoco_report import mujoco_lines
 from validation.studies.timing_report import as_data, as_markdown
 
 OUTPUT = "error mass_matrix {error}\nerror bias 1e-15\n" + "".join(
@@ -55,3 +59,10 @@ def test_the_native_program_agrees_with_the_generated_code() -> None:
     pytest.importorskip("cmeel")
     timings = time_model("chain7", reference_models.MODELS["chain7"], build(compilers()[0]), 3)
     assert len(timings) == 3 and all(timing.error < 1e-12 for timing in timings)
+
+
+def test_mujoco_on_a_small_arm() -> None:
+    rows = time_mujoco("ur5", models()["ur5"], 3)
+    assert [row.function for row in rows] == ["M", "M + h", "forward dynamics"]
+    assert all(0 < row.ours[0] <= row.ours[1] and 0 < row.theirs[0] and row.ratio > 0 for row in rows)
+    assert "| ur5 | 6 | forward dynamics |" in "\n".join(mujoco_lines([asdict(row) for row in rows]))

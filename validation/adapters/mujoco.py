@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -44,6 +45,14 @@ class MujocoEngine:
     sites: tuple[int, ...] = ()
     capabilities: frozenset[str] = EVERYTHING
     version: str = VERSION
+
+    def write(self, path: Path) -> None:
+        """Its model as a file for programs in C."""
+        mujoco.mj_saveModel(self.model, str(path))
+
+    def states(self, q: Array, v: Array) -> tuple[Array, Array]:
+        """Our states (n, nq), (n, nv) in its coordinates."""
+        return self.chart.coordinates(q), self.chart.speeds(q, v)
 
     def _each(self, states: States, result: Callable[[Any], Any]) -> Array:
         """One state at a time: positions, velocities and M are up to date in the data that `result` gets."""

@@ -61,11 +61,11 @@ def build(compiler: str) -> NativeProgram:
     includes = _includes()
     pinocchio = metadata.version("pin")
     key = hashlib.sha256("\0".join([*sources.values(), *FLAGS, version, pinocchio]).encode()).hexdigest()[:24]
-    cache = _cache()
-    program = cache / f"timing-{key}"
+    folder_of_programs = cache()
+    program = folder_of_programs / f"timing-{key}"
     if not program.exists():
-        cache.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".timing-", dir=cache) as private:
+        folder_of_programs.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".timing-", dir=folder_of_programs) as private:
             _compile(compiler, Path(private), sources, includes)
             os.replace(Path(private) / "timing", program)
     return NativeProgram(program, version)
@@ -97,8 +97,15 @@ def _includes() -> list[Path]:
     return list(dict.fromkeys(found))
 
 
-def _cache() -> Path:
+def cache() -> Path:
+    """Where compiled programs are kept."""
     stated = os.environ.get("SYMOFROS_CACHE")
     if stated:
         return Path(stated)
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "symofros"
+
+
+def pin_to_one_cpu() -> None:
+    """Keep this process on one processor, where the system can."""
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})

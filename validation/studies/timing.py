@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import statistics
 import subprocess
 import tempfile
@@ -20,8 +19,9 @@ from validation.cases import standard_set
 from validation.geometry import Array
 from validation.quantities import ROUNDING
 from validation.sampling import sample
-from validation.studies.native_build import BuildError, NativeProgram, build, compilers
+from validation.studies.native_build import BuildError, NativeProgram, build, compilers, pin_to_one_cpu
 from validation.studies.timing_flexible import FlexibleTiming
+from validation.studies.timing_mujoco import MujocoTiming
 
 STATES = 1000
 REPEATS = 41
@@ -83,11 +83,13 @@ class TimingRun:
         timings: What was measured against Pinocchio.
         failures: What could not be built or disagreed, in words.
         flexible: What was measured against Exudyn.
+        mujoco: What was measured against MuJoCo.
     """
 
     timings: list[Timing] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
     flexible: list[FlexibleTiming] = field(default_factory=list)
+    mujoco: list[MujocoTiming] = field(default_factory=list)
 
 
 def run_timing(
@@ -137,15 +139,10 @@ def time_model(label: str, system: sf.System, program: NativeProgram, repeats: i
         tree.write_text(tree_text(assembly), encoding="ascii")
         rows.write_text(_states_text(states.q, states.v), encoding="ascii")
         command = [str(program.path), str(tree), str(rows), str(library), symbol, str(repeats)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, preexec_fn=_pin_to_one_cpu)
+        done = subprocess.run(command, capture_output=True, text=True, check=False, preexec_fn=pin_to_one_cpu)
     if done.returncode != 0:
         raise BuildError(f"the timing program failed with status {done.returncode}: {done.stderr.strip()}")
     return _read(label, assembly.nv, program.compiler, done.stdout)
-
-
-def _pin_to_one_cpu() -> None:
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
 
 
 def tree_text(assembly: Assembly) -> str:

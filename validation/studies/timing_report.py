@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib import metadata
 from pathlib import Path
@@ -15,12 +15,15 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
+import symofros as sf
 from symofros.atomic import write_atomically
 from validation.record import machine
 from validation.studies.native_build import FLAGS, BuildError
 from validation.studies.timing import REPEATS, STATES, Timing, TimingRun, models, run_timing
 from validation.studies.timing_flexible import LABEL, run_flexible
 from validation.studies.timing_flexible_report import flexible_lines, show_flexible
+from validation.studies.timing_mujoco import time_mujoco
+from validation.studies.timing_mujoco_report import mujoco_lines, show_mujoco
 
 _NAMES = {
     "mass_matrix": "M",
@@ -48,7 +51,7 @@ def timing(
     report: Annotated[Path, typer.Option(help="Folder for timing.md and timing.json.")] = Path("reports"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,
 ) -> None:
-    """Time generated C against Pinocchio's C++, built in the run, and a flexible robot against Exudyn."""
+    """Time generated C against Pinocchio's C++, built in the run, MuJoCo's C, and a flexible robot against Exudyn."""
     known = models()
     names = [*known, LABEL]
     for name in chosen or ():
@@ -59,6 +62,7 @@ def timing(
         task = bar.add_task("timing", total=len(chosen or names))
         picked = {name: known[name] for name in chosen or known if name in known}
         run = run_timing(picked, repeats, lambda label: bar.update(task, advance=1))
+        _add_mujoco(run, picked, repeats)
         if LABEL in (chosen or names):
             _add_flexible(run, repeats)
     data = as_data(run, repeats, [*load, *_load()])
@@ -70,11 +74,20 @@ def timing(
     else:
         if run.timings:
             _show(run.timings)
+        show_mujoco(run.mujoco)
         show_flexible(run.flexible)
         typer.echo(f"Report: {report / 'timing.md'}")
     for failure in run.failures:
         typer.echo(f"not timed: {failure}", err=True)
     raise typer.Exit(1 if run.failures else 0)
+
+
+def _add_mujoco(run: TimingRun, picked: Mapping[str, sf.System], repeats: int) -> None:
+    for label, system in picked.items():
+        try:
+            run.mujoco += time_mujoco(label, system, repeats)
+        except (BuildError, sf.SymofrosError) as error:
+            run.failures.append(str(error))
 
 
 def _add_flexible(run: TimingRun, repeats: int) -> None:
@@ -91,10 +104,11 @@ def _load() -> list[float]:
 
 def as_data(run: TimingRun, repeats: int, load: Sequence[float] = ()) -> dict[str, Any]:
     """The result as plain data, with what it depends on; the machine's load before and after."""
-    packages = {"symofros": "symofros", "pinocchio": "pin", "exudyn": "exudyn"}
+    packages = {"symofros": "symofros", "pinocchio": "pin", "mujoco": "mujoco", "exudyn": "exudyn"}
     versions = {name: metadata.version(package) for name, package in packages.items()}
     return {
         "timings": [asdict(timing) for timing in run.timings],
+        "mujoco": [asdict(timing) for timing in run.mujoco],
         "flexible": [asdict(timing) for timing in run.flexible], "failures": run.failures, "repeats": repeats,
         "states": STATES, "flags": list(FLAGS), "versions": versions, "machine": machine(), "load": list(load),
     }  # fmt: skip
@@ -109,6 +123,7 @@ def as_markdown(data: dict[str, Any]) -> str:
         ours, theirs = (", ".join(f"{x:.0f}" for x in row[side]) for side in ("ours", "theirs"))
         lines.append(f"| {row['model']} | {row['nv']} | {_NAMES[row['function']]} | {ours} | {theirs} | "
                      f"**{row['ratio']:.2f}** | {row['compiler']} |")  # fmt: skip
+    lines += mujoco_lines(data["mujoco"])
     lines += flexible_lines(data["flexible"])
     lines += [f"\nNot timed: {failure.splitlines()[0]}" for failure in data["failures"]]
     versions = ", ".join(f"{name} {version}" for name, version in data["versions"].items())
