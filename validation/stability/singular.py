@@ -19,6 +19,8 @@ END = 10.0
 BOUND = 1e-2
 GAINS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
 SOFT = {"MuJoCo, its defaults": ("0.02 1", "0.9 0.95 0.001"), "MuJoCo, stiff": ("0.002 1", "0.9999 0.9999 0.001")}
+# Numbers of steps in ten seconds, see `unlucky`.
+UNLUCKY = (7112, 7385, 7889, 8197)
 # Dissipation of the highest frequencies that its examples use.
 EXUDYN, RADIUS = "Exudyn, generalised α", 0.9
 WAYS = Grid.of("how the loops are kept closed [-]", (
@@ -82,16 +84,26 @@ def exudyn(loops: int, h: float) -> Cell:
     return Cell(four_bars.tip_error(loops, END, ends[0]))
 
 
-def holds(maps: Maps) -> list[str]:
-    """The ways that hold at every step of every map."""
+def rows(maps: Maps) -> tuple[list[str], list[str], list[str]]:
+    """The ways that hold at every step of every map, at some, and at none."""
     first = next(iter(maps.values()))
-    good = np.all([found.good for found in maps.values()], axis=(0, 2))
-    return [WAYS.label(way) for way, all_good in zip(first.y, good, strict=True) if all_good]
+    share = np.mean([found.good.mean(axis=1) for found in maps.values()], axis=0)
+    named = [(WAYS.label(way), float(held)) for way, held in zip(first.y, share, strict=True)]
+    return ([n for n, held in named if held == 1.0], [n for n, held in named if 0.0 < held < 1.0],
+            [n for n, held in named if held == 0.0])  # fmt: skip
+
+
+def unlucky() -> dict[str, float]:
+    """Largest distance over steps that all but land in the flat posture, found among 172 steps of about 1.3 ms [m]."""
+    return {
+        name: max(off(2, ours(2, END / n, name, gain)) for n in UNLUCKY)
+        for name, gain in (("projection", None), ("baumgarte", 20.0))
+    }
 
 
 def judge(maps: Maps) -> Verdict:
     """Which ways hold."""
-    always = holds(maps)
+    always, sometimes, never = rows(maps)
     two = maps["N = 2"]
     known = data("four_bars")
     exact = max(
@@ -101,13 +113,18 @@ def judge(maps: Maps) -> Verdict:
     contradictions = sum(
         (row["ok"] and (row["tip_err"] or 0.0) <= BOUND) != bool(good(row["alpha"], row["h"])) for row in known["gains"]
     )
+    near = unlucky()
     flat = four_bars.linkage(2)
     still = sf.simulate(flat, *four_bars.state(flat, 0.0, 0.0), 0.01)
     reported = float(any("singular posture" in note for note in still.outcome.notes))
     level = WAYS.labels.index("projection")
     errors = np.concatenate([found.at(y=level) for found in maps.values()])
     checks = (
-        Check("projection: largest distance over all steps [m]", float(errors.max()), 1e-4, reason="its order, h⁴"),
+        Check("projection: largest distance over all steps [m]", float(errors.max()), BOUND,
+              reason="a step that all but lands in the flat posture costs decades"),
+        Check("projection: median distance over all steps [m]", float(np.median(errors)), 1e-5, reason="its order, h⁴"),
+        Check("N = 2, steps that all but land in the flat posture: largest distance [m]", max(near.values()), 0.1,
+              reason="four of 172 steps, where neighbours leave 1e-9"),
         Check("ways by Baumgarte's gains of 20/s and more that fail somewhere",
               float(sum(f"Baumgarte {g:g}/s" in map(WAYS.label, two.y) and f"Baumgarte {g:g}/s" not in always
                         for g in GAINS if 20.0 <= g <= 100.0)), 0.0, reason="20 holds in absolute coordinates, too"),
@@ -121,12 +138,16 @@ def judge(maps: Maps) -> Verdict:
     wrong = sum(found.wrong for found in maps.values())
     stopped = sum(found.stopped for found in maps.values())
     defaults = two.at(y=WAYS.labels.index("MuJoCo, its defaults"))
+    told = sum("singular posture" in c.note for found in maps.values() for line in found.cells for c in line)
     words = (
-        "Flat, the linkage may leave on another branch, and what the constraints have drifted by then decides. "
-        f"Through all steps of both maps hold: {', '.join(always)}. Accelerations only never hold, gains below 10/s "
-        f"hold by chance. Projection stays within {errors.max():.1e} m. MuJoCo's default closures miss by "
-        f"{defaults.min():.1f} to {defaults.max():.1f} m at any step, because they lose energy, not because of the "
-        "posture."
+        "Flat, the linkage may leave on another branch, and what drift or rounding has left by then decides. "
+        f"Through all steps of both maps hold: {', '.join(always)}. At some steps: "
+        f"{', '.join(sometimes) or 'none'}. At none: {', '.join(never) or 'none'}. Projection stays within "
+        f"{errors.max():.1e} m. MuJoCo's default closures miss by {defaults.min():.1f} to {defaults.max():.1f} m, "
+        "because they lose energy, not because of the posture. A start in the flat posture is reported; of the "
+        f"runs that pass it {told} report it, for a step has to all but land in it. A step that comes near loses "
+        f"decades and is not reported: the worst of four such leave {near['projection']:.0e} m with projection and "
+        f"{near['baumgarte']:.0e} m with gains of 20/s."
     )
     see = (
         f"Rows are ways, columns are steps. Blue rows hold; above them and below, {stopped} runs stop with an "

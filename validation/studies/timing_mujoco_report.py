@@ -11,7 +11,7 @@ from rich.table import Table
 from validation.studies.timing_mujoco import STATES, MujocoTiming
 
 _LIMITS = (
-    "MuJoCo is its wheel's own library. M is mj_kinematics, mj_comPos and mj_makeM, left in its sparse form; M + h adds "
+    "MuJoCo is its wheel's own library. M is mj_kinematics, mj_comPos and mj_makeM, left sparse; M + h adds "
     "mj_comVel and mj_rne, sharing the kinematics; forward dynamics adds mj_factorM and mj_solveM. No contacts and "
     f"no passive forces. Where M + h is compared, ours is M + h + Q. {STATES} states, loops in C, one process, in turn."
 )
