@@ -22,8 +22,9 @@ from typing import Any
 
 from symofros.beams.deformation import small_coordinates
 from symofros.codegen.interpreted import InterpretedUnit
-from symofros.codegen.model import model_source, template
+from symofros.codegen.model import model_source
 from symofros.codegen.names import identifier
+from symofros.codegen.templates import template
 from symofros.description.beam import Beam
 from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System

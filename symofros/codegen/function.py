@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from symofros.codegen.statements import Statement, StatementWriter, Store
+from symofros.codegen.trigonometry import block_lines
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.program import Output, Program
 
@@ -85,7 +86,7 @@ class FunctionWriter:
 
     def _chunk(self, index: int) -> str:
         statements = self.chunks[index]
-        local = {statement.node for statement in statements}
+        local = {node for statement in statements for node in statement.nodes}
         crossing = dict.fromkeys(n for statement in statements for n in statement.reads if n not in local)
         lines = [f"    const double {self.writer.name(node)} = work[{self.slots[node]}];" for node in crossing]
         for statement in statements:
@@ -101,14 +102,15 @@ class FunctionWriter:
         return "\n".join([f"{kind} void {self.c_name}_{index}({', '.join(arguments)}) {{", *lines, "}"])
 
     def _lines(self, statement: Statement) -> list[str]:
-        writer, node = self.writer, statement.node
-        stored = [f"    {store.array}[{store.index}] = {self._stored(store)};" for store in statement.stores]
-        if node == 0:
-            return stored
-        lines = [f"    const double {writer.name(node)} = {writer.operation(node)};"]
-        if node in self.slots:
-            lines.append(f"    work[{self.slots[node]}] = {writer.name(node)};")
-        return lines + stored
+        writer = self.writer
+        if statement.angles:
+            lines = block_lines(writer, statement)
+        else:
+            lines = [f"    const double {writer.name(node)} = {writer.operation(node)};" for node in statement.nodes]
+        for node in statement.nodes:
+            if node in self.slots:
+                lines.append(f"    work[{self.slots[node]}] = {writer.name(node)};")
+        return lines + [f"    {store.array}[{store.index}] = {self._stored(store)};" for store in statement.stores]
 
     def _stored(self, store: Store) -> str:
         return self.writer.text(store.edge)
@@ -116,12 +118,9 @@ class FunctionWriter:
 
 def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
     """Work slots for values that cross from one chunk into another; slots are reused once their value is dead."""
-    made: dict[int, int] = {}
     last: dict[int, int] = {}
     for i, chunk in enumerate(chunks):
         for statement in chunk:
-            if statement.node:
-                made[statement.node] = i
             for node in statement.reads:
                 last[node] = i
     slots: dict[int, int] = {}
@@ -131,9 +130,8 @@ def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
     for i, chunk in enumerate(chunks):
         # A slot is free in the chunk after its value's last use, since that chunk loads before it stores.
         free += ends.pop(i - 1, [])
-        for statement in chunk:
-            node = statement.node
-            if node and last.get(node, i) > i:
+        for node in (node for statement in chunk for node in statement.nodes):
+            if last.get(node, i) > i:
                 if not free:
                     free.append(count)
                     count += 1

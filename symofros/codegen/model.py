@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import cache
-from importlib.resources import files
 from math import prod
 from string import Template
 
 from symofros.codegen.function import FunctionText, FunctionWriter
 from symofros.codegen.names import c_string, identifier
 from symofros.codegen.solvers import ROUTINES, with_solver
+from symofros.codegen.templates import template
+from symofros.codegen.trigonometry import routines
 from symofros.expr.program import Function, Output, Program
 from symofros.passes.count import count_program
 from symofros.runtime.record import ModelRecord
 
 _INIT = "init_par"
-
-
-@cache
-def template(name: str) -> str:
-    """A file of the template folder."""
-    return (files("symofros.codegen") / "templates" / name).read_text(encoding="utf-8")
 
 
 def model_source(program: Program, record: ModelRecord, generator: str) -> str:
@@ -46,7 +40,7 @@ def model_source(program: Program, record: ModelRecord, generator: str) -> str:
         generator=generator,
         hash=record.hash,
         operations=_comment("\n".join(lines)),
-        functions="\n\n".join([*_routines(program), *texts]),
+        functions="\n\n".join([*routines(texts), *_routines(program), *texts]),
         tables="\n".join([*(table for table, _ in rows), _function_table(name, [row for _, row in rows])]),
         n_functions=len(rows),
         c_name=name,

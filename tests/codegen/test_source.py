@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import symofros as sf
-from symofros.codegen.model import template
+from symofros.codegen.templates import template
 from symofros.codegen.names import c_string, identifier, local_name
 from symofros.compiler import describe, generate, plan, requested
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
