@@ -1,13 +1,14 @@
 """Nodes -> C statements: a value used once stands where it is used, every other has a variable.
 
-Sines and cosines are evaluated together, up to `WIDEST` angles at a time: those that the first one needed finds at hand,
-or that cost no sine before them. None of these choices changes a bit of the result: C evaluates the parenthesised text
+Sines and cosines are evaluated together, up to `WIDEST` angles at a time: those with as many
+sines beneath them. None of these choices changes a bit of the result: C evaluates the parenthesised text
 as the graph states it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 
 from symofros.codegen.names import local_name
@@ -66,6 +67,13 @@ class StatementWriter:
         self._nodes = nodes
         self._own = [node for node in nodes if node not in self._inlined]
         self._names: dict[int, str] = {}
+        self.lanes = False
+
+    def in_lanes(self) -> StatementWriter:
+        """The same statements on vectors, one state a lane; given values and numbers stay single."""
+        twin = copy(self)
+        twin.lanes = True
+        return twin
 
     def _choose_inlined(self, nodes: Sequence[int], stores: Sequence[Store]) -> set[int]:
         graph = self.graph
@@ -173,7 +181,15 @@ class StatementWriter:
         if op in (MUL, DIV):
             a, b = args  # Both are positive by construction.
             return OPS[op].c.format(self._operand(a, is_factor=True), self._operand(b, is_factor=True, is_right=True))
+        if self.lanes:
+            return f"sym_v_{op}({', '.join(map(self.whole, args))})"
         return OPS[op].c.format(*map(self.text, args))
+
+    def whole(self, edge: Edge) -> str:
+        """The text of an edge where a vector may stand and a single number may not."""
+        text = self.text(edge)
+        is_single = self.lanes and (self.graph.is_constant(edge) or abs(edge) in self.given)
+        return f"sym_set({text})" if is_single else text
 
     def _operand(self, node: int, is_factor: bool = False, is_right: bool = False) -> str:
         """An operand's text, in parentheses where C would otherwise group or associate differently."""

@@ -20,6 +20,8 @@ def block_lines(writer: StatementWriter, statement: Statement) -> list[str]:
         writer: Of the function.
         statement: With angles.
     """
+    if writer.lanes:
+        return _lane_lines(writer, statement)
     first, angles = statement.nodes[0], statement.angles
     width = _width(len(angles))
     texts = [*map(writer.text, angles), *["0.0"] * (width - len(angles))]
@@ -34,6 +36,20 @@ def block_lines(writer: StatementWriter, statement: Statement) -> list[str]:
     return lines
 
 
+def _lane_lines(writer: StatementWriter, statement: Statement) -> list[str]:
+    """The same where every angle is a vector already."""
+    lines = []
+    for angle in statement.angles:
+        nodes = [node for node in statement.nodes if writer.graph.args[node][0] == angle]
+        first = nodes[0]
+        lines += [
+            f"    sym_v angles{first} = {writer.whole(angle)}, sines{first}, cosines{first};",
+            f"    sym_sincos_v(&angles{first}, &sines{first}, &cosines{first});",
+        ]
+        lines += [f"    const sym_v {writer.name(n)} = {_RESULTS[writer.graph.op[n]]}{first};" for n in nodes]
+    return lines
+
+
 _RESULTS = {"sin": "sines", "cos": "cosines"}
 
 
@@ -41,20 +57,22 @@ def _width(angles: int) -> int:
     return next(width for width in WIDTHS if width >= angles)
 
 
-def routines(code: Iterable[str]) -> list[str]:
+def routines(code: Iterable[str], lanes: bool = False) -> list[str]:
     """The routines that some C text calls.
 
     Args:
         code: Of the functions.
+        lanes: Whether it is on vectors, too, of whatever width the compiler has.
     """
-    widths = [width for width in WIDTHS if any(f"sym_sincos_{width}(" in text for text in code)]
+    code = list(code)
+    widths = [width for width in WIDTHS if lanes or any(f"sym_sincos_{width}(" in text for text in code)]
     if not widths:
         return []
-    parts = [Template(template("trigonometry.c.in")).substitute(far=repr(FAR), near=near("sym_near_1"))]
+    parts = [Template(template("trigonometry.c.in")).substitute(far=repr(FAR), near=_near("sym_near_1"))]
     parts += [
         Template(template("sincos_block.c.in")).substitute(
             width=width, bytes=8 * width,
-            near=near(f"sym_near_{width}", f"sym_{width}", f"sym_{width}u", f"(sym_{width}u)", f"(sym_{width})"),
+            near=_near(f"sym_near_{width}", f"sym_{width}", f"sym_{width}u", f"(sym_{width}u)", f"(sym_{width})"),
             all=" & ".join(f"near[{i}]" for i in range(width)),
         )
         for width in widths if width > 1
@@ -62,7 +80,7 @@ def routines(code: Iterable[str]) -> list[str]:
     return parts
 
 
-def near(name: str, real: str = "double", word: str = "uint64_t", to_word: str = "sym_word",
+def _near(name: str, real: str = "double", word: str = "uint64_t", to_word: str = "sym_word",
          to_real: str = "sym_real") -> str:  # fmt: skip
     """The routine for angles up to FAR, on numbers or on vectors.
 

@@ -1,8 +1,8 @@
 """Sine and cosine by polynomials: the NumPy twin of codegen/templates/sincos.c.in, and the numbers of both.
 
-x = n pi/2 + r, |r| <= pi/4, with pi/2 as a sum of three parts: products of n with the first two are exact, so that r and
-the remainder beyond its last digit are right to 2^-107 even where x is next to a multiple of pi/2. Then polynomials in
-r^2. Every operation is one IEEE operation, so that this and the C agree bit for bit (docs/theory/code.md).
+x = n pi/2 + r, |r| <= pi/4, pi/2 as a sum of three parts: products of n with the first two are exact, so that r and
+what is left beyond its last digit are right even where x is next to a multiple of pi/2. Then polynomials in r^2. Every
+operation is one IEEE operation, so that this and the C agree bit for bit (docs/theory/code.md).
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ _SIGN = np.uint64(62)
 
 
 def sine(x: Array) -> Array:
-    """sin x, elementwise; NaN for infinities and NaN."""
+    """Sine of x, elementwise; NaN for infinities and NaN."""
     return _with_libm(x, sine_and_cosine(x)[0], math.sin)
 
 
 def cosine(x: Array) -> Array:
-    """cos x, elementwise; NaN for infinities and NaN."""
+    """Cosine of x, elementwise; NaN for infinities and NaN."""
     return _with_libm(x, sine_and_cosine(x)[1], math.cos)
 
 
