@@ -16,8 +16,8 @@ from rich.tree import Tree
 
 import symofros as sf
 from symofros.atomic import write_atomically
-from symofros.codegen.model import template
 from symofros.codegen.names import identifier
+from symofros.codegen.templates import template
 from symofros.compiler import compile_system, describe, generate, plan, requested
 from symofros.description.system import System
 from symofros.errors import did_you_mean

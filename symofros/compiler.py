@@ -16,14 +16,16 @@ from __future__ import annotations
 import hashlib
 import warnings
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from symofros.beams.deformation import small_coordinates
 from symofros.codegen.interpreted import InterpretedUnit
-from symofros.codegen.model import model_source, template
+from symofros.codegen.model import model_source
 from symofros.codegen.names import identifier
+from symofros.codegen.templates import template
 from symofros.description.beam import Beam
 from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
@@ -47,7 +49,7 @@ from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS, Options
 from symofros.passes import run_passes
 from symofros.runtime.build import build_library
 from symofros.runtime.functions import Rate
-from symofros.runtime.kernel import Unit
+from symofros.runtime.kernel import Kernel, Unit
 from symofros.runtime.library import CompiledUnit
 from symofros.runtime.model import Key, Model
 from symofros.runtime.record import ClosureRecord, ModelRecord, Segment, SegmentKind
@@ -112,8 +114,9 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
         raise CompileError("no C compiler was found\n  remedy: install gcc or clang, or `pip install ziglang`")
     tree = plan(system)
     record = describe(tree, options)
-    _, source = generate(tree, requested(tree, options), record, options.constraints)
-    path = build_library(source(), template("symofros_model.h"), toolchain, options.flags)
+    program, _ = generate(tree, requested(tree, options), record, options.constraints)
+    source = model_source(program, record, GENERATOR, options.batch == "vector")
+    path = build_library(source, template("symofros_model.h"), toolchain, options.flags)
     return path, f"{identifier(record.name)}_model"
 
 
@@ -162,22 +165,40 @@ class _Builder:
 
     def functions(self, requests: tuple[Key, ...]) -> Unit:
         """Functions of the model."""
-        return self._unit(*generate(self._tree, requests, self._record, self._options.constraints))
+        return self._unit(generate(self._tree, requests, self._record, self._options.constraints)[0])
 
     def formulas(self, formulas: tuple[Any, ...]) -> Unit:
         """Numbers, formula texts or SymPy expressions over the model's names, with their derivatives."""
         stated = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
         what = f"system '{self._tree.system.name}': formula"
         values = [(as_value(item.formula, what), item.order) for item in stated]
-        program = run_passes(formula_program(self._tree, values))
-        return self._unit(program, lambda: model_source(program, self._record, GENERATOR))
+        return self._unit(run_passes(formula_program(self._tree, values)))
 
-    def _unit(self, program: Program, source: Callable[[], str]) -> Unit:
+    def _unit(self, program: Program) -> Unit:
         if self._toolchain is None:
             return InterpretedUnit(program)
+        in_lanes = self._in_lanes(program) if self._options.batch == "vector" else None
+        return self._compiled(program, self._toolchain, False, in_lanes)
+
+    def _compiled(
+        self, program: Program, toolchain: Toolchain, vectors: bool,
+        in_lanes: Callable[[Key], Kernel | None] | None = None,
+    ) -> CompiledUnit:  # fmt: skip
         header = template("symofros_model.h")
-        path = build_library(source(), header, self._toolchain, self._options.flags)
-        return CompiledUnit(path, f"{identifier(self._record.name)}_model", header, self._record.hash)
+        source = model_source(program, self._record, GENERATOR, vectors)
+        path = build_library(source, header, toolchain, self._options.flags)
+        return CompiledUnit(path, f"{identifier(self._record.name)}_model", header, self._record.hash, in_lanes)
+
+    def _in_lanes(self, program: Program) -> Callable[[Key], Kernel | None]:
+        """Function -> the same by vectors, compiled when it is asked for; None for one that a solver finishes."""
+
+        def compiled(key: Key) -> Kernel | None:
+            function = next(f for f in program.functions if (f.name, f.frame) == key)
+            if function.solver is not None or self._toolchain is None:
+                return None
+            return self._compiled(replace(program, functions=(function,)), self._toolchain, True).kernels[key]
+
+        return compiled
 
 
 def _choose_toolchain(options: Options) -> Toolchain | None:

@@ -56,6 +56,8 @@ class Options:
         constraints: How forward dynamics keeps them: "multipliers" solves for the forces first, by M^-1;
             "null_space" for the accelerations that are left free, without M^-1: more accurate where M is nearly
             singular, and usually slower (docs/theory/constraints.md, section 8).
+        batch: How large batches are evaluated: "vector", several states at once, by code that is compiled for each
+            function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
     """
 
     functions: tuple[str, ...] | None = None
@@ -64,3 +66,4 @@ class Options:
     flags: tuple[str, ...] | None = None
     compiler: str | None = None
     constraints: Literal["multipliers", "null_space"] = "multipliers"
+    batch: Literal["vector", "loop"] = "vector"

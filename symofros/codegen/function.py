@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from symofros.codegen.statements import Statement, StatementWriter, Store
+from symofros.codegen.trigonometry import block_lines
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.program import Output, Program
 
@@ -29,10 +30,12 @@ class FunctionText:
     Attributes:
         code: Definitions of its chunks and of the function that calls them.
         work: Doubles of scratch it needs.
+        lanes: The same on vectors, one state a lane; none where it is not asked for.
     """
 
     code: str
     work: int
+    lanes: str = ""
 
 
 class FunctionWriter:
@@ -64,16 +67,38 @@ class FunctionWriter:
         self.slots = _allocate(self.chunks)
         self.work = max(self.slots.values(), default=-1) + 1
 
-    def text(self) -> FunctionText:
-        """The C text: chunk functions, then the function that unpacks pointers and calls them."""
-        parts = [self._chunk(i) for i in range(len(self.chunks))]
+    def text(self, lanes: bool = False) -> FunctionText:
+        """The C text: chunk functions, then the function that unpacks pointers and calls them.
+
+        Args:
+            lanes: Whether to write it on vectors, too.
+        """
+        parts = [self._chunk(i, self.writer) for i in range(len(self.chunks))]
         body = [f"    const double *restrict {name} = in[{i}];" for i, name in enumerate(self.inputs)]
         body += [f"    double *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
         body += [line for output in self.outputs for line in self._clear(output)]
-        arguments = ", ".join([*self.inputs, *(output.name for output in self.outputs), "work"])
-        body += [f"    {self.c_name}_{i}({arguments});" for i in range(len(self.chunks))]
+        body += self._calls(self.c_name)
         head = f"static void {self.c_name}(const double *const *in, double *const *out, double *restrict work) {{"
-        return FunctionText("\n".join([*parts, head, *body, "}"]), self.work)
+        code = "\n".join([*parts, head, *body, "}"])
+        return FunctionText(code, self.work, self._lanes() if lanes else "")
+
+    def _lanes(self) -> str:
+        """On vectors: the parameters' part is one for all lanes, outputs are cleared beforehand."""
+        writer = self.writer.in_lanes()
+        parts = [self._chunk(i, writer) for i in range(len(self.chunks))]
+        pre, *others = self.inputs
+        body = [f"    const sym_v *restrict {name} = in[{i}];" for i, name in enumerate(others, 1)]
+        body += [f"    sym_v *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
+        body += self._calls(f"{self.c_name}_v")
+        head = (
+            f"static void {self.c_name}_v(const double *restrict {pre}, const sym_v *const *in, sym_v *const *out,\n"
+            "    sym_v *restrict work) {"
+        )
+        return "\n".join([*parts, head, *body, "}"])
+
+    def _calls(self, c_name: str) -> list[str]:
+        arguments = ", ".join([*self.inputs, *(output.name for output in self.outputs), "work"])
+        return [f"    {c_name}_{i}({arguments});" for i in range(len(self.chunks))]
 
     def _clear(self, output: Output) -> list[str]:
         zeros = [i for i, edge in enumerate(output.edges) if edge == 0]
@@ -83,45 +108,40 @@ class FunctionWriter:
             return [f"    memset({output.name}, 0, {len(output.edges)} * sizeof *{output.name});"]
         return [f"    {output.name}[{i}] = 0.0;" for i in zeros]
 
-    def _chunk(self, index: int) -> str:
+    def _chunk(self, index: int, writer: StatementWriter) -> str:
+        real, suffix = ("sym_v", "_v") if writer.lanes else ("double", "")
         statements = self.chunks[index]
-        local = {statement.node for statement in statements}
+        local = {node for statement in statements for node in statement.nodes}
         crossing = dict.fromkeys(n for statement in statements for n in statement.reads if n not in local)
-        lines = [f"    const double {self.writer.name(node)} = work[{self.slots[node]}];" for node in crossing]
+        lines = [f"    const {real} {writer.name(node)} = work[{self.slots[node]}];" for node in crossing]
         for statement in statements:
-            lines += self._lines(statement)
+            lines += self._lines(statement, writer, real)
         names = [*self.inputs, *(output.name for output in self.outputs), "work"]
         text = "\n".join(lines)
         used = set(_ARRAY.findall(text))
         lines = [f"    (void){name};" for name in names if name not in used] + ([text] if text else [])
-        arguments = [f"const double *restrict {name}" for name in self.inputs]
-        arguments += [f"double *restrict {output.name}" for output in self.outputs] + ["double *restrict work"]
+        arguments = [f"const {real if i else 'double'} *restrict {name}" for i, name in enumerate(self.inputs)]
+        arguments += [f"{real} *restrict {output.name}" for output in self.outputs] + [f"{real} *restrict work"]
         # A single chunk may be inlined into its caller; several must stay apart.
         kind = "static SYM_NOINLINE" if len(self.chunks) > 1 else "static"
-        return "\n".join([f"{kind} void {self.c_name}_{index}({', '.join(arguments)}) {{", *lines, "}"])
+        return "\n".join([f"{kind} void {self.c_name}{suffix}_{index}({', '.join(arguments)}) {{", *lines, "}"])
 
-    def _lines(self, statement: Statement) -> list[str]:
-        writer, node = self.writer, statement.node
-        stored = [f"    {store.array}[{store.index}] = {self._stored(store)};" for store in statement.stores]
-        if node == 0:
-            return stored
-        lines = [f"    const double {writer.name(node)} = {writer.operation(node)};"]
-        if node in self.slots:
-            lines.append(f"    work[{self.slots[node]}] = {writer.name(node)};")
-        return lines + stored
-
-    def _stored(self, store: Store) -> str:
-        return self.writer.text(store.edge)
+    def _lines(self, statement: Statement, writer: StatementWriter, real: str) -> list[str]:
+        if statement.angles:
+            lines = block_lines(writer, statement)
+        else:
+            lines = [f"    const {real} {writer.name(node)} = {writer.operation(node)};" for node in statement.nodes]
+        for node in statement.nodes:
+            if node in self.slots:
+                lines.append(f"    work[{self.slots[node]}] = {writer.name(node)};")
+        return lines + [f"    {store.array}[{store.index}] = {writer.whole(store.edge)};" for store in statement.stores]
 
 
 def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
     """Work slots for values that cross from one chunk into another; slots are reused once their value is dead."""
-    made: dict[int, int] = {}
     last: dict[int, int] = {}
     for i, chunk in enumerate(chunks):
         for statement in chunk:
-            if statement.node:
-                made[statement.node] = i
             for node in statement.reads:
                 last[node] = i
     slots: dict[int, int] = {}
@@ -131,9 +151,8 @@ def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
     for i, chunk in enumerate(chunks):
         # A slot is free in the chunk after its value's last use, since that chunk loads before it stores.
         free += ends.pop(i - 1, [])
-        for statement in chunk:
-            node = statement.node
-            if node and last.get(node, i) > i:
+        for node in (node for statement in chunk for node in statement.nodes):
+            if last.get(node, i) > i:
                 if not free:
                     free.append(count)
                     count += 1

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import cache
-from importlib.resources import files
-from math import prod
 from string import Template
 
-from symofros.codegen.function import FunctionText, FunctionWriter
+from symofros.codegen import lanes, trigonometry
+from symofros.codegen.function import FunctionWriter
 from symofros.codegen.names import c_string, identifier
 from symofros.codegen.solvers import ROUTINES, with_solver
+from symofros.codegen.templates import template
 from symofros.expr.program import Function, Output, Program
 from symofros.passes.count import count_program
 from symofros.runtime.record import ModelRecord
@@ -18,25 +17,21 @@ from symofros.runtime.record import ModelRecord
 _INIT = "init_par"
 
 
-@cache
-def template(name: str) -> str:
-    """A file of the template folder."""
-    return (files("symofros.codegen") / "templates" / name).read_text(encoding="utf-8")
-
-
-def model_source(program: Program, record: ModelRecord, generator: str) -> str:
+def model_source(program: Program, record: ModelRecord, generator: str, in_lanes: bool = False) -> str:
     """The C file of a program.
 
     Args:
         program: Staged.
         record: Names and defaults.
         generator: Name and version of what wrote it.
+        in_lanes: Whether batches take several states at once; functions with a solver never do.
     """
     name = identifier(record.name)
+    in_lanes = in_lanes and any(function.solver is None for function in program.functions)
     texts = [_init_function(program, name)]
     rows = []
     for i, function in enumerate(program.functions):
-        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}")
+        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}", in_lanes)
         texts.append(text)
         rows.append(row)
     counts = count_program(program)
@@ -46,7 +41,14 @@ def model_source(program: Program, record: ModelRecord, generator: str) -> str:
         generator=generator,
         hash=record.hash,
         operations=_comment("\n".join(lines)),
-        functions="\n\n".join([*_routines(program), *texts]),
+        functions="\n\n".join(
+            [
+                *trigonometry.routines(texts, in_lanes),
+                *([lanes.routines()] if in_lanes else []),
+                *_routines(program),
+                *texts,
+            ]
+        ),
         tables="\n".join([*(table for table, _ in rows), _function_table(name, [row for _, row in rows])]),
         n_functions=len(rows),
         c_name=name,
@@ -91,50 +93,32 @@ def _init_function(program: Program, name: str) -> str:
     return "\n".join([text.code, *lines])
 
 
-def _one_function(program: Program, function: Function, c_name: str) -> tuple[str, tuple[str, str]]:
+def _one_function(program: Program, function: Function, c_name: str, in_lanes: bool) -> tuple[str, tuple[str, str]]:
     """Code, and (tables of its arrays, row of the function table)."""
     inputs = ["pre", *function.inputs]
     if function.solver is None:
-        text = FunctionWriter(program, c_name, inputs, function.outputs).text()
+        text = FunctionWriter(program, c_name, inputs, function.outputs).text(in_lanes)
+        work = lanes.scratch(program, function, text.work) if in_lanes else text.work
     else:
         text = with_solver(program, c_name, function, function.solver)
-    code = "\n".join([text.code, _batch(c_name, function, len(inputs))])
+        work = text.work
+    vectors = ["#if SYM_LANES > 1", text.lanes, "#endif"] if text.lanes else []
+    code = "\n".join([text.code, *vectors, lanes.batch(c_name, program, function, bool(text.lanes))])
     arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)
     arrays_out = ", ".join(f'{{"{name}", {len(s)}, {_rows(s)}, {_columns(s)}}}' for name, s in function.returns)
     tables = (
         f"static const sym_array {c_name}_in[] = {{{arrays_in}}};\n"
         f"static const sym_array {c_name}_out[] = {{{arrays_out}}};"
     )
-    return code, (tables, _row(function, c_name, len(inputs), text))
+    return code, (tables, _row(function, c_name, len(inputs), work))
 
 
-def _row(function: Function, c_name: str, n_in: int, text: FunctionText) -> str:
+def _row(function: Function, c_name: str, n_in: int, work: int) -> str:
     frame = c_string(function.frame) if function.frame else "NULL"
     return (
         f"    {{{c_string(function.name)}, {frame}, {n_in}, {len(function.returns)}, {c_name}_in, {c_name}_out, "
-        f"{text.work}, {c_name}, {c_name}_batch}}"
+        f"{work}, {c_name}, {c_name}_batch}}"
     )
-
-
-def _batch(c_name: str, function: Function, n_in: int) -> str:
-    """The loop over states."""
-    n_out = len(function.returns)
-    lines = [
-        f"static void {c_name}_batch(size_t n, const double *const *in, const size_t *in_stride, double *const *out,",
-        "    double *work) {",
-        f"    const double *x[{n_in}];",
-        f"    double *y[{n_out}];",
-        "    size_t i;",
-        f"    memcpy(x, in, {n_in} * sizeof *x);",
-        f"    memcpy(y, out, {n_out} * sizeof *y);",
-        "    for (i = 0; i < n; ++i) {",
-        f"        {c_name}((const double *const *)x, y, work);",
-        *(f"        x[{k}] += in_stride[{k}];" for k in range(n_in)),
-        *(f"        y[{k}] += {prod(shape)};" for k, (_, shape) in enumerate(function.returns)),
-        "    }",
-        "}",
-    ]
-    return "\n".join(lines)
 
 
 def _function_table(name: str, rows: Sequence[str]) -> str:

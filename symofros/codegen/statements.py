@@ -1,19 +1,26 @@
 """Nodes -> C statements: a value used once stands where it is used, every other has a variable.
 
-Neither choice changes a bit of the result: C evaluates the parenthesised text as the graph states it.
+Sines and cosines are evaluated together, up to `WIDEST` angles at a time: those with as many
+sines beneath them. None of these choices changes a bit of the result: C evaluates the parenthesised text
+as the graph states it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 
 from symofros.codegen.names import local_name
+from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Edge, Graph, Slot
 from symofros.expr.ops import ADD, DIV, MUL, OPS
 
 # Operations per statement at most: long lines help neither people nor compilers.
 _MAX_INLINE = 8
+# Angles evaluated at once: the doubles of the widest vectors.
+WIDEST = 8
+_TRIGONOMETRIC = frozenset(("sin", "cos"))
 
 
 @dataclass(frozen=True)
@@ -30,14 +37,16 @@ class Statement:
     """One C statement.
 
     Attributes:
-        node: What it computes; 0 for a store alone.
+        nodes: What it computes: none for a store alone, several for sines and cosines.
         stores: Output entries it fills.
         reads: Nodes with variables that its text mentions.
+        angles: Edges whose sines and cosines it computes; none for any other statement.
     """
 
-    node: int
+    nodes: tuple[int, ...]
     stores: tuple[Store, ...]
     reads: tuple[int, ...]
+    angles: tuple[Edge, ...] = ()
 
 
 class StatementWriter:
@@ -55,8 +64,16 @@ class StatementWriter:
         self.given = given
         self.stores = stores
         self._inlined = self._choose_inlined(nodes, stores)
+        self._nodes = nodes
         self._own = [node for node in nodes if node not in self._inlined]
         self._names: dict[int, str] = {}
+        self.lanes = False
+
+    def in_lanes(self) -> StatementWriter:
+        """The same statements on vectors, one state a lane; given values and numbers stay single."""
+        twin = copy(self)
+        twin.lanes = True
+        return twin
 
     def _choose_inlined(self, nodes: Sequence[int], stores: Sequence[Store]) -> set[int]:
         graph = self.graph
@@ -76,7 +93,7 @@ class StatementWriter:
                 inlined.discard(largest)
                 total -= size[largest]
             size[node] = total
-            # Function calls keep a variable, so that the sine and cosine of one angle are seen side by side.
+            # Function calls keep a variable: sines and cosines are evaluated by blocks, other calls stay in view.
             if uses.get(node) == 1 and node not in stored and node not in graph.label and self._is_arithmetic(node):
                 inlined.add(node)
         return inlined
@@ -94,15 +111,52 @@ class StatementWriter:
             if node in own:
                 waiting.setdefault(node, []).append(store)
             elif node != 0:  # A number or an input; zeros are cleared at once.
-                result.append(Statement(0, (store,), ()))
-        for node in self._own:
-            reads = tuple(dict.fromkeys(self._mentioned(node)))
-            result.append(Statement(node, tuple(waiting.get(node, ())), reads))
+                result.append(Statement((), (store,), ()))
+        for nodes, angles in self._ordered():
+            stores = tuple(store for node in nodes for store in waiting.get(node, ()))
+            edges = angles or self.graph.args[nodes[0]]
+            result.append(Statement(nodes, stores, tuple(dict.fromkeys(self._mentioned(edges))), angles))
         return result
 
-    def _mentioned(self, node: int) -> Iterator[int]:
-        """Nodes with variables in the text of a node."""
-        stack = list(self.graph.args[node])
+    def _ordered(self) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...]]]:
+        """(nodes, angles) of each statement: nodes one by one, sines and cosines by blocks."""
+        blocks, own, done = self._blocks(), set(self._own), set[int]()
+
+        def emit(node: int) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...]]]:
+            if node in done:
+                return
+            angles, nodes = blocks.get(node, ((), (node,)))
+            if angles:
+                for before in needed_nodes(self.graph, angles, self.given):
+                    if before in own:
+                        yield from emit(before)
+            done.update(nodes)
+            yield nodes, angles
+
+        for node in self._own:
+            yield from emit(node)
+
+    def _blocks(self) -> dict[int, tuple[tuple[Edge, ...], tuple[int, ...]]]:
+        """Sine or cosine -> (angles, sines and cosines) of its block: angles that as many others lie under."""
+        graph = self.graph
+        depth: dict[int, int] = {}
+        levels: dict[int, dict[Edge, list[int]]] = {}
+        for node in self._nodes:
+            depth[node] = max((depth.get(abs(arg), 0) for arg in graph.args[node]), default=0)
+            if graph.op[node] in _TRIGONOMETRIC:
+                levels.setdefault(depth[node], {}).setdefault(graph.args[node][0], []).append(node)
+                depth[node] += 1
+        blocks = {}
+        for level in levels.values():
+            for i in range(0, len(level), WIDEST):
+                angles = tuple(level)[i : i + WIDEST]
+                nodes = tuple(node for angle in angles for node in level[angle])
+                blocks.update(dict.fromkeys(nodes, (angles, nodes)))
+        return blocks
+
+    def _mentioned(self, edges: Iterable[Edge]) -> Iterator[int]:
+        """Nodes with variables in the text of some edges."""
+        stack = list(edges)
         while stack:
             arg = abs(stack.pop())
             if arg in self._inlined:
@@ -127,7 +181,15 @@ class StatementWriter:
         if op in (MUL, DIV):
             a, b = args  # Both are positive by construction.
             return OPS[op].c.format(self._operand(a, is_factor=True), self._operand(b, is_factor=True, is_right=True))
+        if self.lanes:
+            return f"sym_v_{op}({', '.join(map(self.whole, args))})"
         return OPS[op].c.format(*map(self.text, args))
+
+    def whole(self, edge: Edge) -> str:
+        """The text of an edge where a vector may stand and a single number may not."""
+        text = self.text(edge)
+        is_single = self.lanes and (self.graph.is_constant(edge) or abs(edge) in self.given)
+        return f"sym_set({text})" if is_single else text
 
     def _operand(self, node: int, is_factor: bool = False, is_right: bool = False) -> str:
         """An operand's text, in parentheses where C would otherwise group or associate differently."""

@@ -1,8 +1,9 @@
 """The op table: everything that can be computed, one row an operation.
 
 The graph's constant folding, the interpreter, the C printer and the operation counter all read these rows, so
-they can't disagree. Transcendental rules go through the C library's functions, one element at a time: NumPy's
-own vectorised versions differ from libm in the last bit, and the interpreter must match compiled C bit for bit.
+they can't disagree. The interpreter must match compiled C bit for bit, and NumPy's own vectorised functions differ from
+libm in the last bit: sine and cosine are the polynomials that generated C uses (trigonometry.py), the other
+transcendental rules go through the C library, one element at a time.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
+
+from symofros.expr import trigonometry
 
 Array = npt.NDArray[np.float64]
 Parity = Literal["odd", "even", ""]
@@ -62,6 +65,11 @@ def _libm(function: Callable[..., float], overflow: float = math.inf) -> Callabl
         return np.asarray(np.frompyfunc(scalar, len(x), 1)(*x), dtype=np.float64)
 
     return rule
+
+
+def _polynomial(function: Callable[[float], float], rule: Callable[[Array], Array]) -> Callable[[Any], Any]:
+    """A single number by the C library, which the graph folds; arrays as generated C does it."""
+    return lambda x: function(x) if isinstance(x, float) and math.isfinite(x) else rule(np.asarray(x))
 
 
 def _log(x: float) -> float:
@@ -142,8 +150,10 @@ OPS: dict[str, Op] = {
         Op("sqrt", 1, _sqrt, "sqrt({0})", lambda g, x, y, i: g.div(g.constant(0.5), y), "div"),
         Op("exp", 1, _libm(math.exp), "exp({0})", lambda g, x, y, i: y),
         Op("log", 1, _libm(_log), "log({0})", lambda g, x, y, i: g.div(1, x[0])),
-        Op("sin", 1, _libm(math.sin), "sin({0})", lambda g, x, y, i: g.call("cos", x[0]), parity="odd"),
-        Op("cos", 1, _libm(math.cos), "cos({0})", lambda g, x, y, i: -g.call("sin", x[0]), parity="even"),
+        Op("sin", 1, _polynomial(math.sin, trigonometry.sine), "sin({0})",
+           lambda g, x, y, i: g.call("cos", x[0]), parity="odd"),
+        Op("cos", 1, _polynomial(math.cos, trigonometry.cosine), "cos({0})",
+           lambda g, x, y, i: -g.call("sin", x[0]), parity="even"),
         Op("tan", 1, _libm(math.tan), "tan({0})", lambda g, x, y, i: g.add(1, g.mul(y, y)), parity="odd"),
         Op("asin", 1, _libm(math.asin), "asin({0})",
            lambda g, x, y, i: g.div(1, g.sqrt(_one_minus_square(g, x[0]))), parity="odd"),

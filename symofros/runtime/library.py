@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import re
 import threading
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,9 @@ from symofros.errors import CompileError
 from symofros.runtime.kernel import Array, Kernel, Signature
 
 _ABI = 1
+# From here on a batch runs by vectors. What decides is the batch alone, so that no result depends on earlier calls;
+# below, a call from Python costs about as much as vectors would save.
+MANY = 512
 
 
 @cache
@@ -37,12 +41,17 @@ class CompiledUnit:
         symbol: Its exported function, `NAME_model`.
         header: Text of symofros_model.h.
         expected_hash: What the struct must say.
+        in_lanes: Function -> the same by vectors, or None; asked for once, at the first large batch.
 
     Raises:
         CompileError: It does not load, or is not what it should be.
     """
 
-    def __init__(self, path: Path, symbol: str, header: str, expected_hash: str) -> None:
+    def __init__(
+        self, path: Path, symbol: str, header: str, expected_hash: str,
+        in_lanes: Callable[[tuple[str, str]], Kernel | None] | None = None,
+    ) -> None:  # fmt: skip
+        self.in_lanes = in_lanes
         self.ffi = _interface(header)
         try:
             # ctypes finds the symbol, whose name differs from model to model; cffi makes the calls, by one interface.
@@ -92,6 +101,7 @@ class CompiledKernel:
         self._unit = unit
         self._function = function
         self._scratch = _Scratch()
+        self._lanes: Kernel | None = None
         text = unit.ffi.string
 
         def array(entry: Any) -> tuple[str, tuple[int, ...]]:
@@ -120,7 +130,12 @@ class CompiledKernel:
         return self._unit.prepare(par)
 
     def run(self, n: int, pre: Array, inputs: list[Array]) -> list[Array]:
-        """Evaluate n states in a C loop."""
+        """Evaluate n states in C: by vectors if they are many, in a loop over the states otherwise."""
+        if n >= MANY and len(pre) == 1 and self._unit.in_lanes is not None:
+            if self._lanes is None:
+                self._lanes = self._unit.in_lanes((self.signature.name, self.signature.frame)) or self
+            if self._lanes is not self:
+                return self._lanes.run(n, pre, inputs)
         ffi, function = self._unit.ffi, self._function
         outputs = [np.empty((n, *shape)) for _, shape in self.signature.outputs]
         given = [pre, *inputs]

@@ -11,7 +11,7 @@ from typing import Any
 import cffi
 import numpy as np
 
-from symofros.codegen.model import template
+from symofros.codegen.templates import template
 from symofros.errors import CompileError, Problem, SymofrosError
 from symofros.runtime.build import build_library
 from symofros.runtime.kernel import Array, Kernel

@@ -11,8 +11,8 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.codegen.model import template
 from symofros.codegen.names import c_string, identifier, local_name
+from symofros.codegen.templates import template
 from symofros.compiler import describe, generate, plan, requested
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from tests.models import system

@@ -1,0 +1,107 @@
+"""C text of sines and cosines: the blocks of a function, and the hand-written routines behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from string import Template
+
+from symofros.codegen.statements import WIDEST, Statement, StatementWriter
+from symofros.codegen.templates import template
+from symofros.expr.trigonometry import COSINE, FAR, HALF_PI, ROUNDER, SINE, TWO_BY_PI
+
+# A block of angles is padded to one of these.
+WIDTHS = (1, 2, 4, WIDEST)
+
+
+def block_lines(writer: StatementWriter, statement: Statement) -> list[str]:
+    """The lines of a block: its angles in a vector, the call, the variables.
+
+    Args:
+        writer: Of the function.
+        statement: With angles.
+    """
+    if writer.lanes:
+        return _lane_lines(writer, statement)
+    first, angles = statement.nodes[0], statement.angles
+    width = _width(len(angles))
+    texts = [*map(writer.text, angles), *["0.0"] * (width - len(angles))]
+    given = f"{{{', '.join(texts)}}}" if width > 1 else texts[0]
+    lines = [
+        f"    sym_{width} angles{first} = {given}, sines{first}, cosines{first};",
+        f"    sym_sincos_{width}(&angles{first}, &sines{first}, &cosines{first});",
+    ]
+    for node in statement.nodes:
+        lane = f"[{angles.index(writer.graph.args[node][0])}]" if width > 1 else ""
+        lines.append(f"    const double {writer.name(node)} = {_RESULTS[writer.graph.op[node]]}{first}{lane};")
+    return lines
+
+
+def _lane_lines(writer: StatementWriter, statement: Statement) -> list[str]:
+    """The same where every angle is a vector already."""
+    lines = []
+    for angle in statement.angles:
+        nodes = [node for node in statement.nodes if writer.graph.args[node][0] == angle]
+        first = nodes[0]
+        lines += [
+            f"    sym_v angles{first} = {writer.whole(angle)}, sines{first}, cosines{first};",
+            f"    sym_sincos_v(&angles{first}, &sines{first}, &cosines{first});",
+        ]
+        lines += [f"    const sym_v {writer.name(n)} = {_RESULTS[writer.graph.op[n]]}{first};" for n in nodes]
+    return lines
+
+
+_RESULTS = {"sin": "sines", "cos": "cosines"}
+
+
+def _width(angles: int) -> int:
+    return next(width for width in WIDTHS if width >= angles)
+
+
+def routines(code: Iterable[str], lanes: bool = False) -> list[str]:
+    """The routines that some C text calls.
+
+    Args:
+        code: Of the functions.
+        lanes: Whether it is on vectors, too, of whatever width the compiler has.
+    """
+    code = list(code)
+    widths = [width for width in WIDTHS if lanes or any(f"sym_sincos_{width}(" in text for text in code)]
+    if not widths:
+        return []
+    parts = [Template(template("trigonometry.c.in")).substitute(far=repr(FAR), near=_near("sym_near_1"))]
+    parts += [
+        Template(template("sincos_block.c.in")).substitute(
+            width=width, bytes=8 * width,
+            near=_near(f"sym_near_{width}", f"sym_{width}", f"sym_{width}u", f"(sym_{width}u)", f"(sym_{width})"),
+            all=" & ".join(f"near[{i}]" for i in range(width)),
+        )
+        for width in widths if width > 1
+    ]  # fmt: skip
+    return parts
+
+
+def _near(name: str, real: str = "double", word: str = "uint64_t", to_word: str = "sym_word",
+         to_real: str = "sym_real") -> str:  # fmt: skip
+    """The routine for angles up to FAR, on numbers or on vectors.
+
+    Args:
+        name: Of the C function.
+        real: Type of its angle, sine and cosine.
+        word: Type of as many whole numbers of 64 bits.
+        to_word: What turns the first into the second, bit by bit.
+        to_real: What turns it back.
+    """
+    return Template(template("sincos.c.in")).substitute(
+        name=name, real=real, word=word, to_word=to_word, to_real=to_real, two_by_pi=repr(TWO_BY_PI),
+        rounder=repr(ROUNDER), half_pi_0=repr(HALF_PI[0]), half_pi_1=repr(HALF_PI[1]), half_pi_2=repr(HALF_PI[2]),
+        sine=_polynomial(SINE), cosine=_polynomial(COSINE),
+    )  # fmt: skip
+
+
+def _polynomial(coefficients: tuple[float, ...]) -> str:
+    """c0 + z * (c1 + ... + z * cn)."""
+    text = repr(coefficients[-1])
+    for coefficient in coefficients[-2::-1]:
+        inner = text if text[0] in "-0123456789" and " " not in text else f"({text})"
+        text = f"{coefficient!r} + z * {inner}"
+    return text
