@@ -10,6 +10,9 @@ import numpy as np
 
 from validation.geometry import Array
 
+# It would write a file MUJOCO_LOG.TXT into the working directory; what it says is counted by kind in the data.
+mujoco.set_mju_user_warning(lambda said: None)
+
 
 @dataclass(frozen=True)
 class MujocoMotion:

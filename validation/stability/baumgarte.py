@@ -102,13 +102,13 @@ def judge(maps: Maps) -> Verdict:
                 for h, value in zip(rk4.x, row, strict=True) if h == rk4.x[-1] and math.isfinite(value)))  # fmt: skip
     euler = maps["euler"]
     words = (
-        f"With both gains α the constraint decays with a double root -α, so explicit methods hold while α h stays "
-        f"below where their stability function leaves the unit disc on the real axis. Measured with h = 0.1 ms, RK4 "
+        "With both gains α the constraint decays with a double root -α, so explicit methods hold while α h stays "
+        "below where their stability function leaves the unit disc on the real axis. Measured with h = 0.1 ms, RK4 "
         f"holds up to α h = {reached['rk4']:.3f}, Dormand-Prince up to {reached['dopri5']:.3f}, Euler up to "
-        f"{reached['euler']:.3f}. With longer steps the edge comes sooner, {edges[1]:.2f} at 1 ms and {edges[0]:.2f} "
-        f"at 10 ms for RK4: a double root moves by the square root of a perturbation, and the gap falls with h to the "
-        f"power {slope:.2f}. Below the edge too much gain costs accuracy: at h = {best[1]:.3g} s the constraint is "
-        f"kept best, to {best[0]:.1e}, with α = {best[2]:.3g}/s. Euler keeps the rod only in "
+        f"{reached['euler']:.3f}. With longer steps the edge comes sooner, {edges[1]:.2f} at 1 ms and "
+        f"{edges[0]:.2f} at 10 ms for RK4: a double root moves by the square root of a perturbation, and the gap "
+        f"falls with h to the power {slope:.2f}. Below the edge too much gain costs accuracy: at h = {best[1]:.3g} "
+        f"s the constraint is kept best, to {best[0]:.1e}, with α = {best[2]:.3g}/s. Euler keeps the rod only in "
         f"{euler.good.mean():.0%} of its map, whatever the gain at long steps."
     )
     see = (

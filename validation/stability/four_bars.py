@@ -20,26 +20,26 @@ AXIS = (0, -1, 0)
 
 
 @cache
-def linkage(loops: int, translations: tuple[str, ...] = ("x", "z"), rotations: tuple[str, ...] = ()) -> sf.Model:
-    """Cranks 0 to N on pivots 1 m apart, coupler i from crank i - 1 to the end of crank i, closed there.
+def linkage(loops: int, spacing: float = 1.0) -> sf.Model:
+    """Cranks 0 to N on pivots, coupler i from crank i - 1 to the end of crank i, closed there.
 
     Args:
         loops: N.
-        translations: Blocked at each closure; y is redundant in a planar mechanism.
-        rotations: Blocked likewise; x and z are redundant.
+        spacing: Of the pivots [m]; 1 makes parallelograms.
     """
-    bodies, closures = [crank(0)], []
+    bodies, closures = [crank(0, spacing)], []
     for i in range(1, loops + 1):
         hinge = sf.Joint(f"b{i}", "revolute", f"crank{i - 1}", "end", axis=AXIS)
-        bodies += [sf.RigidBody(f"coupler{i}", hinge, BAR, END_OF_BAR), crank(i)]
+        bodies += [sf.RigidBody(f"coupler{i}", hinge, BAR, END_OF_BAR), crank(i, spacing)]
         pair = (f"crank{i}", "end"), (f"coupler{i}", "end")
-        closures.append(sf.Closure(f"loop{i}", *pair, translations, rotations))  # type: ignore[arg-type]
+        closures.append(sf.Closure(f"loop{i}", *pair, ("x", "z")))
     return sf.compile(sf.System(f"four_bars_{loops}", tuple(bodies), constraints=tuple(closures)))
 
 
-def crank(i: int) -> sf.RigidBody:
-    """On the ground at x = i."""
-    return sf.RigidBody(f"crank{i}", sf.Joint(f"a{i}", "revolute", position=(i, 0, 0), axis=AXIS), BAR, END_OF_BAR)
+def crank(i: int, spacing: float = 1.0) -> sf.RigidBody:
+    """On the ground."""
+    pivot = sf.Joint(f"a{i}", "revolute", position=(i * spacing, 0, 0), axis=AXIS)
+    return sf.RigidBody(f"crank{i}", pivot, BAR, END_OF_BAR)
 
 
 def state(m: sf.Model, angle: float, speed: float) -> tuple[Array, Array]:

@@ -24,7 +24,7 @@ EXUDYN, RADIUS = "Exudyn, generalised α", 0.9
 WAYS = Grid.of("how the loops are kept closed [-]", (
     "accelerations only", *(f"Baumgarte {gain:g}/s" for gain in GAINS), "projection", *SOFT, EXUDYN,
 ), ("accelerations only", "Baumgarte 5/s", "Baumgarte 20/s", "projection", "MuJoCo, its defaults", EXUDYN))  # fmt: skip
-H = Grid("step h [s]", decades(5e-4, 2e-2, 5), (2e-3, 1e-2))
+H = Grid("step h [s]", decades(1e-3, 2e-2, 6), (2e-3, 1e-2))
 
 
 def measure(loops: int) -> Callable[[float, float], Cell]:
@@ -122,14 +122,16 @@ def judge(maps: Maps) -> Verdict:
     stopped = sum(found.stopped for found in maps.values())
     defaults = two.at(y=WAYS.labels.index("MuJoCo, its defaults"))
     words = (
-        f"Flat, the linkage may leave on another branch, and what the constraints have drifted by then decides. Through "
-        f"all steps of both maps hold: {', '.join(always)}. Accelerations only never hold, gains below 10/s hold by "
-        f"chance. Projection stays within {errors.max():.1e} m. MuJoCo's default closures miss by "
-        f"{defaults.min():.1f} to {defaults.max():.1f} m at any step, because they lose energy, not because of the posture."
+        "Flat, the linkage may leave on another branch, and what the constraints have drifted by then decides. "
+        f"Through all steps of both maps hold: {', '.join(always)}. Accelerations only never hold, gains below 10/s "
+        f"hold by chance. Projection stays within {errors.max():.1e} m. MuJoCo's default closures miss by "
+        f"{defaults.min():.1f} to {defaults.max():.1f} m at any step, because they lose energy, not because of the "
+        "posture."
     )
     see = (
-        f"Rows are ways, columns are steps. Blue rows hold; above them and below, {stopped} runs stop with an outcome, but "
-        f"{wrong} come to their end on the wrong branch or out of phase, and only a check of energy or of the step tells."
+        f"Rows are ways, columns are steps. Blue rows hold; above them and below, {stopped} runs stop with an "
+        f"outcome, but {wrong} come to their end on the wrong branch or out of phase, and only a check of energy or "
+        "of the step tells."
     )
     return Verdict(words, see, checks)
 
@@ -146,8 +148,8 @@ SCENE = Scene(
     "constraints falls by N. RK4 in relative coordinates; engines as named.",
     H, WAYS, "distance of the first crank's end from the exact motion after 10 s [m]", BOUND,
     tuple(Subject(f"N = {n}", measure(n)) for n in (1, 2)), judge,
-    "projection (the default), or Baumgarte's gains of 20/s and more below the limit of the scene before. A step that "
-    "lands in the flat posture is reported by `outcome.notes`; one that steps across it is not, so plan the passage or "
-    "drive the mechanism past it.",
+    "projection (the default), or Baumgarte's gains of 20/s and more below the limit of the scene before. A step "
+    "that lands in the flat posture is reported by `outcome.notes`; one that steps across it is not, so plan the "
+    "passage or drive the mechanism past it.",
     (source("four_bars"),),
 )  # fmt: skip

@@ -1,0 +1,102 @@
+"""Stick-slip: a block that a spring drags over a table, friction smoothed over a speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+import symofros as sf
+from validation.geometry import Array
+from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, decades
+
+STATED, DYNAMIC, SPRING, PULL = 4.0, 2.0, 100.0, 0.05
+# Friction falls from static to dynamic over ten times the speed that it is smoothed over, whatever that is: what is
+# left of static at the top of its curve.
+_RATIO = np.linspace(0.0, 10.0, 100001)
+STATIC = float(np.max((DYNAMIC + (STATED - DYNAMIC) * np.exp(-((_RATIO / 10) ** 2))) * np.tanh(_RATIO)))
+END = 4.0
+BOUND = 0.1
+SMOOTH = Grid("minimum velocity v₀ of the friction [m/s]", decades(1e-5, 1e-1, 2), (1e-4, 1e-2))
+H = Grid("step h [s]", decades(3e-5, 3e-2, 3), (1e-4, 1e-3, 1e-2))
+METHODS = ("rk4", "semi_implicit_euler", "implicit_euler")
+
+
+@cache
+def block() -> sf.Model:
+    """1 kg; the other end of the spring moves steadily."""
+    table = sf.Friction(DYNAMIC, STATED, sf.formula("v0", "speed"))
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True, elements=(table,))
+    parameters = (sf.Parameter("v0", 1e-3),)
+    return sf.compile(sf.System("block", (sf.RigidBody("block", joint, sf.Inertia(1.0)),), parameters=parameters))
+
+
+def exact(times: Array) -> Array:
+    """Position (n) with friction that falls at once from static to dynamic, piece by piece.
+
+    Stuck until the spring pulls with `STATIC`; then its stretch swings about DYNAMIC/k until the block has stopped.
+    """
+    omega = math.sqrt(SPRING)
+    # Stretch e = PULL t - x: e'' = -omega^2 (e - DYNAMIC/k), e(0) = STATIC/k, e'(0) = PULL; ends where e' = PULL again.
+    amplitude, phase = (STATIC - DYNAMIC) / SPRING, PULL / omega
+    slip = 2 * (math.pi - math.atan2(amplitude, phase)) / omega
+    # By symmetry the block stops with the stretch as far below the middle as it began above.
+    stick = 2 * amplitude / PULL
+    first = STATIC / (SPRING * PULL)
+    x = np.zeros_like(times)
+    for i, t in enumerate(times):
+        if t < first:
+            continue
+        periods, rest = divmod(t - first, slip + stick)
+        jump = PULL * (slip + stick)
+        moved = jump
+        if rest < slip:
+            stretch = DYNAMIC / SPRING + amplitude * math.cos(omega * rest) + phase * math.sin(omega * rest)
+            moved = STATIC / SPRING + PULL * rest - stretch
+        x[i] = periods * jump + moved
+    return x
+
+
+def jump() -> float:
+    """How far it slips at once [m]."""
+    omega = math.sqrt(SPRING)
+    amplitude, phase = (STATIC - DYNAMIC) / SPRING, PULL / omega
+    return PULL * (2 * (math.pi - math.atan2(amplitude, phase)) / omega + 2 * amplitude / PULL)
+
+
+def measure(method: str) -> Callable[[float, float], Cell]:
+    """Distance from the exact motion, in slips."""
+
+    def run(v0: float, h: float) -> Cell:
+        m = block().with_parameters(v0=v0)
+        done = sf.simulate(m, [0.0], t_end=END, method=method, dt=h, adaptive=False, output=0.01,
+                           u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"})  # fmt: skip
+        return cell(done, lambda run: float(np.abs(run.q[:, 0] - exact(run.t)).mean() / jump()))
+
+    return run
+
+
+def limit(bound: float) -> Limit:
+    """H F/(m v0) = bound: the slope of friction at rest against the stability of the method."""
+    v = np.array([SMOOTH.values[0], SMOOTH.values[-1]])
+    return Limit(f"{bound:.3g} m v₀/F", v, bound * v / STATED)
+
+
+LIMITS = {"rk4": 2.7853, "semi_implicit_euler": 2.0}
+
+
+def judge(maps: Maps) -> Verdict:
+    """Where chatter begins, and what it costs."""
+    return Verdict("", "", ())
+
+
+SCENE = Scene(
+    "How sharp may friction be, for which step?",
+    f"A block of 1 kg is dragged by a spring of {SPRING:g} N/m that moves with {PULL} m/s, static friction "
+    f"{STATIC:g} N, dynamic {DYNAMIC:g} N, for {END:g} s; the exact motion has friction that jumps.",
+    SMOOTH, H, "mean distance from the exact motion over one slip [-]", BOUND,
+    tuple(Subject(name, measure(name), (limit(LIMITS[name]),) if name in LIMITS else ()) for name in METHODS), judge,
+    "", (),
+)  # fmt: skip
