@@ -43,7 +43,7 @@ def bars(
             referenceCoordinates=[x + half[0], z + half[1], angle],
             initialVelocities=[*_velocity((x, z), half, angle, speed, links), speed],
         )))  # fmt: skip
-        body = system.AddObject(items.RigidBody2D(physicsMass=1.0, physicsInertia=1 / 12, nodeNumber=nodes[-1]))
+        body = system.AddObject(items.RigidBody2D(mass=1.0, inertia=1 / 12, nodeNumber=nodes[-1]))
         for station in (0.0, 1.0):
             marked[len(nodes) - 1, station] = system.AddMarker(
                 items.MarkerBodyRigid(bodyNumber=body, localPosition=[station - 0.5, 0, 0])

@@ -90,7 +90,7 @@ def judge(maps: Maps) -> Verdict:
     ] + [
         Check(f"{method}: factor by which α h = {REAL[method]:.3f} misses the edge of its map", found.miss(
             "y", lambda h, m=method: REAL[m] / h), 1.25, reason="a step of the grid, and the square-root gap")  # type: ignore[misc]
-        for method, found in maps.items() if found.edge("y")
+        for method, found in maps.items() if method != "euler"  # Which fails at small gains, too: it has two edges.
     ] + [
         Check("rk4: exponent of the gap between edge and closed form in h", slope, 0.55, 0.45,
               "a double root moves by the square root of what perturbs it, here ω h"),
@@ -112,9 +112,9 @@ def judge(maps: Maps) -> Verdict:
         f"{euler.good.mean():.0%} of its map, whatever the gain at long steps."
     )
     see = (
-        f"The black edge runs along the dashed hyperbola. {rk4.stopped} RK4 runs beyond it "
-        f"diverge and say so, {rk4.wrong} in the seam come to their end and are wrong. Going down from the edge the "
-        "violation falls, until at gains below about 5/s it rises again."
+        f"The black edge runs along the dashed hyperbola. {rk4.stopped} RK4 runs beyond it diverge and say so; "
+        f"{rk4.wrong} come to their end and are wrong. Going down from the edge the violation falls, until at small "
+        "gains it rises again. Euler loses the rod at small gains and long steps."
     )
     return Verdict(words, see, tuple(checks))
 

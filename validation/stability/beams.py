@@ -45,7 +45,10 @@ def frequencies(modes: int) -> Array:
 
 def growth(run: sf.Trajectory) -> float:
     """Largest energy of the second half over the energy at the start."""
-    return float(np.max(run.energy[len(run) // 2 :]) / run.energy[0])
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = float(np.max(run.energy[len(run) // 2 :]) / run.energy[0])
+    # Kinetic and potential energy may both overflow while speeds do not yet.
+    return found if np.isfinite(found) else np.inf
 
 
 def ring(modes: int, method: str, h: float, c: float = 0.0) -> sf.Trajectory:
@@ -149,8 +152,9 @@ def judge_damped(maps: Maps) -> Verdict:
         "Damping that grows with the frequency helps RK4 only a little and then hurts: the longest step is "
         f"{closed_form(RETARDATION.values[0]):.4f} s with c = {RETARDATION.values[0]:g} s, {closed_form(best):.4f} "
         f"s at best (c = {best:.2g} s), and from c = 2/ω_max = {2 / omega:.2g} s on it falls as 2.785/(c ω_max²), "
-        f"to {closed_form(RETARDATION.values[-1]):.1e} s with c = {RETARDATION.values[-1]:g} s. Implicit Euler "
-        "holds everywhere."
+        f"to {closed_form(RETARDATION.values[-1]):.1e} s with c = {RETARDATION.values[-1]:g} s. Of RK4's "
+        f"{found.values.size} runs {found.stopped} diverge. Implicit Euler holds in "
+        f"{maps['implicit_euler'].good.mean():.0%}."
     )
     see = (
         "The dashed boundary is level on the left, where modes swing, and falls with slope one on the right, where "

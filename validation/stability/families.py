@@ -60,9 +60,8 @@ def judge(maps: Maps) -> Verdict:
     kept, exact = maps[KEPT], maps[EXACT]
     rows = dict(zip(FAMILIES, kept.cells, strict=True))
     monomials = [c for c in rows["polynomial"] if c.ended != "refused"]
-    first = min(
-        (float(n) for n, c in zip(kept.x, rows["polynomial"], strict=True) if c.ended == "refused"), default=np.nan
-    )
+    turned_away = [float(n) for n, c in zip(kept.x, rows["polynomial"], strict=True) if c.ended == "refused"]
+    first = min(turned_away, default=np.nan)
     said = next((c.note for c in rows["polynomial"] if c.ended == "refused"), "")
     known = {row_n + 1: row for row_n, row in enumerate(data("conditioning")["rows"])}
     conditions = {n: float(np.linalg.cond(beam("polynomial", n).mass_matrix(np.zeros(n)))) for n in (2, 4)}
@@ -73,8 +72,8 @@ def judge(maps: Maps) -> Verdict:
     losing = bool(len(frequencies) and frequencies[-1] > frequencies.min())
     checks = (
         Check("polynomial: the number of functions that is refused", first, 8.0, 8.0, "condition 2e12"),
-        Check("polynomial: condition of M against the known one, relative", apart, 1e-6, reason="computed independently"),
-        Check("other families: largest error of the round trip", others, 1e-11, reason="their condition stays below 1e3"),
+        Check("polynomial: condition of M against the known one, relative", apart, 1e-6, reason="known independently"),
+        Check("other families: largest error of the round trip", others, 1e-11, reason="condition below 1e3"),
         Check("legendre: smallest error of the first frequency", best, 1e-10, reason="it converges until rounding"),
     )  # fmt: skip
     words = (

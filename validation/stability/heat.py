@@ -17,6 +17,10 @@ _RIGHT, _TOP, _BOTTOM = 14, 66, 50
 _LETTER = 6.1
 # Decades below and above the bound at which colours are full.
 _DEEP = {"good": 8.0, "bad": 4.0}
+# Opacity from which on light letters are read more easily.
+_DARK = 0.55
+# Values of an axis that are all named.
+_FEW = 8
 # Decades are written so far apart [px] that they can be read.
 _APART = (22.0, 12.5)
 
@@ -40,10 +44,11 @@ def svg(found: Map, x: Grid, y: Grid, quantity: str) -> str:
     for j, line_of_cells in enumerate(found.cells):
         for i, one in enumerate(line_of_cells):
             box = (columns[i], rows[j + 1], columns[i + 1] - columns[i], rows[j] - rows[j + 1])
-            rectangle, sign = _cell(box, one.value, one.ended, found.bound)
+            rectangle, sign, dark = _cell(box, one.value, one.ended, found.bound)
             parts.append(rectangle)
             if i % every_x == 0 and j % every_y == 0:
-                parts.append(text(box[0] + box[2] / 2, box[1] + box[3] / 2 + 3.5, sign, "middle", "decade"))
+                kind = "decade light" if dark else "decade"
+                parts.append(text(box[0] + box[2] / 2, box[1] + box[3] / 2 + 3.5, sign, "middle", kind))
     parts += _edge(found.good, columns, rows)
     parts += _named(found.x, x, across, columns, "x", rows[0])
     parts += _named(found.y, y, down, rows, "y", left)
@@ -73,19 +78,19 @@ def _stride(borders: list[float], apart: float) -> int:
     return math.ceil(apart / float(np.median(np.abs(np.diff(borders)))) - 1e-9)
 
 
-def _cell(box: tuple[float, float, float, float], value: float, ended: str, bound: float) -> tuple[str, str]:
-    """The rectangle, and what is written into it."""
+def _cell(box: tuple[float, float, float, float], value: float, ended: str, bound: float) -> tuple[str, str, bool]:
+    """The rectangle, what is written into it, and whether that must be light."""
     left, top, width, height = box
     place = f'x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" height="{height:.1f}"'
     if ended not in FINISHED:
         kind = "refused" if ended == "refused" else "ended"
         sign = "r" if ended == "refused" else "×"
-        return f'<rect class="{kind}" {place}/>', sign
+        return f'<rect class="{kind}" {place}/>', sign, kind == "ended"
     over = math.log10(max(value, 1e-300) / bound)
     kind = "bad" if over > 0.0 else "good"
     depth = 0.12 + 0.78 * min(abs(over) / _DEEP[kind], 1.0)
     decade = f"{min(max(round(math.log10(max(value, 1e-300))), -99), 99)}".replace("-", "−")
-    return f'<rect class="{kind}-cell" fill-opacity="{depth:.2f}" {place}/>', decade
+    return f'<rect class="{kind}-cell" fill-opacity="{depth:.2f}" {place}/>', decade, depth > _DARK
 
 
 def _edge(good: npt.NDArray[np.bool_], columns: list[float], rows: list[float]) -> list[str]:
@@ -106,7 +111,10 @@ def _named(values: Array, grid: Grid, axis: Axis | None, borders: list[float], n
         places = [(borders[k] + borders[k + 1]) / 2 for k in range(len(values))]
         pairs = [(place, escape(grid.label(value))) for place, value in zip(places, values, strict=True)]
     else:
-        pairs = [(axis.at(value), shown(value, axis.log)) for value in axis.ticks()]
+        # A few round values are named themselves; many get the ticks of a chart.
+        few = len(values) <= _FEW and all(value == 0.0 or 0.01 <= value < 1e4 for value in values)
+        named = values.tolist() if few else axis.ticks()
+        pairs = [(axis.at(value), f"{value:g}" if few else shown(value, axis.log)) for value in named]
     if name == "x":
         return [text(at, edge + 17, label, "middle", "tick") for at, label in pairs]
     return [text(edge - 7, at + 4, label, "end", "tick") for at, label in pairs]
@@ -141,7 +149,8 @@ def _legend(found: Map, left: float, quantity: str) -> list[str]:
     ended = {c.ended for row in found.cells for c in row}
     items += [("ended", "ended before (×)")] if ended - {*FINISHED, "refused"} else []
     items += [("refused", "refused (r)")] if "refused" in ended else []
-    parts.append(text(left, 34, f"numbers: decade of the {escape(quantity)}", "start", "tick"))
+    said = f"numbers: decade of the {quantity}"
+    parts.append(text(max(4.0, min(left, WIDTH - 5.9 * len(said))), 34, escape(said), "start", "tick"))
     for kind, label in items:
         parts.append(f'<rect class="{kind}" fill-opacity="0.6" x="{x:.0f}" y="44" width="12" height="12"/>')
         parts.append(text(x + 17, 54, escape(label), "start", "tick"))

@@ -99,10 +99,11 @@ def judge(maps: Maps) -> Verdict:
               float(kind in ("singular", "diverged")), 1.0, 1.0, "nothing is silently wrong"),
     )  # fmt: skip
     words = (
-        "Lightness by itself does no harm: hanging free, a last link of 1e-12 of the first swings like any other. "
-        f"On a spring its frequency grows as 1/√m, and RK4's longest step shrinks from {heavy:.3f} s to {light:.1e} "
-        f"s, where 2.828/ω_max says; rodas4 holds everywhere. No mass at "
-        f"all is refused: “{said}”; a mass that a parameter sets to zero ends the run at once with outcome “{kind}”."
+        "Lightness by itself does no harm: hanging free, a last link of 1e-12 of the first swings as a light one "
+        "does (far, for both links have one frequency). On a spring its frequency grows as 1/√m, and RK4's longest "
+        f"step shrinks from {heavy:.3f} s to {light:.1e} s, where 2.828/ω_max says ({maps[SPRING].stopped} of "
+        f"{maps[SPRING].values.size} runs diverge); rodas4 holds everywhere. No mass at all is refused: “{said}”; a "
+        f"mass that a parameter sets to zero ends the run at once with outcome “{kind}”."
     )
     see = (
         "The edge of the first map has slope one half in the mass and lies on the dashed line down to 1e-12; the "

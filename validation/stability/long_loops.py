@@ -67,8 +67,10 @@ def judge(maps: Maps) -> Verdict:
         Check(f"{method}: exponent of the drift in h", slopes[method], order + 0.6, order - 0.6, "its order")
         for method, order in ORDERS.items()
     ] + [Check(f"{PROJECTED}: largest violation [m]", kept, 1e-9, reason="what projection is asked for")]
-    longest = {method: max((float(x) for x, g in zip(found.x, found.good.all(axis=0), strict=True) if g), default=0.0)
-               for method, found in maps.items()}  # fmt: skip
+    longest = {}
+    for method, found in maps.items():
+        held = np.asarray(found.good).all(axis=0)
+        longest[method] = float(found.x[held].max(initial=0.0))
     words = (
         f"Kept by accelerations alone, loops drift as h to the power {slopes['semi_implicit_euler']:.1f} with "
         f"semi-implicit Euler, {slopes['rk4']:.1f} with RK4, {slopes['dopri5']:.1f} with Dormand-Prince. With RK4 "

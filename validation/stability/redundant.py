@@ -21,7 +21,7 @@ IN_PLANE, ALL = ("x", "z"), ("x", "y", "z")
 ROWS = {PIN: (IN_PLANE, ()), BALL: (ALL, ()), HINGE: (ALL, IN_PLANE), CRANK: (IN_PLANE, ())}
 RANKS = {PIN: (2, 2), BALL: (3, 2), HINGE: (5, 2), CRANK: (4, 3)}
 KIND = Grid.of("how the loop is closed [-]", tuple(ROWS))
-MISFIT = Grid("misfit d [m]", decades(1e-16, 1e-2, 1), (1e-16, 1e-12, 1e-4))
+MISFIT = Grid("misfit d [m]", decades(1e-16, 1e-2, 1), (1e-16, 1e-13, 1e-9, 1e-4))
 
 
 @cache

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from symofros.atomic import write_atomically
 from validation.page import check_data, render, rounded, versions
@@ -106,7 +108,7 @@ def write_report(atlas: Atlas, folder: Path) -> Path:
     """
     folder.mkdir(parents=True, exist_ok=True)
     write_atomically(folder / "stability.json", json.dumps(as_data(atlas), allow_nan=False) + "\n")
-    filters = {"map": _map}
+    filters: dict[str, Callable[..., object]] = {"map": _map, "prose": _prose}
     for kind in ("md", "html"):
         said = render(f"stability.{kind}.j2", filters, atlas=atlas, versions=versions(*ENGINES))
         write_atomically(folder / f"stability.{kind}", said)
@@ -145,3 +147,8 @@ def _cells(scene: Scene, found: Map) -> dict[str, Any]:
 
 def _map(found: Map, scene: Scene) -> Markup:
     return Markup(heat.svg(found, scene.x, scene.y, scene.quantity))
+
+
+def _prose(text: str) -> Markup:
+    """Escaped, with `names of code` set as such."""
+    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))
