@@ -8,9 +8,11 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
+from reference_models import MODELS
 from validation.findings import Check
 from validation.stability import four_bars
 from validation.stability.four_bars import AXIS, BAR, END_OF_BAR
+from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, refused
 
 END = 0.5
@@ -91,6 +93,12 @@ def judge(maps: Maps) -> Verdict:
         if kind in (BALL, HINGE):
             a, b = (each.forward_dynamics(q, v, np.zeros(0)) for each in (m, linkage(PIN)))
             spread = max(spread, float(np.abs(a - b).max()))
+    known = data("bricard")
+    bricard = sf.compile(MODELS["bricard"])
+    rest, still = bricard.neutral(), np.zeros(bricard.nv)
+    wrong_ranks += (bricard.nc, sf.assemble(bricard, rest).rank) != (known["rows"], known["rank"])
+    accelerations = bricard.forward_dynamics(rest, still, np.zeros(bricard.nu))
+    apart = float(np.abs(accelerations - known["accelerations"]).max())
     projected = maps["projection"]
     silent = sum(found.wrong for found in maps.values())
     rows_good = {kind: projected.good[k] for k, kind in enumerate(ROWS)}
@@ -101,6 +109,8 @@ def judge(maps: Maps) -> Verdict:
         Check("kinds of closure whose number of rows and rank are not as they should be", float(wrong_ranks), 0.0),
         Check("accelerations with redundant rows against those without [rad/s²]", spread, 1e-10,
               reason="multipliers of least norm move nothing"),
+        Check("Bricard's mechanism, 5 rows of rank 4: accelerations against the known ones [rad/s²]", apart, 1e-10,
+              reason="least norm, computed independently"),
         Check("two rows: share of the map that is good", float(rows_good[PIN].mean()), 1.0, 1.0,
               "an offset is harmless"),
         Check("smallest misfit that is refused [m]", min(first.values()), 1e-6, 1e-13,
@@ -129,5 +139,5 @@ SCENE = Scene(
     tuple(Subject(kind, measure(kind)) for kind in ("projection", "baumgarte")), judge,
     "state as few directions as the loop needs; where rows repeat each other, make their dimensions one and the same "
     "parameter. `sf.assemble` gives the rank, `model.nc` the number of rows.",
-    ("rank of a planar loop's closures: 2 of 3, 2 of 5",),
+    ("rank of a planar loop's closures: 2 of 3, 2 of 5", source("bricard")),
 )  # fmt: skip
