@@ -109,7 +109,7 @@ def judge(maps: Maps) -> Verdict:
         f"{edges[0]:.2f} at 10 ms for RK4: a double root moves by the square root of a perturbation, and the gap "
         f"falls with h to the power {slope:.2f}. Below the edge too much gain costs accuracy: at h = {best[1]:.3g} "
         f"s the constraint is kept best, to {best[0]:.1e}, with α = {best[2]:.3g}/s. Euler keeps the rod only in "
-        f"{euler.good.mean():.0%} of its map, whatever the gain at long steps."
+        f"{euler.good.mean():.0%} of its map, and with no gain at long steps."
     )
     see = (
         f"The black edge runs along the dashed hyperbola. {rk4.stopped} RK4 runs beyond it diverge and say so; "

@@ -27,7 +27,9 @@ def register(app: typer.Typer) -> None:
 def stability(
     chosen: Annotated[list[str] | None, typer.Option("--scene", help=f"Only this; of {', '.join(SCENES)}.")] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Coarse grids.")] = False,
-    report: Annotated[Path, typer.Option(help="Folder for stability.html, .md and .json.")] = Path("reports"),
+    report: Annotated[
+        Path, typer.Option(help="Folder for stability.html, .md, .json; with --scene, of its folder stability.")
+    ] = Path("reports"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,
 ) -> None:
     """Map where simulations fail, against closed forms and other engines.

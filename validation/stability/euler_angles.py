@@ -126,9 +126,10 @@ def judge(maps: Maps) -> Verdict:
         f"diverged, and {angles.wrong} come to their end and miss the attitude by up to "
         f"{np.nanmax(angles.values):.1f} rad. Angles that follow from body rates, as textbooks have it, are gentler "
         f"({rates.good.mean():.0%}) and miss silently ({rates.wrong} runs). Adaptive DOP853 stays right and pays "
-        f"{near / far:.1f} times the evaluations of a passage at 0.3 ({near} against {far}). The quaternion needs "
-        f"{steady[1]} at any distance, and its map does not vary along a row (by {spread:.1f} decades at most, "
-        "which is rounding)."
+        f"{near / far:.1f} times the evaluations of a passage at 0.3 ({near} against {far}). The quaternion does "
+        f"not know of the posture: it needs {steady[1]} evaluations at any distance, its map varies along a row by "
+        f"rounding only ({spread:.1f} decades), and it is exact, because its steps turn the body and this turn is "
+        "steady."
     )
     see = (
         "In the first two maps the edge rises with the distance from the singularity; below it the step is short "

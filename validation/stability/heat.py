@@ -23,6 +23,7 @@ _DARK = 0.55
 _FEW = 8
 # Decades are written so far apart [px] that they can be read.
 _APART = (22.0, 12.5)
+_NARROW = 13.0
 
 
 def svg(found: Map, x: Grid, y: Grid, quantity: str) -> str:
@@ -46,7 +47,7 @@ def svg(found: Map, x: Grid, y: Grid, quantity: str) -> str:
             box = (columns[i], rows[j + 1], columns[i + 1] - columns[i], rows[j] - rows[j + 1])
             rectangle, sign, dark = _cell(box, one.value, one.ended, found.bound)
             parts.append(rectangle)
-            if i % every_x == 0 and j % every_y == 0:
+            if i % every_x == 0 and j % every_y == 0 and box[2] * every_x > _NARROW:
                 kind = "decade light" if dark else "decade"
                 parts.append(text(box[0] + box[2] / 2, box[1] + box[3] / 2 + 3.5, sign, "middle", kind))
     parts += _edge(found.good, columns, rows)

@@ -159,9 +159,9 @@ def judge_cross(maps: Maps) -> Verdict:
     )  # fmt: skip
     words = (
         "A massless cross is legal: the body behind it bears both hinges. As they become parallel the mass matrix "
-        f"degenerates as 4/a², and digits go with it: at {condition(1.0):.0f} (1 degree) nothing is lost that "
-        f"matters; {'from ' + format(first, '.1e') + ' degrees down' if first else 'nowhere on the map'} the error "
-        f"passes {found.bound:g}. A cross of 1e-6 of the body's inertia bounds it to "
+        f"degenerates as 4/a², and digits go with it: at 1 degree, a condition of {condition(1.0):.0f}, nothing is "
+        f"lost that matters; {'from ' + format(first, '.1e') + ' degrees down' if first else 'nowhere on the map'} "
+        f"the error passes {found.bound:g}. A cross of 1e-6 of the body's inertia bounds it to "
         f"{float(np.nanmax(found.at(y=float(CROSS.values.index(1e-6))))):.0e} at any angle."
     )
     see = "Bottom row, no mass: errors grow to the left as 1/a². Every row above is level left of a = √J."

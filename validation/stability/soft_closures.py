@@ -63,13 +63,16 @@ def judge(maps: Maps) -> Verdict:
         for stated_at in (four_bars.START[0], 0.0)
         for angle in (stated_at + move(1, "RK4", 1e-3, *DEFAULT, stated_at=stated_at).q[0],)
     )
-    lost = {name: float(np.ptp(move(1, name, 1e-3, *DEFAULT).energy)) for name in INTEGRATORS}
+    defaults = {name: move(1, name, 1e-3, *DEFAULT) for name in INTEGRATORS}
+    lost = {name: float(np.ptp(run.energy)) for name, run in defaults.items()}
+    astray = [four_bars.tip_error(1, END, ends_of_crank(run.q)) for run in defaults.values()]
     m = four_bars.linkage(1)
     ours = sf.simulate(m, *four_bars.state(m, *four_bars.START), END, dt=float(H.chosen(True)[0]), output=[0.0, END])
     held = four_bars.tip_error(1, END, ours.frames["crank0.end"][0][-1, [0, 2]])
     best = {name: float(np.nanmin(found.values)) for name, found in maps.items()}
     checks = (
-        Check("factor between known and found energies and distances", max(factors), 3.0, reason="of the known runs"),
+        Check("factor between known and found energies and distances", max(factors), 3.0, 
+              reason="of the known runs; Euler's positions were read a step late there, ω h = 2 mm: left out"),
         Check("MuJoCo's defaults, RK4, h = 1 ms: distance [m]", upright, 3.0, 0.5, "far off, whatever the step"),
         Check("the same stated flat: change of that distance [m]", abs(flat - upright), 3.0, 0.1,
               "softness is scaled by inertias in the posture where coordinates are zero"),
@@ -77,11 +80,12 @@ def judge(maps: Maps) -> Verdict:
         Check("ours, RK4 and projection, h = 1 ms: distance [m]", held, 1e-9, reason="closures are exact, order h⁴"),
     )  # fmt: skip
     words = (
-        f"MuJoCo closes loops by stiff springs and dampers. With its defaults the crank's end is {upright:.2f} m "
-        f"off after 10 s at a step of 1 ms, whatever the integrator, for {lost['RK4']:.2f} of 20.5 J are lost; "
-        f"stated flat instead of upright, the same model is {flat:.2f} m off. Stiffer closures help: on the map RK4 "
-        f"comes down to {best['MuJoCo RK4']:.1e} m, Euler to {best['MuJoCo Euler']:.1e} m. Ours with RK4 and "
-        f"projection at 1 ms: {held:.0e} m."
+        f"MuJoCo closes loops by stiff springs and dampers. With its defaults the crank's end is {min(astray):.2f} "
+        f"to {max(astray):.2f} m off after 10 s at a step of 1 ms, with Euler and RK4 alike, for {lost['RK4']:.2f} "
+        f"to {lost['Euler']:.2f} of 20.5 J are lost; stated flat instead of upright, the same model with RK4 is "
+        f"{flat:.2f} instead of {upright:.2f} m off, because softness is scaled by inertias in the posture where "
+        f"coordinates are zero. Stiffer closures help: on the map RK4 comes down to {best['MuJoCo RK4']:.1e} m, "
+        f"Euler to {best['MuJoCo Euler']:.1e} m. Ours with RK4 and projection at 1 ms: {held:.0e} m."
     )
     see = (
         "Errors fall with the time constant until it reaches two steps, the dashed line; below it MuJoCo raises the "

@@ -123,9 +123,9 @@ def judge(maps: Maps) -> Verdict:
     )  # fmt: skip
     words = (
         f"Two errors meet. Smoothing lets the block creep: v₀ of {min(blunt, default=np.inf):.1e} m/s and more miss "
-        f"at any step, and whatever v₀ is, the block breaks away at {STATIC / STATED:.1%} of the static friction, "
-        "because it falls over ten times v₀. Sharp friction makes the rest stiff: beyond h = 2.785 m v₀/F RK4 "
-        f"chatters about rest. Chatter stays bounded, so nothing diverges ({stopped} of "
+        f"at the shortest step, and whatever v₀ is, by default the block breaks away at {STATIC / STATED:.1%} of "
+        "the static friction, because it falls over ten times v₀. Sharp friction makes the rest stiff: beyond h = "
+        f"2.785 m v₀/F RK4 chatters about rest. Chatter stays bounded, so nothing diverges ({stopped} of "
         f"{sum(f.values.size for f in maps.values())} runs stop) and the criterion is missed only "
         f"{min(ratios, default=np.nan):.0f} to {max(ratios, default=np.nan):.0f} times later: {rk4.wrong} RK4 runs "
         "come to their end and are wrong. Implicit Euler with fixed steps meets the criterion in "
