@@ -11,6 +11,8 @@ from symofros.simulation.outcome import Kind, Outcome
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepper import Stepper
 
+_ROUNDING = float(np.finfo(np.float64).eps)
+
 
 def diagnose(stepper: Stepper, status: int, interrupted: bool, settings: Settings) -> Outcome:
     """How a run ended.
@@ -34,6 +36,9 @@ def diagnose(stepper: Stepper, status: int, interrupted: bool, settings: Setting
         return outcome("event", f"event '{stepper.events[run.stopped_by].name}'")
     if status == native.CALLBACK:
         return outcome("input failed", f"the input function raised {failure!r}", "call it by itself at this state")
+    if status == native.DIVERGED and _immobile(stepper, q):
+        return outcome("singular", "the mass matrix is singular: a speed moves no mass",
+                       "give every speed an inertia; look for a mass that a parameter sets to zero")  # fmt: skip
     if status == native.DIVERGED:
         return outcome("diverged", f"a state is no longer finite; {_largest(stepper, q, v)}", _steady(settings))
     if status == native.NO_MOTION:
@@ -54,6 +59,19 @@ def diagnose(stepper: Stepper, status: int, interrupted: bool, settings: Setting
     if status == native.GOING and t < float(run.t_end):
         return outcome("interrupted", f"max_steps: {int(run.steps)} steps are done")
     return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")
+
+
+def _immobile(stepper: Stepper, q: np.ndarray) -> bool:
+    """Whether a tree's mass matrix has lost a direction at the last finite state; constraints may bind such a one."""
+    model = stepper.model
+    if model.nc or not np.all(np.isfinite(q)):
+        return False
+    M = model.mass_matrix(q, u=stepper.inputs_now, par=stepper.par)
+    scale = np.sqrt(np.diag(M))
+    if not np.all(np.isfinite(M)) or not np.all(scale > 0.0):
+        return bool(np.all(np.isfinite(M)))
+    # Each speed in units of its own inertia: a body may be light, but not weightless.
+    return bool(np.linalg.eigvalsh(M / np.outer(scale, scale))[0] <= _ROUNDING * len(M))
 
 
 def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
