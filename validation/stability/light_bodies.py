@@ -95,7 +95,7 @@ def judge(maps: Maps) -> Verdict:
               "no frequency grows with lightness"),
         Check(f"{IMPLICIT}: the same", float(maps[IMPLICIT].good.mean()), 1.0, 1.0, "L-stable"),
         Check("a massless last link is refused (1: yes)", float(bool(said)), 1.0, 1.0),
-        Check("a mass set to zero at run time ends the run as singular (1: yes)", 
+        Check("a mass set to zero at run time ends the run as singular (1: yes)",
               float(kind == "singular"), 1.0, 1.0, "nothing is silently wrong"),
     )  # fmt: skip
     words = (

@@ -175,10 +175,6 @@ class Map:
         rows = slice(None) if y is None else [self._index(self.y, y)]
         return np.asarray(self.values[rows][:, columns]).ravel()
 
-    def noted(self, x: float, y: float) -> Cell:
-        """One run."""
-        return self.cells[self._index(self.y, y)][self._index(self.x, x)]
-
     @staticmethod
     def _index(values: Array, value: float) -> int:
         return int(np.argmin(np.abs(values - value)))

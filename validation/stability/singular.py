@@ -78,7 +78,7 @@ def exudyn(loops: int, h: float) -> Cell:
     """Its generalised-alpha solver in absolute coordinates."""
     hinges = [(i, 1.0, loops + 1 + i, 0.0) for i in range(loops)]
     hinges += [(loops + 1 + i, 1.0, i + 1, 1.0) for i in range(loops)]
-    ends = exudyn_motion.bars(four_bars.links(loops), hinges, range(loops + 1), h, END, RADIUS, index_2=False)
+    ends = exudyn_motion.bars(four_bars.links(loops), hinges, range(loops + 1), h, END, RADIUS)
     if ends is None:
         return Cell(math.nan, "not converged", "Exudyn's solver gave up")
     return Cell(four_bars.tip_error(loops, END, ends[0]))
