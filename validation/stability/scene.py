@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -89,6 +90,14 @@ def cell(run: sf.Trajectory, value: Callable[[sf.Trajectory], float]) -> Cell:
     with np.errstate(over="ignore", invalid="ignore"):
         found = float(value(run))
     return Cell(found if math.isfinite(found) else 1e300, outcome.kind, note)
+
+
+def simulate(model: sf.Model, *given: Any, **settings: Any) -> sf.Trajectory:
+    """`sf.simulate`, which makes an outcome of Ctrl-C: here it ends the atlas, not the run alone."""
+    run = sf.simulate(model, *given, **settings)
+    if run.outcome.kind == "interrupted" and run.outcome.reason.startswith("Ctrl-C"):
+        raise KeyboardInterrupt
+    return run
 
 
 def refused(error: Exception) -> Cell:

@@ -13,7 +13,7 @@ from validation.findings import Check
 from validation.geometry import Array
 from validation.stability import four_bars
 from validation.stability.reference import data, source
-from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades
+from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 END = 10.0
 BOUND = 1e-2
@@ -48,7 +48,7 @@ def measure(loops: int) -> Callable[[float, float], Cell]:
 def ours(loops: int, h: float, kind: str, gain: float | None) -> sf.Trajectory:
     """The linkage for ten seconds."""
     m = four_bars.linkage(loops)
-    return sf.simulate(m, *four_bars.state(m, *four_bars.START), END, dt=h, stabilisation=kind,  # type: ignore[arg-type]
+    return simulate(m, *four_bars.state(m, *four_bars.START), END, dt=h, stabilisation=kind,
                        gains=None if gain is None else (gain, gain), output=[0.0, END])  # fmt: skip
 
 
@@ -115,7 +115,7 @@ def judge(maps: Maps) -> Verdict:
     )
     near = unlucky()
     flat = four_bars.linkage(2)
-    still = sf.simulate(flat, *four_bars.state(flat, 0.0, 0.0), 0.01)
+    still = simulate(flat, *four_bars.state(flat, 0.0, 0.0), 0.01)
     reported = float(any("singular posture" in note for note in still.outcome.notes))
     level = WAYS.labels.index("projection")
     errors = np.concatenate([found.at(y=level) for found in maps.values()])
