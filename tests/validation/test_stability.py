@@ -222,6 +222,18 @@ def test_ctrl_c_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "Interrupted: spin, deflection" in atlas.headline
 
 
+def test_ctrl_c_within_a_run_ends_the_atlas(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The run itself makes an outcome of it, with the part before it kept."""
+
+    def stopped(*given: Any, **settings: Any) -> sf.Trajectory:
+        run = whole(*given, **settings)
+        return replace(run, outcome=sf.Outcome("interrupted", 0.0, "Ctrl-C; the part up to here is kept"))
+
+    whole = sf.simulate
+    monkeypatch.setattr(sf, "simulate", stopped)
+    assert drawn(["deflection", "redundant"], quick=True).unfinished == ("deflection", "redundant")
+
+
 def test_an_unknown_scene_is_refused() -> None:
     done = CliRunner().invoke(app, ["stability", "--scene", "spinn"])
     assert done.exit_code == 2 and "no scene 'spinn'" in done.output

@@ -11,7 +11,7 @@ import numpy as np
 import symofros as sf
 from validation.findings import Check, exponent
 from validation.stability.reference import data, source
-from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, decades
+from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 # Where |R(z)| = 1 on the negative real axis: both roots of c'' + 2 a c' + a^2 c = 0 are z = -a h.
 REAL = {"rk4": 2.7852935634, "dopri5": 3.3065678926, "euler": 2.0}
@@ -30,7 +30,7 @@ def pendulum() -> sf.Model:
 
 def swing(method: str, h: float, gain: float, t_end: float = END) -> sf.Trajectory:
     """From rest at (-1, 0), with both gains alike."""
-    return sf.simulate(pendulum(), [-1.0, 0.0], t_end=t_end, method=method, dt=h, adaptive=False, gains=(gain, gain),
+    return simulate(pendulum(), [-1.0, 0.0], t_end=t_end, method=method, dt=h, adaptive=False, gains=(gain, gain),
                        stabilisation="baumgarte", every=max(1, round(0.01 / h)))  # fmt: skip
 
 

@@ -12,7 +12,7 @@ import symofros as sf
 from validation.findings import Check
 from validation.geometry import Array
 from validation.stability.reference import data, source
-from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, decades
+from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 # Semi-implicit Euler's energy swings by up to 1/(1 - (h ω/2)²) below its limit; beyond it 3000 steps grow without end.
 BOUND = 1e3
@@ -54,7 +54,7 @@ def growth(run: sf.Trajectory) -> float:
 def ring(modes: int, method: str, h: float, c: float = 0.0) -> sf.Trajectory:
     """All modes deflected by a millimetre."""
     m = strip(modes).with_parameters(c=c)
-    return sf.simulate(m, np.full(modes, 1e-3), t_end=STEPS * h, method=method, dt=h, adaptive=False, every=10)
+    return simulate(m, np.full(modes, 1e-3), t_end=STEPS * h, method=method, dt=h, adaptive=False, every=10)
 
 
 def measure(method: str) -> Callable[[float, float], Cell]:

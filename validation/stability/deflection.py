@@ -13,7 +13,7 @@ from validation.accuracy.pendulum import GRAVITY, MODELS, WORDS
 from validation.accuracy.pendulum import pendulum as stated
 from validation.accuracy.reference import data, source
 from validation.findings import Check
-from validation.stability.scene import Cell, Grid, Map, Maps, Scene, Subject, Verdict, cell
+from validation.stability.scene import Cell, Grid, Map, Maps, Scene, Subject, Verdict, cell, simulate
 
 END = 2.0
 BOUND = 1e-2
@@ -38,7 +38,7 @@ def measure(name: str) -> Callable[[float, float], Cell]:
 
     def run(gamma: float, modes: float) -> Cell:
         m = model(name, int(modes)).with_parameters(EI=GRAVITY / gamma)
-        done = sf.simulate(m, t_end=END, method="dop853", rtol=1e-8, atol=1e-10, max_steps=100000, output=[0.0, END])
+        done = simulate(m, t_end=END, method="dop853", rtol=1e-8, atol=1e-10, max_steps=100000, output=[0.0, END])
         return cell(done, lambda r: float(np.linalg.norm(r.frames["tip"][0][-1, :2] - row_of(gamma)["tip_end"])))
 
     return run

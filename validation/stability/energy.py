@@ -12,7 +12,7 @@ from symofros.simulation.methods import METHODS
 from validation.adapters import mujoco_motion
 from validation.findings import Check
 from validation.stability.reference import data, source
-from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades
+from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 STEPS = 100_000
 SHORT = 5_000
@@ -36,7 +36,7 @@ def pendulum() -> sf.Model:
 
 def swing(method: str, h: float, steps: int) -> sf.Trajectory:
     """From the horizontal, at rest."""
-    return sf.simulate(pendulum(), [0.0], t_end=steps * h, method=method, dt=h, adaptive=False, every=10)
+    return simulate(pendulum(), [0.0], t_end=steps * h, method=method, dt=h, adaptive=False, every=10)
 
 
 def excursion(run: sf.Trajectory) -> float:

@@ -12,7 +12,7 @@ import symofros as sf
 from validation.findings import Check
 from validation.geometry import Array
 from validation.stability.reference import data, source
-from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades
+from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 END = 4.0
 BOUND = 1e-6
@@ -63,7 +63,7 @@ def measure(model: Callable[[], sf.Model]) -> Callable[[float, float], Cell]:
 
     def run(nearest: float, h: float) -> Cell:
         m = model()
-        done = sf.simulate(m, *start(m, nearest), END, dt=END / round(END / h), output=[0.0, END])
+        done = simulate(m, *start(m, nearest), END, dt=END / round(END / h), output=[0.0, END])
         return cell(done, lambda run: apart(run.frames["after_roll"][1][-1], nearest))
 
     return run
@@ -94,7 +94,7 @@ def textbook(nearest: float, h: float) -> Cell:
 
 def effort(m: sf.Model, nearest: float) -> int:
     """Evaluations of DOP853 at a tolerance of 1e-8."""
-    run = sf.simulate(m, *start(m, nearest), END, method="dop853", rtol=1e-8, atol=1e-8)
+    run = simulate(m, *start(m, nearest), END, method="dop853", rtol=1e-8, atol=1e-8)
     return run.statistics.evaluations
 
 

@@ -83,8 +83,9 @@ def judge(maps: Maps) -> Verdict:
         f"monomials to {frequencies.min():.0e}, and the last of them makes it {'worse' if losing else 'no worse'}."
     )
     see = (
-        "Left, errors of the first frequency fall to the right with every family, and cantilever modes have it with "
-        "one function. Right, only monomials get worse to the right, until they are refused."
+        "Left, errors of the first frequency fall to the right until rounding takes over, which it does early with "
+        "monomials; cantilever modes have it with one function. Right, only monomials get worse to the right, until "
+        "they are refused."
     )
     return Verdict(words, see, checks)
 

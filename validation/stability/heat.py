@@ -20,7 +20,7 @@ _DEEP = {"good": 8.0, "bad": 4.0}
 # Opacity from which on light letters are read more easily.
 _DARK = 0.55
 # Values of an axis that are all named.
-_FEW = 8
+_FEW = 14
 # Decades are written so far apart [px] that they can be read.
 _APART = (22.0, 12.5)
 _NARROW = 13.0

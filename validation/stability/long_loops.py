@@ -11,7 +11,7 @@ import symofros as sf
 from validation.findings import Check, exponent
 from validation.geometry import Array
 from validation.stability import four_bars
-from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades
+from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 # Parallelograms would not drift: errors of all cranks are the same. Pivots are a little nearer than bars are long.
 SPACING = 0.95
@@ -38,8 +38,8 @@ def measure(method: str, kind: str) -> Callable[[float, float], Cell]:
     def run(h: float, loops: float) -> Cell:
         m, q, v = ready(int(loops))
         return cell(
-            sf.simulate(m, q, v, END, method=method, dt=END / round(END / h),
-                        adaptive=False, stabilisation=kind),  # type: ignore[arg-type]
+            simulate(m, q, v, END, method=method, dt=END / round(END / h),
+                        adaptive=False, stabilisation=kind),
             lambda done: float(np.abs(m.constraint(done.q)).max()),
         )  # fmt: skip
 

@@ -16,7 +16,7 @@ from validation.findings import Check
 from validation.geometry import Array
 from validation.interface import EngineFactory, States, TreeEngine, Unsupported
 from validation.interface import Subject as Model
-from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades
+from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 BOUND = 1e-8
 GRAVITY = 9.81
@@ -117,7 +117,7 @@ def drift(ratio: float, links: float) -> Cell:
     """Change of energy over a second of fall, relative to what the fall exchanges."""
     n = int(links)
     m = compiled(n).with_parameters(ratio=ratio)
-    run = sf.simulate(m, *state(n), t_end=1.0, method="dop853", rtol=1e-12, atol=1e-14, max_steps=MOST)
+    run = simulate(m, *state(n), t_end=1.0, method="dop853", rtol=1e-12, atol=1e-14, max_steps=MOST)
 
     def change(done: sf.Trajectory) -> float:
         exchanged = max(float(np.ptp(done.potential_energy)), 1e-300)

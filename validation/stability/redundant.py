@@ -13,7 +13,7 @@ from validation.findings import Check
 from validation.stability import four_bars
 from validation.stability.four_bars import AXIS, BAR, END_OF_BAR
 from validation.stability.reference import data, source
-from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, refused
+from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, refused, simulate
 
 END = 0.5
 BOUND = 1e-6
@@ -52,7 +52,7 @@ def move(kind: str, misfit: float, stabilisation: str) -> sf.Trajectory:
     m = linkage(kind).with_parameters(d=misfit)
     q, v = four_bars.state(m, *four_bars.START)
     start = sf.assemble(m, q, v, held=("a0",))
-    return sf.simulate(m, start.q, start.v, END, dt=1e-3, stabilisation=stabilisation)  # type: ignore[arg-type]
+    return simulate(m, start.q, start.v, END, dt=1e-3, stabilisation=stabilisation)
 
 
 def off(run: sf.Trajectory) -> float:
@@ -65,7 +65,7 @@ def exact(third: bool) -> float:
     """Where the first crank should be: all cranks turn alike, the coupler moves along with their ends."""
     if not third:
         return float(four_bars.exact(1, (0.0, END))[0, -1])
-    alone = sf.simulate(linkage(CRANK), *four_bars.state(linkage(CRANK), *four_bars.START), END, method="dop853",
+    alone = simulate(linkage(CRANK), *four_bars.state(linkage(CRANK), *four_bars.START), END, method="dop853",
                         rtol=1e-12, atol=1e-12)  # fmt: skip
     return float(alone["a0"][-1])
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -91,6 +92,14 @@ def cell(run: sf.Trajectory, value: Callable[[sf.Trajectory], float]) -> Cell:
     return Cell(found if math.isfinite(found) else 1e300, outcome.kind, note)
 
 
+def simulate(model: sf.Model, *given: Any, **settings: Any) -> sf.Trajectory:
+    """`sf.simulate`, which makes an outcome of Ctrl-C: here it ends the atlas, not the run alone."""
+    run = sf.simulate(model, *given, **settings)
+    if run.outcome.kind == "interrupted" and run.outcome.reason.startswith("Ctrl-C"):
+        raise KeyboardInterrupt
+    return run
+
+
 def refused(error: Exception) -> Cell:
     """What was not begun, in words."""
     return Cell(math.nan, REFUSED, str(error).splitlines()[0])
@@ -174,10 +183,6 @@ class Map:
         columns = slice(None) if x is None else [self._index(self.x, x)]
         rows = slice(None) if y is None else [self._index(self.y, y)]
         return np.asarray(self.values[rows][:, columns]).ravel()
-
-    def noted(self, x: float, y: float) -> Cell:
-        """One run."""
-        return self.cells[self._index(self.y, y)][self._index(self.x, x)]
 
     @staticmethod
     def _index(values: Array, value: float) -> int:

@@ -13,7 +13,7 @@ from validation.findings import Check
 from validation.geometry import Array
 from validation.stability import four_bars
 from validation.stability.reference import data, source
-from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades
+from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 END = 10.0
 BOUND = 1e-2
@@ -48,7 +48,7 @@ def measure(loops: int) -> Callable[[float, float], Cell]:
 def ours(loops: int, h: float, kind: str, gain: float | None) -> sf.Trajectory:
     """The linkage for ten seconds."""
     m = four_bars.linkage(loops)
-    return sf.simulate(m, *four_bars.state(m, *four_bars.START), END, dt=h, stabilisation=kind,  # type: ignore[arg-type]
+    return simulate(m, *four_bars.state(m, *four_bars.START), END, dt=h, stabilisation=kind,
                        gains=None if gain is None else (gain, gain), output=[0.0, END])  # fmt: skip
 
 
@@ -78,7 +78,7 @@ def exudyn(loops: int, h: float) -> Cell:
     """Its generalised-alpha solver in absolute coordinates."""
     hinges = [(i, 1.0, loops + 1 + i, 0.0) for i in range(loops)]
     hinges += [(loops + 1 + i, 1.0, i + 1, 1.0) for i in range(loops)]
-    ends = exudyn_motion.bars(four_bars.links(loops), hinges, range(loops + 1), h, END, RADIUS, index_2=False)
+    ends = exudyn_motion.bars(four_bars.links(loops), hinges, range(loops + 1), h, END, RADIUS)
     if ends is None:
         return Cell(math.nan, "not converged", "Exudyn's solver gave up")
     return Cell(four_bars.tip_error(loops, END, ends[0]))
@@ -115,7 +115,7 @@ def judge(maps: Maps) -> Verdict:
     )
     near = unlucky()
     flat = four_bars.linkage(2)
-    still = sf.simulate(flat, *four_bars.state(flat, 0.0, 0.0), 0.01)
+    still = simulate(flat, *four_bars.state(flat, 0.0, 0.0), 0.01)
     reported = float(any("singular posture" in note for note in still.outcome.notes))
     level = WAYS.labels.index("projection")
     errors = np.concatenate([found.at(y=level) for found in maps.values()])

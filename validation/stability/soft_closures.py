@@ -7,12 +7,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-import symofros as sf
 from validation.adapters import mujoco_motion
 from validation.findings import Check
 from validation.stability import four_bars
 from validation.stability.reference import data, source
-from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, decades
+from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, decades, simulate
 from validation.stability.singular import ends_of_crank
 
 END = 10.0
@@ -67,7 +66,7 @@ def judge(maps: Maps) -> Verdict:
     lost = {name: float(np.ptp(run.energy)) for name, run in defaults.items()}
     astray = [four_bars.tip_error(1, END, ends_of_crank(run.q)) for run in defaults.values()]
     m = four_bars.linkage(1)
-    ours = sf.simulate(m, *four_bars.state(m, *four_bars.START), END, dt=float(H.chosen(True)[0]), output=[0.0, END])
+    ours = simulate(m, *four_bars.state(m, *four_bars.START), END, dt=float(H.chosen(True)[0]), output=[0.0, END])
     held = four_bars.tip_error(1, END, ours.frames["crank0.end"][0][-1, [0, 2]])
     best = {name: float(np.nanmin(found.values)) for name, found in maps.items()}
     checks = (

@@ -11,7 +11,7 @@ import numpy as np
 import symofros as sf
 from validation.findings import Check
 from validation.stability.reference import data, source
-from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell
+from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, simulate
 
 END = 30.0
 BOUND = 10.0
@@ -41,7 +41,7 @@ def run(name: str, eta: float, hub: float) -> sf.Trajectory:
     m = beam(name).with_parameters(r=hub)
     start = np.zeros(m.nq)
     start[0] = 1e-3
-    return sf.simulate(m, start, t_end=END, u=[0.0, eta, 0.0], method="dop853", rtol=1e-9, atol=1e-15, output=0.05)
+    return simulate(m, start, t_end=END, u=[0.0, eta, 0.0], method="dop853", rtol=1e-9, atol=1e-15, output=0.05)
 
 
 def measure(name: str) -> Callable[[float, float], Cell]:

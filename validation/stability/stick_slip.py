@@ -11,7 +11,7 @@ import numpy as np
 import symofros as sf
 from validation.findings import Check
 from validation.geometry import Array
-from validation.stability.scene import Cell, Grid, Limit, Map, Maps, Scene, Subject, Verdict, cell, decades
+from validation.stability.scene import Cell, Grid, Limit, Map, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 STATED, DYNAMIC, SPRING, PULL = 4.0, 2.0, 100.0, 0.05
 # Friction falls from static to dynamic over ten times the speed that it is smoothed over, whatever that is: what is
@@ -74,7 +74,7 @@ def measure(method: str) -> Callable[[float, float], Cell]:
 
     def run(v0: float, h: float) -> Cell:
         m = block().with_parameters(v0=v0)
-        done = sf.simulate(m, [0.0], t_end=END, method=method, dt=h, adaptive=False, output=0.01,
+        done = simulate(m, [0.0], t_end=END, method=method, dt=h, adaptive=False, output=0.01,
                            u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"})  # fmt: skip
         return cell(done, lambda run: float(np.abs(run.q[:, 0] - exact(run.t)).mean() / jump()))
 
@@ -142,7 +142,7 @@ def judge(maps: Maps) -> Verdict:
 def steady(v0: float) -> tuple[float, int]:
     """Adaptive rodas4: mean distance in slips, and steps."""
     m = block().with_parameters(v0=v0)
-    run = sf.simulate(m, [0.0], t_end=END, method="rodas4", rtol=1e-6, atol=1e-9, output=0.01,
+    run = simulate(m, [0.0], t_end=END, method="rodas4", rtol=1e-6, atol=1e-9, output=0.01,
                       u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"})  # fmt: skip
     return float(np.abs(run.q[:, 0] - exact(run.t)).mean() / jump()), run.statistics.steps
 

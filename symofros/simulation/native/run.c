@@ -269,14 +269,14 @@ SYM_EXPORT int32_t sym_start(sym_run *r) {
     r->rank_max = -1, r->rank_min = s->nc + 1;
     r->error_last = 1.0;
     r->clock0 = r->pace > 0.0 ? sym_clock() : 0.0;
-    status = sym_first_slope(r, m.k);
-    if (status != 0) return status;
     sym_here(r);
     if (r->every > 0 || (r->n_grid > 0 && r->grid[0] <= r->t)) {
         status = sym_record(r);
         if (status != 0) return status;
         if (r->every == 0) ++r->at_grid;
     }
+    status = sym_first_slope(r, m.k);
+    if (status != 0) return status;
     if (s->n_events > 0) {
         sym_evaluate(&s->events);
         memcpy(r->event, s->events.out[0], (size_t)s->n_events * sizeof *r->event);
