@@ -7,24 +7,26 @@ import math
 import numpy as np
 
 from symofros.simulation import stepper as native
+from symofros.simulation.loops import Recorded
 from symofros.simulation.outcome import Kind, Outcome
+from symofros.simulation.postures import nearest_to_singular
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepper import Stepper
 
 _ROUNDING = float(np.finfo(np.float64).eps)
 
 
-def diagnose(stepper: Stepper, status: int, interrupted: bool, settings: Settings) -> Outcome:
+def diagnose(stepper: Stepper, recorded: Recorded, settings: Settings) -> Outcome:
     """How a run ended.
 
     Args:
         stepper: At its last state.
-        status: What C returned last.
-        interrupted: Whether Ctrl-C ended it.
+        recorded: What it left.
         settings: Of the run.
     """
+    status, interrupted = recorded.status, recorded.interrupted
     t, q, v = stepper.state
-    run, notes = stepper.run, _notes(stepper)
+    run, notes = stepper.run, _notes(stepper, recorded)
 
     def outcome(kind: Kind, reason: str, advice: str = "") -> Outcome:
         return Outcome(kind, t, reason, advice, notes)
@@ -88,12 +90,19 @@ def _steady(settings: Settings) -> str:
     return "a smaller dt, an adaptive or an implicit method; for stiff beams and contacts, an implicit one"
 
 
-def _notes(stepper: Stepper) -> tuple[str, ...]:
+def _notes(stepper: Stepper, recorded: Recorded) -> tuple[str, ...]:
     run = stepper.run
     notes = []
     if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
         notes.append(f"a singular posture was passed at t = {run.t_rank:.6g} s: the constraints' rank fell from"
                      f" {run.rank_max} to {run.rank_min}")  # fmt: skip
+    elif stepper.model.nc:
+        t, q, _, u = recorded.arrays()
+        close = nearest_to_singular(stepper.model, t, q, u, stepper.par, int(run.rank_max))
+        if close:
+            when, share = close
+            notes.append(f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of"
+                         " their strength: compare with another step")  # fmt: skip
     if run.late_steps:
         notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")
     return tuple(notes)

@@ -14,6 +14,7 @@ from scipy.special import ellipk
 
 import symofros as sf
 from reference_models import MODELS
+from reference_models.closed.four_bars import n_four_bar
 
 
 @pytest.fixture(scope="module")
@@ -326,3 +327,14 @@ class TestStructure:
         for method in ("rk4", "dopri5", "rodas4", "variational", "generalized_alpha", "semi_implicit_euler"):
             run = sf.simulate(model, q, v, 2.0, method=method, dt=5e-3)
             np.testing.assert_allclose(np.linalg.norm(run.q[:, -4:], axis=1), 1.0, atol=1e-14)
+
+
+def test_a_passage_close_to_a_singular_posture_is_noted() -> None:
+    """A four-bar that swings through its flat posture on steps that do not land in it, and one that stays above."""
+    model = sf.compile(n_four_bar(1))
+    upright = np.array([1.0 if name.startswith("crank") else -1.0 for name in model.names.q])
+    through = sf.simulate(model, np.pi / 2 * upright, -upright, 1.0, dt=2e-3)
+    notes = [note for note in through.outcome.notes if "close to a singular posture" in note]
+    # It is flat at 0.70845 s.
+    assert len(notes) == 1 and "t = 0.708" in notes[0]
+    assert sf.simulate(model, np.pi / 2 * upright, -upright, 0.3, dt=2e-3).outcome.notes == ()

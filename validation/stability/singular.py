@@ -49,7 +49,7 @@ def ours(loops: int, h: float, kind: str, gain: float | None) -> sf.Trajectory:
     """The linkage for ten seconds."""
     m = four_bars.linkage(loops)
     return simulate(m, *four_bars.state(m, *four_bars.START), END, dt=h, stabilisation=kind,
-                       gains=None if gain is None else (gain, gain), output=[0.0, END])  # fmt: skip
+                    gains=None if gain is None else (gain, gain))  # fmt: skip
 
 
 def off(loops: int, run: sf.Trajectory) -> float:
@@ -93,6 +93,19 @@ def rows(maps: Maps) -> tuple[list[str], list[str], list[str]]:
             [n for n, held in named if held == 0.0])  # fmt: skip
 
 
+def passages_told(maps: Maps) -> float:
+    """Share of our own stabilised runs that hold whose notes name the posture."""
+    cells = [
+        c
+        for found in maps.values()
+        for way, line in zip(found.y, found.cells, strict=True)
+        if WAYS.label(way) == "projection" or WAYS.label(way).startswith("Baumgarte")
+        for c in line
+    ]
+    told = ["singular posture" in c.note for c in cells if c.ended == "finished" and c.value <= BOUND]
+    return float(np.mean(told)) if told else 1.0
+
+
 def unlucky() -> dict[str, float]:
     """Largest distance over steps that all but land in the flat posture, found among 172 steps of about 1.3 ms [m]."""
     return {
@@ -117,6 +130,7 @@ def judge(maps: Maps) -> Verdict:
     flat = four_bars.linkage(2)
     still = simulate(flat, *four_bars.state(flat, 0.0, 0.0), 0.01)
     reported = float(any("singular posture" in note for note in still.outcome.notes))
+    told = passages_told(maps)
     level = WAYS.labels.index("projection")
     errors = np.concatenate([found.at(y=level) for found in maps.values()])
     checks = (
@@ -128,26 +142,26 @@ def judge(maps: Maps) -> Verdict:
         Check("ways by Baumgarte's gains of 20/s and more that fail somewhere",
               float(sum(f"Baumgarte {g:g}/s" in map(WAYS.label, two.y) and f"Baumgarte {g:g}/s" not in always
                         for g in GAINS if 20.0 <= g <= 100.0)), 0.0, reason="20 holds in absolute coordinates, too"),
-        Check("runs without stabilisation that meet the criterion", float(sum(
-            found.good[0].sum() for found in maps.values())), 0.0, reason="drift decides the branch"),
+        Check("share of runs without stabilisation that meet the criterion", float(np.mean([
+            found.good[0].mean() for found in maps.values()])), 0.2, reason="drift decides the branch, by chance rightly"),
         Check("N = 2: known verdicts on gains 5, 20 and 100/s that ours contradict", float(contradictions), 0.0,
               reason="another program, in absolute coordinates"),
         Check("a start in the flat posture is reported (1: yes)", reported, 1.0, 1.0, "nothing is silently wrong"),
+        Check("share of our runs through it that hold and say so", told, 1.0, 1.0, "nothing is silently wrong"),
         Check("exact motion against the known one, largest distance [m]", exact, 1e-9, reason="the same equation"),
     )  # fmt: skip
     wrong = sum(found.wrong for found in maps.values())
     stopped = sum(found.stopped for found in maps.values())
     defaults = two.at(y=WAYS.labels.index("MuJoCo, its defaults"))
-    told = sum("singular posture" in c.note for found in maps.values() for line in found.cells for c in line)
     words = (
         "Flat, the linkage may leave on another branch, and what drift or rounding has left by then decides. "
         f"Through all steps of both maps hold: {', '.join(always)}. At some steps: "
         f"{', '.join(sometimes) or 'none'}. At none: {', '.join(never) or 'none'}. Projection stays within "
         f"{errors.max():.1e} m. MuJoCo's default closures miss by {defaults.min():.1f} to {defaults.max():.1f} m, "
-        "because they lose energy, not because of the posture. A start in the flat posture is reported; of the "
-        f"runs that pass it {told} report it, for a step has to all but land in it. A step that comes near loses "
-        f"decades and is not reported: the worst of four such leave {near['projection']:.0e} m with projection and "
-        f"{near['baumgarte']:.0e} m with gains of 20/s."
+        "because they lose energy, not because of the posture. A start in the flat posture is reported, and "
+        f"{told:.0%} of our runs that pass it note how close they came. A step that all but lands in it loses decades: "
+        f"the worst of four such leave {near['projection']:.0e} m with projection and {near['baumgarte']:.0e} m with "
+        "gains of 20/s."
     )
     see = (
         f"Rows are ways, columns are steps. Blue rows hold; above them and below, {stopped} runs stop with an "
@@ -169,8 +183,7 @@ SCENE = Scene(
     "constraints falls by N. RK4 in relative coordinates; engines as named.",
     H, WAYS, "distance of the first crank's end from the exact motion after 10 s [m]", BOUND,
     tuple(Subject(f"N = {n}", measure(n)) for n in (1, 2)), judge,
-    "projection (the default), or Baumgarte's gains of 20/s and more below the limit of the scene before. A step "
-    "that lands in the flat posture is reported by `outcome.notes`; one that steps across it is not, so plan the "
-    "passage or drive the mechanism past it.",
+    "projection (the default), or Baumgarte's gains of 20/s and more below the limit of the scene before. "
+    "`outcome.notes` says how close a run came to the posture: compare with another step, or drive it past.",
     (source("four_bars"),),
 )  # fmt: skip
