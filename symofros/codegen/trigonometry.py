@@ -38,15 +38,16 @@ def block_lines(writer: StatementWriter, statement: Statement) -> list[str]:
 
 def _lane_lines(writer: StatementWriter, statement: Statement) -> list[str]:
     """The same where every angle is a vector already."""
-    lines = []
-    for angle in statement.angles:
-        nodes = [node for node in statement.nodes if writer.graph.args[node][0] == angle]
-        first = nodes[0]
-        lines += [
-            f"    sym_v angles{first} = {writer.whole(angle)}, sines{first}, cosines{first};",
-            f"    sym_sincos_v(&angles{first}, &sines{first}, &cosines{first});",
-        ]
-        lines += [f"    const sym_v {writer.name(n)} = {_RESULTS[writer.graph.op[n]]}{first};" for n in nodes]
+    first, angles = statement.nodes[0], statement.angles
+    n = len(angles)
+    lines = [
+        f"    const sym_v angles{first}[] = {{{', '.join(map(writer.whole, angles))}}};",
+        f"    sym_v sines{first}[{n}], cosines{first}[{n}];",
+        f"    sym_sincos_v({n}, angles{first}, sines{first}, cosines{first});",
+    ]
+    for node in statement.nodes:
+        at = angles.index(writer.graph.args[node][0])
+        lines.append(f"    const sym_v {writer.name(node)} = {_RESULTS[writer.graph.op[node]]}{first}[{at}];")
     return lines
 
 

@@ -1,0 +1,150 @@
+"""Batches by vectors give the bits of batches by a loop: every function, any number of states, any width of vectors.
+
+Where the compiler fuses multiplications with additions it may choose other pairs on vectors: then within rounding.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.codegen.templates import template
+from symofros.compiler import compile_library, describe, plan
+from symofros.options import MODEL_FUNCTIONS
+from symofros.runtime import library
+from symofros.runtime.kernel import Array, Kernel
+from symofros.runtime.library import CompiledUnit
+from symofros.runtime.toolchain import DEFAULT_FLAGS, cpu_identity
+
+# Two lanes, four, and what this processor has.
+# gcc 12 fuses pairs of neighbouring statements even with contraction off, unless it leaves them apart.
+EXACT = (*DEFAULT_FLAGS, "-ffp-contract=off", "-fno-tree-slp-vectorize")
+WIDTHS = {"sse2": ("-O2", "-ffp-contract=off"), "avx": ("-O2", "-mavx2", "-mfma", *EXACT[-2:]), "native": EXACT}
+# Of the largest value: fused operations round once instead of twice; forward dynamics divides by M.
+SHIPPED = 1e-11
+CHEAP = ("mass_matrix", "bias", "generalized_force", "dynamics", "forward_dynamics")
+HAS = {width: "-mavx2" not in flags or "avx2" in cpu_identity() for width, flags in WIDTHS.items()}
+
+
+def stated(case: str) -> sf.System:
+    return OPERATIONS if case == "operations" else MODELS[case]
+
+
+def parameters(case: str) -> tuple[float, ...]:
+    return describe(plan(stated(case)), sf.Options()).par_default
+
+
+@cache
+def unit(case: str, batch: str, flags: tuple[str, ...], functions: tuple[str, ...]) -> CompiledUnit:
+    system = stated(case)
+    options = sf.Options(functions=functions, flags=flags, batch=batch)  # type: ignore[arg-type]
+    path, symbol = compile_library(system, options)
+    return CompiledUnit(path, symbol, template("symofros_model.h"), describe(plan(system), options).hash)
+
+
+def given(kernel: Kernel, n: int, shared: tuple[str, ...] = ()) -> list[Array]:
+    rng = np.random.default_rng(n)
+    return [rng.uniform(-2.0, 2.0, (1 if name in shared else n, size)) for name, size in kernel.signature.inputs]
+
+
+def assert_alike(case: str, flags: tuple[str, ...], functions: tuple[str, ...], sizes: list[int], *shared: str) -> None:
+    loops, vectors = (unit(case, batch, flags, functions) for batch in ("loop", "vector"))
+    for key, kernel in loops.kernels.items():
+        pre = kernel.prepare(np.array([parameters(case)]))
+        for n in sizes:
+            inputs = given(kernel, n, shared)
+            results = [k.run(n, pre, inputs) for k in (kernel, vectors.kernels[key])]
+            for expected, found in zip(*results, strict=True):
+                assert np.array_equal(found, expected, equal_nan=True), (key, n)
+
+
+@pytest.mark.parametrize("case", ["double_pendulum", "cart_pole", "planar_robot"])
+def test_every_function(case: str) -> None:
+    assert_alike(case, EXACT, MODEL_FUNCTIONS, [2, 17])
+
+
+@pytest.mark.parametrize("case", ["planar_robot", "friction_arm", "chain7"])
+def test_within_rounding_as_shipped(case: str) -> None:
+    loops, vectors = (unit(case, batch, DEFAULT_FLAGS, CHEAP) for batch in ("loop", "vector"))
+    for key, kernel in loops.kernels.items():
+        pre, inputs = kernel.prepare(np.array([parameters(case)])), given(kernel, 40)
+        for expected, found in zip(*(k.run(40, pre, inputs) for k in (kernel, vectors.kernels[key])), strict=True):
+            np.testing.assert_allclose(found, expected, rtol=0.0, atol=SHIPPED * max(1.0, np.abs(expected).max()))
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("case", ["chain7", "friction_arm", "heavy_top"])
+def test_any_number_of_states(case: str, width: str) -> None:
+    if not HAS[width]:
+        pytest.skip("a processor without these vectors")
+    assert_alike(case, WIDTHS[width], CHEAP, list(range(1, 21)))
+
+
+@pytest.mark.parametrize("shared", [("q",), ("v", "u", "t"), ("q", "v", "u", "a", "t")])
+def test_inputs_that_all_states_share(shared: tuple[str, ...]) -> None:
+    assert_alike("chain7", EXACT, CHEAP, [2, 8, 13], *shared)
+
+
+FORMULAS = (
+    "sin(u1) + cos(2e5*u2)", "tan(u1)*asin(u2/4)", "acos(u2/4) - atan(u1)", "atan2(u1, u2)", "sqrt(abs(u1))",
+    "exp(u1)/log(2 + abs(u2))", "sinh(u1) - cosh(u2) - tanh(u1)", "min(u1, u2) - max(u1, -u2)", "sign(u1)*u2",
+    "abs(u1)^1.7 + 1.5^u2", "max(u1, 1)*min(k, u2) + k^u1", "u1/u2", "k", "atan2(1, u1)", "-u1 - k*(2 - u2)",
+)  # fmt: skip
+OPERATIONS = sf.System(
+    "operations",
+    [
+        sf.RigidBody(f"b{i}", sf.Joint(f"x{i}", "prismatic", effort=(text,)), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+        for i, text in enumerate(FORMULAS)
+    ],
+    [sf.Parameter("k", 0.7)],
+    inputs=[sf.Input("u1"), sf.Input("u2")],
+)
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_every_operation(width: str) -> None:
+    if not HAS[width]:
+        pytest.skip("a processor without these vectors")
+    assert_alike("operations", WIDTHS[width], ("generalized_force", "mass_matrix"), [5, 16])
+
+
+def test_nothing_is_written_beyond_the_last_state() -> None:
+    """Short rows are written by whole vectors, which must not reach past the array."""
+    kernel = unit("double_pendulum", "vector", EXACT, MODEL_FUNCTIONS).kernels["bias", ""]
+    ffi, function = kernel._unit.ffi, kernel._function  # type: ignore[attr-defined]
+    pre = kernel.prepare(np.array([parameters("double_pendulum")]))
+    for n in range(1, 30):
+        inputs = [pre, *given(kernel, n)]
+        guarded = np.full(2 * n + 16, 7.0)
+        buffers = [ffi.from_buffer("double[]", np.ascontiguousarray(x)) for x in inputs]
+        strides = [0, *(x.shape[1] for x in inputs[1:])]
+        function.batch(n, ffi.new("double *[]", buffers), ffi.new("size_t[]", strides),
+                       ffi.new("double *[]", [ffi.from_buffer("double[]", guarded)]),
+                       ffi.new("double[]", function.work))  # fmt: skip
+        assert np.all(guarded[2 * n :] == 7.0) and not np.any(guarded[: 2 * n] == 7.0)
+
+
+def test_large_batches_take_vectors_by_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
+    model, loop = (sf.compile(MODELS["chain7"], sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
+    rng = np.random.default_rng(0)
+    q, v = rng.standard_normal((2, library.MANY + 3, 7))
+    made: list[tuple[str, str]] = []
+    unit = model.kernel("dynamics")._unit  # type: ignore[attr-defined]
+    original = unit.in_lanes
+    monkeypatch.setattr(unit, "in_lanes", lambda key: made.append(key) or original(key))
+    for n in (library.MANY - 1, library.MANY, library.MANY + 3):
+        for found, expected in zip(model.dynamics(q[:n], v[:n], None), loop.dynamics(q[:n], v[:n], None), strict=True):
+            assert np.array_equal(found, expected)
+    assert made == [("dynamics", "")]
+
+
+def test_a_set_of_parameters_for_each_state_goes_one_by_one() -> None:
+    model, loop = (sf.compile(MODELS["rx90"], sf.Options(batch=batch)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
+    rng = np.random.default_rng(0)
+    n = library.MANY
+    q, par = rng.standard_normal((n, model.nq)), rng.uniform(1.0, 2.0, (n, model.npar))
+    assert np.array_equal(model.mass_matrix(q, par=par), loop.mass_matrix(q, par=par))
