@@ -19,6 +19,8 @@ from symofros.runtime.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, c
 
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _SHOWN_LINES = 12
+# Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
+_LOOSE = {"-ffast-math", "-Ofast", "-funsafe-math-optimizations"}
 
 
 def cache_folder() -> Path:
@@ -73,8 +75,16 @@ def _flush(path: Path) -> None:
 def _compile(private: Path, source: str, header: str, toolchain: Toolchain, flags: tuple[str, ...]) -> None:
     (private / "symofros_model.h").write_text(header, encoding="utf-8")
     (private / "model.c").write_text(source, encoding="utf-8")
-    command = [*toolchain.command, *flags, *SHARED_FLAGS, "-o", f"model{_SUFFIX}", "model.c", "-lm"]
-    done = subprocess.run(command, cwd=private, capture_output=True, text=True, check=False)
+    output = f"model{_SUFFIX}"
+    if not _LOOSE & set(flags):
+        _run([*toolchain.command, *flags, *SHARED_FLAGS, "-o", output, "model.c", "-lm"], private)
+        return
+    _run([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "-o", "model.o", "model.c"], private)
+    _run([*toolchain.command, "-shared", "-o", output, "model.o", "-lm"], private)
+
+
+def _run(command: list[str], folder: Path) -> None:
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         words = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
         raise CompileError(
