@@ -44,6 +44,22 @@ static void mujoco_run(const mjModel *m, mjData *d, int what, size_t n, const do
     }
 }
 
+/* Ours, state by state, as a control loop calls it. */
+static void ours_run(const sym_function *function, size_t n, const double *const *in, const size_t *stride,
+                     double *const *out, double *work) {
+    const double *x[10];
+    double *y[8];
+    size_t i;
+    int k;
+    for (k = 0; k < function->n_in; ++k) x[k] = in[k];
+    for (k = 0; k < function->n_out; ++k) y[k] = out[k];
+    for (i = 0; i < n; ++i) {
+        function->eval(x, y, work);
+        for (k = 0; k < function->n_in; ++k) x[k] += stride[k];
+        for (k = 0; k < function->n_out; ++k) y[k] += function->out[k].rows * function->out[k].cols;
+    }
+}
+
 static double *room(size_t n) { return calloc(n + 1, sizeof(double)); }
 
 int main(int argc, char **argv) {
@@ -99,8 +115,11 @@ int main(int argc, char **argv) {
     for (r = 0; r < repeats; ++r)
         for (f = 0; f < FUNCTIONS; ++f) {
             double start = now();
-            function[f]->batch(n, in[f], stride[f], (double *const *)out[f], work[f]);
+            ours_run(function[f], n, in[f], stride[f], (double *const *)out[f], work[f]);
             printf("time %s symofros %d %.2f\n", names[f], r, (now() - start) / (double)n);
+            start = now();
+            function[f]->batch(n, in[f], stride[f], (double *const *)out[f], work[f]);
+            printf("time %s batch %d %.2f\n", names[f], r, (now() - start) / (double)n);
             start = now();
             mujoco_run(m, d, f, n, qpos, qvel);
             printf("time %s mujoco %d %.2f\n", names[f], r, (now() - start) / (double)n);

@@ -37,8 +37,10 @@ class MujocoTiming:
         model: Its label.
         nv: Degrees of freedom.
         function: What was timed.
-        ours: Minimum and median, nanoseconds a state; likewise theirs.
+        ours: Minimum and median, nanoseconds a state, state by state; likewise theirs.
         ratio: Median over the repeats of theirs / ours.
+        batch: Ours, all states in one call.
+        batch_ratio: Median over the repeats of theirs / batch.
     """
 
     model: str
@@ -47,6 +49,8 @@ class MujocoTiming:
     ours: tuple[float, float]
     theirs: tuple[float, float]
     ratio: float
+    batch: tuple[float, float]
+    batch_ratio: float
 
 
 def time_mujoco(label: str, system: sf.System, repeats: int) -> list[MujocoTiming]:
@@ -75,12 +79,20 @@ def time_mujoco(label: str, system: sf.System, repeats: int) -> list[MujocoTimin
     for line in done.stdout.splitlines():
         _, function, side, _, value = line.split()
         times.setdefault((function, side), []).append(float(value))
-    return [_row(label, assembly.nv, name, times[name, "symofros"], times[name, "mujoco"]) for name in FUNCTIONS]
+    found = []
+    for function, name in FUNCTIONS.items():
+        ours, batch, theirs = (times[function, side] for side in ("symofros", "batch", "mujoco"))
+        found.append(MujocoTiming(label, assembly.nv, name, _summary(ours), _summary(theirs), _ratio(ours, theirs),
+                                  _summary(batch), _ratio(batch, theirs)))  # fmt: skip
+    return found
 
 
-def _row(label: str, nv: int, function: str, ours: list[float], theirs: list[float]) -> MujocoTiming:
-    ratio = median(b / a for a, b in zip(ours, theirs, strict=True))
-    return MujocoTiming(label, nv, FUNCTIONS[function], (min(ours), median(ours)), (min(theirs), median(theirs)), ratio)
+def _summary(times: list[float]) -> tuple[float, float]:
+    return min(times), median(times)
+
+
+def _ratio(ours: list[float], theirs: list[float]) -> float:
+    return median(b / a for a, b in zip(ours, theirs, strict=True))
 
 
 def _text(rows: Array) -> str:
