@@ -5,20 +5,24 @@ Where the compiler fuses multiplications with additions it may choose other pair
 
 from __future__ import annotations
 
+import platform
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.codegen.model import model_source
 from symofros.codegen.templates import template
-from symofros.compiler import compile_library, describe, plan
+from symofros.compiler import compile_library, describe, generate, plan
 from symofros.options import MODEL_FUNCTIONS
 from symofros.runtime import library
 from symofros.runtime.kernel import Array, Kernel
 from symofros.runtime.library import CompiledUnit
 from symofros.runtime.toolchain import DEFAULT_FLAGS, cpu_identity
+from tests.codegen.test_source import COMPILERS, compile_strictly
 
 # Two lanes, four, and what this processor has.
 # gcc 12 fuses pairs of neighbouring statements even with contraction off, unless it leaves them apart.
@@ -148,3 +152,16 @@ def test_a_set_of_parameters_for_each_state_goes_one_by_one() -> None:
     n = library.MANY
     q, par = rng.standard_normal((n, model.nq)), rng.uniform(1.0, 2.0, (n, model.npar))
     assert np.array_equal(model.mass_matrix(q, par=par), loop.mass_matrix(q, par=par))
+
+
+@pytest.mark.parametrize(
+    "flags", [(), ("-std=gnu99", "-O2"), ("-std=gnu99", "-O2", "-mavx512f"), ("-std=gnu99", "-mavx")]
+)
+def test_builds_without_warnings(flags: tuple[str, ...], tmp_path: Path) -> None:
+    """As strict C99, where batches are loops, and on vectors of every width."""
+    if not any(word in platform.machine() for word in ("x86", "AMD64")) and len(flags) > 1:
+        pytest.skip("flags of another processor")
+    tree = plan(MODELS["friction_arm"])
+    record = describe(tree, sf.Options())
+    program, _ = generate(tree, [("dynamics", ""), ("forward_dynamics", "")], record)
+    compile_strictly(tmp_path, model_source(program, record, "test", in_lanes=True), COMPILERS[0], *flags)

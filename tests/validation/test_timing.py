@@ -9,14 +9,14 @@ import pytest
 import reference_models
 from validation.assembly import assemble
 from validation.studies.native_build import BuildError
-from validation.studies.timing import TimingRun, _read, models, time_model, tree_text
+from validation.studies.timing import FUNCTIONS, TimingRun, _read, models, time_model, tree_text
 from validation.studies.timing_mujoco import time_mujoco
 from validation.studies.timing_mujoco_report import mujoco_lines
 from validation.studies.timing_report import as_data, as_markdown
 
 OUTPUT = "error mass_matrix {error}\nerror bias 1e-15\n" + "".join(
     f"time {function} {side} {repeat} {nanoseconds + repeat}\n"
-    for function in ("mass_matrix", "bias", "mass_matrix_and_bias")
+    for function in ("mass_matrix", "bias", "mass_matrix_and_bias", "mass_matrix_and_bias_batch")
     for side, nanoseconds in (("symofros", 100), ("pinocchio-local", 500), ("pinocchio-world", 400))
     for repeat in range(3)
 )
@@ -24,7 +24,7 @@ OUTPUT = "error mass_matrix {error}\nerror bias 1e-15\n" + "".join(
 
 def test_ratios_are_taken_pair_by_pair_against_the_faster_side() -> None:
     timings = _read("arm", 7, "g++ 12", OUTPUT.format(error="2e-15"))
-    assert [timing.function for timing in timings] == ["mass_matrix", "bias", "mass_matrix_and_bias"]
+    assert [timing.function for timing in timings] == [*FUNCTIONS[:4]]
     assert timings[0].ours == (100, 101) and timings[0].theirs == (400, 401)
     assert timings[0].ratio == pytest.approx(401 / 101)
 
@@ -58,7 +58,7 @@ def test_the_native_program_agrees_with_the_generated_code() -> None:
 
     pytest.importorskip("cmeel")
     timings = time_model("chain7", reference_models.MODELS["chain7"], build(compilers()[0]), 3)
-    assert len(timings) == 3 and all(timing.error < 1e-12 for timing in timings)
+    assert len(timings) == 4 and all(timing.error < 1e-12 for timing in timings)
 
 
 def test_mujoco_on_a_small_arm() -> None:

@@ -1,6 +1,7 @@
 // Times generated C against Pinocchio's C++ algorithms (header-only) in one process, interleaved, over the same states.
 //
-// Arguments: tree file, states file, generated library, its exported function, repeats.
+// Arguments: tree file, states file, generated library whose batches are loops, its exported function, repeats, the same
+// library with batches by vectors.
 // Prints one line a function and side: "error FUNCTION VALUE" (largest relative difference), then
 // "time FUNCTION SIDE REPEAT NANOSECONDS" for each repeat, per state.
 
@@ -10,6 +11,7 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -80,7 +82,10 @@ bool read_states(const char *path, int nq, int nv, States &states) {
     return true;
 }
 
-// Generated C behind symofros_model.h: one function over all states, by its batch loop.
+// As many states as a batch by vectors is timed with: their results stay in the cache, as Pinocchio's do.
+const size_t BLOCK = 64;
+
+// Generated C behind symofros_model.h: one function over all states, by its batch.
 class Generated {
   public:
     Generated(const sym_model *model, const char *name, const States &states) : function_(sym_find(model, name, nullptr)) {
@@ -100,6 +105,14 @@ class Generated {
         work_.resize(function_->work + 1);
     }
     void run() { function_->batch(n_, in_.data(), stride_.data(), out_.data(), work_.data()); }
+    // Block after block, each over the results of the one before.
+    void run_in_blocks() {
+        std::vector<const double *> in(in_);
+        for (size_t first = 0; first < n_; first += BLOCK) {
+            function_->batch(std::min(BLOCK, n_ - first), in.data(), stride_.data(), out_.data(), work_.data());
+            for (size_t i = 0; i < in.size(); ++i) in[i] += BLOCK * stride_[i];
+        }
+    }
     const std::vector<double> &result(int i) const { return results_[i]; }
 
   private:
@@ -139,10 +152,17 @@ double nanoseconds(const Function &function, size_t n) {
     return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / double(n);
 }
 
+// The model of a library; null, with the reason in dlerror(), where there is none.
+const sym_model *load(const char *path, const char *name) {
+    void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    const auto symbol = library == nullptr ? nullptr : reinterpret_cast<const sym_model *(*)()>(dlsym(library, name));
+    return symbol == nullptr ? nullptr : symbol();
+}
+
 }  // namespace
 
 int main(int argc, char **argv) {
-    if (argc != 6) return 2;
+    if (argc != 7) return 2;
     tree_file tree;
     if (!tree_read(argv[1], &tree)) return std::fprintf(stderr, "the tree file can't be read\n"), 2;
     pin::Model model;
@@ -150,13 +170,12 @@ int main(int argc, char **argv) {
     pin::Data data(model);
     States states;
     if (!read_states(argv[2], model.nq, model.nv, states)) return std::fprintf(stderr, "the states can't be read\n"), 2;
-    void *library = dlopen(argv[3], RTLD_NOW);
-    if (library == nullptr) return std::fprintf(stderr, "%s\n", dlerror()), 2;
-    const auto symbol = reinterpret_cast<const sym_model *(*)()>(dlsym(library, argv[4]));
-    if (symbol == nullptr) return std::fprintf(stderr, "%s\n", dlerror()), 2;
+    const sym_model *one_by_one = load(argv[3], argv[4]), *by_vectors = load(argv[6], argv[4]);
+    if (one_by_one == nullptr || by_vectors == nullptr) return std::fprintf(stderr, "%s\n", dlerror()), 2;
 
-    Generated mass_matrix(symbol(), "mass_matrix", states), bias(symbol(), "bias", states), both(symbol(), "dynamics", states);
-    mass_matrix.run(), bias.run(), both.run();
+    Generated mass_matrix(one_by_one, "mass_matrix", states), bias(one_by_one, "bias", states);
+    Generated both(one_by_one, "dynamics", states), batch(by_vectors, "dynamics", states);
+    mass_matrix.run(), bias.run(), both.run(), batch.run();
     const int nv = model.nv;
     double error_M = 0.0, error_h = 0.0;
     for (size_t i = 0; i < states.n; ++i) {
@@ -167,9 +186,11 @@ int main(int argc, char **argv) {
         for (int j = 0; j < nv; ++j) {
             error_h = worst(error_h, bias.result(0)[i * nv + j], data.nle[j], size_h);
             error_h = worst(error_h, both.result(1)[i * nv + j], data.nle[j], size_h);
+            error_h = worst(error_h, batch.result(1)[i * nv + j], data.nle[j], size_h);
             for (int k = 0; k < nv; ++k) {
                 error_M = worst(error_M, mass_matrix.result(0)[(i * nv + j) * nv + k], M(j, k), size_M);
                 error_M = worst(error_M, both.result(0)[(i * nv + j) * nv + k], M(j, k), size_M);
+                error_M = worst(error_M, batch.result(0)[(i * nv + j) * nv + k], M(j, k), size_M);
             }
         }
     }
@@ -177,8 +198,8 @@ int main(int argc, char **argv) {
 
     // Large models go without: their derivatives take long to compile.
     const char *names[] = {"mass_matrix", "bias", "mass_matrix_and_bias", "inverse_dynamics_derivatives"};
-    const bool with_derivatives = sym_find(symbol(), names[DERIVATIVES], nullptr) != nullptr;
-    Generated derivatives(symbol(), with_derivatives ? names[DERIVATIVES] : "bias", states);
+    const bool with_derivatives = sym_find(one_by_one, names[DERIVATIVES], nullptr) != nullptr;
+    Generated derivatives(one_by_one, with_derivatives ? names[DERIVATIVES] : "bias", states);
     if (with_derivatives) {
         derivatives.run();
         double error = 0.0;
@@ -204,9 +225,19 @@ int main(int argc, char **argv) {
             const auto theirs = [&](pin::Convention c) {
                 return nanoseconds([&] { pinocchio_run(model, data, states, what, c); }, states.n);
             };
-            std::printf("time %s symofros %d %.2f\n", names[f], r, ours);
-            std::printf("time %s pinocchio-local %d %.2f\n", names[f], r, theirs(pin::Convention::LOCAL));
-            if (what == MASS_MATRIX || what == BOTH) std::printf("time %s pinocchio-world %d %.2f\n", names[f], r, theirs(pin::Convention::WORLD));
+            const auto print = [&](const char *suffix, const char *side, double time) {
+                std::printf("time %s%s %s %d %.2f\n", names[f], suffix, side, r, time);
+            };
+            const double local = theirs(pin::Convention::LOCAL);
+            print("", "symofros", ours), print("", "pinocchio-local", local);
+            if (what == MASS_MATRIX || what == BOTH) {
+                const double world = theirs(pin::Convention::WORLD);
+                print("", "pinocchio-world", world);
+                if (what == BOTH) {
+                    print("_batch", "symofros", nanoseconds([&] { batch.run_in_blocks(); }, states.n));
+                    print("_batch", "pinocchio-local", local), print("_batch", "pinocchio-world", world);
+                }
+            }
         }
     }
     return 0;

@@ -25,7 +25,9 @@ from validation.studies.timing_mujoco import MujocoTiming
 
 STATES = 1000
 REPEATS = 41
-FUNCTIONS = ("mass_matrix", "bias", "mass_matrix_and_bias", "inverse_dynamics_derivatives")
+FUNCTIONS = (
+    "mass_matrix", "bias", "mass_matrix_and_bias", "mass_matrix_and_bias_batch", "inverse_dynamics_derivatives",
+)  # fmt: skip
 # Larger models are timed without derivatives, whose code grows with the square of their size.
 MOST_DERIVED = 10
 
@@ -64,6 +66,7 @@ def models() -> dict[str, sf.System]:
         "ur5": cases["ur5"].load().system,
         "talos": cases["talos"].load().system,
         "mss": reference_models.MODELS["mss"],
+        "chain of 22": chain(22, symbolic=False),
         "chain of 52": chain(52, symbolic=False),
     }
 
@@ -131,14 +134,15 @@ def time_model(label: str, system: sf.System, program: NativeProgram, repeats: i
     """
     assembly = assemble(system)
     derivatives = ("inverse_dynamics_derivatives",) if assembly.nv <= MOST_DERIVED else ()
-    options = sf.Options(functions=("mass_matrix", "bias", "dynamics", *derivatives))
-    library, symbol = sf.compile_library(system, options)
+    functions = ("mass_matrix", "bias", "dynamics", *derivatives)
+    library, symbol = sf.compile_library(system, sf.Options(functions=functions, batch="loop"))
+    vectors, _ = sf.compile_library(system, sf.Options(functions=("dynamics",), batch="vector"))
     states = sample(assembly, 0, STATES)
     with tempfile.TemporaryDirectory() as folder:
         tree, rows = Path(folder) / "tree.txt", Path(folder) / "states.txt"
         tree.write_text(tree_text(assembly), encoding="ascii")
         rows.write_text(_states_text(states.q, states.v), encoding="ascii")
-        command = [str(program.path), str(tree), str(rows), str(library), symbol, str(repeats)]
+        command = [str(program.path), str(tree), str(rows), str(library), symbol, str(repeats), str(vectors)]
         done = subprocess.run(command, capture_output=True, text=True, check=False, preexec_fn=pin_to_one_cpu)
     if done.returncode != 0:
         raise BuildError(f"the timing program failed with status {done.returncode}: {done.stderr.strip()}")

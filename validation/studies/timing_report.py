@@ -29,14 +29,16 @@ _NAMES = {
     "mass_matrix": "M",
     "bias": "h",
     "mass_matrix_and_bias": "M + h",
+    "mass_matrix_and_bias_batch": "M + h, batch",
     "inverse_dynamics_derivatives": "derivatives",
 }
 _LIMITS = (
     "One thread, pinned to one processor, models and states warm in the caches; loops over the states in C on both "
     "sides, in one process, in turn; each side computes the same values to 1e-12, which is checked first. Ours is "
-    "generated C with libm's sine and cosine, compiled by the system's compiler at -O2 -march=native; Pinocchio is its "
-    "own headers, compiled in the run, crba in the faster of its two conventions. Machines are noisy: quote the ratio, "
-    "which is the median over interleaved repeats, rather than a single time."
+    "generated C, compiled by the system's compiler at -O2 -march=native, one state after the other, or (batch) "
+    "several at a time by vectors, in calls of 64 states whose results replace each other as Pinocchio's do; Pinocchio "
+    "is its own headers, compiled in the run, crba in the faster of its two conventions. Machines are noisy: quote the "
+    "ratio, which is the median over interleaved repeats, rather than a single time."
 )
 
 
