@@ -37,29 +37,27 @@ def with_solver(program: Program, c_name: str, function: Function, solver: Solve
 
 
 def _constrained(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
-    """M, r, G, c -> a, lam, rank."""
+    """M, r, G, c -> a, lam, rank, by multipliers."""
     m, n = function.outputs[2].shape
-    start = n * n + m * n
-    lines = [
-        "    double *terms[4];",
-        f"    terms[0] = work, terms[1] = out[0], terms[2] = work + {n * n}, terms[3] = out[1];",
-        f"    {c_name}_terms(in, terms, work + {start});",
-        f"    *out[2] = sym_constrained({n}, {m}, terms[0], out[0], terms[2], out[1], work + {start});",
-    ]
-    return lines, start + max(needs, _scratch(n, m) + m)
+    return _on_terms("sym_constrained", c_name, m, n, max(needs, _scratch(n, m) + m))
 
 
 def _null_space(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
-    """M, r, G, c -> a, lam, rank."""
+    """The same in the coordinates that the constraints leave free."""
     m, n = function.outputs[2].shape
+    return _on_terms("sym_null_space", c_name, m, n, max(needs, 4 * n * n + m * n + 2 * m * m + 4 * n))
+
+
+def _on_terms(routine: str, c_name: str, m: int, n: int, scratch: int) -> tuple[list[str], int]:
+    """A routine that turns r and c, in the places of the results, into a and lam."""
     start = n * n + m * n
     lines = [
         "    double *terms[4];",
         f"    terms[0] = work, terms[1] = out[0], terms[2] = work + {n * n}, terms[3] = out[1];",
         f"    {c_name}_terms(in, terms, work + {start});",
-        f"    *out[2] = sym_null_space({n}, {m}, terms[0], out[0], terms[2], out[1], work + {start});",
+        f"    *out[2] = {routine}({n}, {m}, terms[0], out[0], terms[2], out[1], work + {start});",
     ]
-    return lines, start + max(needs, 4 * n * n + m * n + 2 * m * m + 4 * n)
+    return lines, start + scratch
 
 
 def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
