@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Given, Model
 from symofros.simulation.inputs import InputPlan
@@ -148,6 +148,30 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
         raise _wrong("'variational' steps trees of free motion only", f"model '{model.record.name}' has constraints or"
                      " prescribed joints", "its discrete principle is written for free coordinates",
                      "use generalized_alpha, or rk4 with projection")  # fmt: skip
+
+
+# Beyond, a first state is a mistake and not what drift leaves.
+_CLOSED = 1e-6
+
+
+def check_start(model: Model, settings: Settings, t: float, q: Array, v: Array, u: Array, par: Array) -> None:
+    """Refuse a first state that does not meet the constraints; Baumgarte's gains may pull one in.
+
+    Raises:
+        AssemblyError: With the constraint that is off most.
+    """
+    if not model.nc or settings.stabilisation == "baumgarte":
+        return
+    for what, values in (
+        ("phi", model.constraint(q, u=u, par=par, t=t)), ("G v - b", model.constraint_rate(q, v, u=u, par=par, t=t)),
+    ):  # fmt: skip
+        worst = int(np.argmax(np.abs(values)))
+        if not abs(values[worst]) <= _CLOSED:
+            raise AssemblyError(str(Problem(
+                f"model '{model.record.name}': the first state does not keep '{model.names.constraints[worst]}'",
+                f"{what} = {values[worst]:.3g}", f"|{what}| <= {_CLOSED:g} at the start",
+                "start from sf.assemble(model, q0, v0), or pull it in by stabilisation='baumgarte'",
+            )))  # fmt: skip
 
 
 def _grid(output: float | Given | None, t0: float, t_end: float) -> Array:

@@ -15,7 +15,7 @@ from symofros.simulation.events import named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
 from symofros.simulation.loops import run_cvode, run_own
 from symofros.simulation.progress import bar
-from symofros.simulation.settings import Settings, Stabilisation, check_fit, vector
+from symofros.simulation.settings import Settings, Stabilisation, check_fit, check_start, vector
 from symofros.simulation.stepper import Stepper
 from symofros.simulation.trajectory import Found, Statistics, Trajectory
 
@@ -82,6 +82,7 @@ def simulate(
     Raises:
         ShapeError: An array does not fit.
         UnknownNameError: A formula or an input's name is unknown.
+        AssemblyError: The first state does not meet the constraints.
         SymofrosError: The settings contradict each other.
     """
     settings = Settings.of(
@@ -95,6 +96,7 @@ def simulate(
     check_fit(model, settings, inputs)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
     settings.apply(stepper, t0, t_end, float(realtime))
+    check_start(model, settings, t0, q, v, stepper.inputs_at(t0, q, v), np.asarray(values))
     began = time.perf_counter()
     with bar(progress, t0, t_end) as show:
         drive = run_cvode if settings.method.kind == "cvode" else run_own

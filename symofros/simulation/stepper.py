@@ -242,6 +242,13 @@ class Stepper:
         """Baumgarte's gains (2 nc)."""
         self._view(self.scene.gains, len(gains))[:] = gains
 
+    def inputs_at(self, t: float, q: Array, v: Array) -> Array:
+        """The inputs of a state (nu); what they were before where a function of the caller's fails."""
+        y = np.concatenate([q, v])
+        self.run.q, self.run.v = self.numbers(q), self.numbers(v)
+        self.native.sym_flat_place(self.run, t, self.ffi.cast("double *", self.ffi.from_buffer(y)))
+        return self.inputs_now
+
     @property
     def inputs_now(self) -> Array:
         """The inputs last evaluated (nu)."""

@@ -214,6 +214,16 @@ class TestConstraints:
         run = sf.simulate(four_bar, four_bar.neutral(), np.zeros(3), 0.1)
         assert any("singular posture" in note for note in run.outcome.notes)
 
+    def test_a_first_state_that_is_open(self) -> None:
+        model = sf.compile(MODELS["slider_crank"])
+        turning = sf.assemble(model, [0.3, -0.1, -0.2], [10.0, 0.0, 0.0])
+        q, v = turning.q, turning.v
+        for start in ((q + [0.1, 0, 0], v), (q, v + [0.1, 0, 0])):
+            with pytest.raises(sf.AssemblyError, match="the first state does not keep"):
+                sf.simulate(model, *start)
+        pulled = sf.simulate(model, q + [1e-3, 0, 0], v, 2.0, stabilisation="baumgarte")
+        assert np.abs(model.constraint(pulled.q[-1])).max() < 1e-8
+
     def test_gains_without_baumgarte(self, four_bar: sf.Model) -> None:
         with pytest.raises(sf.SymofrosError, match="gains without Baumgarte"):
             sf.simulate(four_bar, gains=(5.0, 5.0))
