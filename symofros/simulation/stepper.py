@@ -32,7 +32,9 @@ _PARTS = (
     "pace.c",
     "run.c",
     "flat.c",
+    "instance.c",
 )
+_HEADERS = ("symofros_stepper.h", "symofros_instance.h")
 _SEGMENTS = {"linear": 0, "quaternion": 1, "pose": 2}
 _KINDS = {"explicit": 0, "semi_implicit": 1, "rosenbrock": 2, "alpha": 3, "variational": 4, "cvode": 0}
 # Functions that each kind of method calls besides forward_dynamics: the slot of sym_scene, and the function's name.
@@ -50,6 +52,16 @@ def _native(name: str) -> str:
     return (files("symofros.simulation") / "native" / name).read_text(encoding="utf-8")
 
 
+def native_headers() -> dict[str, str]:
+    """File name -> text of the headers that `native_source` includes, besides symofros_model.h."""
+    return {name: _native(name) for name in _HEADERS}
+
+
+def native_source() -> str:
+    """The stepping loop as one C file: C99, and POSIX or Windows for the clock."""
+    return "\n".join([_native("preamble.c"), *map(_native, _PARTS)])
+
+
 @cache
 def library() -> tuple[Any, Any]:
     """The cffi interface and the loaded library of native/, compiled at first use and cached.
@@ -61,14 +73,15 @@ def library() -> tuple[Any, Any]:
     if toolchain is None:
         raise CompileError("simulation steps in C, and no C compiler was found\n"
                            "  remedy: install gcc or clang, or `pip install ziglang`")  # fmt: skip
-    header = template("symofros_model.h")
-    stepper = _native("stepper.h").replace('#include "symofros_model.h"', "")
-    source = "\n".join(['#include <math.h>\n#include "symofros_model.h"', stepper, *map(_native, _PARTS)])
+    header, headers = template("symofros_model.h"), native_headers()
     ffi = cffi.FFI()
-    for text in (header, stepper):
+    for text in (header, headers["symofros_stepper.h"]):
         match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", text, re.DOTALL)
         assert match is not None
         ffi.cdef(match.group(1))
+    source = native_source()
+    for name, text in reversed(headers.items()):  # In one file, as the cache keeps it; later ones include earlier ones.
+        source = source.replace(f'#include "{name}"', text)
     return ffi, ffi.dlopen(str(build_library(source, header, toolchain)))
 
 
