@@ -24,15 +24,16 @@ def template(name: str) -> str:
     return (files("symofros.codegen") / "templates" / name).read_text(encoding="utf-8")
 
 
-def model_source(program: Program, record: ModelRecord, generator: str) -> str:
+def model_source(program: Program, record: ModelRecord, generator: str, c_name: str | None = None) -> str:
     """The C file of a program.
 
     Args:
         program: Staged.
         record: Names and defaults.
         generator: Name and version of what wrote it.
+        c_name: What symbols begin with; made of the record's name by default.
     """
-    name = identifier(record.name)
+    name = c_name or identifier(record.name)
     texts = [_init_function(program, name)]
     rows = []
     for i, function in enumerate(program.functions):

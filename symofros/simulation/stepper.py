@@ -20,7 +20,7 @@ from symofros.runtime.model import Model
 from symofros.runtime.toolchain import find_toolchain
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
-from symofros.simulation.methods import Method
+from symofros.simulation.methods import KIND_CODES, NEEDS, Method
 
 _PARTS = (
     "manifold.c",
@@ -33,16 +33,10 @@ _PARTS = (
     "run.c",
     "flat.c",
     "instance.c",
+    "selftest.c",
 )
 _HEADERS = ("symofros_stepper.h", "symofros_instance.h")
 _SEGMENTS = {"linear": 0, "quaternion": 1, "pose": 2}
-_KINDS = {"explicit": 0, "semi_implicit": 1, "rosenbrock": 2, "alpha": 3, "variational": 4, "cvode": 0}
-# Functions that each kind of method calls besides forward_dynamics: the slot of sym_scene, and the function's name.
-_NEEDS: dict[str, dict[str, str]] = {
-    "rosenbrock": {"terms": "implicit_terms"},
-    "alpha": {"terms": "implicit_terms", "residual": "residual"},
-    "variational": {"terms": "implicit_terms", "momentum": "momentum"},
-}
 
 GOING, DONE, FULL, EVENT = 0, 1, 2, 3
 DIVERGED, NO_MOTION, TINY_STEP, CALLBACK, NO_CONVERGENCE, OFF = -1, -2, -3, -4, -5, -6
@@ -140,7 +134,7 @@ class Stepper:
         if self.events:
             self._bind("events", model.formulas([event.formula for event in self.events]), {})
         self._bind("forward", model.kernel("forward_dynamics"), {"a": scene.a, "lam": scene.lam, "rank": scene.rank})
-        for slot, name in _NEEDS.get(self.method.kind, {}).items():
+        for slot, name in NEEDS.get(self.method.kind, {}).items():
             self._bind(slot, model.kernel(name), {})
         if model.nc:
             self._bind("project", model.kernel("project"), {})
@@ -198,7 +192,7 @@ class Stepper:
 
     def _fill_method(self) -> None:
         run, tableau = self.run, self.method.tableau
-        run.method = _KINDS[self.method.kind]
+        run.method = KIND_CODES[self.method.kind]
         into = run.tableau
         into.stages, into.dense_stages, into.last = tableau.stages, len(tableau.b), tableau.last
         into.error_order, into.errors, into.degree = tableau.error_order, len(tableau.errors), tableau.dense.shape[1]

@@ -72,6 +72,11 @@ int32_t sym_instance_changes(sym_instance *it, const double *dq, const double *d
                              double *lam, double *matrix);
 /* dq, a change of q, as a change along the manifold (nv). */
 void sym_instance_tangent(const sym_instance *it, const double *dq, double *tangent);
+/* The worst error of a model at reference points, relative to the largest entry of each output: of each function in
+ * turn and each point, inputs and then outputs. memory: sym_selftest_size doubles. Infinite where the points are of
+ * another model. */
+size_t sym_selftest_size(const sym_model *model);
+double sym_selftest(const sym_model *model, int32_t points, const double *reference, size_t count, double *memory);
 /* Seconds of a clock that never jumps; and a sleep. */
 double sym_seconds(void);
 void sym_wait(double seconds);
