@@ -15,6 +15,7 @@ from symofros.compiler import GENERATOR, compile_system, describe, generate, pla
 from symofros.description.system import System
 from symofros.errors import AssemblyError, ExportError, Problem, UnknownNameError, did_you_mean
 from symofros.exports.c_package import write_c_package
+from symofros.exports.fmu import write_fmu2, write_fmu3
 from symofros.exports.folder import Exported as Exported
 from symofros.exports.folder import check_folder
 from symofros.exports.material import Material, Stepping
@@ -31,6 +32,8 @@ TARGETS: tuple[Target, ...] = get_args(Target)
 
 _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
     "c": write_c_package,
+    "fmu2": write_fmu2,
+    "fmu3": write_fmu3,
 }
 # What wrappers call: the paper's table 1, and what stepping and linearisation need.
 _FUNCTIONS = (

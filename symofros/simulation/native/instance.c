@@ -100,10 +100,11 @@ SYM_EXPORT void sym_instance_reset(sym_instance *it) {
 
 SYM_EXPORT void sym_instance_prepare(sym_instance *it) { it->model->init(it->par, it->pre); }
 
-/* The scene's point becomes the present state. */
+/* The scene's point becomes the present state, its quaternions of unit length. */
 static void sym_instance_here(sym_instance *it) {
     it->run.t = it->t;
     sym_here(&it->run);
+    sym_unit_quaternions(&it->scene);
 }
 
 SYM_EXPORT int32_t sym_instance_close(sym_instance *it) {
@@ -154,7 +155,6 @@ SYM_EXPORT int32_t sym_instance_rates(sym_instance *it, double *rates) {
     sym_scene *s = &it->scene;
     int32_t status;
     sym_instance_here(it);
-    sym_unit_quaternions(s);
     sym_configuration_rate(s, it->q, rates);
     status = sym_accelerate(&it->run);
     memcpy(rates + s->nq, s->a, (size_t)s->nv * sizeof *rates);
