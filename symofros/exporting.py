@@ -19,6 +19,7 @@ from symofros.exports.fmu import write_fmu2, write_fmu3
 from symofros.exports.folder import Exported as Exported
 from symofros.exports.folder import check_folder
 from symofros.exports.material import Material, Stepping
+from symofros.exports.mex import write_mex
 from symofros.exports.reference import POINTS, checks
 from symofros.loading import load
 from symofros.options import FRAME_FUNCTIONS, Options
@@ -32,6 +33,7 @@ TARGETS: tuple[Target, ...] = get_args(Target)
 
 _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
     "c": write_c_package,
+    "mex": write_mex,
     "fmu2": write_fmu2,
     "fmu3": write_fmu3,
 }
