@@ -21,6 +21,7 @@ from symofros.exports.folder import check_folder
 from symofros.exports.material import Material, Stepping
 from symofros.exports.mex import write_mex
 from symofros.exports.reference import POINTS, checks
+from symofros.exports.sfunction import write_sfunction
 from symofros.loading import load
 from symofros.options import FRAME_FUNCTIONS, Options
 from symofros.runtime.kernel import Array
@@ -34,6 +35,7 @@ TARGETS: tuple[Target, ...] = get_args(Target)
 _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
     "c": write_c_package,
     "mex": write_mex,
+    "sfunction": write_sfunction,
     "fmu2": write_fmu2,
     "fmu3": write_fmu3,
 }
