@@ -20,8 +20,10 @@ from symofros.exports.folder import Exported as Exported
 from symofros.exports.folder import check_folder
 from symofros.exports.material import Material, Stepping
 from symofros.exports.mex import write_mex
+from symofros.exports.mjcf import write_mjcf
 from symofros.exports.reference import POINTS, checks
 from symofros.exports.sfunction import write_sfunction
+from symofros.exports.urdf import write_urdf
 from symofros.loading import load
 from symofros.options import FRAME_FUNCTIONS, Options
 from symofros.runtime.kernel import Array
@@ -39,6 +41,7 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
     "fmu2": write_fmu2,
     "fmu3": write_fmu3,
 }
+_DESCRIBED: dict[str, Callable[[System, str | None, Path, str], Exported]] = {"urdf": write_urdf, "mjcf": write_mjcf}
 # What wrappers call: the paper's table 1, and what stepping and linearisation need.
 _FUNCTIONS = (
     "mass_matrix", "bias", "generalized_force", "dynamics", "forward_dynamics", "inverse_dynamics", "kinetic_energy",
@@ -96,6 +99,9 @@ def export(
                                            did_you_mean(str(target), TARGETS))))  # fmt: skip
     place = Path(folder)
     check_folder(place)  # Before the work, not only after it.
+    if target in _DESCRIBED:
+        plan(system)
+        return _DESCRIBED[target](system, name, place, GENERATOR)
     stepping = _stepping(method, dt, rtol, atol)
     material = _material(system, name, frames, outputs, start or {}, stepping)
     return _COMPILED[target](material, place)

@@ -30,7 +30,8 @@ ALLOWED: dict[str, set[str]] = {
     },
     "simulation": {"runtime", "errors", "atomic", "codegen"},
     # Packages carry the stepping loop and its methods; who compiles the model is the front door, exporting.py.
-    "exports": {"codegen", "runtime", "description", "expr", "simulation", "errors", "options", "atomic"},
+    # URDF and MJCF hold numbers, which topology's Numbers makes of formulas.
+    "exports": {"codegen", "runtime", "description", "topology", "expr", "simulation", "errors", "options", "atomic"},
     "exporting": {
         "exports", "compiler", "loading", "codegen", "description", "runtime", "simulation", "errors", "options",
     },
