@@ -147,7 +147,7 @@ def _material(
 def _refuse_variational(system: System, stepping: Stepping) -> None:
     if stepping.method.kind == "variational" and system.constraints:
         raise ExportError(str(Problem("export: 'variational' steps trees only", f"'{system.name}' has constraints",
-                                      "its discrete principle is written for free coordinates", "use rk4")))  # fmt: skip
+                                      "its principle is written for free coordinates", "use rk4")))  # fmt: skip
 
 
 def _outputs(known: Sequence[str], generated: Sequence[str], wanted: Sequence[str] | None) -> tuple[str, ...]:

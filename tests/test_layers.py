@@ -36,7 +36,9 @@ ALLOWED: dict[str, set[str]] = {
         "exports", "compiler", "loading", "codegen", "description", "runtime", "simulation", "errors", "options",
     },
     "loading": {"errors", "atomic", "description", "topology"},
-    "__init__": {"errors", "options", "expr", "description", "compiler", "loading", "exporting", "runtime", "simulation"},
+    "__init__": {
+        "errors", "options", "expr", "description", "compiler", "loading", "exporting", "runtime", "simulation",
+    },
 }  # fmt: skip
 ENGINES = {"pinocchio", "mujoco", "exudyn", "casadi"}
 

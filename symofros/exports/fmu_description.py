@@ -29,7 +29,7 @@ def description_xml(material: Material, found: Sequence[Variable], version: int,
     head = {
         "fmiVersion": "2.0" if version == 2 else "3.0", "modelName": material.record.name,
         "guid" if version == 2 else "instantiationToken": token,
-        "description": f"{material.record.name}: {len(material.record.v_names)} speeds, {material.record.nc} constraints",
+        "description": f"{len(material.record.v_names)} speeds, {material.record.nc} constraints",
         "generationTool": material.generator, "generationDateAndTime": created,
         "variableNamingConvention": "structured",
     }  # fmt: skip
@@ -41,7 +41,9 @@ def description_xml(material: Material, found: Sequence[Variable], version: int,
     categories = Tree.SubElement(root, "LogCategories")
     for name in ("logStatusError", "logStatusDiscard"):
         Tree.SubElement(categories, "Category", {"name": name})
-    Tree.SubElement(root, "DefaultExperiment", {"startTime": "0", "stopTime": "1", "stepSize": repr(_communication(material))})
+    Tree.SubElement(
+        root, "DefaultExperiment", {"startTime": "0", "stopTime": "1", "stepSize": repr(_communication(material))}
+    )
     into = Tree.SubElement(root, "ModelVariables")
     for variable in found:
         (_variable2 if version == 2 else _variable3)(into, variable)
@@ -59,7 +61,11 @@ def _interfaces(root: Tree.Element, material: Material, version: int) -> None:
     if version == 2:
         both = {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true", "providesDirectionalDerivative": "true"}
     else:
-        both = {"canGetAndSetFMUState": "true", "canSerializeFMUState": "true", "providesDirectionalDerivatives": "true"}
+        both = {
+            "canGetAndSetFMUState": "true",
+            "canSerializeFMUState": "true",
+            "providesDirectionalDerivatives": "true",
+        }
     stepping = {"canHandleVariableCommunicationStepSize": "true"}
     if version == 3 and not material.stepping.method.adaptive:
         stepping["fixedInternalStepSize"] = repr(material.stepping.dt)

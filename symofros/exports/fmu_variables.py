@@ -86,9 +86,9 @@ def _variables(material: Material) -> Iterator[Variable]:
     reference = at_u + nu
     stated = {parameter.name: parameter for parameter in material.system.parameters}
     for i, name in enumerate(record.par_names):
-        parameter = stated.get(name)
+        unit, about = (stated[name].unit, stated[name].description) if name in stated else ("", "")
         yield Variable(reference + i, f"par.{quoted(name)}", "parameter", "tunable", "exact", record.par_default[i],
-                       parameter.unit if parameter else "", about=parameter.description if parameter else "")  # fmt: skip
+                       unit, about=about)  # fmt: skip
     reference += len(record.par_names)
     for i, name in enumerate(record.constraint_names):
         yield Variable(reference + i, f"lam.{quoted(name)}", "local", "continuous", "calculated")

@@ -105,8 +105,8 @@ def write_folder(
             (folder / old).unlink(missing_ok=True)
         _write_manifest(folder, target, name, generator, digests)
     except OSError as error:
-        raise ExportError(str(Problem(f"'{folder}' can't be written", str(error), "an export needs a folder to write to",
-                                      "check its rights and the space left")))  # fmt: skip
+        raise ExportError(str(Problem(f"'{folder}' can't be written", str(error), "a folder that can be written",
+                                      "check its rights and the space left"))) from error  # fmt: skip
     return Exported(folder, target, name, tuple(folder / name for name in contents), notes)
 
 

@@ -34,6 +34,10 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
     _sites(elements[links[0].name], links[0])
     notes = [*lost, *_lost(system)]
     thin = [link.name for link in links if link.mass and _positive(link.inertia) is not link.inertia]
+    odd = [link.name for link in links if link.mass and _impossible(_positive(link.inertia))]
+    if odd:
+        notes.append("MuJoCo refuses inertias that no body can have (its option balanceinertia changes them): "
+                     + ", ".join(odd))  # fmt: skip
     if thin:
         notes.append(f"moments of inertia near zero raised to {_LEAST:g}: " + ", ".join(thin))
     for link in _parents_first(links[1:], links[0].name):
@@ -124,8 +128,14 @@ def _positive(inertia: Array) -> Array:
     return np.asarray(axes @ np.diag(np.maximum(sizes, least)) @ axes.T)
 
 
+def _impossible(inertia: Array) -> bool:
+    """Whether two principal moments are less than the third."""
+    small, middle, large = np.linalg.eigvalsh(inertia)
+    return bool(small + middle < large * (1.0 - 1e-9))
+
+
 def _dynamics(link: RigidLink, joint: Joint, index: int, numbers: Numbers) -> dict[str, str]:
-    found = {}
+    found: dict[str, str] = {}
     limits = joint.limits if len(link.axes) == 1 else None
     if limits is not None and limits.lower is not None and limits.upper is not None:
         # For readers; here a limit is not a force.

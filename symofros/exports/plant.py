@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from symofros.codegen.names import c_string
 from symofros.exports.c_text import comment, doubles, integers, strings
 from symofros.exports.material import Material
@@ -25,8 +27,7 @@ def header_text(material: Material) -> str:
         "", "#ifdef __cplusplus", 'extern "C" {', "#endif",
         "/* The equations: symofros_model.h. */", f"const sym_model *{name}_model(void);",
         "/* The model as a thing that moves: symofros_instance.h. */", f"const sym_plant *{name}_plant(void);",
-        "/* The worst relative error at reference points that were computed by another back end; infinite where there is"
-        " no memory. */",
+        "/* The worst relative error at reference points of another back end; infinite where there is no memory. */",
         f"double {name}_selftest(void);",
         "#ifdef __cplusplus", "}", "#endif", "#endif", "",
     ]  # fmt: skip
@@ -53,8 +54,8 @@ def plant_text(material: Material) -> str:
         f"static const sym_plant {name}_plant_struct = {{",
         f"    {name}_model, {len(record.segments)}, {name}_segments, {name}_on_speeds, {name}_constraint_names,",
         f"    {name}_q_start, {name}_v_start, {name}_u_start, {len(frames)}, {name}_frame_names,",
-        f"    {c_string(step.method.name)}, {KIND_CODES[step.method.kind]}, {int(step.method.adaptive)}, &{name}_tableau,",
-        f"    {step.dt!r}, {step.rtol!r}, {step.atol!r}",
+        f"    {c_string(step.method.name)}, {KIND_CODES[step.method.kind]}, {int(step.method.adaptive)},",
+        f"    &{name}_tableau, {step.dt!r}, {step.rtol!r}, {step.atol!r}",
         "};", "",
         f"SYM_EXPORT const sym_plant *{name}_plant(void);",
         f"SYM_EXPORT const sym_plant *{name}_plant(void) {{ return &{name}_plant_struct; }}", "",
@@ -64,12 +65,13 @@ def plant_text(material: Material) -> str:
 
 def _tableau(name: str, tableau: Tableau) -> list[str]:
     """The method's coefficients, which Python's own runs read from the same place."""
-    errors = [list(row) for row in tableau.errors] + [[0.0] * tableau.stages] * 2
-    arrays = {
-        "a": tableau.a.ravel(), "b": tableau.b, "c": tableau.c, "e": errors[0], "e2": errors[1],
-        "dense": tableau.dense.ravel(), "coupling": tableau.coupling.ravel(), "d": tableau.d,
+    errors: list[list[float]] = [row.tolist() for row in tableau.errors] + [[0.0] * tableau.stages] * 2
+    arrays: dict[str, Sequence[float]] = {
+        "a": tableau.a.ravel().tolist(), "b": tableau.b.tolist(), "c": tableau.c.tolist(), "e": errors[0],
+        "e2": errors[1], "dense": tableau.dense.ravel().tolist(), "coupling": tableau.coupling.ravel().tolist(),
+        "d": tableau.d.tolist(),
     }  # fmt: skip
-    lines = [f"static const double {name}_{key}[] = {{{doubles(map(float, values))}}};" for key, values in arrays.items()]
+    lines = [f"static const double {name}_{key}[] = {{{doubles(values)}}};" for key, values in arrays.items()]
     numbers = (tableau.stages, len(tableau.b), tableau.last, tableau.error_order, len(tableau.errors),
                tableau.dense.shape[1])  # fmt: skip
     pointers = ", ".join(f"{name}_{key}" for key in ("a", "b", "c", "e", "e2", "dense"))

@@ -10,7 +10,7 @@ from symofros.exports.c_text import hand_written
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
 
-_BUILD = """% Builds the block: run it in this folder, in Matlab. Blocks of several models: copy their NAME.c, NAME_plant.c and
+_BUILD = """% Builds the block: run it in this folder, in Matlab. For several models copy NAME.c, NAME_plant.c and
 % NAME.h here, add their lines to symo_models.h, and their files to this command.
 mex('-output', 'symoSFunction', 'symoSFunction.c', '{name}.c', '{name}_plant.c', 'symofros_stepper.c');
 """

@@ -7,9 +7,7 @@ from collections.abc import Sequence
 _HEADERS = ("math.h", "stddef.h", "stdint.h", "stdio.h", "stdlib.h", "string.h")
 
 
-def unity(
-    name: str, title: str, before: Sequence[str], after: Sequence[str], more_headers: Sequence[str] = ()
-) -> str:
+def unity(name: str, title: str, before: Sequence[str], after: Sequence[str], more_headers: Sequence[str] = ()) -> str:
     """The text of such a file.
 
     Args:
