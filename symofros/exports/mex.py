@@ -38,6 +38,8 @@ if exist('OCTAVE_VERSION', 'builtin')
 else
   mex('-output', '{name}', '{name}_mex.c');
 end
+clear('{name}');
+rehash();
 """
 
 

@@ -12,6 +12,7 @@ from symofros.description.beam import STATION, Beam
 from symofros.description.forces import Damper
 from symofros.description.system import WORLD, Body, Inertia, Joint, RigidBody, System
 from symofros.errors import ExportError, Problem
+from symofros.topology.coordinates import coordinate_names
 from symofros.topology.numbers import Numbers, skew
 
 Array = npt.NDArray[np.float64]
@@ -147,7 +148,7 @@ def _axes(joint: Joint, numbers: Numbers) -> tuple[Axis, ...]:
     }.get(joint.kind, [])  # fmt: skip
     if len(stated) == 1:
         return (axis(joint.name, *stated[0]),)
-    return tuple(axis(f"{joint.name}[{i}]", *item) for i, item in enumerate(stated))
+    return tuple(axis(name, *item) for name, item in zip(coordinate_names(joint), stated, strict=False))
 
 
 def _damping(joint: Joint, count: int, numbers: Numbers) -> tuple[float, ...]:
