@@ -18,8 +18,9 @@ _LIMITS = (
     "The machine runs other work and no real-time kernel: the longest of many calls says how long the operating system "
     "was away, the median and 99.9 % what the code takes. Each call is timed by itself; the clock's own cost is the "
     "row `clock`, subtracted in the first table. M, h, Q from Octave and Python are means over a loop in their own "
-    "language; steps from there are those of one call that makes a thousand. The FMU is called through FMPy, whose ctypes call is most of the difference to C. The block for "
-    "Simulink was compiled and run against a stand-in header, not in Simulink."
+    "language; steps from there are those of one call that makes a thousand. The FMU is called through FMPy, whose "
+    "ctypes call is most of the difference to C. The block for Simulink was compiled and run against a stand-in "
+    "header, not in Simulink."
 )
 
 
