@@ -46,6 +46,7 @@ from symofros.errors import CompileError as CompileError
 from symofros.errors import CompilerMissingWarning as CompilerMissingWarning
 from symofros.errors import DescriptionError as DescriptionError
 from symofros.errors import EquilibriumError as EquilibriumError
+from symofros.errors import ExportError as ExportError
 from symofros.errors import InconsistentModelWarning as InconsistentModelWarning
 from symofros.errors import Problem as Problem
 from symofros.errors import ShapeError as ShapeError
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
     from symofros.compiler import compile_library as compile_library
     from symofros.compiler import compile_system
     from symofros.compiler import program_of as program_of
+    from symofros.exporting import export as export
     from symofros.loading import load as load
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
@@ -88,6 +90,7 @@ _LAZY = {
     "compile": ("symofros.compiler", "compile_system"),
     "compile_library": ("symofros.compiler", "compile_library"),
     "program_of": ("symofros.compiler", "program_of"),
+    "export": ("symofros.exporting", "export"),
     "load": ("symofros.loading", "load"),
     "save": ("symofros.loading", "save"),
     "Model": ("symofros.runtime.model", "Model"),

@@ -1,4 +1,4 @@
-"""Command line: symofros info | compile | simulate MODEL."""
+"""Command line: symofros info | compile | simulate | export MODEL."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import json
 import time
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import numpy as np
 import typer
@@ -21,6 +21,7 @@ from symofros.codegen.templates import template
 from symofros.compiler import compile_system, describe, generate, plan, requested
 from symofros.description.system import System
 from symofros.errors import did_you_mean
+from symofros.exporting import TARGETS
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.passes.count import Operations, count_program
 from symofros.runtime.kernel import Array
@@ -223,6 +224,45 @@ def simulate(
     _tell(run, files, as_json)
     if not run.outcome.ok:
         raise typer.Exit(1)
+
+
+@app.command("export")
+def export_command(
+    model: ModelPath,
+    target: Annotated[str, typer.Option("--target", "-t", help=", ".join(TARGETS))],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder: new, empty, or of an earlier export.")],
+    floating_base: Floating = False,
+    name: Annotated[str | None, typer.Option(help="Of files and functions; made of the model's by default.")] = None,
+    frames: Annotated[str | None, typer.Option(help="Frames of kinematics, comma-separated; all by default.")] = None,
+    outputs: Annotated[str | None, typer.Option(help="Frames whose positions an FMU gives, comma-separated.")] = None,
+    given: Annotated[list[str], typer.Option("--set", help="NAME=NUMBER: a first coordinate or speed (dNAME).")] = [],  # noqa: B006
+    method: Annotated[str, typer.Option(help="How it steps by itself.")] = "rk4",
+    dt: Annotated[float, typer.Option(help="Step [s].")] = 1e-3,
+    as_json: AsJson = False,
+) -> None:
+    """Write a model for C, Matlab, Octave, Simulink, FMI, or as URDF or MJCF."""
+    system = _load(model, floating_base)
+    start = {key: _number(key, text) for key, text in _assignments(given, "--set").items()}
+    try:
+        done = sf.export(
+            system, cast(Any, target), output, name=name, frames=_names(frames), outputs=_names(outputs), start=start,
+            method=method, dt=dt,
+        )  # fmt: skip
+    except sf.SymofrosError as error:
+        _err.print(str(error), markup=False, highlight=False, soft_wrap=True)
+        raise typer.Exit(BAD_INPUT) from None
+    if as_json:
+        print(json.dumps({"target": done.target, "name": done.name, "files": [str(file) for file in done.files],
+                          "notes": list(done.notes)}, indent=1))  # fmt: skip
+        return
+    for file in done.files:
+        _out.print(f"wrote {file}", markup=False, highlight=False, soft_wrap=True)
+    for note in done.notes:
+        _out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _names(text: str | None) -> list[str] | None:
+    return None if text is None else [name for name in text.split(",") if name]
 
 
 def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:

@@ -137,11 +137,18 @@ def program_of(system: System, functions: Iterable[str], frames: Iterable[str] =
 
 
 def generate(
-    tree: SpanningTree, requests: Iterable[Key], record: ModelRecord, form: str = "multipliers"
+    tree: SpanningTree,
+    requests: Iterable[Key],
+    record: ModelRecord,
+    form: str = "multipliers",
+    c_name: str | None = None,
 ) -> tuple[Program, Callable[[], str]]:
-    """Requests -> optimised Program, and its C text on demand; form as in `Options.constraints`."""
+    """Requests -> optimised Program, and its C text on demand; form as in `Options.constraints`.
+
+    c_name is what the C symbols begin with; made of the model's name by default.
+    """
     program = run_passes(write_program(tree, [Request(*key) for key in requests], form))
-    return program, lambda: model_source(program, record, GENERATOR)
+    return program, lambda: model_source(program, record, GENERATOR, c_name=c_name)
 
 
 def _warn_inconsistent(system: System) -> None:

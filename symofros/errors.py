@@ -83,6 +83,10 @@ class CompileError(SymofrosError):
     """The C compiler refused the generated code, or the result did not load."""
 
 
+class ExportError(SymofrosError):
+    """A model can't be written to that format, or to that place."""
+
+
 class AssemblyError(SymofrosError):
     """No configuration, or no speeds, satisfy the constraints; says which constraint is worst and by how much."""
 

@@ -14,14 +14,16 @@ os.environ.setdefault("SYMOFROS_CACHE", str(Path(__file__).parent.parent / ".pyt
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run tests that take minutes")
+    parser.addoption("--tools", action="store_true", help="also run tests of programs that .ci/run installs")
     parser.addoption("--update-golden", action="store_true", help="rewrite the expected texts that tests compare with")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    if not config.getoption("--slow"):
-        for item in items:
-            if "slow" in item.keywords:
-                item.add_marker(pytest.mark.skip(reason="takes minutes; run with --slow"))
+    for word, why in (("slow", "takes minutes"), ("tools", "needs programs of the system")):
+        if not config.getoption(f"--{word}"):
+            for item in items:
+                if word in item.keywords:
+                    item.add_marker(pytest.mark.skip(reason=f"{why}; run with --{word}"))
 
 
 @pytest.fixture

@@ -24,7 +24,7 @@ from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
 from validation.stability import command as stability
-from validation.studies import fuzz_report, mutation_report, oracle, simulation_report, timing_report
+from validation.studies import exports_report, fuzz_report, mutation_report, oracle, simulation_report, timing_report
 
 
 class Exit(IntEnum):
@@ -148,6 +148,7 @@ def verdict(record: Record) -> Exit:
 
 
 accuracy.register(app)
+exports_report.register(app)
 fuzz_report.register(app)
 mutation_report.register(app)
 oracle.register(app)

@@ -17,7 +17,9 @@ from symofros.runtime.record import ModelRecord
 _INIT = "init_par"
 
 
-def model_source(program: Program, record: ModelRecord, generator: str, in_lanes: bool = False) -> str:
+def model_source(
+    program: Program, record: ModelRecord, generator: str, in_lanes: bool = False, c_name: str | None = None
+) -> str:
     """The C file of a program.
 
     Args:
@@ -25,8 +27,9 @@ def model_source(program: Program, record: ModelRecord, generator: str, in_lanes
         record: Names and defaults.
         generator: Name and version of what wrote it.
         in_lanes: Whether batches take several states at once; functions with a solver never do.
+        c_name: What symbols begin with; made of the record's name by default.
     """
-    name = identifier(record.name)
+    name = c_name or identifier(record.name)
     in_lanes = in_lanes and any(function.solver is None for function in program.functions)
     texts = [_init_function(program, name)]
     rows = []

@@ -9,16 +9,33 @@ _KEYWORDS = frozenset(
     " restrict return short signed sizeof static struct switch typedef union unsigned void volatile while asm main"
     .split()
 )  # fmt: skip
+# Names that a header, an operating system, FMI or Matlab has taken; the first row would clash with symofros_model.h.
+_TAKEN = frozenset(
+    "sym symofros"
+    " assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdarg stdbool stddef"
+    " stdint stdio stdlib string tgmath time wchar wctype windows"
+    " con prn aux nul fmi fmi2 fmi3 fmu mex mexfunction simstruc simulink symosfunction selftest"
+    " break catch class elseif end function global otherwise parfor persistent try"
+    .split()
+)  # fmt: skip
+_OURS = ("symofros_", "sym_", "fmi2", "fmi3")
 _ILLEGAL = re.compile(r"[^A-Za-z0-9]+")
 _MAX_LENGTH = 48
 
 
 def identifier(text: str) -> str:
-    """A C identifier that looks like the text; "m" before a leading digit, "_" after a keyword."""
+    """A C identifier that looks like the text; "m" before a leading digit, "_" after what is taken already.
+
+    It also serves as the name of files and of a function of Matlab.
+    """
     name = _ILLEGAL.sub("_", text).strip("_")[:_MAX_LENGTH].rstrip("_") or "model"
     if name[0].isdigit():
         name = f"m{name}"
-    return f"{name}_" if name in _KEYWORDS else name
+    lower = name.lower()
+    taken = name in _KEYWORDS or lower in _TAKEN
+    if lower.startswith(_OURS):
+        name = f"m_{name}"
+    return f"{name}_" if taken else name
 
 
 def local_name(label: str, node: int) -> str:

@@ -9,10 +9,12 @@ from symofros.expr.program import Function, Program, Solver
 
 # Routine -> the template files it needs, in the order in which C must see them; the keys are in that order, too.
 ROUTINES: dict[str, tuple[str, ...]] = {
-    "constrained": ("constrained",),
-    "null_space": ("constrained", "null_space"),
-    "project": ("constrained", "project"),
-    "differentiate": ("constrained", "differentiate"),
+    "dense": ("dense",),
+    "kkt": ("dense", "kkt"),
+    "constrained": ("dense", "kkt", "constrained"),
+    "null_space": ("dense", "null_space"),
+    "project": ("dense", "kkt", "constrained", "project"),
+    "differentiate": ("dense", "kkt", "differentiate"),
 }
 
 

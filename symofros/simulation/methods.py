@@ -55,3 +55,14 @@ METHODS: dict[str, Method] = {
         Method("cvode_adams", "cvode", 12, True, EXPLICIT_EULER, "SUNDIALS, Adams of order 1 to 12; smooth"),
     )
 }
+
+# Which loop of native/, as C numbers them.
+KIND_CODES: dict[Kind, int] = {
+    "explicit": 0, "semi_implicit": 1, "rosenbrock": 2, "alpha": 3, "variational": 4, "cvode": 0,
+}  # fmt: skip
+# Functions that each kind of method calls besides forward_dynamics: the slot of sym_scene, and the function's name.
+NEEDS: dict[str, dict[str, str]] = {
+    "rosenbrock": {"terms": "implicit_terms"},
+    "alpha": {"terms": "implicit_terms", "residual": "residual"},
+    "variational": {"terms": "implicit_terms", "momentum": "momentum"},
+}

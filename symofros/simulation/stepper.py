@@ -20,7 +20,7 @@ from symofros.runtime.model import Model
 from symofros.runtime.toolchain import find_toolchain
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
-from symofros.simulation.methods import Method
+from symofros.simulation.methods import KIND_CODES, NEEDS, Method
 
 _PARTS = (
     "manifold.c",
@@ -32,15 +32,11 @@ _PARTS = (
     "pace.c",
     "run.c",
     "flat.c",
+    "instance.c",
+    "selftest.c",
 )
+_HEADERS = ("symofros_stepper.h", "symofros_instance.h")
 _SEGMENTS = {"linear": 0, "quaternion": 1, "pose": 2}
-_KINDS = {"explicit": 0, "semi_implicit": 1, "rosenbrock": 2, "alpha": 3, "variational": 4, "cvode": 0}
-# Functions that each kind of method calls besides forward_dynamics: the slot of sym_scene, and the function's name.
-_NEEDS: dict[str, dict[str, str]] = {
-    "rosenbrock": {"terms": "implicit_terms"},
-    "alpha": {"terms": "implicit_terms", "residual": "residual"},
-    "variational": {"terms": "implicit_terms", "momentum": "momentum"},
-}
 
 GOING, DONE, FULL, EVENT = 0, 1, 2, 3
 DIVERGED, NO_MOTION, TINY_STEP, CALLBACK, NO_CONVERGENCE, OFF = -1, -2, -3, -4, -5, -6
@@ -48,6 +44,16 @@ DIVERGED, NO_MOTION, TINY_STEP, CALLBACK, NO_CONVERGENCE, OFF = -1, -2, -3, -4, 
 
 def _native(name: str) -> str:
     return (files("symofros.simulation") / "native" / name).read_text(encoding="utf-8")
+
+
+def native_headers() -> dict[str, str]:
+    """File name -> text of the headers that `native_source` includes, besides symofros_model.h."""
+    return {name: _native(name) for name in _HEADERS}
+
+
+def native_source() -> str:
+    """The stepping loop as one C file: C99, and POSIX or Windows for the clock."""
+    return "\n".join([_native("preamble.c"), *map(_native, _PARTS)])
 
 
 @cache
@@ -61,14 +67,15 @@ def library() -> tuple[Any, Any]:
     if toolchain is None:
         raise CompileError("simulation steps in C, and no C compiler was found\n"
                            "  remedy: install gcc or clang, or `pip install ziglang`")  # fmt: skip
-    header = template("symofros_model.h")
-    stepper = _native("stepper.h").replace('#include "symofros_model.h"', "")
-    source = "\n".join(['#include <math.h>\n#include "symofros_model.h"', stepper, *map(_native, _PARTS)])
+    header, headers = template("symofros_model.h"), native_headers()
     ffi = cffi.FFI()
-    for text in (header, stepper):
+    for text in (header, headers["symofros_stepper.h"]):
         match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", text, re.DOTALL)
         assert match is not None
         ffi.cdef(match.group(1))
+    source = native_source()
+    for name, text in reversed(headers.items()):  # In one file, as the cache keeps it; later ones include earlier ones.
+        source = source.replace(f'#include "{name}"', text)
     return ffi, ffi.dlopen(str(build_library(source, header, toolchain)))
 
 
@@ -127,7 +134,7 @@ class Stepper:
         if self.events:
             self._bind("events", model.formulas([event.formula for event in self.events]), {})
         self._bind("forward", model.kernel("forward_dynamics"), {"a": scene.a, "lam": scene.lam, "rank": scene.rank})
-        for slot, name in _NEEDS.get(self.method.kind, {}).items():
+        for slot, name in NEEDS.get(self.method.kind, {}).items():
             self._bind(slot, model.kernel(name), {})
         if model.nc:
             self._bind("project", model.kernel("project"), {})
@@ -185,7 +192,7 @@ class Stepper:
 
     def _fill_method(self) -> None:
         run, tableau = self.run, self.method.tableau
-        run.method = _KINDS[self.method.kind]
+        run.method = KIND_CODES[self.method.kind]
         into = run.tableau
         into.stages, into.dense_stages, into.last = tableau.stages, len(tableau.b), tableau.last
         into.error_order, into.errors, into.degree = tableau.error_order, len(tableau.errors), tableau.dense.shape[1]

@@ -70,12 +70,18 @@ typedef struct sym_model {
 
 #if defined(__GNUC__) || defined(__clang__)
 #define SYM_NOINLINE __attribute__((noinline))
-#define SYM_EXPORT __attribute__((visibility("default")))
 #elif defined(_MSC_VER)
 #define SYM_NOINLINE __declspec(noinline)
-#define SYM_EXPORT __declspec(dllexport)
 #else
 #define SYM_NOINLINE
+#endif
+/* Whoever includes models in a library of his own defines this as nothing. */
+#if defined(SYM_EXPORT)
+#elif defined(__GNUC__) || defined(__clang__)
+#define SYM_EXPORT __attribute__((visibility("default")))
+#elif defined(_MSC_VER)
+#define SYM_EXPORT __declspec(dllexport)
+#else
 #define SYM_EXPORT
 #endif
 
@@ -88,6 +94,15 @@ static inline const sym_function *sym_find(const sym_model *model, const char *n
         if (same_frame && strcmp(f->name, name) == 0) return f;
     }
     return NULL;
+}
+
+/* Doubles of scratch that any function of the model can do with. */
+static inline size_t sym_work(const sym_model *model) {
+    size_t most = 1;
+    int32_t i;
+    for (i = 0; i < model->n_functions; ++i)
+        if (model->functions[i].work > most) most = model->functions[i].work;
+    return most;
 }
 
 static inline double sym_sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : x; }

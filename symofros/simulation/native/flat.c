@@ -9,12 +9,9 @@ typedef struct sym_vector { /* SUNDIALS' serial vector, as far as it matters her
     } *content;
 } sym_vector;
 
-/* The scene's point from y. */
-static void sym_unflatten(sym_scene *s, double t, const double *y) {
+/* The scene's quaternions of unit length. */
+static void sym_unit_quaternions(sym_scene *s) {
     int32_t k, i;
-    memcpy(s->q, y, (size_t)s->nq * sizeof *y);
-    memcpy(s->v, y + s->nq, (size_t)s->nv * sizeof *y);
-    *s->t = t;
     for (k = 0; k < s->n_segments; ++k) {
         double *p = s->q + s->segments[k].q + (s->segments[k].kind == 2 ? 3 : 0), size = 0.0;
         if (s->segments[k].kind == 0) continue;
@@ -24,27 +21,48 @@ static void sym_unflatten(sym_scene *s, double t, const double *y) {
     }
 }
 
+/* The scene's point from y. */
+static void sym_unflatten(sym_scene *s, double t, const double *y) {
+    memcpy(s->q, y, (size_t)s->nq * sizeof *y);
+    memcpy(s->v, y + s->nq, (size_t)s->nv * sizeof *y);
+    *s->t = t;
+    sym_unit_quaternions(s);
+}
+
+/* p' = p w / 2, for any length of p. */
+static void sym_quaternion_rate(const double *p, const double *w, double *rate) {
+    double c[3];
+    int i;
+    sym_cross(p, w, c);
+    for (i = 0; i < 3; ++i) rate[i] = 0.5 * (p[3] * w[i] + c[i]);
+    rate[3] = -0.5 * (p[0] * w[0] + p[1] * w[1] + p[2] * w[2]);
+}
+
+/* q' = N v at the scene's point; q: the same configuration, its quaternions of any length. */
+static void sym_configuration_rate(const sym_scene *s, const double *q, double *rate) {
+    int32_t k;
+    for (k = 0; k < s->n_segments; ++k) {
+        const sym_segment *seg = &s->segments[k];
+        const int32_t at = seg->kind == 2 ? 3 : 0;
+        const double *v = s->v + seg->v;
+        if (seg->kind == 0) {
+            memcpy(rate + seg->q, v, (size_t)seg->size * sizeof *v);
+            continue;
+        }
+        if (seg->kind == 2) sym_rotate(s->q + seg->q + 3, v, rate + seg->q);
+        sym_quaternion_rate(q + seg->q + at, v + at, rate + seg->q + at);
+    }
+}
+
 /* y' = (N v, v'): CVRhsFn of SUNDIALS. 1: the step may be tried again, -1: the run is over. */
 SYM_EXPORT int32_t sym_flat_slope(double t, void *y_vector, void *rate_vector, void *run) {
     sym_run *r = run;
     sym_scene *s = r->scene;
     const double *y = ((sym_vector *)y_vector)->content->data;
     double *rate = ((sym_vector *)rate_vector)->content->data;
-    int32_t k, i, status;
+    int32_t status;
     sym_unflatten(s, t, y);
-    for (k = 0; k < s->n_segments; ++k) {
-        const sym_segment *seg = &s->segments[k];
-        const double *v = s->v + seg->v, *w = seg->kind == 2 ? v + 3 : v, *p = y + seg->q + (seg->kind == 2 ? 3 : 0);
-        double *into = rate + seg->q, c[3];
-        if (seg->kind == 0) {
-            memcpy(into, v, (size_t)seg->size * sizeof *v);
-            continue;
-        }
-        if (seg->kind == 2) sym_rotate(s->q + seg->q + 3, v, into), into += 3;
-        sym_cross(p, w, c);
-        for (i = 0; i < 3; ++i) into[i] = 0.5 * (p[3] * w[i] + c[i]);
-        into[3] = -0.5 * (p[0] * w[0] + p[1] * w[1] + p[2] * w[2]);
-    }
+    sym_configuration_rate(s, y, rate);
     status = sym_accelerate(r);
     memcpy(rate + s->nq, s->a, (size_t)s->nv * sizeof *rate);
     return status == SYM_CALLBACK ? -1 : status != 0;

@@ -1,4 +1,4 @@
-/* stepper.h - stepping a SYMOFROS model through time. Written by hand; C99.
+/* symofros_stepper.h - stepping a SYMOFROS model through time. Written by hand; C99.
  *
  * A state is (q, v). Within a step it is held as y = (theta, v): theta are coordinates of the configuration manifold
  * about the q at which the step began, so that quaternions stay of unit length and every method is one of plain

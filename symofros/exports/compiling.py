@@ -1,0 +1,44 @@
+"""Calling the C compiler on what an export consists of."""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from symofros.errors import CompileError
+from symofros.runtime.toolchain import find_toolchain
+
+# No -march=native: what is exported runs on other machines of the kind.
+FLAGS = ("-O2", "-fno-math-errno", "-std=c99", "-fPIC", "-shared", "-fvisibility=hidden")
+_SHOWN_LINES = 12
+
+
+def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path]) -> bytes:
+    """The library of one C file that includes the others.
+
+    Args:
+        files: File name -> text.
+        main: Which of them to compile.
+        include: Folders of further headers.
+
+    Raises:
+        CompileError: There is no compiler, or it refused: with its command and words.
+    """
+    toolchain = find_toolchain(None)
+    if toolchain is None:
+        raise CompileError("no C compiler was found\n  remedy: install gcc or clang, or `pip install ziglang`")
+    with tempfile.TemporaryDirectory(prefix="symofros-export-") as private:
+        for name, text in files.items():
+            (Path(private) / name).write_text(text, encoding="utf-8")
+        folders = [f"-I{folder}" for folder in include]
+        command = [*toolchain.command, *FLAGS, *folders, "-o", "library", main, "-lm"]
+        done = subprocess.run(command, cwd=private, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            words = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
+            raise CompileError(
+                f"the C compiler failed with status {done.returncode}\n  command: {' '.join(command)}\n{words}\n"
+                "  remedy: check $CC and the compiler"
+            )
+        return (Path(private) / "library").read_bytes()

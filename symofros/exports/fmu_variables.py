@@ -1,0 +1,160 @@
+"""The variables of an FMU, in the order of their value references: symofros_fmu.h counts the same way."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from symofros.description.system import Joint
+from symofros.exports.material import Material
+
+_PLAIN = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
+_UNQUOTED = re.compile(r"[^A-Za-z0-9_!#$%&()*+,\-./:;<>=@\[\]^{}|~ ]")
+_ANGLES = ("revolute", "continuous")
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One scalar variable.
+
+    Attributes:
+        reference: Its value reference.
+        name: By FMI's structured naming.
+        causality: Of FMI; so is variability.
+        initial: Of FMI; "" where it must not be stated.
+        start: None where there is none.
+        unit: "" for none.
+        derivative: Reference of the state that it is the derivative of.
+        depends: References that it depends on; None for all states and inputs. Only of outputs and derivatives.
+        about: For people.
+    """
+
+    reference: int
+    name: str
+    causality: str
+    variability: str
+    initial: str = ""
+    start: float | None = None
+    unit: str = ""
+    derivative: int | None = None
+    depends: tuple[int, ...] | None = None
+    about: str = ""
+
+
+def quoted(name: str) -> str:
+    """A name as one part of a structured name."""
+    if _PLAIN.fullmatch(name):
+        return name
+    return "'" + _UNQUOTED.sub("_", name) + "'"
+
+
+def variables(material: Material) -> list[Variable]:
+    """All of them."""
+    found: list[Variable] = []
+    for variable in _variables(material):
+        assert variable.reference == len(found)
+        found.append(variable)
+    return _distinct(found)
+
+
+def _variables(material: Material) -> Iterator[Variable]:
+    record = material.record
+    nq, nv, nu = len(record.q_names), len(record.v_names), len(record.u_names)
+    at_q, at_v = 1, 1 + nq
+    at_u = at_v + nv + nq + nv
+    units = _units(material)
+    # A loop's start is brought onto the constraints, so it is a guess.
+    initial = "approx" if record.nc else "exact"
+    yield Variable(0, "time", "independent", "continuous", unit="s")
+    for i, name in enumerate(record.q_names):
+        yield Variable(at_q + i, f"q.{quoted(name)}", "output", "continuous", initial, material.q_start[i],
+                       units.get(name, ""), depends=(at_q + i,))  # fmt: skip
+    for i, name in enumerate(record.v_names):
+        yield Variable(at_v + i, f"v.{quoted(name)}", "output", "continuous", initial, material.v_start[i],
+                       _per(units.get(name, ""), "s"), depends=(at_v + i,))  # fmt: skip
+    rates = _rate_dependencies(material, at_q, at_v)
+    for i, name in enumerate(record.q_names):
+        yield Variable(at_v + nv + i, f"der(q.{quoted(name)})", "local", "continuous", "calculated",
+                       unit=_per(units.get(name, ""), "s"), derivative=at_q + i, depends=rates[i])  # fmt: skip
+    for i, name in enumerate(record.v_names):
+        yield Variable(at_v + nv + nq + i, f"der(v.{quoted(name)})", "local", "continuous", "calculated",
+                       unit=_per(units.get(name, ""), "s2"), derivative=at_v + i)  # fmt: skip
+    for i, name in enumerate(record.u_names):
+        yield Variable(at_u + i, f"u.{quoted(name)}", "input", "continuous", "", record.u_default[i],
+                       _effort(units.get(name, "")) if i < nu - record.driven else "")  # fmt: skip
+    reference = at_u + nu
+    stated = {parameter.name: parameter for parameter in material.system.parameters}
+    for i, name in enumerate(record.par_names):
+        unit, about = (stated[name].unit, stated[name].description) if name in stated else ("", "")
+        yield Variable(reference + i, f"par.{quoted(name)}", "parameter", "tunable", "exact", record.par_default[i],
+                       unit, about=about)  # fmt: skip
+    reference += len(record.par_names)
+    for i, name in enumerate(record.constraint_names):
+        yield Variable(reference + i, f"lam.{quoted(name)}", "local", "continuous", "calculated")
+    reference += record.nc
+    for i, kind in enumerate(("kinetic", "potential")):
+        yield Variable(reference + i, f"energy.{kind}", "local", "continuous", "calculated", unit="J")
+    reference += 2
+    for frame in material.outputs:
+        for i, axis in enumerate("xyz"):
+            yield Variable(reference + i, f"p.{quoted(frame)}.{axis}", "output", "continuous", "calculated", unit="m",
+                           depends=_moved_by(material, frame, i, at_q))  # fmt: skip
+        reference += 3
+
+
+def _distinct(found: list[Variable]) -> list[Variable]:
+    """Names that replaced characters made equal get a number."""
+    seen: dict[str, int] = {}
+    for i, variable in enumerate(found):
+        count = seen.get(variable.name, 0)
+        seen[variable.name] = count + 1
+        if count:
+            head, _, tail = variable.name.rpartition("'")
+            found[i] = Variable(**{**variable.__dict__, "name": f"{head} {count}'{tail}"})
+    return found
+
+
+def _units(material: Material) -> dict[str, str]:
+    """Coordinate -> rad or m, of joints with one coordinate."""
+    joints: list[Joint] = [body.joint for body in material.system.bodies if body.joint is not None]
+    units = {joint.name: "rad" for joint in joints if joint.kind in _ANGLES}
+    return units | {joint.name: "m" for joint in joints if joint.kind == "prismatic"}
+
+
+def _per(unit: str, time: str) -> str:
+    return f"{unit}/{time}" if unit else ""
+
+
+def _effort(unit: str) -> str:
+    return {"rad": "N.m", "m": "N"}.get(unit, "")
+
+
+def _rate_dependencies(material: Material, at_q: int, at_v: int) -> dict[int, tuple[int, ...]]:
+    """Coordinate -> what q' = N v reads."""
+    found: dict[int, tuple[int, ...]] = {}
+    for s in material.record.segments:
+        if s.kind == "linear":
+            found |= {s.q + i: (at_v + s.v + i,) for i in range(s.size)}
+            continue
+        n, own = (4, 3) if s.kind == "quaternion" else (7, 6)
+        quaternion = range(at_q + s.q + n - 4, at_q + s.q + n)
+        found |= {s.q + i: (*quaternion, *range(at_v + s.v, at_v + s.v + own)) for i in range(n)}
+    return found
+
+
+def _moved_by(material: Material, frame: str, row: int, at_q: int) -> tuple[int, ...]:
+    """The coordinates that move a frame along an axis: columns of its Jacobian that are not zero at random points."""
+    nv = len(material.record.v_names)
+    first = material.functions.index(("frame_jacobian", frame)) * material.points
+    rows = [check.outputs[row * nv : (row + 1) * nv] for check in material.checks[first : first + material.points]]
+    moving = {i for values in rows for i, value in enumerate(values) if value != 0.0}
+    found: list[int] = []
+    for s in material.record.segments:
+        if s.kind == "linear":
+            found += [at_q + s.q + i for i in range(s.size) if s.v + i in moving]
+        else:
+            n, own = (4, 3) if s.kind == "quaternion" else (7, 6)
+            if moving & set(range(s.v, s.v + own)):
+                found += range(at_q + s.q, at_q + s.q + n)
+    return tuple(found)

@@ -1,0 +1,79 @@
+"""What every export is made of: the model's C text, its names and sizes, where it starts, how it steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from symofros.description.system import System
+from symofros.runtime.record import ModelRecord
+from symofros.simulation.methods import Method
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """How an export steps by itself.
+
+    Attributes:
+        method: Of sf.simulate.
+        dt: Step, or longest step within a communication interval [s].
+        rtol: Of adaptive methods, as `atol`.
+        atol: Absolute.
+    """
+
+    method: Method
+    dt: float
+    rtol: float
+    atol: float
+
+
+@dataclass(frozen=True)
+class Check:
+    """One function at one reference point.
+
+    Attributes:
+        inputs: All input arrays but the parameters', one after the other.
+        outputs: All output arrays, from the interpreter.
+    """
+
+    inputs: tuple[float, ...]
+    outputs: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Material:
+    """One model, ready to be wrapped.
+
+    Attributes:
+        system: What the user stated.
+        record: Names, sizes, defaults.
+        c_name: What files and symbols are called.
+        source: C text of the model.
+        functions: Keys of the functions in it, in order.
+        checks: Reference points of each function, in that order.
+        points: How many each has.
+        q_start: First configuration (nq).
+        v_start: First speeds (nv).
+        stepping: How it steps.
+        outputs: Frames whose positions are outputs of blocks and FMUs.
+        generator: Name and version of what wrote it.
+        notes: For the user.
+    """
+
+    system: System
+    record: ModelRecord
+    c_name: str
+    source: str
+    functions: tuple[tuple[str, str], ...]
+    checks: tuple[Check, ...]
+    points: int
+    q_start: tuple[float, ...]
+    v_start: tuple[float, ...]
+    stepping: Stepping
+    outputs: tuple[str, ...]
+    generator: str
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def frames(self) -> tuple[str, ...]:
+        """Frames that functions were generated for, in order."""
+        return tuple(dict.fromkeys(frame for _, frame in self.functions if frame))

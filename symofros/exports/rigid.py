@@ -1,0 +1,216 @@
+"""A description as numbered rigid bodies, for formats that hold no formulas; and what that leaves out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.description.beam import STATION, Beam
+from symofros.description.forces import Damper
+from symofros.description.system import WORLD, Body, Inertia, Joint, RigidBody, System
+from symofros.errors import ExportError, Problem
+from symofros.topology.coordinates import coordinate_names
+from symofros.topology.numbers import Numbers, skew
+
+Array = npt.NDArray[np.float64]
+
+# Enough for the sixth power of x in each of so many pieces: sections are polynomials of low degree, or smooth.
+_PIECES, _NODES = 16, 8
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One single joint of a chain that makes up a joint.
+
+    Attributes:
+        name: Of its coordinate.
+        turns: Whether it turns rather than slides.
+        direction: Unit vector in the frame at zero.
+    """
+
+    name: str
+    turns: bool
+    direction: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class RigidLink:
+    """A body in numbers.
+
+    Attributes:
+        name: Of the body.
+        parent: Of its parent; None for the base.
+        joint: What carries it; None for the base.
+        axes: The single joints that `joint` is made of; empty for fixed, ball and free ones.
+        position: From the parent's frame to the body's at zero (3) [m].
+        rotation: R (3, 3).
+        mass: [kg].
+        center: Of mass, in the body's frame (3) [m].
+        inertia: About the centre, along the body's axes (3, 3) [kg m^2].
+        frames: Name, position, rotation of each extremity frame.
+        damping: Viscous, of each axis or speed.
+    """
+
+    name: str
+    parent: str | None
+    joint: Joint | None
+    axes: tuple[Axis, ...]
+    position: Array
+    rotation: Array
+    mass: float
+    center: Array
+    inertia: Array
+    frames: tuple[tuple[str, Array, Array], ...]
+    damping: tuple[float, ...] = ()
+
+
+def rigid_links(system: System, kinds: tuple[str, ...], form: str) -> tuple[list[RigidLink], list[str]]:
+    """The bodies, parents first, and what was left out of them.
+
+    Args:
+        system: Checked.
+        kinds: Joints without axes that the format holds, of "ball" and "free".
+        form: What to call the format.
+
+    Raises:
+        ExportError: Joints that the format can't hold; all are named.
+    """
+    numbers = Numbers(system)
+    beyond = [body.joint for body in system.bodies if body.joint is not None and _beyond(body.joint, kinds)]
+    if beyond:
+        listed = ", ".join(f"'{joint.name}' ({'prescribed' if joint.prescribed else joint.kind})" for joint in beyond)
+        raise ExportError(str(Problem(f"system '{system.name}': joints that {form} can't hold", listed,
+                                      "a file without formulas holds turns and slides, and joints made of them",
+                                      "export the model as an FMU, or replace these joints")))  # fmt: skip
+    names = {body.name for body in system.bodies}
+    base = {body.name for body in system.bodies if body.joint is None} | {WORLD}
+    found = []
+    if not any(body.joint is None for body in system.bodies):
+        found.append(_link(RigidBody(WORLD), None, system, numbers, names))
+    root = found[0].name if found else next(body.name for body in system.bodies if body.joint is None)
+    for body in system.bodies:
+        parent = None if body.joint is None else root if body.joint.parent in base else body.joint.parent
+        found.append(_link(body, parent, system, numbers, names))
+    return found, list(_lost(system))
+
+
+def _beyond(joint: Joint, kinds: tuple[str, ...]) -> bool:
+    plain = ("fixed", "revolute", "continuous", "prismatic", "cylindrical", "universal", "planar", *kinds)
+    return joint.prescribed or joint.kind not in plain
+
+
+def _link(body: Body, parent: str | None, system: System, numbers: Numbers, names: set[str]) -> RigidLink:
+    mass, center, inertia = _beam_inertia(body, numbers) if isinstance(body, Beam) else _inertia(body.inertia, numbers)
+    position, rotation = np.zeros(3), np.eye(3)
+    if body.joint is not None:
+        position, rotation = _placed(body.joint, system, numbers)
+    frames = []
+    for frame in body.frames:
+        at, turned = numbers.values(frame.position), numbers.rotation(frame.rotation)
+        if isinstance(body, Beam):
+            at, turned = np.array([numbers.value(body.length), 0.0, 0.0]), np.eye(3)
+        taken = frame.name in names
+        frames.append((f"{body.name}.{frame.name}" if taken else frame.name, at, turned))
+        names.add(frame.name)
+    axes = () if body.joint is None else _axes(body.joint, numbers)
+    damping = () if body.joint is None else _damping(body.joint, max(1, len(axes)), numbers)
+    return RigidLink(body.name, parent, body.joint, axes, position, rotation, mass, center, inertia, tuple(frames),
+                     damping)  # fmt: skip
+
+
+def _placed(joint: Joint, system: System, numbers: Numbers) -> tuple[Array, Array]:
+    """From the parent's body frame to the joint's."""
+    position, rotation = np.zeros(3), np.eye(3)
+    parent = next((body for body in system.bodies if body.name == joint.parent), None)
+    if parent is None and joint.frame is not None:  # A frame of a base that goes by another name than "world".
+        parent = next(body for body in system.bodies if body.joint is None)
+    if isinstance(parent, Beam) and joint.frame is not None:
+        position = np.array([numbers.value(parent.length), 0.0, 0.0])
+    elif parent is not None and joint.frame is not None:
+        frame = next(frame for frame in parent.frames if frame.name == joint.frame)
+        position, rotation = numbers.values(frame.position), numbers.rotation(frame.rotation)
+    return position + rotation @ numbers.values(joint.position), rotation @ numbers.rotation(joint.rotation)
+
+
+def _axes(joint: Joint, numbers: Numbers) -> tuple[Axis, ...]:
+    def axis(name: str, turns: bool, direction: Array) -> Axis:
+        x, y, z = (direction / np.linalg.norm(direction)).tolist()
+        return Axis(name, turns, (x, y, z))
+
+    first, second, e = numbers.values(joint.axis), numbers.values(joint.axis2), np.eye(3)
+    stated = {
+        "revolute": [(True, first)], "continuous": [(True, first)], "prismatic": [(False, first)],
+        "cylindrical": [(True, first), (False, first)], "universal": [(True, first), (True, second)],
+        "planar": [(False, e[0]), (False, e[1]), (True, e[2])],
+    }.get(joint.kind, [])  # fmt: skip
+    if len(stated) == 1:
+        return (axis(joint.name, *stated[0]),)
+    return tuple(axis(name, *item) for name, item in zip(coordinate_names(joint), stated, strict=False))
+
+
+def _damping(joint: Joint, count: int, numbers: Numbers) -> tuple[float, ...]:
+    total = [0.0] * count
+    for element in joint.elements:
+        if isinstance(element, Damper) and element.coordinate < count:
+            total[element.coordinate] += numbers.value(element.coefficient)
+    return tuple(total)
+
+
+def _inertia(inertia: Inertia | None, numbers: Numbers) -> tuple[float, Array, Array]:
+    if inertia is None:
+        return 0.0, np.zeros(3), np.zeros((3, 3))
+    mass, center = numbers.value(inertia.mass), numbers.values(inertia.center_of_mass)
+    xx, yy, zz, xy, xz, yz = numbers.values(inertia.moments)
+    I = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])  # noqa: E741
+    if inertia.about == "body":
+        return mass, center, I + mass * skew(center) @ skew(center)
+    R = numbers.rotation(inertia.rotation)
+    return mass, center, R @ I @ R.T
+
+
+def _beam_inertia(beam: Beam, numbers: Numbers) -> tuple[float, Array, Array]:
+    """Of the undeformed beam."""
+    length = numbers.value(beam.length)
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    edges = np.linspace(0.0, length, _PIECES + 1)
+    x = np.concatenate([(a + b) / 2 + (b - a) / 2 * nodes for a, b in zip(edges, edges[1:], strict=False)])
+    w = np.tile(length / _PIECES / 2 * weights, _PIECES)
+    rhoA = np.array([numbers.extended({STATION: float(at)}).value(beam.rhoA) for at in x])
+    rhoJ = np.array([numbers.extended({STATION: float(at)}).value(beam.rhoJ) for at in x])
+    mass = float(w @ rhoA)
+    center = float(w @ (rhoA * x)) / mass if mass else 0.0
+    across = float(w @ (rhoA * (x - center) ** 2))
+    return mass, np.array([center, 0.0, 0.0]), np.diag([float(w @ rhoJ), across, across])
+
+
+def _lost(system: System) -> Iterator[str]:
+    """What no format of numbers holds."""
+    beams = [body.name for body in system.bodies if isinstance(body, Beam) and body.modes]
+    if beams:
+        yield f"beams as rigid bodies, without their elastic coordinates: {_listed(beams)}"
+    if system.parameters:
+        yield f"parameters as the numbers they have: {_listed([p.name for p in system.parameters])}"
+    joints = [body.joint for body in system.bodies if body.joint is not None]
+    for what, names in (
+        ("efforts by formula", [j.name for j in joints if j.effort and any(e != 0.0 for e in j.effort)]),
+        ("rotors", [j.name for j in joints if j.rotors]),
+        ("loads", [b.name for b in system.bodies if b.loads]),
+        ("connections", [c.name for c in system.connections]),
+        ("virtual power", [p.name for p in system.virtual_power]),
+        ("potentials", [p.name for p in system.potentials]),
+        ("inputs of formulas", [i.name for i in system.inputs]),
+    ):
+        if names:
+            yield f"{what} dropped: {_listed(names)}"
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+
+
+def numbers_text(values: npt.ArrayLike) -> str:
+    """Numbers of an attribute, to the last digit."""
+    return " ".join(repr(float(value) + 0.0) for value in np.asarray(values, dtype=np.float64).ravel())

@@ -1,0 +1,30 @@
+"""One C file that includes a model and its stepping loop, and shows nothing of them: two such libraries never meet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+_HEADERS = ("math.h", "stddef.h", "stdint.h", "stdio.h", "stdlib.h", "string.h")
+
+
+def unity(name: str, title: str, before: Sequence[str], after: Sequence[str], more_headers: Sequence[str] = ()) -> str:
+    """The text of such a file.
+
+    Args:
+        name: Of the model in C.
+        title: What it is, for its first line.
+        before: Lines between the model and the visible part.
+        after: Lines of the visible part.
+        more_headers: Of the environment, in the form `"mex.h"`.
+    """
+    lines = [
+        f"/* {title} */",
+        "#if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)", "#define _POSIX_C_SOURCE 199309L", "#endif",
+        "#define SYM_EXPORT", *(f"#include <{header}>" for header in _HEADERS),
+        "#if defined(_WIN32)", "#include <windows.h>", "#else", "#include <time.h>", "#endif",
+        *(f"#include {header}" for header in more_headers),
+        "#if defined(__GNUC__) && !defined(_WIN32)", "#pragma GCC visibility push(hidden)", "#endif",
+        f'#include "{name}.c"', f'#include "{name}_plant.c"', '#include "symofros_stepper.c"', *before,
+        "#if defined(__GNUC__) && !defined(_WIN32)", "#pragma GCC visibility pop", "#endif", *after, "",
+    ]  # fmt: skip
+    return "\n".join(lines)

@@ -1,0 +1,135 @@
+"""The C package: strict C99 under two compilers, the same motion as Python, clean under every checker."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from string import Template
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.exports.cases import MODELS, STARTS, STEP, STRICT, need, relative, run, sources, system_of, trajectory
+
+HERE = Path(__file__).parent
+# The same steps in the same order, compiled with other flags: fused products round differently.
+SAME = 1e-12
+
+
+@pytest.fixture(scope="module", params=MODELS)
+def package(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    name = request.param
+    folder = tmp_path_factory.mktemp("package") / name
+    sf.export(system_of(name), "c", folder, start=STARTS[name], dt=STEP[name])
+    return name, folder
+
+
+def last_state(text: str) -> dict[str, np.ndarray]:
+    lines = [line.split() for line in text.splitlines()]
+    return {words[0]: np.array(list(map(float, words[1:]))) for words in lines if words[0] in ("selftest", "q", "v")}
+
+
+def check(name: str, text: str, t_end: float = 0.2) -> None:
+    found, wanted = last_state(text), trajectory(name, t_end)
+    assert found["selftest"][0] < 1e-11
+    assert relative(found["q"], wanted.q[-1]) < SAME
+    assert relative(found["v"], wanted.v[-1]) < SAME
+
+
+def test_strict_c_moves_as_python_does(package: tuple[str, Path]) -> None:
+    name, folder = package
+    run("gcc", *STRICT, "-O2", "-o", "../example", *sources(folder), "-lm", cwd=folder)
+    check(name, run("../example", "0.2", str(STEP[name]), "--fast", cwd=folder))
+
+
+def test_the_pace_is_kept(package: tuple[str, Path]) -> None:
+    name, folder = package
+    if name != "four_bar":  # One is enough: it takes the time it simulates.
+        return
+    run("gcc", *STRICT, "-O2", "-o", "../example", *sources(folder), "-lm", cwd=folder)
+    text = run("../example", "0.1", "0.01", cwd=folder)
+    assert "10 periods of 0.01 s" in text
+    assert "late" in text
+
+
+def test_a_wrong_selftest_fails(package: tuple[str, Path], tmp_path: Path) -> None:
+    """One sign in the equations, and the package says so."""
+    name, folder = package
+    if name != "four_bar":
+        return
+    for path in folder.iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    text = (tmp_path / "four_bar.c").read_text()
+    at = text.index(" - ", text.index("static void four_bar_bias"))
+    (tmp_path / "four_bar.c").write_text(text[:at] + " + " + text[at + 3 :])
+    run("gcc", "-std=c99", "-O1", "-o", "example", *sources(tmp_path), "-lm", cwd=tmp_path)
+    assert os.waitstatus_to_exitcode(os.system(f"{tmp_path}/example 0 --fast > {tmp_path}/out")) == 1
+    assert float((tmp_path / "out").read_text().split()[1]) > 1e-3
+
+
+@pytest.mark.tools
+def test_cmake_builds_tests_and_installs(package: tuple[str, Path], tmp_path: Path) -> None:
+    need("cmake", "pkg-config")
+    name, folder = package
+    run("cmake", "-S", folder, "-B", tmp_path / "build", f"-DCMAKE_INSTALL_PREFIX={tmp_path}/usr", cwd=tmp_path)
+    run("cmake", "--build", tmp_path / "build", cwd=tmp_path)
+    run("ctest", "--test-dir", tmp_path / "build", cwd=tmp_path)
+    run("cmake", "--install", tmp_path / "build", cwd=tmp_path)
+    (found,) = (tmp_path / "usr").rglob("*.pc")
+    (tmp_path / "user.c").write_text(
+        f'#include "{name}.h"\nint main(void) {{ return {name}_selftest() < 1e-9 ? 0 : 1; }}\n'
+    )
+    flags = f"$(PKG_CONFIG_PATH={found.parent} pkg-config --cflags --libs {name})"
+    run("bash", "-c", f"gcc user.c {flags} -o user && ./user", cwd=tmp_path)
+
+
+@pytest.mark.tools
+@pytest.mark.parametrize("sanitizers", ["address,undefined", "thread", "valgrind"])
+def test_two_models_in_threads_under_checkers(tmp_path: Path, sanitizers: str) -> None:
+    need("clang", "valgrind")
+    for name in ("planar_robot", "four_bar"):
+        sf.export(system_of(name), "c", tmp_path / name, start=STARTS[name], frames=[])
+    text = Template((HERE / "threads.c.in").read_text()).substitute(first="planar_robot", second="four_bar")
+    (tmp_path / "threads.c").write_text(text)
+    files = [
+        tmp_path / n / f"{n}{part}.c" for n in ("planar_robot", "four_bar") for part in ("", "_plant", "_selftest")
+    ]
+    flags = ["-g", "-O1", *STRICT, "-D_POSIX_C_SOURCE=200809L", "-Iplanar_robot", "-Ifour_bar", "-pthread"]
+    if sanitizers == "valgrind":
+        run("gcc", *flags, "-o", "threads", "threads.c", *files, "four_bar/symofros_stepper.c", "-lm", cwd=tmp_path)
+        out = run("valgrind", "--error-exitcode=9", "--leak-check=full", "-q", "./threads", cwd=tmp_path)
+    else:
+        run("clang", *flags, f"-fsanitize={sanitizers}", "-fno-sanitize-recover=all", "-o", "threads", "threads.c",
+            *files, "four_bar/symofros_stepper.c", "-lm", cwd=tmp_path)  # fmt: skip
+        out = run("./threads", cwd=tmp_path)
+    assert out == "0 bad\n"
+
+
+@pytest.mark.tools
+def test_clang_is_as_strict(package: tuple[str, Path]) -> None:
+    need("clang")
+    name, folder = package
+    run("clang", *STRICT, "-O2", "-o", "../clang", *sources(folder), "-lm", cwd=folder)
+    check(name, run("../clang", "0.2", str(STEP[name]), "--fast", cwd=folder))
+
+
+BODY = sf.RigidBody("b", sf.Joint("j", "revolute"), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
+DRIVEN = sf.RigidBody("b", sf.Joint("j", "revolute", prescribed=True), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
+
+
+@pytest.mark.parametrize(("name", "body"), [("no_inputs", BODY), ("no_states", DRIVEN)])
+def test_models_without_inputs_or_states(tmp_path: Path, name: str, body: sf.RigidBody) -> None:
+    sf.export(sf.System(name, (body,)), "c", tmp_path)
+    flags = (*STRICT, "-O1", "-g", "-fsanitize=undefined,address", "-fno-sanitize-recover=all")
+    run("gcc", *flags, "-o", "example", *sources(tmp_path), "-lm", cwd=tmp_path)
+    assert "selftest" in run("./example", "0.01", "--fast", cwd=tmp_path)
+
+
+@pytest.mark.parametrize("method", ["semi_implicit_euler", "dopri5", "rodas4", "generalized_alpha", "implicit_euler"])
+def test_other_methods(tmp_path: Path, method: str) -> None:
+    """The four-bar, by every kind of loop; adaptive ones within their bound."""
+    sf.export(system_of("four_bar"), "c", tmp_path, start=STARTS["four_bar"], method=method, frames=[])
+    run("gcc", *STRICT, "-O1", "-o", "example", *sources(tmp_path), "-lm", cwd=tmp_path)
+    found = last_state(run("./example", "0.2", "0.001", "--fast", cwd=tmp_path))
+    assert relative(found["q"], trajectory("four_bar", 0.2).q[-1]) < (1e-2 if "euler" in method else 1e-5)

@@ -1,0 +1,289 @@
+"""FMUs by FMPy: legal by its validator, moved by its simulator and its CVODE, and strict about bad calls."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.fmi2 import FMU2Model, FMU2Slave
+from fmpy.fmi3 import FMU3Model, FMU3Slave
+from fmpy.simulation import FMICallException
+from fmpy.validation import validate_fmu
+
+import symofros as sf
+from reference_models import MODELS as REFERENCE
+from tests.exports.cases import MODELS, STARTS, STEP, first_state, relative, run, system_of, trajectory
+
+SAME = 1e-12
+# CVODE's own tolerance, over the run.
+MODEL_EXCHANGE = 1e-6
+# Central differences of a function of size 1 by a step of 1e-6.
+DIFFERENCES = 1e-6
+
+FLOATING = sf.System("floating", (
+    sf.RigidBody("hull", sf.Joint("float", "free"), sf.Inertia(2.0, (0.1, 0, 0), (1, 2, 1.5)),
+                 (sf.Frame("top", (1, 0, 0)),)),
+    sf.RigidBody("arm", sf.Joint("s", "ball", "hull", "top"), sf.Inertia(1.0, (0.1, 0.2, 0), (1, 2, 1.5)),
+                 (sf.Frame("end", (1, 0, 0.2)),)),
+))  # fmt: skip
+
+
+def system_called(name: str) -> sf.System:
+    return FLOATING if name == "floating" else system_of(name)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """(name, version) -> path; each made once."""
+    known: dict[tuple[str, int], Path] = {}
+
+    def make(name: str, version: int) -> Path:
+        if (name, version) not in known:
+            folder = tmp_path_factory.mktemp("fmu") / "out"
+            target: Any = f"fmu{version}"
+            done = sf.export(system_called(name), target, folder, start=STARTS.get(name), dt=STEP.get(name, 1e-3))
+            known[name, version] = done.files[0]
+        return known[name, version]
+
+    return make
+
+
+@pytest.fixture(params=[2, 3])
+def version(request: pytest.FixtureRequest) -> int:
+    return request.param
+
+
+def columns(result: Any, prefix: str) -> np.ndarray:
+    return np.array([result[name][-1] for name in result.dtype.names if name.startswith(prefix)])
+
+
+@pytest.mark.parametrize("name", [*MODELS, "floating"])
+def test_valid(made: Any, name: str, version: int) -> None:
+    assert validate_fmu(str(made(name, version))) == []
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_co_simulation_moves_as_python_does(made: Any, name: str, version: int) -> None:
+    found = fmpy.simulate_fmu(str(made(name, version)), fmi_type="CoSimulation", stop_time=0.2, output_interval=0.01)
+    wanted = trajectory(name, 0.2)
+    assert relative(columns(found, "q."), wanted.q[-1]) < SAME
+    assert relative(columns(found, "v."), wanted.v[-1]) < SAME
+
+
+@pytest.mark.parametrize("name", [*MODELS, "floating"])
+def test_model_exchange_moves_as_python_does(made: Any, name: str, version: int) -> None:
+    found = fmpy.simulate_fmu(str(made(name, version)), fmi_type="ModelExchange", stop_time=0.2, output_interval=0.01,
+                              relative_tolerance=1e-9)  # fmt: skip
+    model = sf.compile(system_called(name))
+    q, v = first_state(model, name) if name in STARTS else (model.neutral(), np.zeros(model.nv))
+    wanted = sf.simulate(model, q, v, 0.2, dt=1e-4)
+    assert relative(columns(found, "q."), wanted.q[-1]) < MODEL_EXCHANGE
+
+
+def test_inputs_act(made: Any, version: int) -> None:
+    drive = np.array([(0.0, 0.5), (1.0, 0.5)], dtype=[("time", float), ("u.q1", float)])
+    found = fmpy.simulate_fmu(str(made("planar_robot", version)), fmi_type="CoSimulation", stop_time=0.05,
+                              output_interval=0.01, input=drive)  # fmt: skip
+    model = sf.compile(system_of("planar_robot"))
+    wanted = sf.simulate(model, *first_state(model, "planar_robot"), 0.05, u=[0.5, 0.0, 0.0], dt=1e-4)
+    assert relative(columns(found, "q."), wanted.q[-1]) < SAME
+
+
+def test_sources_compile_elsewhere(made: Any, version: int, tmp_path: Path) -> None:
+    """The sources that travel with it, as an importer builds them, under the strictest flags."""
+    fmpy.extract(str(made("four_bar", version)), tmp_path)
+    headers = Path(fmpy.__file__).parent / "c-code"
+    run("gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{headers}", f"four_bar_fmi{version}.c",
+        cwd=tmp_path / "sources")  # fmt: skip
+
+
+def test_only_the_interface_is_visible(made: Any, version: int, tmp_path: Path) -> None:
+    fmpy.extract(str(made("four_bar", version)), tmp_path)
+    (library,) = (tmp_path / "binaries").rglob("*.so")
+    symbols = run("nm", "-D", "--defined-only", library, cwd=tmp_path).split()[2::3]
+    assert symbols
+    assert all(symbol.startswith(f"fmi{version}") for symbol in symbols)
+
+
+class Unit:
+    """An instance of either version, in the hand."""
+
+    def __init__(self, path: Path, version: int, cosim: bool, folder: Path) -> None:
+        fmpy.extract(str(path), folder)
+        self.version, self.description = version, fmpy.read_model_description(str(path))
+        kind: Any = {(2, 0): FMU2Model, (2, 1): FMU2Slave, (3, 0): FMU3Model, (3, 1): FMU3Slave}[version, int(cosim)]
+        interface = self.description.coSimulation if cosim else self.description.modelExchange
+        self.fmu = kind(guid=self.description.guid, unzipDirectory=str(folder), instanceName="it",
+                        modelIdentifier=interface.modelIdentifier)  # fmt: skip
+        self.fmu.instantiate()
+        self.references = {variable.name: variable.valueReference for variable in self.description.modelVariables}
+
+    def start(self) -> None:
+        if self.version == 2:
+            self.fmu.setupExperiment(startTime=0.0)
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+
+    def get(self, *names: str) -> np.ndarray:
+        read = self.fmu.getReal if self.version == 2 else self.fmu.getFloat64
+        return np.array(read([self.references[name] for name in names]))
+
+    def set(self, name: str, value: float) -> None:
+        (self.fmu.setReal if self.version == 2 else self.fmu.setFloat64)([self.references[name]], [value])
+
+    def named(self, prefix: str) -> list[str]:
+        return [name for name in self.references if name.startswith(prefix)]
+
+    def states(self, x: np.ndarray) -> None:
+        array = (ctypes.c_double * len(x))(*x)
+        self.fmu.setContinuousStates(array, len(x))
+
+    def slope(self, unknown: list[str], known: list[str], seed: np.ndarray) -> np.ndarray:
+        at = [[self.references[name] for name in names] for names in (unknown, known)]
+        return np.array(self.fmu.getDirectionalDerivative(at[0], at[1], list(seed)))
+
+
+@pytest.fixture
+def unit(made: Any, version: int, tmp_path: Path) -> Iterator[Any]:
+    units = []
+
+    def make(name: str, cosim: bool) -> Unit:
+        units.append(Unit(made(name, version), version, cosim, tmp_path / str(len(units))))
+        return units[-1]
+
+    yield make
+    for one in units:
+        one.fmu.freeInstance()
+        shutil.rmtree(tmp_path, ignore_errors=True)
+
+
+@pytest.mark.parametrize("name", [*MODELS, "floating"])
+def test_directional_derivatives_are_those_of_the_functions(unit: Any, name: str, rng: np.random.Generator) -> None:
+    it = unit(name, cosim=False)
+    it.start()
+    if it.version == 2:
+        it.fmu.newDiscreteStates()
+    else:
+        it.fmu.updateDiscreteStates()
+    it.fmu.enterContinuousTimeMode()
+    states = it.named("q.") + it.named("v.")
+    inputs = it.named("u.")
+    unknown = it.named("der(") + it.named("p.")
+    # Away from the start, where much is zero; quaternions may be of any length.
+    x = it.get(*states) + 0.2 * rng.standard_normal(len(states))
+    u = rng.standard_normal(len(inputs))
+
+    def values(x: np.ndarray, u: np.ndarray) -> np.ndarray:
+        it.states(x)
+        for label, value in zip(inputs, u, strict=True):
+            it.set(label, value)
+        return it.get(*unknown)
+
+    dx, du, h = rng.standard_normal(len(states)), rng.standard_normal(len(inputs)), 1e-6
+    wanted = (values(x + h * dx, u + h * du) - values(x - h * dx, u - h * du)) / (2 * h)
+    values(x, u)
+    found = it.slope(unknown, states + inputs, np.concatenate([dx, du]))
+    assert np.abs(found - wanted).max() < DIFFERENCES * max(1.0, np.abs(wanted).max())
+
+
+def test_states_are_saved_and_restored(unit: Any) -> None:
+    it = unit("panda", cosim=True)
+    it.start()
+    it.fmu.doStep(0.0, 0.01)
+    get, put = ("getFMUstate", "setFMUstate") if it.version == 2 else ("getFMUState", "setFMUState")
+    saved = getattr(it.fmu, get)()
+    pack, unpack = (("serializeFMUstate", "deSerializeFMUstate") if it.version == 2 else
+                    ("serializeFMUState", "deserializeFMUState"))  # fmt: skip
+    text = getattr(it.fmu, pack)(saved)
+    names = it.named("q.")
+    it.fmu.doStep(0.01, 0.02)
+    first = it.get(*names)
+    for state in (saved, getattr(it.fmu, unpack)(text)):
+        getattr(it.fmu, put)(state)
+        assert it.get("time")[0] == 0.01
+        it.fmu.doStep(0.01, 0.02)
+        assert np.array_equal(it.get(*names), first)
+
+
+def test_parameters_belong_to_an_instance(unit: Any) -> None:
+    one, other = unit("four_bar", cosim=True), unit("four_bar", cosim=True)
+    one.set("par.m", 5.0)
+    for it in (one, other):
+        it.start()
+    assert (one.get("par.m")[0], other.get("par.m")[0]) == (5.0, 1.0)
+    assert one.get("energy.kinetic")[0] == pytest.approx(5.0 * other.get("energy.kinetic")[0], rel=1e-12)
+
+
+def test_what_the_standard_forbids_is_refused(unit: Any) -> None:
+    it = unit("four_bar", cosim=True)
+    forbidden = [
+        lambda: it.fmu.doStep(0.0, 0.01),  # before initialisation
+        lambda: it.get("q.q1"),
+        lambda: it.set("der(v.q1)", 1.0),  # calculated
+        lambda: it.set("par.m", float("nan")),
+        lambda: it.set("lam.'loop.x'", 0.0) if "lam.'loop.x'" in it.references else it.set("time", 1.0),
+    ]
+    for call in forbidden:
+        with pytest.raises(FMICallException):
+            call()
+    it.start()
+    for call in (
+        lambda: it.set("q.q1", 0.0),  # a state is not set while it moves
+        lambda: it.fmu.doStep(0.5, 0.01),  # not where it is
+        lambda: it.fmu.doStep(0.0, -0.01),
+        it.fmu.enterInitializationMode,
+    ):
+        with pytest.raises(FMICallException):
+            call()
+    it.references["nothing"] = 10_000
+    with pytest.raises(FMICallException):
+        it.get("nothing")
+    it.fmu.doStep(0.0, 0.01)
+    it.fmu.terminate()
+    with pytest.raises(FMICallException):
+        it.fmu.doStep(0.01, 0.01)
+    it.fmu.reset()
+    it.start()
+    it.fmu.doStep(0.0, 0.01)
+
+
+def test_another_token_is_refused(made: Any, version: int, tmp_path: Path) -> None:
+    path = made("four_bar", version)
+    fmpy.extract(str(path), tmp_path)
+    kind: Any = FMU2Slave if version == 2 else FMU3Slave
+    fmu = kind(guid="{0}", unzipDirectory=str(tmp_path), instanceName="it", modelIdentifier="four_bar")
+    with pytest.raises(Exception, match="nstantiat"):
+        fmu.instantiate()
+
+
+def test_units_and_dependencies(made: Any, version: int) -> None:
+    description = fmpy.read_model_description(str(made("planar_robot", version)))
+    units = {variable.name: variable.unit for variable in description.modelVariables}
+    assert units["q.q1"] == "rad"
+    assert units["der(v.q1)"] == "rad/s2"
+    assert units["u.q1"] == "N.m"
+    assert units["p.tool.x"] == "m"
+    outputs = {output.variable.name: output.dependencies for output in description.outputs}
+    assert outputs["p.tool.z"] == []  # A planar robot.
+    assert {variable.name for variable in outputs["p.tool.x"]} >= {"q.q1", "q.'link1.bend_y[0]'"}
+
+
+def test_without_fmpy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(sf.ExportError, match=r"pip install symofros\[fmi\]"):
+        sf.export(REFERENCE["pendulum"], "fmu2", tmp_path)
+
+
+@pytest.mark.parametrize("prescribed", [True, False])
+def test_models_without_states_or_inputs(tmp_path: Path, version: int, prescribed: bool) -> None:
+    body = sf.RigidBody("b", sf.Joint("j", "revolute", prescribed=prescribed), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
+    target: Any = f"fmu{version}"
+    done = sf.export(sf.System("odd", (body,)), target, tmp_path, outputs=[])
+    assert validate_fmu(str(done.files[0])) == []
+    assert fmpy.simulate_fmu(str(done.files[0]), fmi_type="CoSimulation", stop_time=0.01)["time"][-1] == 0.01

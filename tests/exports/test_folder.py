@@ -1,0 +1,109 @@
+"""Where an export may be written, what it may be called, and what it says when it may not."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.codegen.names import identifier
+from symofros.exports.folder import MANIFEST, write_folder
+
+PENDULUM = MODELS["pendulum"]
+
+
+def test_a_folder_of_others_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("years of work")
+    with pytest.raises(sf.ExportError, match=r"not overwritten[\s\S]*thesis.tex[\s\S]*choose another folder"):
+        sf.export(PENDULUM, "c", tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_a_file_in_place_of_a_folder(tmp_path: Path) -> None:
+    place = tmp_path / "out"
+    place.write_text("")
+    with pytest.raises(sf.ExportError, match="a file"):
+        sf.export(PENDULUM, "urdf", place)
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[]", '{"files": 3}', "\0"])
+def test_a_manifest_of_others(tmp_path: Path, text: str) -> None:
+    (tmp_path / MANIFEST).write_text(text)
+    with pytest.raises(sf.ExportError, match="that we did not write"):
+        sf.export(PENDULUM, "urdf", tmp_path)
+
+
+def test_a_manifest_leads_nowhere_else(tmp_path: Path) -> None:
+    (tmp_path / "precious").write_text("x")
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (folder / MANIFEST).write_text(json.dumps({"files": {"../precious": "0"}}))
+    sf.export(PENDULUM, "urdf", folder)
+    assert (tmp_path / "precious").read_text() == "x"
+
+
+def test_exports_replace_exports(tmp_path: Path) -> None:
+    sf.export(PENDULUM, "c", tmp_path)
+    (tmp_path / "build").mkdir()  # What a user's build adds stays.
+    done = sf.export(PENDULUM, "urdf", tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"pendulum.urdf", MANIFEST, "build"}
+    assert done.files == (tmp_path / "pendulum.urdf",)
+
+
+def test_changes_by_hand_are_kept(tmp_path: Path) -> None:
+    sf.export(PENDULUM, "c", tmp_path)
+    (tmp_path / "main.c").write_text("mine")
+    with pytest.raises(sf.ExportError, match="changed since it was exported"):
+        sf.export(PENDULUM, "c", tmp_path)
+    assert (tmp_path / "main.c").read_text() == "mine"
+
+
+def test_a_new_file_never_lands_on_a_users_own(tmp_path: Path) -> None:
+    write_folder(tmp_path, "c", "a", {"a.c": "1"}, "test")
+    (tmp_path / "b.c").write_text("mine")
+    with pytest.raises(sf.ExportError, match=r"b\.c"):
+        write_folder(tmp_path, "c", "b", {"b.c": "2"}, "test")
+    assert (tmp_path / "b.c").read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    "name", ["sym", "math", "double", "symofros_model", "fmi2Functions", "end", "CON", "sym_x", "3R"]
+)
+def test_names_that_are_taken(name: str) -> None:
+    """Of C, its headers, Windows, FMI, Matlab, and ours."""
+    called = identifier(name)
+    assert called != name
+    assert called.isidentifier()
+
+
+def test_a_model_called_sym_compiles() -> None:
+    """sym_model is a type of the header."""
+    body = sf.RigidBody("b", sf.Joint("j", "revolute"), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
+    assert sf.compile(sf.System("sym", (body,))).mass_matrix([0.0]).item() == 2.0
+
+
+def test_what_does_not_exist(tmp_path: Path) -> None:
+    with pytest.raises(sf.UnknownNameError, match="did you mean 'fmu"):
+        sf.export(PENDULUM, "fmu1", tmp_path)  # type: ignore[arg-type]
+    with pytest.raises(sf.UnknownNameError, match="no coordinate or speed 'q7'"):
+        sf.export(PENDULUM, "c", tmp_path, start={"q7": 1.0})
+    with pytest.raises(sf.UnknownNameError, match="no frame 'nowhere'"):
+        sf.export(PENDULUM, "c", tmp_path, outputs=["nowhere"])
+    with pytest.raises(sf.UnknownNameError, match="no method 'cvode'"):
+        sf.export(PENDULUM, "c", tmp_path, method="cvode")
+    with pytest.raises(sf.ExportError, match="dt is not positive"):
+        sf.export(PENDULUM, "c", tmp_path, dt=0.0)
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_failing_compiler_is_quoted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from symofros.exports import compiling
+    from symofros.runtime.toolchain import Toolchain
+
+    monkeypatch.setattr(compiling, "find_toolchain", lambda _: Toolchain(("gcc", "-Dnq=1/0/"), "gcc"))
+    with pytest.raises(sf.CompileError, match=r"command: gcc -Dnq=1/0/ -O2[\s\S]*error"):
+        sf.export(PENDULUM, "fmu2", tmp_path)
+    assert not any(tmp_path.iterdir())

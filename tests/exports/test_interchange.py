@@ -1,0 +1,143 @@
+"""URDF and MJCF: Pinocchio and MuJoCo load them and agree with the original; what was dropped is said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pinocchio
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from tests.exports.cases import system_of
+
+SAME = 1e-12
+# MuJoCo diagonalises inertias, and gets a moment of 1e-12 where a bar has none.
+MUJOCO = 1e-10
+
+WRIST = sf.System("wrist", (
+    sf.RigidBody("slide", sf.Joint("tube", "cylindrical", axis=(0, 1, 1), position=(0.1, 0, 0.2)),
+                 sf.Inertia(2.0, (0.1, 0.2, 0), (0.1, 0.2, 0.15, 0.01, 0.02, 0.03)), (sf.Frame("end", (0.3, 0, 0)),)),
+    sf.RigidBody("hand", sf.Joint("cross", "universal", "slide", "end", axis=(1, 0, 0), axis2=(0, 1, 0),
+                                  rotation=sf.Rotation.rpy(0.3, 0.2, 0.1), elements=(sf.Damper(0.4, coordinate=1),)),
+                 sf.Inertia(1.0, (0.1, 0, 0.2), (0.01, 0.02, 0.015))),
+    sf.RigidBody("puck", sf.Joint("table", "planar", position=(0, 1, 0)),
+                 sf.Inertia(1.0, (0.1, 0, 0), (0.1, 0.1, 0.1))),
+))  # fmt: skip
+
+
+def original(name: str) -> sf.System:
+    return WRIST if name == "wrist" else system_of(name)
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5", "four_bar", "wrist", "puma560", "anymal"])
+def test_pinocchio_agrees(tmp_path: Path, name: str, rng: np.random.Generator) -> None:
+    system = original(name)
+    done = sf.export(system, "urdf", tmp_path)
+    engine = pinocchio.buildModelFromUrdf(str(done.files[0]))
+    model = sf.compile(system)
+    order_q, order_v = _order(engine, model)
+    for _ in range(3):
+        q, v = model.random_state(rng)
+        data = engine.createData()
+        theirs = _angles(engine, q[order_q])
+        M = pinocchio.crba(engine, data, theirs)
+        M = np.triu(M) + np.triu(M, 1).T
+        h = pinocchio.nonLinearEffects(engine, data, theirs, v[order_v])
+        wanted = model.mass_matrix(q)[np.ix_(order_v, order_v)] - _armature(system, model)[np.ix_(order_v, order_v)]
+        assert np.abs(M - wanted).max() < SAME * max(1.0, np.abs(wanted).max())
+        assert np.abs(h - model.bias(q, v)[order_v]).max() < SAME * max(1.0, np.abs(h).max())
+
+
+def _armature(system: sf.System, model: sf.Model) -> np.ndarray:
+    """What URDF has no place for."""
+    found = {
+        b.joint.name: float(b.joint.armature) for b in system.bodies if b.joint and isinstance(b.joint.armature, float)
+    }
+    return np.diag([found.get(name, 0.0) for name in model.names.v])
+
+
+def _order(engine: pinocchio.Model, model: sf.Model) -> tuple[list[int], list[int]]:
+    """Our indices in the order of Pinocchio, which sorts joints by name."""
+    q, v = [], []
+    for name, joint in zip(list(engine.names)[1:], list(engine.joints)[1:], strict=True):
+        if joint.nv == 6:
+            q += range(7)
+            v += range(6)
+        else:
+            at = model.names.v.index(name)
+            v.append(at)
+            q.append(model.names.q.index(model.names.v[at]))
+    return q, v
+
+
+def _angles(engine: pinocchio.Model, q: np.ndarray) -> np.ndarray:
+    """Joints without limits are cosine and sine in Pinocchio."""
+    found, at = [], 0
+    for joint in list(engine.joints)[1:]:
+        if joint.nq == 2:
+            found += [np.cos(q[at]), np.sin(q[at])]
+            at += 1
+        else:
+            found += list(q[at : at + joint.nq])
+            at += joint.nq
+    return np.array(found)
+
+
+@pytest.mark.parametrize("name", ["panda", "four_bar", "wrist", "stanford_arm"])
+def test_mujoco_agrees(tmp_path: Path, name: str, rng: np.random.Generator) -> None:
+    system = original(name)
+    done = sf.export(system, "mjcf", tmp_path)
+    engine = mujoco.MjModel.from_xml_path(str(done.files[0]))
+    data = mujoco.MjData(engine)
+    model = sf.compile(system)
+    for _ in range(3):
+        q, v = model.random_state(rng)
+        data.qpos[:], data.qvel[:] = q, v
+        mujoco.mj_forward(engine, data)
+        M = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(engine, data, M)
+        assert np.abs(M - model.mass_matrix(q)).max() < MUJOCO * max(1.0, np.abs(M).max())
+        assert np.abs(data.qfrc_bias - model.bias(q, v)).max() < MUJOCO * max(1.0, np.abs(data.qfrc_bias).max())
+
+
+def test_losses_are_listed(tmp_path: Path) -> None:
+    urdf = "\n".join(sf.export(system_of("planar_robot"), "urdf", tmp_path / "urdf").notes)
+    for words in ("beams as rigid bodies, without their elastic coordinates: link1, link2", "rotors dropped: q1",
+                  "springs, stops and friction of joints dropped: q1, e1", "parameters as the numbers"):  # fmt: skip
+        assert words in urdf
+    mjcf = "\n".join(sf.export(system_of("four_bar"), "mjcf", tmp_path / "mjcf").notes)
+    assert "closure 'loop' also holds y" in mjcf
+    assert "soft" in mjcf
+    assert "loops are open: loop" in "\n".join(sf.export(system_of("four_bar"), "urdf", tmp_path / "open").notes)
+
+
+def test_a_rigid_beam_weighs_what_the_beam_weighs(tmp_path: Path) -> None:
+    system = system_of("planar_robot")
+    done = sf.export(system, "urdf", tmp_path)
+    engine = pinocchio.buildModelFromUrdf(str(done.files[0]))
+    rigid = sf.load(done.files[0])
+    masses = [float(body.inertia.mass) for body in rigid.bodies if body.inertia is not None]
+    values = system.parameter_values()
+    beams = values["rhoA1"] * values["L1"] + values["rhoA2"] * values["L2"]
+    own = sum(sf.evaluate(body.inertia.mass, values) for body in system.bodies if body.inertia is not None)
+    assert sum(masses) == pytest.approx(beams + own, rel=1e-12)
+    assert engine.nv == 4
+
+
+def test_joints_beyond_a_format_are_named(tmp_path: Path) -> None:
+    with pytest.raises(sf.ExportError, match=r"'nut' \(screw\), 'float' \(general\)"):
+        sf.export(MODELS["joint_zoo"], "urdf", tmp_path)
+    assert not any(tmp_path.iterdir())
+
+
+def test_mujoco_closes_the_loop(tmp_path: Path) -> None:
+    done = sf.export(system_of("four_bar"), "mjcf", tmp_path)
+    engine = mujoco.MjModel.from_xml_path(str(done.files[0]))
+    assert engine.neq == 1
+    data = mujoco.MjData(engine)
+    data.qpos[:] = [1.2, -1.2, 1.2]
+    mujoco.mj_forward(engine, data)
+    assert np.abs(data.efc_pos[: data.ne]).max() < 1e-12

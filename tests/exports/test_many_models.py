@@ -1,0 +1,55 @@
+"""One process, ten models, several threads: C runs without the interpreter lock, parameters belong to the call."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+import symofros as sf
+from reference_models.rigid.chain import chain
+
+
+def test_ten_models_in_threads() -> None:
+    models = [sf.compile(chain(n)) for n in range(1, 11)]
+    states = [model.random_state(np.random.default_rng(i)) for i, model in enumerate(models)]
+
+    def work(i: int) -> np.ndarray:
+        model, (q, v) = models[i % 10], states[i % 10]
+        return model.bias(np.repeat(q[np.newaxis], 2000, axis=0), v)
+
+    alone = [work(i) for i in range(10)]
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(work, range(40)))
+    assert all(np.array_equal(found, alone[i % 10]) for i, found in enumerate(together))
+
+
+def test_the_lock_is_free_while_c_runs() -> None:
+    """Python counts on while one call of C takes its time."""
+    model = sf.compile(chain(7))
+    q = np.zeros((400_000, model.nq))
+    model.mass_matrix(q[:1])
+    began, counted = threading.Event(), 0
+
+    def work() -> None:
+        began.set()
+        model.mass_matrix(q)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    began.wait()
+    while thread.is_alive():
+        counted += 1
+    # With the lock held throughout, the loop would turn a few times at the ends only.
+    assert counted > 1000
+
+
+def test_parameters_belong_to_the_call() -> None:
+    model = sf.compile(sf.load("reference_models/closed/four_bar.yaml"))
+    heavy = model.with_parameters(m=3.0)
+    q = np.array([1.2, -1.2, 1.2])
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda i: (heavy if i % 2 else model).mass_matrix(q), range(64)))
+    assert all(np.array_equal(M, found[i % 2]) for i, M in enumerate(found))
+    assert np.allclose(found[1], 3.0 * found[0], rtol=1e-14)
