@@ -74,7 +74,8 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity("frame_pose", "p, R", "m, 1", ROUNDING, 1),
         Quantity("frame_velocity", "v, w", "m/s, rad/s", ROUNDING, 1),
         Quantity("frame_acceleration", "dv/dt, dw/dt", "m/s², rad/s²", ROUNDING, 1),
-        Quantity("frame_response", "dv/dt, dw/dt of a motion under the forces", "m/s², rad/s²", SOLVE, 1),
+        # All frames of a state at once: they move by one solution, whose error is that of its largest entry.
+        Quantity("frame_response", "dv/dt, dw/dt of a motion under the forces", "m/s², rad/s²", SOLVE, 2),
         Quantity("frame_jacobian", "J", "m, 1", ROUNDING, 2),
         Quantity("frame_jacobian_rate", "dJ/dt", "m/s, 1/s", ROUNDING, 2),
     )

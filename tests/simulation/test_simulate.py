@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import signal
-import threading
+import subprocess
+import sys
+import time
 import warnings
 
 import numpy as np
@@ -295,14 +296,26 @@ class TestEnds:
             sf.simulate(model)
 
 
+CTRL_C = """
+import signal
+import symofros as sf
+from reference_models import MODELS
+signal.signal(signal.SIGINT, signal.default_int_handler)  # A shell's background jobs start with it ignored.
+model = sf.compile(MODELS["double_pendulum"])
+sf.simulate(model, t_end=1e-3)  # Compiled beforehand.
+print("moving", flush=True)
+run = sf.simulate(model, [1.0, 0.5], t_end=1e7, dt=1e-3, every=100_000)
+print(run.outcome.kind, 0 < run.t[-1] < 1e7, len(run) > 1)
+"""
+
+
 def test_a_real_ctrl_c() -> None:
     """The signal reaches Python between two spells of C, within a tenth of a second or so."""
-    model = sf.compile(MODELS["double_pendulum"])
-    sf.simulate(model, t_end=1e-3)  # Compiled beforehand.
-    timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
-    timer.start()
-    run = sf.simulate(model, [1.0, 0.5], t_end=1e5, dt=1e-3, every=10_000)
-    assert run.outcome.kind == "interrupted" and 0 < run.t[-1] < 1e5 and len(run) > 1
+    with subprocess.Popen([sys.executable, "-c", CTRL_C], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout is not None and child.stdout.readline() == "moving\n"
+        time.sleep(0.5)
+        child.send_signal(signal.SIGINT)
+        assert child.communicate(timeout=60)[0] == "interrupted True True\n"
 
 
 class TestStructure:

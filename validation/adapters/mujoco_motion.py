@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -11,8 +13,16 @@ import numpy as np
 
 from validation.geometry import Array
 
-# It would write a file MUJOCO_LOG.TXT into the working directory; what it says is counted by kind in the data.
-mujoco.set_mju_user_warning(lambda said: None)
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without its file MUJOCO_LOG.TXT in the working directory; what it says is counted by kind in the data."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda said: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
 
 
 @dataclass(frozen=True)
@@ -52,7 +62,8 @@ def move(mjcf: str, q0: Array, v0: Array, t_end: float, samples: int = 200) -> M
     for sample in range(samples + 1):
         due = steps * sample // samples
         if due > taken:
-            mujoco.mj_step(m, d, due - taken)
+            with _quiet():
+                mujoco.mj_step(m, d, due - taken)
             taken = due
         mujoco.mj_forward(m, d)
         mujoco.mj_energyPos(m, d)
@@ -89,7 +100,8 @@ def servo(engine: Any, q0: Array, v0: Array, targets: Array, stiffness: float, d
     d.qpos[:] = engine.chart.coordinates(q0[None])[0]
     d.qvel[:] = engine.chart.speeds(q0[None], v0[None])[0]
     began = perf_counter()
-    mujoco.mj_step(m, d, steps)
+    with _quiet():
+        mujoco.mj_step(m, d, steps)
     seconds = perf_counter() - began
     # Coordinates of hinges and slides are those of the speeds: the chart's transform reorders both.
     T = engine.chart.transform(q0[None])[0]
