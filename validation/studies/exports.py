@@ -148,7 +148,9 @@ def _sizes(package: Path, name: str) -> dict[str, int]:
              "symofros_stepper.c": (package / "symofros_stepper.c").stat().st_size}  # fmt: skip
     for part in (name, "symofros_stepper"):
         _command("cc", *_FLAGS, "-c", f"{part}.c", "-o", f"{part}.o", cwd=package)
-        text = _command("size", f"{part}.o", cwd=package).splitlines()[1].split()
-        sizes[f"{part}.o: code and constants"] = int(text[0])
-        sizes[f"{part}.o: data that is written to"] = int(text[2])
+        lines = [line.split() for line in _command("size", "-A", f"{part}.o", cwd=package).splitlines()]
+        sections = {words[0]: int(words[1]) for words in lines if words and words[0].startswith(".")}
+        held = (".text", ".rodata", ".data.rel.ro", ".eh_frame")
+        sizes[f"{part}.o: code and constants"] = sum(n for name, n in sections.items() if name.startswith(held))
+        sizes[f"{part}.o: data that is written to"] = sections.get(".data", 0) + sections.get(".bss", 0)
     return sizes
