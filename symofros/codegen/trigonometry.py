@@ -70,6 +70,8 @@ def routines(code: Iterable[str], lanes: bool = False) -> list[str]:
     if not widths:
         return []
     parts = [Template(template("trigonometry.c.in")).substitute(far=repr(FAR), near=_near("sym_near_1"))]
+    if any("sym_sincos_1(" in text for text in code):
+        parts.append(template("sincos_one.c.in"))
     parts += [
         Template(template("sincos_block.c.in")).substitute(
             width=width, bytes=8 * width,
