@@ -115,7 +115,7 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
     tree = plan(system)
     record = describe(tree, options)
     program, _ = generate(tree, requested(tree, options), record, options.constraints)
-    source = model_source(program, record, GENERATOR, options.batch == "vector")
+    source = model_source(program, record, GENERATOR, options.batch == "vector", packs=options.packs)
     path = build_library(source, template("symofros_model.h"), toolchain, options.flags)
     return path, f"{identifier(record.name)}_model"
 
@@ -192,7 +192,7 @@ class _Builder:
         in_lanes: Callable[[Key], Kernel | None] | None = None,
     ) -> CompiledUnit:  # fmt: skip
         header = template("symofros_model.h")
-        source = model_source(program, self._record, GENERATOR, vectors)
+        source = model_source(program, self._record, GENERATOR, vectors, packs=self._options.packs)
         path = build_library(source, header, toolchain, self._options.flags)
         return CompiledUnit(path, f"{identifier(self._record.name)}_model", header, self._record.hash, in_lanes)
 

@@ -58,6 +58,7 @@ class Options:
             singular, and usually slower (docs/theory/constraints.md, section 8).
         batch: How large batches are evaluated: "vector", several states at once, by code that is compiled for each
             function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
+        packs: Whether values of one state that are computed alike, such as entries of a row of M, share vectors.
     """
 
     functions: tuple[str, ...] | None = None
@@ -67,3 +68,4 @@ class Options:
     compiler: str | None = None
     constraints: Literal["multipliers", "null_space"] = "multipliers"
     batch: Literal["vector", "loop"] = "vector"
+    packs: bool = True

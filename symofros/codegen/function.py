@@ -9,9 +9,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symofros.codegen.statements import Statement, StatementWriter, Store
+from symofros.codegen.packs import Store, runs_of_lanes, vector_lines, vector_name
+from symofros.codegen.statements import Statement, StatementWriter
 from symofros.codegen.trigonometry import block_lines
 from symofros.expr.evaluate import needed_nodes
+from symofros.expr.packs import WIDTH
 from symofros.expr.program import Output, Program
 
 MAX_STATEMENTS = 1000
@@ -47,25 +49,27 @@ class FunctionWriter:
         inputs: Names of the input arrays, in order.
         outputs: What to store, in order.
         given: Whether parameter-only values are read from `pre` (false for the init function itself).
+        packs: Whether values that are computed alike share vectors.
     """
 
     def __init__(
-        self, program: Program, c_name: str, inputs: Sequence[str], outputs: Sequence[Output], given: bool = True
-    ) -> None:
+        self, program: Program, c_name: str, inputs: Sequence[str], outputs: Sequence[Output], given: bool = True,
+        packs: bool = False,
+    ) -> None:  # fmt: skip
         self.c_name = c_name
         self.inputs = tuple(inputs)
         self.outputs = tuple(outputs)
         edges = [edge for output in outputs for edge in output.edges]
         pre = program.pre if given else {}
         stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
-        self.writer = StatementWriter(program.graph, needed_nodes(program.graph, edges, pre), pre, stores)
+        self.writer = StatementWriter(program.graph, needed_nodes(program.graph, edges, pre), pre, stores, packs)
         statements = self.writer.statements()
         longest = MAX_STATEMENTS if len(statements) <= _LONG else _LONG_CHUNK
         count = max(1, -(-len(statements) // longest))
         size = -(-len(statements) // count) if statements else 1
         self.chunks = [statements[i : i + size] for i in range(0, len(statements), size)] or [[]]
         self.slots = _allocate(self.chunks)
-        self.work = max(self.slots.values(), default=-1) + 1
+        self.work = max((slot + _doubles(key) for key, slot in self.slots.items()), default=0)
 
     def text(self, lanes: bool = False) -> FunctionText:
         """The C text: chunk functions, then the function that unpacks pointers and calls them.
@@ -111,9 +115,9 @@ class FunctionWriter:
     def _chunk(self, index: int, writer: StatementWriter) -> str:
         real, suffix = ("sym_v", "_v") if writer.lanes else ("double", "")
         statements = self.chunks[index]
-        local = {node for statement in statements for node in statement.nodes}
+        local = {key for statement in statements for key in statement.keys}
         crossing = dict.fromkeys(n for statement in statements for n in statement.reads if n not in local)
-        lines = [f"    const {real} {writer.name(node)} = work[{self.slots[node]}];" for node in crossing]
+        lines = [self._load(key, writer, real) for key in crossing]
         for statement in statements:
             lines += self._lines(statement, writer, real)
         names = [*self.inputs, *(output.name for output in self.outputs), "work"]
@@ -126,15 +130,29 @@ class FunctionWriter:
         kind = "static SYM_NOINLINE" if len(self.chunks) > 1 else "static"
         return "\n".join([f"{kind} void {self.c_name}{suffix}_{index}({', '.join(arguments)}) {{", *lines, "}"])
 
+    def _load(self, key: int, writer: StatementWriter, real: str) -> str:
+        slot = self.slots[key]
+        if key < 0:
+            return f"    const sym_pack {vector_name(key)} = sym_pack_load(work + {slot});"
+        return f"    const {real} {writer.name(key)} = work[{slot}];"
+
     def _lines(self, statement: Statement, writer: StatementWriter, real: str) -> list[str]:
         if statement.angles:
             lines = block_lines(writer, statement)
+        elif statement.vector is not None:
+            lines = vector_lines(statement.vector, writer.text)
         else:
             lines = [f"    const {real} {writer.name(node)} = {writer.operation(node)};" for node in statement.nodes]
-        for node in statement.nodes:
-            if node in self.slots:
-                lines.append(f"    work[{self.slots[node]}] = {writer.name(node)};")
-        return lines + [f"    {store.array}[{store.index}] = {writer.whole(store.edge)};" for store in statement.stores]
+        for key in statement.keys:
+            if key in self.slots and key < 0:
+                lines.append(f"    sym_pack_store(work + {self.slots[key]}, {vector_name(key)});")
+            elif key in self.slots:
+                lines.append(f"    work[{self.slots[key]}] = {writer.name(key)};")
+        stores: Sequence[Store] = statement.stores
+        if statement.vector is not None:
+            runs, stores = runs_of_lanes(statement.vector, stores)
+            lines += runs
+        return lines + [f"    {store.array}[{store.index}] = {writer.whole(store.edge)};" for store in stores]
 
 
 def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
@@ -145,17 +163,24 @@ def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
             for node in statement.reads:
                 last[node] = i
     slots: dict[int, int] = {}
-    free: list[int] = []
+    free: dict[int, list[int]] = {1: [], WIDTH: []}
     ends: dict[int, list[int]] = {}
     count = 0
     for i, chunk in enumerate(chunks):
         # A slot is free in the chunk after its value's last use, since that chunk loads before it stores.
-        free += ends.pop(i - 1, [])
-        for node in (node for statement in chunk for node in statement.nodes):
-            if last.get(node, i) > i:
-                if not free:
-                    free.append(count)
-                    count += 1
-                slots[node] = free.pop()
-                ends.setdefault(last[node], []).append(slots[node])
+        for key in ends.pop(i - 1, []):
+            free[_doubles(key)].append(slots[key])
+        for key in (key for statement in chunk for key in statement.keys):
+            if last.get(key, i) > i:
+                mine = free[_doubles(key)]
+                if not mine:
+                    mine.append(count)
+                    count += _doubles(key)
+                slots[key] = mine.pop()
+                ends.setdefault(last[key], []).append(key)
     return slots
+
+
+def _doubles(key: int) -> int:
+    """Doubles of a variable: vectors have negative keys."""
+    return 1 if key > 0 else WIDTH

@@ -18,8 +18,9 @@ _INIT = "init_par"
 
 
 def model_source(
-    program: Program, record: ModelRecord, generator: str, in_lanes: bool = False, c_name: str | None = None
-) -> str:
+    program: Program, record: ModelRecord, generator: str, in_lanes: bool = False, c_name: str | None = None,
+    packs: bool = False,
+) -> str:  # fmt: skip
     """The C file of a program.
 
     Args:
@@ -28,13 +29,16 @@ def model_source(
         generator: Name and version of what wrote it.
         in_lanes: Whether batches take several states at once; functions with a solver never do.
         c_name: What symbols begin with; made of the record's name by default.
+        packs: Whether values that are computed alike share vectors, which takes a compiler of GNU C; not in lanes,
+            where every value is a vector already.
     """
     name = c_name or identifier(record.name)
+    packs = packs and not in_lanes
     in_lanes = in_lanes and any(function.solver is None for function in program.functions)
     texts = [_init_function(program, name)]
     rows = []
     for i, function in enumerate(program.functions):
-        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}", in_lanes)
+        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}", in_lanes, packs)
         texts.append(text)
         rows.append(row)
     counts = count_program(program)
@@ -48,6 +52,7 @@ def model_source(
             [
                 *trigonometry.routines(texts, in_lanes),
                 *([lanes.routines()] if in_lanes else []),
+                *([template("pack.c.in")] if packs and any("sym_pack " in text for text in texts) else []),
                 *_routines(program),
                 *texts,
             ]
@@ -96,14 +101,16 @@ def _init_function(program: Program, name: str) -> str:
     return "\n".join([text.code, *lines])
 
 
-def _one_function(program: Program, function: Function, c_name: str, in_lanes: bool) -> tuple[str, tuple[str, str]]:
+def _one_function(
+    program: Program, function: Function, c_name: str, in_lanes: bool, packs: bool
+) -> tuple[str, tuple[str, str]]:
     """Code, and (tables of its arrays, row of the function table)."""
     inputs = ["pre", *function.inputs]
     if function.solver is None:
-        text = FunctionWriter(program, c_name, inputs, function.outputs).text(in_lanes)
+        text = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs).text(in_lanes)
         work = lanes.scratch(program, function, text.work) if in_lanes else text.work
     else:
-        text = with_solver(program, c_name, function, function.solver)
+        text = with_solver(program, c_name, function, function.solver, packs)
         work = text.work
     vectors = ["#if SYM_LANES > 1", text.lanes, "#endif"] if text.lanes else []
     code = "\n".join([text.code, *vectors, lanes.batch(c_name, program, function, bool(text.lanes))])

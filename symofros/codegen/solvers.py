@@ -18,7 +18,7 @@ ROUTINES: dict[str, tuple[str, ...]] = {
 }
 
 
-def with_solver(program: Program, c_name: str, function: Function, solver: Solver) -> FunctionText:
+def with_solver(program: Program, c_name: str, function: Function, solver: Solver, packs: bool = False) -> FunctionText:
     """The C text of a function and of its parts, and the call of the routine that finishes it.
 
     Args:
@@ -26,10 +26,11 @@ def with_solver(program: Program, c_name: str, function: Function, solver: Solve
         c_name: Of the C function.
         function: What generated code computes.
         solver: What is made of it.
+        packs: Whether values that are computed alike share vectors.
     """
-    terms = FunctionWriter(program, f"{c_name}_terms", ["pre", *function.inputs], function.outputs).text()
+    terms = FunctionWriter(program, f"{c_name}_terms", ["pre", *function.inputs], function.outputs, packs=packs).text()
     parts = [
-        FunctionWriter(program, f"{c_name}_{part.name}", ["pre", *part.inputs], part.outputs).text()
+        FunctionWriter(program, f"{c_name}_{part.name}", ["pre", *part.inputs], part.outputs, packs=packs).text()
         for part in solver.parts
     ]
     needs = max(text.work for text in (terms, *parts))

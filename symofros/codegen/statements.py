@@ -12,6 +12,7 @@ from copy import copy
 from dataclasses import dataclass
 
 from symofros.codegen.names import local_name
+from symofros.codegen.packs import PackPlan, Store, Vector, vector_name
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Edge, Graph, Slot
 from symofros.expr.ops import ADD, DIV, MUL, OPS
@@ -24,29 +25,27 @@ _TRIGONOMETRIC = frozenset(("sin", "cos"))
 
 
 @dataclass(frozen=True)
-class Store:
-    """An output entry: array name, index, edge."""
-
-    array: str
-    index: int
-    edge: Edge
-
-
-@dataclass(frozen=True)
 class Statement:
     """One C statement.
 
     Attributes:
         nodes: What it computes: none for a store alone, several for sines and cosines.
         stores: Output entries it fills.
-        reads: Nodes with variables that its text mentions.
+        reads: Keys of the variables that its text mentions.
         angles: Edges whose sines and cosines it computes; none for any other statement.
+        vector: The vector it defines, from which its nodes are read; none for any other statement.
     """
 
     nodes: tuple[int, ...]
     stores: tuple[Store, ...]
     reads: tuple[int, ...]
     angles: tuple[Edge, ...] = ()
+    vector: Vector | None = None
+
+    @property
+    def keys(self) -> tuple[int, ...]:
+        """Keys of the variables it defines: a node's own, or its vector's."""
+        return self.nodes if self.vector is None else (self.vector.key,)
 
 
 class StatementWriter:
@@ -57,12 +56,20 @@ class StatementWriter:
         nodes: What the function computes, operands first.
         given: Nodes to read from an input array instead.
         stores: The function's outputs.
+        packs: Whether values that are computed alike share vectors.
     """
 
-    def __init__(self, graph: Graph, nodes: Sequence[int], given: Mapping[int, Slot], stores: Sequence[Store]) -> None:
+    def __init__(
+        self, graph: Graph, nodes: Sequence[int], given: Mapping[int, Slot], stores: Sequence[Store],
+        packs: bool = False,
+    ) -> None:  # fmt: skip
         self.graph = graph
         self.given = given
         self.stores = stores
+        self._home: dict[int, Vector] = {}
+        if packs and graph.packs:
+            plan = PackPlan(graph, nodes, given, [store.edge for store in stores])
+            nodes, self._home = plan.nodes, plan.home
         self._inlined = self._choose_inlined(nodes, stores)
         self._nodes = nodes
         self._own = [node for node in nodes if node not in self._inlined]
@@ -76,15 +83,18 @@ class StatementWriter:
         return twin
 
     def _choose_inlined(self, nodes: Sequence[int], stores: Sequence[Store]) -> set[int]:
-        graph = self.graph
+        graph, home = self.graph, self._home
         uses: dict[int, int] = {}
         for node in nodes:
-            for arg in graph.args[node]:
+            for arg in graph.args[node] if node not in home else ():
                 uses[abs(arg)] = uses.get(abs(arg), 0) + 1
-        stored = {abs(store.edge) for store in stores}
+        # Vectors read variables: what a vector needs may be needed by several lanes.
+        stored = {abs(store.edge) for store in stores} | {abs(e) for vector in self._vectors() for e in vector.edges}
         size: dict[int, int] = {}
         inlined: set[int] = set()
         for node in nodes:
+            if node in home:
+                continue
             parts = [abs(arg) for arg in graph.args[node] if abs(arg) in inlined]
             total = 1 + sum(size[part] for part in parts)
             if total > _MAX_INLINE:
@@ -97,6 +107,16 @@ class StatementWriter:
             if uses.get(node) == 1 and node not in stored and node not in graph.label and self._is_arithmetic(node):
                 inlined.add(node)
         return inlined
+
+    def _vectors(self) -> Iterator[Vector]:
+        """Every vector of the function, those that others are made of among them."""
+        stack, seen = list(self._home.values()), set[Vector]()
+        while stack:
+            vector = stack.pop()
+            if vector not in seen:
+                seen.add(vector)
+                stack.extend(vector.operands)
+                yield vector
 
     def _is_arithmetic(self, node: int) -> bool:
         return self.graph.op[node] in (ADD, MUL, DIV)
@@ -112,26 +132,44 @@ class StatementWriter:
                 waiting.setdefault(node, []).append(store)
             elif node != 0:  # A number or an input; zeros are cleared at once.
                 result.append(Statement((), (store,), ()))
-        for nodes, angles in self._ordered():
+        for nodes, angles, vector in self._ordered():
             stores = tuple(store for node in nodes for store in waiting.get(node, ()))
-            edges = angles or self.graph.args[nodes[0]]
-            result.append(Statement(nodes, stores, tuple(dict.fromkeys(self._mentioned(edges))), angles))
+            if vector is None:
+                reads = dict.fromkeys(self._mentioned(angles or self.graph.args[nodes[0]]))
+            else:
+                reads = dict.fromkeys([*self._mentioned(vector.edges), *(v.key for v in vector.operands)])
+            result.append(Statement(nodes, stores, tuple(reads), angles, vector))
         return result
 
-    def _ordered(self) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...]]]:
-        """(nodes, angles) of each statement: nodes one by one, sines and cosines by blocks."""
+    def _ordered(self) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
+        """(nodes, angles, vector) of each statement: nodes one by one, sines and cosines by blocks, vectors whole."""
         blocks, own, done = self._blocks(), set(self._own), set[int]()
 
-        def emit(node: int) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...]]]:
+        def prepare(edges: Iterable[Edge]) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
+            missing = [edge for edge in edges if abs(edge) not in done and not self._is_at_hand(abs(edge))]
+            for before in needed_nodes(self.graph, missing, self.given) if missing else ():
+                if before in own:
+                    yield from emit(before)
+
+        def form(vector: Vector) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
+            if vector.key in done:
+                return
+            for operand in vector.operands:
+                yield from form(operand)
+            yield from prepare(vector.edges)
+            done.update((vector.key, *vector.nodes))
+            yield tuple(vector.nodes), (), vector
+
+        def emit(node: int) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
             if node in done:
                 return
+            if node in self._home:
+                yield from form(self._home[node])
+                return
             angles, nodes = blocks.get(node, ((), (node,)))
-            if angles:
-                for before in needed_nodes(self.graph, angles, self.given):
-                    if before in own:
-                        yield from emit(before)
+            yield from prepare(angles)
             done.update(nodes)
-            yield nodes, angles
+            yield nodes, angles, None
 
         for node in self._own:
             yield from emit(node)
@@ -161,11 +199,18 @@ class StatementWriter:
             arg = abs(stack.pop())
             if arg in self._inlined:
                 stack.extend(self.graph.args[arg])
-            elif arg != 0 and arg not in self.given and arg not in self.graph.value and arg not in self.graph.slot:
-                yield arg
+            elif not self._is_at_hand(arg):
+                yield self._home[arg].key if arg in self._home else arg
+
+    def _is_at_hand(self, node: int) -> bool:
+        """Whether a node is a number or an entry of an input array."""
+        return node == 0 or node in self.given or node in self.graph.value or node in self.graph.slot
 
     def name(self, node: int) -> str:
-        """The variable of a node."""
+        """Where a node's value is read: its variable, or its lane of a vector."""
+        if node in self._home:
+            vector = self._home[node]
+            return f"{vector_name(vector.key)}[{vector.nodes[node][0]}]"
         if node not in self._names:
             label = self.graph.label.get(node)
             self._names[node] = local_name(label, node) if label else f"t{node}"
@@ -201,7 +246,7 @@ class StatementWriter:
 
     def text(self, edge: Edge) -> str:
         """The text of an edge: a number, an input entry, a variable, or an inlined operation."""
-        node = abs(edge)
+        node, is_negative = abs(edge), edge < 0
         number = self.graph.number(edge)
         if number is not None:
             return repr(number)
@@ -210,4 +255,5 @@ class StatementWriter:
             text = f"{slot.group}[{slot.index}]"
         else:
             text = f"({self.operation(node)})" if node in self._inlined else self.name(node)
-        return text if edge > 0 else f"-{text}"
+            is_negative ^= node in self._home and self._home[node].nodes[node][1]
+        return f"-{text}" if is_negative else text

@@ -6,8 +6,11 @@ factorization of the joint-space inertia matrix for branched kinematic trees"; d
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 from symofros.dynamics.mass_matrix import Matrix
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.packs import WIDTH, Pack, Signed, combined
 
 
 class SingularMassMatrixError(ArithmeticError):
@@ -34,25 +37,65 @@ def solve(g: Graph, M: Matrix, right: list[Edge]) -> list[Edge]:
         SingularMassMatrixError: A pivot is the number zero.
     """
     n = len(right)
-    L = [list(row) for row in M]
+    rows = [_Row.of(g, M[i][: i + 1]) for i in range(n)]
     inverse: list[Edge] = [ZERO] * n
+    L: list[_Row] = []
     for k in reversed(range(n)):
-        if L[k][k] == ZERO:
+        if rows[k][k] == ZERO:
             raise SingularMassMatrixError(k)
-        inverse[k] = g.div(ONE, L[k][k])
-        support = [i for i in range(k) if L[k][i] != ZERO]
-        for i in reversed(support):
-            factor = g.mul(L[k][i], inverse[k])
-            for j in support:
-                if j <= i:
-                    L[i][j] = g.sub(L[i][j], g.mul(factor, L[k][j]))
-            L[k][i] = factor
-    x = list(right)
+        inverse[k] = g.div(ONE, rows[k][k])
+        L.insert(0, rows[k].times(inverse[k], k))
+        for i in reversed(range(k)):
+            rows[i] = rows[i].less(L[0][i], rows[k], i + 1)
+    residue = _Row.of(g, right)
+    x: list[Edge] = [ZERO] * n
     for k in reversed(range(n)):
-        for i in range(k):
-            x[i] = g.sub(x[i], g.mul(L[k][i], x[k]))
+        x[k] = g.mul(residue[k], inverse[k])
+        residue = residue.less(residue[k], L[k], k)
     for k in range(n):
-        x[k] = g.mul(x[k], inverse[k])
         for i in range(k):
             x[k] = g.sub(x[k], g.mul(L[k][i], x[i]))
     return x
+
+
+class _Row:
+    """A row of edges in packs.
+
+    Attributes:
+        g: The graph.
+        packs: Its edges, WIDTH at a time.
+    """
+
+    def __init__(self, g: Graph, packs: list[Signed]) -> None:
+        self.g = g
+        self.packs = packs
+
+    @staticmethod
+    def of(g: Graph, edges: Sequence[Edge]) -> _Row:
+        """The row of some edges."""
+        padded = [*edges, *[ZERO] * (-len(edges) % WIDTH)]
+        return _Row(g, [(ONE, Pack(tuple(padded[at : at + WIDTH]))) for at in range(0, len(padded), WIDTH)])
+
+    def __getitem__(self, i: int) -> Edge:
+        """Entry i."""
+        sign, pack = self.packs[i // WIDTH]
+        return self.g.mul(sign, pack.lanes[i % WIDTH])
+
+    def times(self, factor: Edge, size: int) -> _Row:
+        """The first entries times a factor."""
+        return _Row(self.g, [combined(self.g, [(factor, self.packs[c])], of) for c, of in _chunks(size)])
+
+    def less(self, factor: Edge, other: _Row, size: int) -> _Row:
+        """Its first entries less a factor times those of another row."""
+        if factor == ZERO:
+            return self
+        return _Row(
+            self.g,
+            [combined(self.g, [(ONE, self.packs[c]), (-factor, other.packs[c])], of) for c, of in _chunks(size)],
+        )
+
+
+def _chunks(size: int) -> Iterator[tuple[int, range]]:
+    """(pack, its lanes) of the first entries of a row."""
+    for c in range(-(-size // WIDTH)):
+        yield c, range(min(WIDTH, size - WIDTH * c))

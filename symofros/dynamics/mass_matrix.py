@@ -2,16 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 from symofros.dynamics.beams import added_momentum, modal_mass
 from symofros.dynamics.inertia import LinkInertia, carried_to_parent, deformed
 from symofros.dynamics.rotors import MovingRotor
-from symofros.expr.graph import ZERO, Edge
+from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.expr.packs import EMPTY, WIDTH, Signed, combined
 from symofros.expr.vector import Vec3
 from symofros.kinematics.joint import Column
-from symofros.kinematics.links import Motion
+from symofros.kinematics.links import Motion, MovingLink
 from symofros.topology.tree import BASE
 
 Matrix = list[list[Edge]]
+
+
+@dataclass(frozen=True)
+class _Momentum:
+    """What a unit rate of one speed gives to everything beyond its joint.
+
+    Attributes:
+        link: Beyond the joint.
+        k: Index of the speed.
+        f, n: Linear momentum, and angular momentum about Lo, in L.
+        added: What the beam that ends in the link adds at its root, likewise.
+    """
+
+    link: int
+    k: int
+    f: Vec3
+    n: Vec3
+    added: tuple[Vec3, Vec3] | None
 
 
 def mass_matrix(motion: Motion, inertias: list[LinkInertia], rotors: list[MovingRotor]) -> Matrix:
@@ -29,7 +51,19 @@ def mass_matrix(motion: Motion, inertias: list[LinkInertia], rotors: list[Moving
         nv rows of nv edges, symmetric.
     """
     M: Matrix = [[ZERO] * motion.nv for _ in range(motion.nv)]
+    momenta = _own_blocks(motion, M, inertias)
+    for together in _on_one_path(motion, momenta):
+        _carry_to_base(motion, M, together)
+    for rotor in rotors:
+        if rotor.k is not None:
+            _add_rotor(motion, M, rotor, rotor.k)
+    return M
+
+
+def _own_blocks(motion: Motion, M: Matrix, inertias: list[LinkInertia]) -> list[list[_Momentum]]:
+    """The entries between speeds of one joint; the momenta of each link's speeds."""
     composite = list(inertias)
+    momenta: list[list[_Momentum]] = [[] for _ in motion.links]
     bent = {beam.tip: beam for beam in motion.beams if beam.tip is not None}
     for beam in bent.values():
         composite[beam.root] = composite[beam.root] + deformed(motion, beam)
@@ -43,13 +77,91 @@ def mass_matrix(motion: Motion, inertias: list[LinkInertia], rotors: list[Moving
                 own = modal_mass(bent[i], j, k) if i in bent else ZERO
                 _set(M, link.v + j, link.v + k, motion.g.add(_virtual_power(link.columns[j], f, n), own))
             added = added_momentum(motion, bent[i], k) if i in bent else None
-            _project_down(motion, M, i, link.v + k, f, n, added)
+            momenta[i].append(_Momentum(i, link.v + k, f, n, added))
         if link.parent != BASE:
             composite[link.parent] = composite[link.parent] + carried_to_parent(link, whole)
-    for rotor in rotors:
-        if rotor.k is not None:
-            _add_rotor(motion, M, rotor, rotor.k)
-    return M
+    return momenta
+
+
+def _on_one_path(motion: Motion, momenta: list[list[_Momentum]]) -> Iterator[list[_Momentum]]:
+    """Momenta that meet on their way to the base, the outermost first, as many as a pack has lanes.
+
+    The longest path takes all it passes; each branch brings what is left of it. Speeds of the base's own joints have
+    no way to go.
+    """
+    depth: list[int] = []
+    for i, link in enumerate(motion.links):
+        depth.append(len(momenta[i]) + (depth[link.parent] if link.parent != BASE else 0))
+    taken: set[int] = set()
+    for i in sorted(range(len(motion.links)), key=lambda i: -depth[i]):
+        path: list[_Momentum] = []
+        while i not in taken and motion.links[i].parent != BASE:
+            taken.add(i)
+            path += reversed(momenta[i])
+            i = motion.links[i].parent
+        for at in range(0, len(path), WIDTH):
+            yield path[at : at + WIDTH]
+
+
+def _carry_to_base(motion: Motion, M: Matrix, momenta: list[_Momentum]) -> None:
+    """Carry momenta to the base, side by side, and book their virtual power on every joint on the way.
+
+    Args:
+        motion: The tree.
+        M: Where the power is booked.
+        momenta: On one path to the base, the outermost first.
+    """
+    lane = {momentum.k: WIDTH - 1 - at for at, momentum in enumerate(momenta)}  # Ascending, as in a row of M.
+    wrench: list[Signed] = [(ONE, EMPTY)] * 6
+    i, waiting = momenta[0].link, list(momenta)
+    while motion.links[i].parent != BASE:
+        late: list[tuple[int, Vec3, Vec3]] = []
+        while waiting and waiting[0].link == i:
+            momentum = waiting.pop(0)
+            if momentum.added is None:
+                wrench = _joined(wrench, lane[momentum.k], momentum.f, momentum.n)
+            else:
+                late.append((momentum.k, *_across_beam(motion.links[i], momentum, momentum.added)))
+        wrench = _carried(motion, motion.links[i], wrench)
+        for k, f, n in late:
+            wrench = _joined(wrench, lane[k], f, n)
+        i = motion.links[i].parent
+        link = motion.links[i]
+        for j, column in enumerate(link.free_columns):
+            sign, power = combined(motion.g, list(zip((*column.v, *column.w), wrench, strict=True)))
+            for k, at in lane.items():
+                if power.lanes[at] != ZERO:
+                    _set(M, link.v + j, k, motion.g.mul(sign, power.lanes[at]))
+
+
+def _joined(wrench: list[Signed], lane: int, f: Vec3, n: Vec3) -> list[Signed]:
+    return [
+        (sign, pack.with_lane(lane, edge if sign == ONE else -edge))
+        for (sign, pack), edge in zip(wrench, (*f, *n), strict=True)
+    ]
+
+
+def _carried(motion: Motion, link: MovingLink, wrench: list[Signed]) -> list[Signed]:
+    """Momenta about Lo in L -> about Ao in A: f_A = R f, n_A = R n + p x f_A."""
+    g = motion.g
+    f, n = wrench[:3], wrench[3:]
+    for factor in reversed(link.R_AL.factors):
+        rows = [factor.matrix(g).row(i) for i in range(3)]
+        f = [combined(g, list(zip(row, f, strict=True))) for row in rows]
+        n = [combined(g, list(zip(row, n, strict=True))) for row in rows]
+    p = link.p_AL
+    return f + [
+        combined(g, [(ONE, n[0]), (p.y, f[2]), (-p.z, f[1])]),
+        combined(g, [(ONE, n[1]), (p.z, f[0]), (-p.x, f[2])]),
+        combined(g, [(ONE, n[2]), (p.x, f[1]), (-p.y, f[0])]),
+    ]
+
+
+def _across_beam(link: MovingLink, momentum: _Momentum, added: tuple[Vec3, Vec3]) -> tuple[Vec3, Vec3]:
+    """A momentum at a beam's tip -> at its root, with the beam's own."""
+    f, n = link.R_AL.apply(momentum.f), link.R_AL.apply(momentum.n)
+    n = n + link.p_AL.cross(f)
+    return f + added[0], n + added[1]
 
 
 def _add_rotor(motion: Motion, M: Matrix, rotor: MovingRotor, k: int) -> None:
@@ -77,24 +189,6 @@ def _momentum(body: LinkInertia, column: Column) -> tuple[Vec3, Vec3]:
 
 def _virtual_power(column: Column, f: Vec3, n: Vec3) -> Edge:
     return column.w.g.add(column.w.dot(n), column.v.dot(f))
-
-
-def _project_down(
-    motion: Motion, M: Matrix, i: int, k: int, f: Vec3, n: Vec3, added: tuple[Vec3, Vec3] | None = None
-) -> None:
-    """Carry a momentum from link i to the base, and book its virtual power on every joint on the way.
-
-    A beam's tip carries what is beyond it; the beam's own momentum is added at its root.
-    """
-    link = motion.links[i]
-    while link.parent != BASE:
-        f, n = link.R_AL.apply(f), link.R_AL.apply(n)
-        n = n + link.p_AL.cross(f)
-        if added is not None:
-            f, n, added = f + added[0], n + added[1], None
-        link = motion.links[link.parent]
-        for j, column in enumerate(link.free_columns):
-            _set(M, link.v + j, k, _virtual_power(column, f, n))
 
 
 def _set(M: Matrix, i: int, j: int, edge: Edge) -> None:

@@ -9,8 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from symofros.expr.ops import ADD, DIV, MUL, OPS
+
+if TYPE_CHECKING:
+    from symofros.expr.packs import Pack
 
 Edge = int
 ZERO: Edge = 0
@@ -37,6 +41,7 @@ class Graph:
         value: The number of a constant node, keyed by node.
         slot: The input slot of an input node, keyed by node.
         label: A readable name of a node, where it has one.
+        packs: Nodes that are computed alike (symofros/expr/packs.py), in the order in which they were formed.
     """
 
     def __init__(self) -> None:
@@ -45,6 +50,7 @@ class Graph:
         self.value: dict[int, float] = {1: 1.0}
         self.slot: dict[int, Slot] = {}
         self.label: dict[int, str] = {}
+        self.packs: list[Pack] = []
         self._known: dict[object, int] = {1.0: 1}
 
     def __len__(self) -> int:

@@ -16,7 +16,8 @@ from pathlib import Path
 from symofros.errors import CompileError
 
 # -fno-math-errno lets sqrt and sincos be instructions and single calls; -ffast-math was measured and gains nothing.
-DEFAULT_FLAGS = ("-O2", "-march=native", "-fno-math-errno")
+# What can share vectors does so already (codegen/packs.py): the compiler's own search for more costs up to a quarter.
+DEFAULT_FLAGS = ("-O2", "-march=native", "-fno-math-errno", "-fno-tree-slp-vectorize")
 SHARED_FLAGS = ("-shared", "-fPIC", "-fvisibility=hidden", "-std=gnu99")
 
 
