@@ -6,7 +6,7 @@ from math import prod
 from string import Template
 
 from symofros.codegen.templates import template
-from symofros.expr.ops import ADD, DIV, MUL, OPS
+from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
 from symofros.expr.program import Function, Program
 
 # The widest vectors, in doubles: scratch is laid out for them.
@@ -78,6 +78,6 @@ def routines() -> str:
     functions = [
         f"{makers[op.arity]}({op.name}, {op.c.partition('(')[0]})"
         for op in OPS.values()
-        if op.name not in (ADD, MUL, DIV)
+        if op.name not in (ADD, MUL, DIV, HELD)
     ]
     return Template(template("lanes.c.in")).substitute(functions="\n".join(functions))

@@ -32,6 +32,7 @@ class Vector:
 
     Attributes:
         key: Negative, where a scalar's variable has its node's positive number.
+        start: What it is the sum of is older than this node; 0 where it is not a sum.
         terms: (factor, vector) it is the sum of.
         source: Else, the vector it is a copy of; None if it starts from zeros.
         put: Lane -> the edge put into it.
@@ -39,6 +40,7 @@ class Vector:
     """
 
     key: int
+    start: int
     terms: tuple[tuple[Edge, Vector], ...] = ()
     source: Vector | None = None
     put: dict[int, Edge] = field(default_factory=dict)
@@ -55,6 +57,14 @@ class Vector:
         return [factor for factor, _ in self.terms] + list(self.put.values())
 
 
+@dataclass(frozen=True)
+class _Formed:
+    """A pack that is formed: node -> lane of those that are read from it; lanes that its terms give."""
+
+    homes: dict[int, int]
+    right: frozenset[int]
+
+
 class PackPlan:
     """The vectors of one function.
 
@@ -66,103 +76,101 @@ class PackPlan:
 
     Attributes:
         home: Node -> the vector it is read from.
-        nodes: Nodes that the function needs now, operands first, those with a home among them.
+        nodes: Nodes that the function needs one by one, operands first, those with a home among them.
+        vectors: All vectors, in the order of their `start`.
     """
 
     def __init__(self, graph: Graph, wanted: Sequence[int], given: Collection[int], edges: Iterable[Edge]) -> None:
         self._graph = graph
         self._given = given
         self._known = {*wanted, *given, *graph.value, 0} | {n for n, slot in graph.slot.items() if slot.group != "par"}
-        self._formed: dict[Pack, list[int]] = {}
+        self._formed: dict[Pack, _Formed] = {}
         self._of: dict[int, Pack] = {}
         self._vectors: dict[Pack, Vector] = {}
         self.home: dict[int, Vector] = {}
-        self._right: set[tuple[Vector, int]] = set()
+        self._filled: set[tuple[Pack, int]] = set()
         # Angles come first, and from scalars: all sines and cosines are evaluated in blocks.
         angles = [graph.args[node][0] for node in wanted if graph.op[node] in ("sin", "cos")]
         self._choose(set(wanted).difference(needed_nodes(graph, angles, given)))
-        self.nodes = self._needed([abs(edge) for edge in edges])
+        self.nodes = self._follow(abs(edge) for edge in edges)
+        self.vectors = sorted(self._vectors.values(), key=lambda vector: vector.start)
 
     def _choose(self, wanted: set[int]) -> None:
         for pack in self._graph.packs:
-            lanes = [lane for lane in pack.own if self._is_open(pack, lane, wanted)]
-            # Lanes of one value share its node: the first is its home.
-            lanes = list({abs(pack.lanes[lane]): lane for lane in sorted(lanes, reverse=True)}.values())
-            lanes = self._without_parts_of_others(pack, lanes)
-            if len(lanes) >= _LEAST:
-                self._formed[pack] = lanes
-                self._of.update((abs(pack.lanes[lane]), pack) for lane in lanes)
+            right = {lane for lane in pack.literal if self._are_known(operand.lanes[lane] for _, operand in pack.terms)}
+            # The lanes' nodes, less those that lanes which scalars give are made of.
+            given = [edge for lane, edge in enumerate(pack.lanes) if lane not in right and self._are_known((edge,))]
+            parts = self._parts(given, pack.start)
+            homes: dict[int, int] = {}
+            for lane in sorted(right & pack.own):
+                node = abs(pack.lanes[lane])
+                if node in wanted and node not in self._of and node not in parts:
+                    homes.setdefault(node, lane)
+            if len(homes) >= _LEAST:
+                self._formed[pack] = _Formed(homes, frozenset(right))
+                self._of.update(dict.fromkeys(homes, pack))
 
-    def _is_open(self, pack: Pack, lane: int, wanted: set[int]) -> bool:
-        node = abs(pack.lanes[lane])
-        if node not in wanted or node in self._of:
-            return False
-        return all(abs(operand.lanes[lane]) in self._known for _, operand in pack.terms)
+    def _are_known(self, edges: Iterable[Edge]) -> bool:
+        return all(abs(edge) in self._known for edge in edges)
 
-    def _without_parts_of_others(self, pack: Pack, lanes: list[int]) -> list[int]:
-        """Less those lanes that others are made of, which scalars give: a vector can't wait for what waits for it."""
-        while True:
-            stack = [abs(edge) for lane, edge in enumerate(pack.lanes) if lane not in lanes]
-            parts = set[int]()
-            while stack:
-                node = stack.pop()
-                if node >= pack.start and node not in parts:
-                    parts.add(node)
-                    stack.extend(map(abs, self._graph.args[node]))
-            kept = [lane for lane in lanes if abs(pack.lanes[lane]) not in parts]
-            if len(kept) == len(lanes):
-                return kept
-            lanes = kept
-
-    def _needed(self, stack: list[int]) -> list[int]:
-        """Follow operands from the outputs, through vectors where there are any."""
-        graph, found = self._graph, set[int]()
+    def _parts(self, edges: Iterable[Edge], start: int) -> set[int]:
+        """The nodes from `start` on that some edges are made of: a vector can't wait for what waits for it."""
+        stack, parts = [abs(edge) for edge in edges], set[int]()
         while stack:
             node = stack.pop()
-            if node in found or node == 0 or node in graph.slot or node in graph.value or node in self._given:
-                continue
-            found.add(node)
-            if node not in self._of:
-                stack.extend(map(abs, graph.args[node]))
-                continue
-            self.home[node] = self._form(self._of[node], stack)
+            if node >= start and node not in parts:
+                parts.add(node)
+                stack.extend(map(abs, self._graph.args[node]))
+        return parts
+
+    def _follow(self, nodes: Iterable[int]) -> list[int]:
+        """The nodes that some nodes need, operands first, and on the way all that vectors need."""
+        graph, found = self._graph, set[int]()
+        self._waiting: list[int | Pack | tuple[Pack, int]] = list(nodes)
+        while self._waiting:
+            item = self._waiting.pop()
+            if isinstance(item, tuple):
+                self._fill(*item)
+            elif isinstance(item, Pack):
+                self._vectors[item].terms = tuple((factor, self._vector(operand)) for factor, operand in item.terms)
+                self._waiting += [abs(factor) for factor, _ in item.terms]
+            elif not (item in found or item == 0 or item in graph.slot or item in graph.value or item in self._given):
+                found.add(item)
+                pack = self._of.get(item)
+                if pack is None:
+                    self._waiting.extend(map(abs, graph.args[item]))
+                    continue
+                lane = self._formed[pack].homes[item]
+                self.home[item] = self._vector(pack)
+                self.home[item].nodes[item] = lane, pack.lanes[lane] < 0
+                self._waiting.append((pack, lane))
         return sorted(found)
 
-    def _form(self, pack: Pack, stack: list[int]) -> Vector:
-        """The vector of a pack that is formed, with its operands."""
-        vector = self._vectors.get(pack)
-        if vector is None:
-            vector = self._vectors[pack] = Vector(-1 - len(self._vectors))
-            lanes = self._formed[pack]
-            vector.nodes = {abs(pack.lanes[lane]): (lane, pack.lanes[lane] < 0) for lane in lanes}
-            self._right.update((vector, lane) for lane in lanes)
-            vector.terms = tuple((factor, self._take(operand, lanes, stack)) for factor, operand in pack.terms)
-            stack.extend(abs(factor) for factor, _ in pack.terms)
-        return vector
-
-    def _take(self, pack: Pack, lanes: Iterable[int], stack: list[int]) -> Vector:
-        """The vector of any pack, right in the lanes that somebody reads."""
-        is_formed = pack in self._formed
+    def _fill(self, pack: Pack, lane: int) -> None:
+        """See to it that a vector is right in a lane that somebody reads."""
+        if (pack, lane) in self._filled:
+            return
+        self._filled.add((pack, lane))
+        vector, edge = self._vector(pack), pack.lanes[lane]
         source = pack.base
         while source is not None and source not in self._formed:
             source = source.base
-        if is_formed:
-            vector = self._form(pack, stack)
+        if pack in self._formed and lane in self._formed[pack].right:
+            self._waiting += [(operand, lane) for _, operand in pack.terms]
+        elif source is not None and source.lanes[lane] == edge:
+            vector.source = self._vector(source)
+            self._waiting.append((source, lane))
         else:
-            vector = self._vectors.setdefault(pack, Vector(-1 - len(self._vectors)))
-        for lane in lanes:
-            if (vector, lane) in self._right:
-                continue
-            self._right.add((vector, lane))
-            edge = pack.lanes[lane]
-            if is_formed and not any(operand.lanes[lane] for _, operand in pack.terms):
-                for _, operand in pack.terms:
-                    self._take(operand, (lane,), stack)
-            elif source is not None and source.lanes[lane] == edge:
-                vector.source = self._take(source, (lane,), stack)
-            else:
-                vector.put[lane] = edge
-                stack.append(abs(edge))
+            vector.put[lane] = edge
+            self._waiting.append(abs(edge))
+
+    def _vector(self, pack: Pack) -> Vector:
+        """The vector of a pack that somebody reads."""
+        vector = self._vectors.get(pack)
+        if vector is None:
+            vector = self._vectors[pack] = Vector(-1 - len(self._vectors), pack.start)
+            if pack in self._formed:
+                self._waiting.append(pack)
         return vector
 
 
@@ -195,9 +203,10 @@ def _sum(terms: Sequence[tuple[Edge, Vector]], text: Callable[[Edge], str]) -> s
     """Such as "c * p3 - s * p4"."""
     result = ""
     for factor, vector in terms:
-        sign = (" - " if result else "-") if factor < 0 else (" + " if result else "")
-        number = "" if abs(factor) == ONE else f"{text(abs(factor))} * "
-        result += f"{sign}{number}{vector_name(vector.key)}"
+        number = "" if abs(factor) == ONE else f"{text(factor)} * "
+        is_negative = number.startswith("-") or factor == -ONE
+        sign = (" - " if is_negative else " + ") if result else "-" * is_negative
+        result += f"{sign}{number.removeprefix('-')}{vector_name(vector.key)}"
     return result
 
 

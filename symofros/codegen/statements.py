@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
+from heapq import merge
 
 from symofros.codegen.names import local_name
 from symofros.codegen.packs import PackPlan, Store, Vector, vector_name
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Edge, Graph, Slot
-from symofros.expr.ops import ADD, DIV, MUL, OPS
+from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
 
 # Operations per statement at most: long lines help neither people nor compilers.
 _MAX_INLINE = 8
@@ -67,9 +68,10 @@ class StatementWriter:
         self.given = given
         self.stores = stores
         self._home: dict[int, Vector] = {}
+        self._vectors: list[Vector] = []
         if packs and graph.packs:
             plan = PackPlan(graph, nodes, given, [store.edge for store in stores])
-            nodes, self._home = plan.nodes, plan.home
+            nodes, self._home, self._vectors = plan.nodes, plan.home, plan.vectors
         self._inlined = self._choose_inlined(nodes, stores)
         self._nodes = nodes
         self._own = [node for node in nodes if node not in self._inlined]
@@ -89,7 +91,7 @@ class StatementWriter:
             for arg in graph.args[node] if node not in home else ():
                 uses[abs(arg)] = uses.get(abs(arg), 0) + 1
         # Vectors read variables: what a vector needs may be needed by several lanes.
-        stored = {abs(store.edge) for store in stores} | {abs(e) for vector in self._vectors() for e in vector.edges}
+        stored = {abs(store.edge) for store in stores} | {abs(e) for vector in self._vectors for e in vector.edges}
         size: dict[int, int] = {}
         inlined: set[int] = set()
         for node in nodes:
@@ -107,16 +109,6 @@ class StatementWriter:
             if uses.get(node) == 1 and node not in stored and node not in graph.label and self._is_arithmetic(node):
                 inlined.add(node)
         return inlined
-
-    def _vectors(self) -> Iterator[Vector]:
-        """Every vector of the function, those that others are made of among them."""
-        stack, seen = list(self._home.values()), set[Vector]()
-        while stack:
-            vector = stack.pop()
-            if vector not in seen:
-                seen.add(vector)
-                stack.extend(vector.operands)
-                yield vector
 
     def _is_arithmetic(self, node: int) -> bool:
         return self.graph.op[node] in (ADD, MUL, DIV)
@@ -171,8 +163,11 @@ class StatementWriter:
             done.update(nodes)
             yield nodes, angles, None
 
-        for node in self._own:
-            yield from emit(node)
+        # Vectors that are no sums are formed where they are read.
+        sums = ((vector.start, form(vector)) for vector in self._vectors if vector.terms)
+        scalars = ((node, emit(node)) for node in self._own)
+        for _, drafts in merge(sums, scalars, key=lambda item: item[0]):
+            yield from drafts
 
     def _blocks(self) -> dict[int, tuple[tuple[Edge, ...], tuple[int, ...]]]:
         """Sine or cosine -> (angles, sines and cosines) of its block: angles that as many others lie under."""
@@ -226,6 +221,8 @@ class StatementWriter:
         if op in (MUL, DIV):
             a, b = args  # Both are positive by construction.
             return OPS[op].c.format(self._operand(a, is_factor=True), self._operand(b, is_factor=True, is_right=True))
+        if op == HELD:
+            return self.whole(args[0])
         if self.lanes:
             return f"sym_v_{op}({', '.join(map(self.whole, args))})"
         return OPS[op].c.format(*map(self.text, args))

@@ -9,23 +9,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symofros.dynamics.applied.forces import rates_per_speed
-from symofros.expr.derivative import directional
-from symofros.expr.graph import ONE, Edge
-from symofros.kinematics.links import Motion
+from symofros.expr.derivative import along, partials
+from symofros.expr.graph import Edge
+from symofros.kinematics.links import Motion, speeds_by_path
 
 Matrix = list[list[Edge]]
 
 
 def by_configuration(motion: Motion, edges: Sequence[Edge]) -> Matrix:
     """One row an edge, one column a speed: the change of the edge as q moves with that speed alone."""
-    return _columns([directional(motion.g, edges, seeds) for seeds in rates_per_speed(motion)], len(edges))
+    return along(motion.g, edges, rates_per_speed(motion), _together(motion))
 
 
 def by_inputs(motion: Motion, edges: Sequence[Edge], group: str, count: int) -> Matrix:
     """One row an edge, one column an input of a group such as "v" or "u"."""
-    g = motion.g
-    return _columns([directional(g, edges, {g.input(group, k): ONE}) for k in range(count)], len(edges))
+    inputs = [motion.g.input(group, k) for k in range(count)]
+    return partials(motion.g, edges, inputs, _together(motion) if group == "v" else None)
 
 
-def _columns(columns: list[list[Edge]], rows: int) -> Matrix:
-    return [[column[i] for column in columns] for i in range(rows)]
+def _together(motion: Motion) -> list[list[int]]:
+    """Speeds that move the same links, in ascending order, as they stand in a row."""
+    return [sorted(path) for path in speeds_by_path(motion)]

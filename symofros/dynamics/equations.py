@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 from symofros.dynamics.applied.forces import generalized_forces, stored_energy
 from symofros.dynamics.constraints import Constraints, Row
 from symofros.dynamics.derivatives import by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
-from symofros.dynamics.forward import SingularMassMatrixError, solve
+from symofros.dynamics.forward import Factors, SingularMassMatrixError
 from symofros.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.dynamics.jourdain import inertia_forces
 from symofros.dynamics.mass_matrix import Matrix, mass_matrix
@@ -80,14 +81,19 @@ class Equations:
 
     @cached_property
     def acceleration(self) -> list[Edge]:
-        """V' = M^-1 (Q - h).
+        """V' = M^-1 (Q - h)."""
+        return self.factors.solve(self.net)
+
+    @cached_property
+    def factors(self) -> Factors:
+        """Those of M.
 
         Raises:
             DescriptionError: A speed moves no mass whatever the state, and so has no acceleration.
         """
         self.refuse_massless()
         try:
-            return solve(self.g, self.M, self.net)
+            return Factors(self.g, self.M)
         except SingularMassMatrixError as error:
             name = self.tree.coordinates.v[error.speed]
             raise DescriptionError(
@@ -133,12 +139,16 @@ class Equations:
         passive = substitute(self.g, self.Q, {self.g.input("u", i): ZERO for i in range(self.efforts)})
         return [self.g.sub(needed, given) for needed, given in zip(total, passive, strict=True)]
 
+    def unbalanced(self, a: Sequence[Edge]) -> list[Edge]:
+        """M a + h - Q (nv)."""
+        total = inertia_forces(self.motion, self._inertias[0], self.rotors, a, self.gravity)
+        return [self.g.sub(needed, given) for needed, given in zip(total, self.Q, strict=True)]
+
     @cached_property
     def residual(self) -> list[Edge]:
         """M a + h - Q - G^T lam, then G a - gamma: zero for the motion that the inputs produce (nv + nc)."""
         g, a = self.g, self.v_rate
-        total = inertia_forces(self.motion, self._inertias[0], self.rotors, a, self.gravity)
-        found = [g.sub(needed, given) for needed, given in zip(total, self.Q, strict=True)]
+        found = self.unbalanced(a)
         for i, row in enumerate(self.constraints):
             lam = g.input("lam", i)
             found = [g.sub(one, g.mul(lam, entry)) for one, entry in zip(found, row.G, strict=True)]

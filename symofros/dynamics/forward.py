@@ -25,37 +25,61 @@ class SingularMassMatrixError(ArithmeticError):
         self.speed = speed
 
 
-def solve(g: Graph, M: Matrix, right: list[Edge]) -> list[Edge]:
-    """The solution x of M x = right.
+class Factors:
+    """M = L^T D L.
 
     Args:
         g: The graph.
         M: Symmetric, with tree-shaped zeros; not changed.
-        right: Right-hand side (nv).
 
     Raises:
         SingularMassMatrixError: A pivot is the number zero.
     """
-    n = len(right)
-    rows = [_Row.of(g, M[i][: i + 1]) for i in range(n)]
-    inverse: list[Edge] = [ZERO] * n
-    L: list[_Row] = []
-    for k in reversed(range(n)):
-        if rows[k][k] == ZERO:
-            raise SingularMassMatrixError(k)
-        inverse[k] = g.div(ONE, rows[k][k])
-        L.insert(0, rows[k].times(inverse[k], k))
-        for i in reversed(range(k)):
-            rows[i] = rows[i].less(L[0][i], rows[k], i + 1)
-    residue = _Row.of(g, right)
-    x: list[Edge] = [ZERO] * n
-    for k in reversed(range(n)):
-        x[k] = g.mul(residue[k], inverse[k])
-        residue = residue.less(residue[k], L[k], k)
-    for k in range(n):
-        for i in range(k):
-            x[k] = g.sub(x[k], g.mul(L[k][i], x[i]))
-    return x
+
+    def __init__(self, g: Graph, M: Matrix) -> None:
+        self._g = g
+        self._n = len(M)
+        rows = [_Row.of(g, M[i][: i + 1]) for i in range(self._n)]
+        self._inverse: list[Edge] = [ZERO] * self._n
+        self._L: list[_Row] = []
+        for k in reversed(range(self._n)):
+            if rows[k][k] == ZERO:
+                raise SingularMassMatrixError(k)
+            self._inverse[k] = g.div(ONE, rows[k][k])
+            self._L.insert(0, rows[k].times(self._inverse[k], k))
+            for i in reversed(range(k)):
+                rows[i] = rows[i].less(self._L[0][i], rows[k], i + 1)
+
+    @property
+    def entries(self) -> int:
+        """Entries of L below its diagonal that are not zero."""
+        return sum(self._L[k][i] != ZERO for k in range(self._n) for i in range(k))
+
+    def solve(self, right: Sequence[Edge]) -> list[Edge]:
+        """The solution x of M x = right (nv)."""
+        g, L = self._g, self._L
+        residue = _Row.of(g, right)
+        x: list[Edge] = [ZERO] * self._n
+        for k in reversed(range(self._n)):
+            x[k] = g.mul(residue[k], self._inverse[k])
+            residue = residue.less(residue[k], L[k], k)
+        for k in range(self._n):
+            for i in range(k):
+                x[k] = g.sub(x[k], g.mul(L[k][i], x[i]))
+        return x
+
+    def solve_columns(self, right: Matrix) -> Matrix:
+        """The solution X of M X = right (nv rows), all columns alike."""
+        count = len(right[0]) if right else 0
+        rows = [_Row.of(self._g, row) for row in right]
+        for k in reversed(range(self._n)):
+            for i in range(k):
+                rows[i] = rows[i].less(self._L[k][i], rows[k], count)
+        for k in range(self._n):
+            rows[k] = rows[k].times(self._inverse[k], count)
+            for i in range(k):
+                rows[k] = rows[k].less(self._L[k][i], rows[i], count)
+        return [[row[j] for j in range(count)] for row in rows]
 
 
 class _Row:

@@ -12,6 +12,8 @@ from symofros.dynamics.equations import Equations
 from symofros.dynamics.frame_derivatives import frame_derivatives
 from symofros.dynamics.wrenches import closure_wrenches
 from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.expr.ops import HELD
+from symofros.expr.packs import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.topology.tree import NamedFrame, SpanningTree
 
@@ -54,15 +56,19 @@ def _inverse_derivatives(e: Equations) -> _Parts:
 
 
 def _residual_derivatives(e: Equations) -> _Parts:
-    by_q = by_configuration(e.motion, e.residual)
-    by_v = by_inputs(e.motion, e.residual, "v", e.nv)
-    by_u = by_inputs(e.motion, e.residual, "u", len(e.tree.coordinates.u))
+    return _AT_MOTION, _by_state(e, e.residual)
+
+
+def _by_state(e: Equations, residual: Sequence[Edge]) -> tuple[Output, ...]:
+    """The slopes of a residual by q, v and u."""
+    by_q = by_configuration(e.motion, residual)
+    by_v = by_inputs(e.motion, residual, "v", e.nv)
+    by_u = by_inputs(e.motion, residual, "u", len(e.tree.coordinates.u))
     # Sizes are stated, because a matrix without rows or columns does not show them.
-    rows, nu = len(e.residual), len(e.tree.coordinates.u)
-    outputs = (
+    rows, nu = len(residual), len(e.tree.coordinates.u)
+    return (
         _sized("by_q", (rows, e.nv), by_q), _sized("by_v", (rows, e.nv), by_v), _sized("by_u", (rows, nu), by_u),
     )  # fmt: skip
-    return _AT_MOTION, outputs
 
 
 def _rate_derivative(e: Equations) -> _Parts:
@@ -70,9 +76,10 @@ def _rate_derivative(e: Equations) -> _Parts:
     return ("q", "v", "t"), (_sized("by_q", (len(e.constraints), e.nv), by_q),)
 
 
-def _residual_by_par(e: Equations) -> _Parts:
+def _by_par(e: Equations, residual: Sequence[Edge]) -> tuple[Output, ...]:
+    """The slopes of a residual by the run-time parameters."""
     npar = len(e.tree.coordinates.par)
-    return _AT_MOTION, (_sized("by_par", (len(e.residual), npar), by_inputs(e.motion, e.residual, "par", npar)),)
+    return (_sized("by_par", (len(residual), npar), by_inputs(e.motion, residual, "par", npar)),)
 
 
 def _inverse_by_par(e: Equations) -> _Parts:
@@ -84,10 +91,12 @@ def _inverse_by_par(e: Equations) -> _Parts:
 # The motion at which the residual is differentiated; the order is that of templates/differentiate.c.in.
 _AT_MOTION = ("q", "v", "a", "u", "lam", "t")
 # Functions that differentiate forward dynamics -> the slopes of the residual they need.
-_SLOPES: dict[str, Callable[[Equations], _Parts]] = {
-    "forward_dynamics_derivatives": _residual_derivatives,
-    "forward_dynamics_by_par": _residual_by_par,
+_SLOPES: dict[str, Callable[[Equations, Sequence[Edge]], tuple[Output, ...]]] = {
+    "forward_dynamics_derivatives": _by_state,
+    "forward_dynamics_by_par": _by_par,
 }
+# Steps of elimination, eight columns each, up to which the derivatives are solved for by generated code.
+_MOST_STEPS = 12000
 
 
 def _implicit_terms(e: Equations) -> _Parts:
@@ -189,11 +198,31 @@ def _G(e: Equations) -> Output:
 
 
 def _differentiated(e: Equations, name: str) -> Function:
-    """Derivatives of forward dynamics: its terms, and the slopes of its residual."""
+    """Derivatives of forward dynamics: da/dx = -M^-1 dR/dx at the motion that a = M^-1 (Q - h) makes."""
+    if e.constraints:
+        return _differentiated_by_routine(e, name)
+    # For the slopes of R(x, a), a is a value of its own.
+    a = [e.g.call(HELD, edge) for edge in e.acceleration]
+    slopes = _SLOPES[name](e, e.unbalanced(a))
+    if e.factors.entries * sum(output.shape[1] for output in slopes) > _MOST_STEPS * WIDTH:
+        return _differentiated_by_routine(e, name)
+    outputs = [_sized(output.name, (e.nv, output.shape[1]), _solved(e, output)) for output in slopes]
+    return Function(name, "", ("q", "v", "u", "t"), tuple(outputs))
+
+
+def _solved(e: Equations, slopes: Output) -> list[list[Edge]]:
+    """-M^-1 times a matrix."""
+    rows, columns = slopes.shape
+    found = e.factors.solve_columns([list(slopes.edges[i * columns : (i + 1) * columns]) for i in range(rows)])
+    return [[-edge for edge in row] for row in found]
+
+
+def _differentiated_by_routine(e: Equations, name: str) -> Function:
+    """The same with constraints, or where generated code would be long: terms and slopes, for a routine."""
     if not e.constraints:
         e.refuse_massless()
-    inputs, slopes = _SLOPES[name](e)
-    part = Function("slopes", "", inputs, slopes)
+    slopes = _SLOPES[name](e, e.residual)
+    part = Function("slopes", "", _AT_MOTION, slopes)
     solved = tuple((output.name, output.shape) for output in slopes)
     outputs = _terms(e, [row.gamma for row in e.constraints])
     return Function(name, "", ("q", "v", "u", "t"), outputs, Solver("differentiate", solved, (part,)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from symofros.dynamics.beams import added_momentum, modal_mass
@@ -12,7 +11,7 @@ from symofros.expr.graph import ONE, ZERO, Edge
 from symofros.expr.packs import EMPTY, WIDTH, Signed, combined
 from symofros.expr.vector import Vec3
 from symofros.kinematics.joint import Column
-from symofros.kinematics.links import Motion, MovingLink
+from symofros.kinematics.links import Motion, MovingLink, speeds_by_path
 from symofros.topology.tree import BASE
 
 Matrix = list[list[Edge]]
@@ -52,18 +51,21 @@ def mass_matrix(motion: Motion, inertias: list[LinkInertia], rotors: list[Moving
     """
     M: Matrix = [[ZERO] * motion.nv for _ in range(motion.nv)]
     momenta = _own_blocks(motion, M, inertias)
-    for together in _on_one_path(motion, momenta):
-        _carry_to_base(motion, M, together)
+    for path in speeds_by_path(motion):
+        # Those of the base's own joints have no way to go.
+        going = [momenta[k] for k in path if motion.links[momenta[k].link].parent != BASE]
+        for at in range(0, len(going), WIDTH):
+            _carry_to_base(motion, M, going[at : at + WIDTH])
     for rotor in rotors:
         if rotor.k is not None:
             _add_rotor(motion, M, rotor, rotor.k)
     return M
 
 
-def _own_blocks(motion: Motion, M: Matrix, inertias: list[LinkInertia]) -> list[list[_Momentum]]:
-    """The entries between speeds of one joint; the momenta of each link's speeds."""
+def _own_blocks(motion: Motion, M: Matrix, inertias: list[LinkInertia]) -> dict[int, _Momentum]:
+    """The entries between speeds of one joint; the momentum of each speed."""
     composite = list(inertias)
-    momenta: list[list[_Momentum]] = [[] for _ in motion.links]
+    momenta: dict[int, _Momentum] = {}
     bent = {beam.tip: beam for beam in motion.beams if beam.tip is not None}
     for beam in bent.values():
         composite[beam.root] = composite[beam.root] + deformed(motion, beam)
@@ -77,30 +79,10 @@ def _own_blocks(motion: Motion, M: Matrix, inertias: list[LinkInertia]) -> list[
                 own = modal_mass(bent[i], j, k) if i in bent else ZERO
                 _set(M, link.v + j, link.v + k, motion.g.add(_virtual_power(link.columns[j], f, n), own))
             added = added_momentum(motion, bent[i], k) if i in bent else None
-            momenta[i].append(_Momentum(i, link.v + k, f, n, added))
+            momenta[link.v + k] = _Momentum(i, link.v + k, f, n, added)
         if link.parent != BASE:
             composite[link.parent] = composite[link.parent] + carried_to_parent(link, whole)
     return momenta
-
-
-def _on_one_path(motion: Motion, momenta: list[list[_Momentum]]) -> Iterator[list[_Momentum]]:
-    """Momenta that meet on their way to the base, the outermost first, as many as a pack has lanes.
-
-    The longest path takes all it passes; each branch brings what is left of it. Speeds of the base's own joints have
-    no way to go.
-    """
-    depth: list[int] = []
-    for i, link in enumerate(motion.links):
-        depth.append(len(momenta[i]) + (depth[link.parent] if link.parent != BASE else 0))
-    taken: set[int] = set()
-    for i in sorted(range(len(motion.links)), key=lambda i: -depth[i]):
-        path: list[_Momentum] = []
-        while i not in taken and motion.links[i].parent != BASE:
-            taken.add(i)
-            path += reversed(momenta[i])
-            i = motion.links[i].parent
-        for at in range(0, len(path), WIDTH):
-            yield path[at : at + WIDTH]
 
 
 def _carry_to_base(motion: Motion, M: Matrix, momenta: list[_Momentum]) -> None:

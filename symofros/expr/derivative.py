@@ -1,16 +1,21 @@
-"""Derivatives on the graph, by the op table's rules: exact, shared, never expanded."""
+"""Derivatives on the graph, by the op table's rules: exact, shared, never expanded.
+
+Forward mode, several directions at once: what a node contributes to the rates of those above it is one factor for all
+directions, so their rates go in packs.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
 from symofros.expr.evaluate import needed_nodes
-from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.graph import ONE, ZERO, Edge, Graph
 from symofros.expr.ops import OPS
+from symofros.expr.packs import EMPTY, WIDTH, Pack, Signed, combined
 
 
 def directional(graph: Graph, edges: Sequence[Edge], seeds: Mapping[Edge, Edge]) -> list[Edge]:
-    """The derivative of some edges along a direction (forward mode).
+    """The derivative of some edges along a direction.
 
     Args:
         graph: Where the edges live and the derivatives go.
@@ -20,26 +25,59 @@ def directional(graph: Graph, edges: Sequence[Edge], seeds: Mapping[Edge, Edge])
     Returns:
         One edge for each of `edges`.
     """
-    tangent: dict[int, Edge] = dict(seeds)
+    return [rate for (rate,) in along(graph, edges, [seeds])]
 
-    def rate(edge: Edge) -> Edge:
-        found = tangent.get(abs(edge), ZERO)
-        return found if edge > 0 else -found
 
-    for node in needed_nodes(graph, edges):
+def along(
+    graph: Graph, edges: Sequence[Edge], directions: Sequence[Mapping[Edge, Edge]],
+    groups: Sequence[Sequence[int]] | None = None,
+) -> list[list[Edge]]:  # fmt: skip
+    """The derivatives of some edges along several directions.
+
+    Args:
+        graph: Where the edges live and the derivatives go.
+        edges: What to differentiate.
+        directions: Rates of inputs, as in `directional`.
+        groups: Indices of the directions, those together that change much the same nodes; None: as they come.
+
+    Returns:
+        One row an edge, one column a direction.
+    """
+    nodes = needed_nodes(graph, edges)
+    rows = [[ZERO] * len(directions) for _ in edges]
+    for group in groups if groups is not None else [range(len(directions))]:
+        for at in range(0, len(group), WIDTH):
+            some = group[at : at + WIDTH]
+            rates = _rates(graph, nodes, [directions[k] for k in some])
+            for row, edge in zip(rows, edges, strict=True):
+                sign, pack = rates.get(abs(edge), (ONE, EMPTY))
+                for lane, k in enumerate(some):
+                    row[k] = pack.lanes[lane] if (sign == ONE) == (edge > 0) else -pack.lanes[lane]
+    return rows
+
+
+def _rates(graph: Graph, nodes: Sequence[int], directions: Sequence[Mapping[Edge, Edge]]) -> dict[int, Signed]:
+    """Node -> its rates along up to WIDTH directions; nothing for those that do not change."""
+    spare = (ZERO,) * (WIDTH - len(directions))
+    rates: dict[int, Signed] = {}
+    for seed in dict.fromkeys(seed for direction in directions for seed in direction):
+        rates[seed] = ONE, Pack(tuple(direction.get(seed, ZERO) for direction in directions) + spare)
+    for node in nodes:
         args = graph.args[node]
-        total = ZERO
+        terms = []
         for i, arg in enumerate(args):
-            moving = rate(arg)
-            if moving != ZERO:
+            sign, pack = rates.get(abs(arg), (ONE, EMPTY))
+            if pack is not EMPTY:
                 partial = OPS[graph.op[node]].derivative(graph, args, node, i)
-                total = graph.add(total, graph.mul(partial, moving))
-        if total != ZERO:
-            tangent[node] = total
-    return [rate(edge) for edge in edges]
+                terms.append((partial, (sign if arg > 0 else -sign, pack)))
+        sign, pack = combined(graph, terms, range(len(directions)))
+        if any(pack.lanes):
+            rates[node] = sign, pack
+    return rates
 
 
-def partials(graph: Graph, edges: Sequence[Edge], inputs: Sequence[Edge]) -> list[list[Edge]]:
-    """The Jacobian of some edges: one row an edge, one column an input."""
-    columns = [directional(graph, edges, {x: 1}) for x in inputs]
-    return [list(row) for row in zip(*columns, strict=True)] if columns else [[] for _ in edges]
+def partials(
+    graph: Graph, edges: Sequence[Edge], inputs: Sequence[Edge], groups: Sequence[Sequence[int]] | None = None
+) -> list[list[Edge]]:
+    """The Jacobian of some edges: one row an edge, one column an input; groups as in `along`."""
+    return along(graph, edges, [{x: ONE} for x in inputs], groups)

@@ -20,7 +20,7 @@ from symofros.expr import trigonometry
 
 Array = npt.NDArray[np.float64]
 Parity = Literal["odd", "even", ""]
-Cost = Literal["add", "mul", "div", "call"]
+Cost = Literal["add", "mul", "div", "call", "none"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ def _mul(x: Any, y: Any) -> Any:
         return np.multiply(x, y)
 
 
-ADD, MUL, DIV = "add", "mul", "div"
+ADD, MUL, DIV, HELD = "add", "mul", "div", "held"
 
 # Derivative rules: (graph, operand edges, edge of the result, i) -> partial derivative by operand i. Edges are ints;
 # the graph is passed in, because it is itself built on this table.
@@ -169,6 +169,8 @@ OPS: dict[str, Op] = {
         Op("sign", 1, np.sign, "sym_sign({0})", lambda g, x, y, i: 0, "add", parity="odd"),
         Op("min", 2, np.fmin, "fmin({0}, {1})", _d_choice(1), "add"),
         Op("max", 2, np.fmax, "fmax({0}, {1})", _d_choice(-1), "add"),
+        # Its operand, as a constant for derivatives.
+        Op(HELD, 1, np.positive, "{0}", lambda g, x, y, i: 0, "none", parity="odd", is_function=False),
     )
 }  # fmt: skip
 

@@ -26,14 +26,15 @@ class Pack:
         lanes: WIDTH edges.
         terms: (factor, pack): what the lanes are the sum of, left to right; none if they are given one by one.
         base: The pack that most lanes are taken from, where they are given.
-        own: Lanes that `terms` give bit for bit and whose nodes they made. No operand of any lane depends on those
-            nodes; in the other lanes the graph folded scalars in another way, or had them before.
+        literal: Lanes that `terms` give bit for bit; in the others the graph folded scalars in another way.
+        own: Those of them whose nodes the combination made, which no operand of any lane can depend on.
         start: Operands of all lanes are older than this node, results and what leads to them are not.
     """
 
     lanes: tuple[Edge, ...]
     terms: tuple[tuple[Edge, Pack], ...] = ()
     base: Pack | None = None
+    literal: frozenset[int] = frozenset()
     own: frozenset[int] = frozenset()
     start: int = 0
 
@@ -63,21 +64,27 @@ def combined(g: Graph, terms: Sequence[tuple[Edge, Signed]], of: Collection[int]
     signed = tuple((factor, pack) for factor, pack in signed if factor != ZERO and any(pack.lanes))
     if not signed:
         return ONE, EMPTY
-    if len(signed) == 1 and abs(signed[0][0]) == ONE and len(of) == WIDTH:
+    if (
+        len(signed) == 1
+        and abs(signed[0][0]) == ONE
+        and not any(edge for lane, edge in enumerate(signed[0][1].lanes) if lane not in of)
+    ):
         return signed[0]
     start = len(g)
-    lanes, own = [], set()
+    lanes, literal = [], set()
     for lane in range(WIDTH):
-        total, literal = ZERO, True
+        total, is_literal = ZERO, True
         for factor, pack in signed if lane in of else ():
             product = g.mul(factor, pack.lanes[lane])
-            literal &= _is_product(g, product, factor, pack.lanes[lane])
+            is_literal &= _is_product(g, product, factor, pack.lanes[lane])
             total = g.add(total, product)
         lanes.append(total)
-        if literal and abs(total) >= start:
-            own.add(lane)
-    pack = Pack(tuple(lanes), signed, None, frozenset(own), start)
-    g.packs.append(pack)
+        if is_literal and (lane in of or not any(pack.lanes[lane] for _, pack in signed)):
+            literal.add(lane)
+    own = frozenset(lane for lane in literal if abs(lanes[lane]) >= start)
+    pack = Pack(tuple(lanes), signed, None, frozenset(literal), own, start)
+    if len(own) > 1:
+        g.packs.append(pack)
     return ONE, pack
 
 

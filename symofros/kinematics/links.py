@@ -100,6 +100,31 @@ class Motion:
         return Mat3.identity(self.g) if index == BASE else self.links[index].R_LB
 
 
+def speeds_by_path(motion: Motion) -> list[list[int]]:
+    """Indices of all speeds by paths to the base: what lies on one path is carried over the same joints.
+
+    The longest path takes all it passes, each branch what is left of it.
+
+    Returns:
+        One list a path, outermost speed first.
+    """
+    depth: list[int] = []
+    for link in motion.links:
+        depth.append(len(link.free_columns) + (depth[link.parent] if link.parent != BASE else 0))
+    taken: set[int] = set()
+    paths: list[list[int]] = []
+    for i in sorted(range(len(motion.links)), key=lambda i: -depth[i]):
+        path: list[int] = []
+        while i != BASE and i not in taken:
+            taken.add(i)
+            link = motion.links[i]
+            path += range(link.v + len(link.free_columns) - 1, link.v - 1, -1)
+            i = link.parent
+        if path:
+            paths.append(path)
+    return paths
+
+
 def set_in_motion(g: Graph, tree: SpanningTree, as_seen: bool = False) -> Motion:
     """Lower a tree's joints, beams and offsets into a graph.
 

@@ -55,6 +55,20 @@ def test_bits_are_those_of_scalars(name: str) -> None:
     assert repr(packed.forward_dynamics(q, v, u)) == repr(single.forward_dynamics(q, v, u))
 
 
+@pytest.mark.parametrize("name", ["puma560", "spdm", "flexible_pendulum", "joint_zoo"])
+def test_bits_of_derivatives_are_those_of_scalars(name: str) -> None:
+    rng = np.random.default_rng(8)
+    functions = ("inverse_dynamics_derivatives", "forward_dynamics_derivatives")
+    options = sf.Options(functions=functions, flags=EXACT)
+    packed, single = sf.compile(MODELS[name], options), sf.compile(MODELS[name], replace(options, packs=False))
+    q, v, x = (rng.uniform(-1.0, 1.0, n) for n in (packed.nq, packed.nv, packed.nv))
+    for function, last in zip(functions, (x, x[: packed.nu]), strict=True):
+        for ours, theirs in zip(
+            getattr(packed, function)(q, v, last), getattr(single, function)(q, v, last), strict=True
+        ):
+            np.testing.assert_array_equal(ours, theirs)
+
+
 def test_a_long_chain_is_carried_in_vectors() -> None:
     """With packs, a chain's mass matrix is a third fewer statements, stores included, which are as many as before."""
     packed, single = (source(MODELS["chain22"], ("mass_matrix",), packs) for packs in (True, False))

@@ -10,7 +10,7 @@ from symofros.dynamics.applied.elements import element_energy, element_force
 from symofros.dynamics.applied.loads import connection_energy, wrenches
 from symofros.dynamics.beams import elastic_forces
 from symofros.dynamics.jourdain import virtual_power
-from symofros.expr.derivative import directional
+from symofros.expr.derivative import along
 from symofros.expr.graph import ONE, ZERO, Edge
 from symofros.kinematics.frames import FrameKinematics
 from symofros.kinematics.links import Motion, MovingBeam
@@ -107,7 +107,7 @@ def _joint_forces(motion: Motion) -> list[Edge]:
 
 def _gradient(motion: Motion, energy: Edge) -> list[Edge]:
     """The rate of an energy per unit of each speed: its gradient through q' = N v (eq. 38)."""
-    return [directional(motion.g, [energy], seeds)[0] for seeds in rates_per_speed(motion)]
+    return along(motion.g, [energy], rates_per_speed(motion))[0]
 
 
 def rates_per_speed(motion: Motion) -> list[dict[Edge, Edge]]:
