@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import asdict
 
 import pytest
-
-import reference_models
-from validation.assembly import assemble
 from validation.studies.native_build import BuildError
 from validation.studies.timing import FUNCTIONS, TimingRun, _read, models, time_model, tree_text
 from validation.studies.timing_mujoco import time_mujoco
 from validation.studies.timing_mujoco_report import mujoco_lines
 from validation.studies.timing_report import as_data, as_markdown
+
+import reference_models
+from validation.assembly import assemble
 
 OUTPUT = "error mass_matrix {error}\nerror bias 1e-15\n" + "".join(
     f"time {function} {side} {repeat} {nanoseconds + repeat}\n"

@@ -6,11 +6,6 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
-
-import reference_models
-import symofros as sf
-from validation.adapters.exudyn_planar import Cable, planar_tree, smallest
-from validation.studies import equal_accuracy
 from validation.studies.equal_accuracy import (
     EA,
     POSTURE,
@@ -24,6 +19,11 @@ from validation.studies.equal_accuracy import (
 from validation.studies.flexible_worker import JOBS, measure
 from validation.studies.native_loop import GeneratedLoop
 from validation.studies.timing_flexible_report import flexible_lines
+
+import reference_models
+import symofros as sf
+from validation.adapters.exudyn_planar import Cable, planar_tree, smallest
+from validation.studies import equal_accuracy
 
 # Of the two lowest frequencies, those of the elastic drive and of the first bending: three functions and two elements
 # both have them to 1.3e-5.
