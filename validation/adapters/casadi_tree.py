@@ -7,12 +7,10 @@ velocities. Constants are folded as the graph is built; nothing here knows Pinoc
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
 import symofros as sf
 from validation.adapters.casadi_algebra import (
@@ -20,13 +18,10 @@ from validation.adapters.casadi_algebra import (
     Matrix,
     Scalar,
     Vector,
-    about,
     add,
     cross,
     dot,
     exact,
-    of_quaternion,
-    plus,
     product,
     scale,
     skew,
@@ -35,51 +30,24 @@ from validation.adapters.casadi_algebra import (
     symmetric,
     times,
     transposed,
-    turned,
 )
-from validation.adapters.reach import armature, unrepresented
-from validation.assembly import BASE, Mover, assemble
+from validation.adapters.casadi_links import (
+    UNIT,
+    Articulated,
+    Link,
+    Motion,
+    composed,
+    in_world,
+    joined,
+    links_of,
+    moved,
+    shifted,
+)
+from validation.adapters.reach import unrepresented
+from validation.assembly import BASE, assemble
 from validation.interface import Unsupported
 
 _JOINTS = frozenset({"revolute", "prismatic", "free"})
-_UNIT: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
-
-@dataclass(frozen=True)
-class Link:
-    """One moving body.
-
-    Attributes:
-        parent: Index, or BASE.
-        R, p: R_AB(q), p_AB(q) from the parent's frame.
-        mass, mc, J: Mass, first moments, inertia about the body's origin.
-        axis: Of its joint; None for a free one.
-        slides: Whether the joint is prismatic.
-        v: Where its speeds are.
-        armature: On the diagonal of M.
-        axes: Along which a free joint's speeds are.
-    """
-
-    parent: int
-    R: Matrix
-    p: Vector
-    mass: float
-    mc: Vector
-    J: Matrix
-    axis: Vector | None
-    slides: bool
-    v: slice
-    armature: float
-    axes: Matrix = _UNIT
-
-    def columns(self) -> list[tuple[Vector, Vector]]:
-        """The joint's motions with unit speeds: (angular, linear)."""
-        if self.axis is None:
-            return [(ZERO, e) for e in self.axes] + [(e, ZERO) for e in self.axes]
-        return [(ZERO, self.axis) if self.slides else (self.axis, ZERO)]
-
-
-Motion = tuple[Vector, Vector]
 
 
 class CasadiTree:
@@ -105,27 +73,10 @@ class CasadiTree:
             ca.SX.sym(name, n)
             for name, n in zip(("q", "v", "a", "tau"), (assembly.nq, *[assembly.nv] * 3), strict=True)
         )
-        self.links = [self._link(mover, armature(system, mover)) for mover in assembly.movers]
+        self.links = links_of(system, assembly, self.q)
         if any(link.axis is None and link.parent != BASE for link in self.links):
             raise ValueError("a free joint on a moving body")
         self._up = exact(-assembly.gravity)
-
-    def _link(self, mover: Mover, armature: float) -> Link:
-        R_AP, p_AP = exact(mover.X_AP.R), exact(mover.X_AP.p)
-        q = [self.q[i] for i in range(mover.q.start, mover.q.stop)]
-        merged = mover.merged()
-        K = skew(exact(merged.p_BC))
-        J = merged.J_BC - merged.mass * np.array(product(K, K))
-        inertia = merged.mass, exact(merged.mass * merged.p_BC), exact(J)
-        if mover.kind == "free":
-            R, p = product(R_AP, of_quaternion(q[3:])), add(p_AP, times(R_AP, q[:3]))
-            return Link(mover.parent, R, p, *inertia, None, False, mover.v, armature)
-        axis = exact(mover.axis)
-        if mover.kind == "prismatic":
-            p = add(p_AP, scale(q[0], times(R_AP, axis)))
-            return Link(mover.parent, R_AP, p, *inertia, axis, True, mover.v, armature)
-        R = product(R_AP, about(axis, ca.sin(q[0]), ca.cos(q[0])))
-        return Link(mover.parent, R, p_AP, *inertia, axis, False, mover.v, armature)
 
     def _joint(self, link: Link, group: Any) -> Motion:
         """The joint's own part of a motion with these speeds or their rates."""
@@ -174,27 +125,14 @@ class CasadiTree:
                 tau[at] = dot(angular, n) + dot(linear, f) + own
             if link.parent != BASE:
                 on_n, on_f = forces[link.parent]
-                n, f = _shifted(link, n, f)
+                n, f = shifted(link, n, f)
                 forces[link.parent] = add(on_n, n), add(on_f, f)
         return tau
 
     def _mass_matrix(self) -> list[list[Scalar]]:
         """In body axes, or, where that takes fewer operations, in world axes, as for long chains."""
-        candidates = [self._composite(links) for links in (self.links, self._in_world())]
+        candidates = [self._composite(links) for links in (self.links, in_world(self.links))]
         return min(candidates, key=lambda M: ca.Function("M", [self.q], [_rows(M)]).n_instructions())
-
-    def _in_world(self) -> list[Link]:
-        """The same bodies along world axes, so that wrenches pass from body to body without a rotation."""
-        found: list[Link] = []
-        rotations: list[Matrix] = []
-        for link in self.links:
-            R_A = rotations[link.parent] if link.parent != BASE else _UNIT
-            R = product(R_A, link.R)
-            rotations.append(R)
-            axis = None if link.axis is None else times(R, link.axis)
-            found.append(replace(link, R=_UNIT, p=times(R_A, link.p), mc=times(R, link.mc), J=turned(R, link.J),
-                                 axis=axis, axes=transposed(R)))  # fmt: skip
-        return found
 
     def _composite(self, links: Sequence[Link]) -> list[list[Scalar]]:
         nv = self.assembly.nv
@@ -209,13 +147,13 @@ class CasadiTree:
                 _column(M, links, i, at, n, f)
                 M[at][at] = M[at][at] + link.armature
             if link.parent != BASE:
-                bodies[link.parent] = _composed(bodies[link.parent], link, (m, mc, J))
+                bodies[link.parent] = composed(bodies[link.parent], link, (m, mc, J))
         return M
 
     def _articulated(self) -> Vector:
         """Accelerations by articulated bodies."""
         links, still = self.links, [self._bias(*motion) for motion in self._velocity_terms()]
-        inertia: list[tuple[Matrix, Matrix, Matrix]] = [
+        inertia: list[Articulated] = [
             (link.J, skew(link.mc), symmetric(lambda i, j, m=link.mass: m if i == j else 0.0)) for link in links
         ]
         bias = [terms[0] for terms in still]
@@ -243,10 +181,10 @@ class CasadiTree:
             K = symmetric(lambda a, b, K=K, U=U_f, V=V_f: K[a][b] - U[a] * V[b])
             n = add(n, times(J, c_n), times(H, c_f), scale(u, V_n))
             f = add(f, times(transposed(H), c_n), times(K, c_f), scale(u, V_f))
-            n, f = _shifted(link, n, f)
+            n, f = shifted(link, n, f)
             on_n, on_f = bias[link.parent]
             bias[link.parent] = add(on_n, n), add(on_f, f)
-            inertia[link.parent] = _joined(inertia[link.parent], _moved(link, J, H, K))
+            inertia[link.parent] = joined(inertia[link.parent], moved(link, J, H, K))
         return self._accelerated(steps, [terms[1] for terms in still])
 
     def _velocity_terms(self) -> list[tuple[Link, Vector, Motion]]:
@@ -300,7 +238,7 @@ class CasadiTree:
         support = [body]
         while self.links[support[-1]].parent != BASE:
             support.append(self.links[support[-1]].parent)
-        R: Matrix = _UNIT
+        R: Matrix = UNIT
         p: Vector = ZERO
         places = []
         for i in reversed(support):
@@ -361,62 +299,9 @@ def _column(M: list[list[Scalar]], links: Sequence[Link], i: int, at: int, n: Ve
             M[on][at] = M[at][on] = dot(angular, n) + dot(linear, f)
         if link.parent == BASE:
             return
-        n, f = _shifted(link, n, f)
+        n, f = shifted(link, n, f)
         i = link.parent
 
 
 def _rows(A: Matrix) -> Any:
     return ca.vertcat(*(entry for row in A for entry in row))
-
-
-def _shifted(link: Link, n: Vector, f: Vector) -> Motion:
-    """A wrench about the body's origin, about the parent's, in its axes."""
-    f = times(link.R, f)
-    return add(times(link.R, n), cross(link.p, f)), f
-
-
-def _composed(onto: tuple[Scalar, Vector, Matrix], link: Link, body: tuple[Scalar, Vector, Matrix]) -> Any:
-    """A parent's composite body with a child's added."""
-    m, mc, J = body
-    h, p = times(link.R, mc), link.p
-    J = turned(link.R, J)
-    far = 2.0 * dot(p, h) + m * dot(p, p)
-    J = plus(J, symmetric(lambda i, j: (far if i == j else 0.0) - p[i] * h[j] - h[i] * p[j] - m * p[i] * p[j]))
-    return onto[0] + m, add(onto[1], h, scale(m, p)), plus(onto[2], J)
-
-
-def _moved(link: Link, J: Matrix, H: Matrix, K: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-    """An articulated inertia (n = J w' + H a, f = H^T w' + K a) about the parent's origin, in its axes."""
-    R, P = link.R, skew(link.p)
-    J, H, K = turned(R, J), product(product(R, H), transposed(R)), turned(R, K)
-    shifted = plus(H, product(P, K))
-    HP, PH = product(H, P), product(P, transposed(shifted))
-    return symmetric(lambda i, j: J[i][j] - HP[i][j] + PH[i][j]), shifted, K
-
-
-def _joined(a: tuple[Matrix, Matrix, Matrix], b: tuple[Matrix, Matrix, Matrix]) -> tuple[Matrix, Matrix, Matrix]:
-    return plus(a[0], b[0]), plus(a[1], b[1]), plus(a[2], b[2])
-
-
-def operations(function: Any) -> Mapping[str, int]:
-    """How many operations of each kind one evaluation of a CasADi function takes."""
-    kinds = {ca.OP_ADD: "add", ca.OP_SUB: "add", ca.OP_TWICE: "add", ca.OP_MUL: "mul", ca.OP_SQ: "mul",
-             ca.OP_DIV: "div", ca.OP_INV: "div", ca.OP_SIN: "call", ca.OP_COS: "call"}  # fmt: skip
-    found = dict.fromkeys(("mul", "add", "div", "call"), 0)
-    for k in range(function.n_instructions()):
-        kind = kinds.get(function.instruction_id(k))
-        if kind is not None:
-            found[kind] += 1
-    return found
-
-
-def c_text(function: Any) -> str:
-    """CasADi's C of a function."""
-    generator = ca.CodeGenerator(f"{function.name()}.c", {"with_header": False})
-    generator.add(function)
-    return str(generator.dump())
-
-
-def work_sizes(function: Any) -> tuple[int, int]:
-    """Of the integers and of the doubles that its C works with."""
-    return int(function.sz_iw()), int(function.sz_w())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache, partial
 from importlib import metadata
@@ -26,6 +27,7 @@ PINOCCHIO_FLAGS = (
     # Pinocchio's variant of joints needs longer lists than Boost's headers hold by default.
     "-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
     "-DBOOST_FUSION_INVOKE_MAX_ARITY=12", "-fvisibility-inlines-hidden",
+    "-Wno-deprecated-declarations",  # Its constraints say that their interface will change.
 )  # fmt: skip
 MUJOCO_FLAGS = ("-std=gnu99", "-O3", "-march=native", "-Wall", "-Wextra")
 _SYSTEM_EIGEN = Path("/usr/include/eigen3")
@@ -38,19 +40,29 @@ def _interface() -> Any:
     return ffi
 
 
-def pinocchio_builds() -> tuple[list[tuple[Compiler, Built]], list[str]]:
+TREES, CLOSED = "loop_pinocchio.cpp", "loop_closed.cpp"
+
+
+def pinocchio_builds(program: str = TREES) -> tuple[list[tuple[Compiler, Built]], list[str]]:
     """Pinocchio by each compiler of this machine, and why others failed.
 
+    Args:
+        program: For trees, or for closed loops: each takes minutes to compile.
+
     Raises:
-        Skipped: Headers are missing.
+        Skipped: Headers are missing, or no compiler could.
     """
-    sources = {name: source(name) for name in ("loop_pinocchio.cpp", "loop.h", "tree_file.h")}
+    sources = {name: source(name) for name in (program, "pinocchio_tree.h", "loop.h", "tree_file.h")}
     # System headers: warnings of other people's code are not ours to show.
     flags = [*PINOCCHIO_FLAGS, *(f"-isystem{path}" for path in _includes())]
-    built, failures = [], []
-    for compiler in compilers("c++"):
+    version = (metadata.version("pin"),)
+    built: list[tuple[Compiler, Built]] = []
+    failures: list[str] = []
+    with ThreadPoolExecutor() as pool:
+        jobs = {compiler: pool.submit(build, compiler, sources, flags, (), version) for compiler in compilers("c++")}
+    for compiler, job in jobs.items():
         try:
-            built.append((compiler, build(compiler, sources, flags, depends=(metadata.version("pin"),))))
+            built.append((compiler, job.result()))
         except BuildError as error:
             failures.append(f"Pinocchio by {compiler.name}: {error}")
     if not built:
@@ -92,16 +104,28 @@ def pinocchio_loops(task: Task, functions: Sequence[str], warn: Callable[[str], 
     Raises:
         Skipped: Pinocchio can't be built.
     """
-    builds, failures = pinocchio_builds()
+    builds, failures = pinocchio_builds(CLOSED if task.system.constraints else TREES)
     for failure in failures:
         warn(failure)
     states, convert = task.states, _Converted(None, task)
     with tempfile.TemporaryDirectory() as private:
         tree = Path(private) / "tree.txt"
         tree.write_text(tree_text(task.assembly), encoding="ascii")
+        if task.system.constraints:
+            Path(f"{tree}.ties").write_text(_ties_text(task), encoding="ascii")
         for compiler, built in builds:
             rows = {"q": states.q, "v": states.v, "a": states.a, "tau": states.applied}
             yield from _loops(built.path, tree, task.body, rows, functions, compiler.name, convert)
+
+
+def _ties_text(task: Task) -> str:
+    """How Pinocchio's rigid constraints close the loops, for `validation/native/loop_closed.cpp`."""
+    from validation.adapters import pinocchio_loops
+
+    engine = pinocchio_loops.build(Subject(task.label, task.system))
+    if isinstance(engine, Unsupported):
+        raise Skipped(engine.reason)
+    return "\n".join([str(len(engine.ties)), *engine.ties_as_numbers()]) + "\n"
 
 
 def mujoco_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
@@ -112,6 +136,8 @@ def mujoco_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     """
     from validation.adapters import mujoco
 
+    if task.system.constraints:
+        raise Skipped("its closures are soft: accelerations are others")
     engine = mujoco.build(Subject(task.label, task.system))
     if isinstance(engine, Unsupported):
         raise Skipped(engine.reason)

@@ -12,7 +12,6 @@ from sympy.printing.c import C99CodePrinter
 
 import symofros as sf
 from validation.oracle.kane import derive
-from validation.oracle.scope import Derived
 from validation.timing.generated import Source
 
 FUNCTIONS = ("mass_matrix", "bias", "dynamics", "forward_dynamics")
@@ -33,28 +32,51 @@ def kane_source(system: sf.System, name: str) -> Source:
     start = time.perf_counter()
     derived = derive(system)
     inputs = {"q": derived.q, "v": derived.v}
-    tau = [sympy.Dummy(f"tau{i}") for i in range(len(derived.v))]
-    if name == "forward_dynamics":
-        inputs["tau"] = tuple(tau)
-    outputs = _outputs(derived, tau, name)
     known = system.parameter_values()
     values = {symbol: sympy.Float(known[key], _DIGITS) for key, symbol in derived.symbols.items() if key in known}
     shorts = {symbol: meaning.xreplace(values) for symbol, meaning in derived.shorts.items()}
-    flat = [sympy.sympify(x).xreplace(shorts).xreplace(values) for output in outputs for x in output]
-    assignments, results = sympy.cse(flat, optimizations="basic")
-    text = _text(name, inputs, assignments, results, [len(output) for output in outputs])
+    M, h = ([_rounded(x.xreplace(shorts).xreplace(values)) for x in derived.values[part]]
+            for part in ("mass_matrix", "bias"))  # fmt: skip
+    wanted = {"mass_matrix": [M], "bias": [h]}.get(name, [M, h])
+    assignments, results = sympy.cse([x for output in wanted for x in output], optimizations="basic")
+    sizes = tuple(map(len, wanted))
+    if name == "forward_dynamics":
+        inputs["tau"] = tuple(sympy.Symbol(f"tau{i}") for i in range(len(h)))
+        solved, results = _solved(results, inputs["tau"])
+        assignments, sizes = [*assignments, *solved], (len(h),)
+    text = _text(name, inputs, assignments, results, sizes)
     seconds = time.perf_counter() - start
-    sizes = tuple(len(output) for output in outputs)
     return Source(name, text, tuple(inputs), sizes, (0, 0), _operations(assignments, results), seconds)
 
 
-def _outputs(derived: Derived, tau: Sequence[Any], name: str) -> list[list[Any]]:
-    M, h = list(derived.values["mass_matrix"]), list(derived.values["bias"])
-    if name == "forward_dynamics":
-        n = len(h)
-        net = sympy.Matrix([t - x for t, x in zip(tau, h, strict=True)])
-        return [list(sympy.Matrix(n, n, M).LUsolve(net))]
-    return {"mass_matrix": [M], "bias": [h], "dynamics": [M, h]}[name]
+def _rounded(value: Any) -> Any:
+    """With doubles in place of the fractions that the oracle computes with."""
+    return value.xreplace({x: sympy.Float(x, _DIGITS) for x in value.atoms(sympy.Rational) if x.q != 1})
+
+
+def _solved(entries: Sequence[Any], tau: Sequence[Any]) -> tuple[list[tuple[Any, Any]], list[Any]]:
+    """Accelerations from the entries of M and h: each step of M = L D L^T is an assignment, or terms would swell."""
+    n, assignments = len(tau), list[tuple[Any, Any]]()
+
+    def named(name: str, value: Any) -> Any:
+        assignments.append((sympy.Symbol(name), value))
+        return assignments[-1][0]
+
+    L: dict[tuple[int, int], Any] = {}
+    D: list[Any] = []
+    inverse: list[Any] = []
+    x: list[Any] = []
+    for j in range(n):
+        column = {i: named(f"c{i}_{j}", entries[i * n + j] - sum(L[i, k] * D[k] * L[j, k] for k in range(j)))
+                  for i in range(j, n)}  # fmt: skip
+        D.append(column[j])
+        inverse.append(named(f"e{j}", 1 / column[j]))
+        L |= {(i, j): named(f"l{i}_{j}", column[i] * inverse[j]) for i in range(j + 1, n)}
+        given = tau[j] - entries[n * n + j]
+        x.append(named(f"y{j}", given - sum(L[j, k] * x[k] for k in range(j))))
+    for j in reversed(range(n)):
+        x[j] = named(f"z{j}", x[j] * inverse[j] - sum(L[k, j] * x[k] for k in range(j + 1, n)))
+    return assignments, x
 
 
 class _Printer(C99CodePrinter):  # type: ignore[misc]

@@ -91,6 +91,7 @@ SCENES: dict[str, Scene] = {
     "panda": Scene("Panda, 7 joints", panda7),
     "mss": Scene("MSS", partial(_reference, "mss"), _UNDERIVED),
     "talos": Scene("Talos", partial(_robot, "talos"), _UNDERIVED),
+    "four_bar": Scene("four-bar, closed", partial(_reference, "four_bar"), ("forward_dynamics",)),
     **{f"chain{n}": Scene(f"chain of {n}", partial(chain, n, symbolic=False), _GROWTH) for n in CHAINS[:-1]},
     f"chain{CHAINS[-1]}": Scene(
         f"chain of {CHAINS[-1]}",

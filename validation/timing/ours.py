@@ -26,8 +26,8 @@ NAME = "symofros"
 BATCH = "symofros, batch"
 # States in a call of a batch: their results stay in the cache, as those of engines do.
 BLOCK = 64
-# How many of a function's outputs engines have, too: Q and derivatives by u are ours alone.
-_SHARED = {"dynamics": 2, "forward_dynamics_derivatives": 2}
+# How many of a function's outputs engines have, too: Q, multipliers and derivatives by u are ours alone.
+_SHARED = {"dynamics": 2, "forward_dynamics": 1, "forward_dynamics_derivatives": 2}
 # More than any race steps through [s].
 _ENDLESS = 1e6
 # A solver finishes these state by state; they have no code by vectors.
@@ -45,7 +45,7 @@ def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
             yield _steps(task)
             continue
         yield _by_state(task, name)
-        if name not in _BY_STATE:
+        if name not in _BY_STATE and not task.system.constraints:
             yield _by_vectors(task, name)
 
 
@@ -72,8 +72,10 @@ class _Generated:
         states, entry = task.states, model.functions[0]
         given = {"pre": pre[: model.npre], "q": states.q, "v": states.v, "a": states.a, "u": states.u}
         names = [ffi.string(item.name).decode() for item in getattr(entry, "in")[0 : entry.n_in]]
+        entered = [item.rows * item.cols for item in getattr(entry, "in")[0 : entry.n_in]]
         sizes = [item.rows * item.cols for item in entry.out[0 : entry.n_out]]
-        self.arrays = Arrays([given.get(item, np.zeros(1)) for item in names], sizes, (int(entry.work), 0))
+        inputs = [given.get(item, np.zeros(size)) for item, size in zip(names, entered, strict=True)]
+        self.arrays = Arrays(inputs, sizes, (int(entry.work), 0))
 
 
 def _by_state(task: Task, name: str) -> Loop:

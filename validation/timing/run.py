@@ -9,6 +9,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from typing import Any
 from symofros.runtime.toolchain import DEFAULT_FLAGS
 from validation.record import machine
 from validation.timing.arrays import first_compiler
-from validation.timing.engines import PINOCCHIO_FLAGS, pinocchio_builds
+from validation.timing.engines import CLOSED, PINOCCHIO_FLAGS, pinocchio_builds
 from validation.timing.generated import BUILDS
 from validation.timing.models import SCENES
 from validation.timing.programs import BuildError, Skipped, compilers, source
@@ -94,7 +95,7 @@ def prepare(peers: Iterable[str]) -> list[str]:
     """
     tasks: list[Callable[[], Any]] = [first_compiler]
     if "pinocchio" in peers:
-        tasks.append(pinocchio_builds)
+        tasks += [pinocchio_builds, partial(pinocchio_builds, CLOSED)]
     failures = []
     with ThreadPoolExecutor() as pool:
         for future in [pool.submit(job) for job in tasks]:

@@ -141,7 +141,7 @@ def _costs(record: Record) -> Section:
         f"measured time over that of the same operations at this core's measured peak, {flops / 1e9:.1f} GFlop/s in "
         f"scalar fused multiply-adds, and for batches {vector / 1e9:.0f} GFlop/s in vectors; below 1 is not possible, "
         "and calls cost far more than the one operation that they count. Memory is what a call reads and writes at "
-        f"least; its limit is the time it takes at the {copied / 1e9:.0f} GB/s that this core copies in its first cache."
+        f"least; its limit is the time it takes at the {copied / 1e9:.0f} GB/s of copies in the core's first cache."
     )
     head = ("model", "function", "by", "#generation [s]", "#compilation [s]", "#C text [kB]", "#machine code [kB]",
             "#constants [kB]", "#mul", "#add", "#div", "#calls", "#time [ns]", "#limit [ns]", "#distance",

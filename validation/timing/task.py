@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ import symofros as sf
 from validation.assembly import Assembly, assemble
 from validation.geometry import Array
 from validation.interface import States
+from validation.loops import assembled_states
 from validation.sampling import sample
 from validation.timing.models import SCENES
 
@@ -91,6 +92,10 @@ def task(label: str, count: int = STATES) -> Task:
     system = SCENES[label].load()
     assembly = assemble(system)
     states = sample(assembly, assembly.motors + len(system.inputs), count)
+    if system.constraints:
+        closed = assembled_states(system, states)
+        again = np.arange(count) % len(closed)  # Assembly is a search: some postures in turn.
+        states = replace(states, **{name: getattr(closed, name)[again] for name in ("q", "v", "a", "u")})
     tau = np.zeros((count, assembly.nv))
     at = len(system.inputs)
     for described in assembly.free_joints:
@@ -98,7 +103,7 @@ def task(label: str, count: int = STATES) -> Task:
             size = described.v.stop - described.v.start
             tau[:, described.v] = states.u[:, at : at + size]
             at += size
-    states = States(states.q, states.v, states.a, states.u, tau, states.passive)
+    states = replace(states, applied=tau)
     depths: list[int] = []
     for mover in assembly.movers:
         depths.append(1 + (depths[mover.parent] if mover.parent >= 0 else 0))
