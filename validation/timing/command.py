@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -40,36 +40,42 @@ def timing(
     repeats: Annotated[int, typer.Option(min=3, help="Interleaved repeats.")] = REPEATS,
     states: Annotated[int, typer.Option(min=64, help="Random states.")] = STATES,
     report: Annotated[Path, typer.Option(help="Folder for timing.html, .md and .json.")] = Path("reports"),
+    resume: Annotated[bool, typer.Option("--resume", help="Leave out what the report has figures of.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,
 ) -> None:
     """Time generated C against Pinocchio's C++, MuJoCo's C, C by CasADi and by SymPy, and Exudyn's flexible robot.
 
     A part that is chosen replaces that part of the report's figures; the whole starts afresh. Ctrl-C keeps what was
-    measured. Exit code: 0 everything was timed, 1 something could not be, 2 bad input, 130 interrupted.
+    measured. Exit code: 0 everything was timed, 1 something failed, 2 bad input, 130 interrupted.
     """
     _known(models, [*SCENES, LABEL], "--model")
     _known(peers, PEERS, "--peer")
     _known(functions, FUNCTIONS, "--function")
-    in_parts = bool(models or peers or functions)
+    in_parts = bool(models or peers or functions or resume)
     record = read(report / "timing.json") if in_parts else Record()
     todo = jobs([name for name in models or SCENES if name in SCENES], tuple(peers or PEERS), functions or FUNCTIONS,
-                repeats, states)  # fmt: skip
-    flexible = LABEL in models if models else not in_parts
-    before, failed = load(), len(record.skipped)
-    interrupted = False
+                repeats, states, record if resume else None)  # fmt: skip
+    flexible = LABEL in models if models else not (peers or functions) and not (resume and record.flexible)
+    before, limits, interrupted = load(), facts(), False
+
+    def save() -> Path:
+        """After each model, so that even a kill leaves what was measured."""
+        now = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime())
+        record.machine = {**limits, "load before and after": [*before, *load()], "date": now, "states": states,
+                          "repeats": repeats}  # fmt: skip
+        return write_report(record, report)
+
     try:
-        failed = _measure(record, todo, flexible, repeats)
+        _measure(record, todo, flexible, repeats, save)
     except KeyboardInterrupt:
         interrupted = True
-    record.machine = {**facts([*before, *load()]), "date": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
-                      "states": states, "repeats": repeats}  # fmt: skip
-    page = write_report(record, report)
+    page = save()
     if as_json:
         typer.echo(json.dumps(as_data(record)))
     else:
         _show(record)
         typer.echo(f"{headline(record)} Report: {page}")
-    raise typer.Exit(130 if interrupted else 1 if failed else 0)
+    raise typer.Exit(130 if interrupted else 1 if record.failed else 0)
 
 
 def _known(chosen: Sequence[str] | None, names: Collection[str], option: str) -> None:
@@ -78,10 +84,9 @@ def _known(chosen: Sequence[str] | None, names: Collection[str], option: str) ->
             raise typer.BadParameter(f"no '{name}'; there are {', '.join(names)}", param_hint=option)
 
 
-def _measure(record: Record, todo: Sequence[Job], flexible: bool, repeats: int) -> int:
-    """Everything, with a bar; returns how much could not be timed."""
+def _measure(record: Record, todo: Sequence[Job], flexible: bool, repeats: int, save: Callable[[], object]) -> None:
+    """Everything, with a bar."""
     console = Console(stderr=True)
-    failures = 0
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -92,9 +97,8 @@ def _measure(record: Record, todo: Sequence[Job], flexible: bool, repeats: int) 
         shown = bar.add_task("compiling the engines", total=sum(len(job.functions) for job in todo) + int(flexible))
         for failure in prepare({peer for job in todo for peer in job.peers}):
             console.print(failure, style="bold red", markup=False)
-            failures += 1
         for job in todo:
-            said = len(record.skipped)
+            said, failed = len(record.skipped), len(record.failed)
 
             def done(model: str, function: str) -> None:
                 bar.update(shown, description=f"{model}: {FUNCTIONS[function]}", advance=1)
@@ -102,16 +106,17 @@ def _measure(record: Record, todo: Sequence[Job], flexible: bool, repeats: int) 
                     console.print(f"{model}: {FUNCTIONS[function]}", markup=False)
 
             run_job(job, record, done)
-            for model, function, peer, why in record.skipped[said:]:
-                console.print(f"not timed: {model}, {function}, {peer}: {why}", style="yellow", markup=False)
+            for notes, style in ((record.skipped[said:], "yellow"), (record.failed[failed:], "bold red")):
+                for model, function, peer, why in notes:
+                    console.print(f"not timed: {model}, {function}, {peer}: {why}", style=style, markup=False)
+            save()
         if flexible:
             bar.update(shown, description=LABEL, advance=1)
             try:
                 record.flexible = [asdict(row) for row in run_flexible(repeats)]
             except BuildError as error:
+                record.failed.append((LABEL, "M + h", "exudyn", str(error)))
                 console.print(f"not timed: {error}", style="bold red", markup=False)
-                failures += 1
-    return failures
 
 
 def _show(record: Record) -> None:

@@ -96,6 +96,10 @@ class Made:
         return sum(self.operations.values())
 
 
+# Model, function, peer, why.
+Note = tuple[str, str, str, str]
+
+
 @dataclass
 class Record:
     """Everything measured so far.
@@ -103,14 +107,16 @@ class Record:
     Attributes:
         entries: Pairs of sides.
         costs: Of generated functions.
-        skipped: (model, function, peer, why).
+        skipped: What a peer has no side for: (model, function, peer, why).
+        failed: What should have been timed and was not: likewise.
         flexible: Rows of the flexible robot.
         machine: Facts of the last run: processor, peak rates, load, versions, flags.
     """
 
     entries: list[Entry] = field(default_factory=list)
     costs: list[Made] = field(default_factory=list)
-    skipped: list[tuple[str, str, str, str]] = field(default_factory=list)
+    skipped: list[Note] = field(default_factory=list)
+    failed: list[Note] = field(default_factory=list)
     flexible: list[dict[str, Any]] = field(default_factory=list)
     machine: dict[str, Any] = field(default_factory=dict)
 
@@ -119,7 +125,14 @@ class Record:
         M, F, P = set(models), set(functions), set(peers)
         self.entries = [x for x in self.entries if not (x.model in M and x.function in F and x.peer in P)]
         self.costs = [x for x in self.costs if not (x.model in M and x.function in F and x.by in {*P, "symofros"})]
-        self.skipped = [x for x in self.skipped if not (x[0] in M and x[1] in F and x[2] in {*P, "symofros"})]
+        self.skipped, self.failed = (
+            [x for x in notes if not (x[0] in M and x[1] in F and x[2] in {*P, "symofros"})]
+            for notes in (self.skipped, self.failed)
+        )
+
+    def has(self, model: str, function: str) -> bool:
+        """Whether anything was timed of it."""
+        return any((x.model, x.function) == (model, function) for x in self.entries)
 
     def best(self, model: str, function: str, peer: str, family: str = "") -> Entry | None:
         """The peer's fastest way by the median, of a compiler's family if one is named."""
@@ -138,7 +151,8 @@ def as_data(record: Record) -> dict[str, Any]:
     return {
         "schema": SCHEMA, "machine": record.machine,
         "entries": [{**asdict(x), "ratio": x.ratio, "batch_ratio": x.batch_ratio} for x in record.entries],
-        "costs": [asdict(x) for x in record.costs], "skipped": record.skipped, "flexible": record.flexible,
+        "costs": [asdict(x) for x in record.costs], "skipped": record.skipped, "failed": record.failed,
+        "flexible": record.flexible,
     }  # fmt: skip
 
 
@@ -150,8 +164,9 @@ def read(path: Path) -> Record:
         return Record()
     if not isinstance(data, dict) or data.get("schema") != SCHEMA:
         return Record()
-    return Record([entry(row) for row in data["entries"]], [_made(row) for row in data["costs"]],
-                  [(a, b, c, d) for a, b, c, d in data["skipped"]], data["flexible"], data["machine"])  # fmt: skip
+    skipped, failed = ([(a, b, c, d) for a, b, c, d in data[name]] for name in ("skipped", "failed"))
+    entries, costs = [entry(row) for row in data["entries"]], [made(row) for row in data["costs"]]
+    return Record(entries, costs, skipped, failed, data["flexible"], data["machine"])
 
 
 def entry(row: Mapping[str, Any]) -> Entry:
@@ -162,9 +177,7 @@ def entry(row: Mapping[str, Any]) -> Entry:
     return Entry(**values)
 
 
-def _made(row: Mapping[str, Any]) -> Made:
+def made(row: Mapping[str, Any]) -> Made:
+    """A cost from JSON."""
     values: dict[str, Any] = {item.name: row[item.name] for item in fields(Made)}
     return Made(**values)
-
-
-made = _made

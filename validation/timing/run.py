@@ -55,7 +55,7 @@ def run_job(job: Job, record: Record, done: Done = lambda model, function: None)
         if status != 0:
             words.seek(0)
             last = (words.read().strip() or "no word").splitlines()[-1]
-            record.skipped.append((job.model, "everything left", "symofros", f"the worker ended with {status}: {last}"))
+            record.failed.append((job.model, "what was left", "symofros", f"the worker ended with {status}: {last}"))
 
 
 def take(line: str, job: Job, record: Record, done: Done) -> None:
@@ -71,17 +71,18 @@ def take(line: str, job: Job, record: Record, done: Done) -> None:
         record.entries.append(entry(value))
     elif kind == "cost":
         record.costs.append(made(value))
-    elif kind == "skipped":
-        record.skipped.append(tuple(value))
+    elif kind in ("skipped", "failed"):
+        getattr(record, kind).append(tuple(value))
 
 
 def jobs(models: Iterable[str], peers: tuple[str, ...], functions: Iterable[str], repeats: int,
-         states: int) -> list[Job]:  # fmt: skip
-    """What is to be done: each model's functions among those asked for."""
+         states: int, done: Record | None = None) -> list[Job]:  # fmt: skip
+    """What is to be done: each model's functions among those asked for, less what was done."""
     wanted = set(functions)
     found = []
     for model in models:
-        chosen = tuple(name for name in SCENES[model].functions if name in wanted)
+        left = [name for name in SCENES[model].functions if done is None or not done.has(model, name)]
+        chosen = tuple(name for name in left if name in wanted)
         if chosen:
             found.append(Job(model, peers, chosen, repeats, states))
     return found
@@ -106,8 +107,8 @@ def prepare(peers: Iterable[str]) -> list[str]:
     return failures
 
 
-def facts(load: Iterable[float]) -> Mapping[str, Any]:
-    """What times depend on: processor, its measured limits, versions, flags, the load before and after."""
+def facts() -> Mapping[str, Any]:
+    """What times depend on: processor, its measured limits, versions, flags."""
     packages = {"symofros": "symofros", "pinocchio": "pin", "mujoco": "mujoco", "casadi": "casadi", "sympy": "sympy",
                 "exudyn": "exudyn"}  # fmt: skip
     versions = {}
@@ -120,7 +121,7 @@ def facts(load: Iterable[float]) -> Mapping[str, Any]:
              "casadi, sympy": " or ".join(" ".join(flags) for flags in BUILDS) + " -march=native",
              "mujoco": "as in its wheel"}  # fmt: skip
     return {**machine(), "compilers": [found.version for found in compilers()], "versions": versions, "flags": flags,
-            "load": list(load), **peaks()}  # fmt: skip
+            **peaks()}  # fmt: skip
 
 
 def peaks() -> dict[str, float]:

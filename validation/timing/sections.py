@@ -195,7 +195,7 @@ def _chart(curves: Sequence[Growth], quantity: str) -> Chart:
 
 def _skipped(record: Record) -> Section:
     merged: dict[tuple[str, str, str], list[str]] = {}
-    for model, function, peer, why in record.skipped:
+    for model, function, peer, why in (*record.failed, *record.skipped):
         merged.setdefault((model, peer, why.splitlines()[0] if why else ""), []).append(
             FUNCTIONS.get(function, function)
         )

@@ -1,7 +1,8 @@
 """Times one model in a process of its own: `python -m validation.timing.worker`.
 
 Arguments: a job as JSON: {"model", "peers", "functions", "repeats", "states"}. Prints a JSON object a line:
-{"entry": ...} of a pair of sides, {"cost": ...} of a generated function, {"skipped": ...}, {"doing": ...}.
+{"entry": ...} of a pair of sides, {"cost": ...} of a generated function, {"skipped": ...} of a peer that has no side,
+{"failed": ...} of one that should have, {"doing": ...}.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def work(job: Job, say: Say) -> None:
         try:
             _function(given, job, function, say)
         except (BuildError, DisagreementError, sf.SymofrosError) as error:
-            say("skipped", [job.model, function, "symofros", str(error)])
+            say("failed", [job.model, function, "symofros", str(error)])
 
 
 def _function(given: Task, job: Job, function: str, say: Say) -> None:
@@ -73,7 +74,7 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
             try:
                 errors[name] = checked(function, name, loop.results(), expected)
             except DisagreementError as error:
-                say("skipped", [job.model, function, peer, str(error)])
+                say("failed", [job.model, function, peer, str(error)])
                 continue
             sides[name], peers[name] = loop, peer
     times = race(sides, job.states, job.repeats)
@@ -92,7 +93,7 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
 
 def _offered(given: Task, job: Job, function: str, peer: str, say: Say) -> Iterable[Loop]:
     def warn(words: str) -> None:
-        say("skipped", [job.model, function, peer, words])
+        say("failed", [job.model, function, peer, words])
 
     sources: dict[str, Callable[[], Iterator[Loop]]] = {
         "pinocchio": lambda: pinocchio_loops(given, [function], warn),
@@ -102,9 +103,11 @@ def _offered(given: Task, job: Job, function: str, peer: str, say: Say) -> Itera
     }
     try:
         return list(sources[peer]())
-    except (Skipped, BuildError, ImportError) as error:
+    except Skipped as error:
+        say("skipped", [job.model, function, peer, str(error)])
+    except (BuildError, ImportError) as error:
         warn(str(error))
-        return []
+    return []
 
 
 def _print(kind: str, value: Any) -> None:

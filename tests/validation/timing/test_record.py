@@ -68,7 +68,8 @@ def test_targets_use_the_family_and_the_batch_they_name() -> None:
 
 
 def test_a_record_survives_its_file(tmp_path: Path) -> None:
-    record = Record([entry(), entry(batch=None)], [made()], [("panda", "bias", "sympy", "too large")], [], {"cores": 2})
+    record = Record([entry(), entry(batch=None)], [made()], [("panda", "bias", "sympy", "too large")],
+                    [("panda", "bias", "casadi", "no compiler")], [], {"cores": 2})  # fmt: skip
     (tmp_path / "timing.json").write_text(json.dumps(as_data(record)))
     assert read(tmp_path / "timing.json") == record
 

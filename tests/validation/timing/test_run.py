@@ -40,6 +40,8 @@ def test_jobs_are_the_functions_that_a_model_is_timed_at() -> None:
     found = jobs(["panda", "chain7"], ("mujoco",), ["dynamics", "step"], 5, 100)
     assert [(job.model, job.functions) for job in found] == [("panda", ("dynamics", "step")), ("chain7", ("dynamics",))]
     assert jobs(["chain7"], ("mujoco",), ["bias"], 5, 100) == []
+    left = jobs(["panda"], ("mujoco",), ["dynamics", "step"], 5, 100, Record([entry("panda", "dynamics")]))
+    assert [job.functions for job in left] == [("step",)], "resumed"
 
 
 def test_a_model_is_timed_beside_engines_and_symbolic_peers() -> None:
@@ -68,7 +70,7 @@ def test_a_peer_that_disagrees_is_skipped_loudly(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(engines, "STEP", 2 * engines.STEP)
     said: list[tuple[str, object]] = []
     worker.work(Job("planar2R", ("mujoco",), ("step",), 3, 64), lambda *what: said.append(what))
-    (words,) = [value for kind, value in said if kind == "skipped" and isinstance(value, list)]
+    (words,) = [value for kind, value in said if kind == "failed" and isinstance(value, list)]
     assert "differs from ours by" in words[3] and not [value for kind, value in said if kind == "entry"]
 
 
