@@ -18,10 +18,10 @@ from validation.timing.record import Record, as_data
 from validation.timing.sections import headline, sections
 
 LIMITS = (
-    "One thread, pinned to one processor. All sides of a function run in one process, in turn, each a loop in C over "
-    "the same random states; before, each side's results are compared with ours, to 1e-12 of the largest entry (1e-9 "
-    "where a system is solved), and sides that differ are not timed. Cells hold minimum and median over the repeats, "
-    "in nanoseconds a state; ratios are of medians, theirs to ours.",
+    "One thread, pinned to one processor, whose time on it is what is measured. All sides of a function run in one "
+    "process, in turn, each a loop in C over the same random states; before, each side's results are compared with "
+    "ours, to 1e-12 of the largest entry (1e-9 where a system is solved), and sides that differ are not timed. Cells "
+    "hold minimum and median over the repeats, in nanoseconds a state; ratios are of medians, theirs to ours.",
     "Ours is generated C, one state after the other through the public header, and (batch) several at a time by "
     "vectors, in calls of 64 states; results replace each other as those of the engines do. Pinocchio is its own "
     "headers, compiled in the run by gcc and by clang, in the faster of its two conventions; MuJoCo is its wheel's own "

@@ -20,7 +20,7 @@ def test_a_summary_is_minimum_and_median() -> None:
 def test_sides_run_in_turn_and_times_are_per_state(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a clock of our own: one side takes 2 ms a round, the other 6."""
     clock, order = [0], []
-    monkeypatch.setattr(racing, "perf_counter_ns", lambda: clock[0])
+    monkeypatch.setattr(racing, "thread_time_ns", lambda: clock[0])
 
     def side(name: str, nanoseconds: int) -> Loop:
         def run(rounds: int) -> None:
@@ -38,7 +38,7 @@ def test_sides_run_in_turn_and_times_are_per_state(monkeypatch: pytest.MonkeyPat
 def test_short_loops_run_for_many_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [0]
     asked = []
-    monkeypatch.setattr(racing, "perf_counter_ns", lambda: clock[0])
+    monkeypatch.setattr(racing, "thread_time_ns", lambda: clock[0])
 
     def run(rounds: int) -> None:
         asked.append(rounds)
