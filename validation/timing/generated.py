@@ -20,6 +20,8 @@ BUILDS = (("-O3",), ("-O3", "-ffast-math"))
 _FLAGS = ("-march=native", "-std=gnu99", '-DCASADI_SYMBOL_EXPORT=__attribute__((visibility("default")))')
 # Kane's equations of SymPy grow out of hand: two bodies in space take 0.3 s, four 4 s, seven minutes.
 MOST_KANE = 4
+# CasADi's derivatives of larger models are long to compile, and those by quaternions are by four numbers.
+MOST_DERIVED = 10
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,9 @@ def casadi_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
         Skipped: The recursions have no equations for the model.
     """
     from validation.adapters import casadi_code, casadi_tree
+
+    if task.assembly.nv > MOST_DERIVED and any(name.endswith("derivatives") for name in functions):
+        raise Skipped(f"derivatives are made up to {MOST_DERIVED} degrees of freedom, beyond which they take minutes")
 
     def make(name: str) -> Source:
         start = time.perf_counter()

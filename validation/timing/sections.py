@@ -14,6 +14,7 @@ from validation.timing.models import FUNCTIONS, SCENES
 from validation.timing.record import Entry, Made, Record
 from validation.timing.targets import Verdict, verdicts
 
+_GENERATORS = ("symofros", "casadi", "sympy")
 # What growth is drawn of.
 _DRAWN = ("time [ns]", "operations", "generation [s]", "compilation [s]")
 COLORS = {"symofros": 0, "symofros, batch": 2, "pinocchio": 1, "mujoco": 5, "casadi": 6, "sympy": 7}
@@ -40,8 +41,8 @@ class Section:
 
 def sections(record: Record) -> list[Section]:
     """All that have something to show."""
-    found = [_targets(record), *(_function(record, name) for name in FUNCTIONS), _costs(record), _growth(record),
-             _skipped(record)]  # fmt: skip
+    found = [_targets(record), *(_function(record, name) for name in FUNCTIONS), _growth(record), _making(record),
+             _limits(record), _skipped(record)]  # fmt: skip
     return [section for section in found if section.rows or section.figures]
 
 
@@ -125,40 +126,57 @@ def _short(x: float) -> str:
     return f"{x:.1f}" if x < 100 else f"{x:.0f}"
 
 
-def _costs(record: Record) -> Section:
-    flops, vector = record.machine.get("scalar_flops", math.nan), record.machine.get("vector_flops", math.nan)
-    copied = record.machine.get("copied_bytes", math.nan)
-    rows = []
-    for model in SCENES:
-        for function in FUNCTIONS:
-            for by in ("symofros", "casadi", "sympy"):
-                cost = record.cost(model, function, by)
-                if cost is not None:
-                    rows.append(_cost(record, cost, flops, vector, copied))
+def _all_costs(record: Record) -> list[Made]:
+    """Of the fastest build of each side."""
+    found = [record.cost(model, function, by) for model in SCENES for function in FUNCTIONS for by in _GENERATORS]
+    return [cost for cost in found if cost is not None]
+
+
+def _making(record: Record) -> Section:
     text = (
-        "Generation is from the description to C text, compilation of that text alone, by the build that runs fastest. "
-        "Operations are what one call executes; a sine or cosine counts as one call. Distance from the limit is the "
-        f"measured time over that of the same operations at this core's measured peak, {flops / 1e9:.1f} GFlop/s in "
-        f"scalar fused multiply-adds, and for batches {vector / 1e9:.0f} GFlop/s in vectors; below 1 is not possible, "
-        "and calls cost far more than the one operation that they count. Memory is what a call reads and writes at "
-        f"least; its limit is the time it takes at the {copied / 1e9:.0f} GB/s of copies in the core's first cache."
+        "Generation is from the description to C text, compilation of that text alone, by the build that runs fastest, "
+        "at whatever load the machine had then."
     )
     head = ("model", "function", "by", "#generation [s]", "#compilation [s]", "#C text [kB]", "#machine code [kB]",
-            "#constants [kB]", "#mul", "#add", "#div", "#calls", "#time [ns]", "#limit [ns]", "#distance",
-            "#batch: distance", "#memory [B]", "#its limit [ns]")  # fmt: skip
-    return Section("What it costs", (text,), head, tuple(rows))
+            "#constants [kB]")  # fmt: skip
+    rows = tuple(
+        (*_named(cost), f"{cost.generation:.3f}", f"{cost.compilation:.2f}",
+         *(f"{x / 1e3:.1f}" for x in (cost.text, cost.code, cost.constants)))
+        for cost in _all_costs(record)
+    )  # fmt: skip
+    return Section("What it costs to make", (text,), head, rows)
 
 
-def _cost(record: Record, cost: Made, flops: float, vector: float, copied: float) -> tuple[str, ...]:
-    limit = 1e9 * cost.total / flops
-    batch = next(
-        (x.batch for x in record.entries if (x.model, x.function) == (cost.model, cost.function) and x.batch), None
+def _named(cost: Made) -> tuple[str, str, str]:
+    return SCENES[cost.model].title, FUNCTIONS[cost.function], cost.by
+
+
+def _limits(record: Record) -> Section:
+    flops, vector = record.machine.get("scalar_flops", math.nan), record.machine.get("vector_flops", math.nan)
+    copied = record.machine.get("copied_bytes", math.nan)
+    text = (
+        "Operations are what one call executes; a sine or cosine counts as one. Distance is the measured time over "
+        f"that of the same operations at this core's measured peak, {flops / 1e9:.1f} GFlop/s in fused multiply-adds, "
+        f"and for batches {vector / 1e9:.0f} GFlop/s in vectors: 1 is the limit of code in which every multiplication "
+        "has an addition to go with, and calls cost far more than the one operation that they count. Memory is what a "
+        f"call reads and writes; its limit is the time it takes at the {copied / 1e9:.0f} GB/s of copies in the "
+        "core's first cache."
     )
+    head = ("model", "function", "by", "#mul", "#add", "#div", "#calls", "#time [ns]", "#limit [ns]", "#distance",
+            "#of batches", "#memory [B]", "#its limit [ns]")  # fmt: skip
+    rows = tuple(_limit(record, cost, flops, vector, copied) for cost in _all_costs(record))
+    return Section("How far from the machine's limit", (text,), head, rows)
+
+
+def _limit(record: Record, cost: Made, flops: float, vector: float, copied: float) -> tuple[str, ...]:
+    limit = 1e9 * cost.total / flops
+    alike = [x for x in record.entries if (x.model, x.function) == (cost.model, cost.function)]
+    batch = next((x.batch for x in alike if x.batch), None)
     in_batch = f"{batch[1] / (1e9 * cost.total / vector):.1f}" if batch and cost.by == "symofros" else "-"
-    return (SCENES[cost.model].title, FUNCTIONS[cost.function], cost.by, f"{cost.generation:.3f}",
-            f"{cost.compilation:.2f}", *(f"{x / 1e3:.1f}" for x in (cost.text, cost.code, cost.constants)),
-            *(str(cost.operations.get(kind, 0)) for kind in ("mul", "add", "div", "call")), _short(cost.time),
-            _short(limit), f"{cost.time / limit:.1f}", in_batch, str(cost.memory),
+    # A Jacobian of one joint takes no operations.
+    distance = f"{cost.time / limit:.1f}" if limit else "-"
+    return (*_named(cost), *(str(cost.operations.get(kind, 0)) for kind in ("mul", "add", "div", "call")),
+            _short(cost.time), _short(limit), distance, in_batch, str(cost.memory),
             f"{1e9 * cost.memory / copied:.2f}")  # fmt: skip
 
 
