@@ -24,7 +24,8 @@ from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
 from validation.stability import command as stability
-from validation.studies import exports_report, fuzz_report, mutation_report, oracle, simulation_report, timing_report
+from validation.studies import exports_report, fuzz_report, mutation_report, oracle, simulation_report
+from validation.timing import command as timing
 
 
 class Exit(IntEnum):
@@ -153,7 +154,7 @@ fuzz_report.register(app)
 mutation_report.register(app)
 oracle.register(app)
 stability.register(app)
-timing_report.register(app)
+timing.register(app)
 simulation_report.register(app)
 
 if __name__ == "__main__":

@@ -50,9 +50,9 @@ class MujocoEngine:
         """Its model as a file for programs in C."""
         mujoco.mj_saveModel(self.model, str(path))
 
-    def states(self, q: Array, v: Array) -> tuple[Array, Array]:
-        """Our states (n, nq), (n, nv) in its coordinates."""
-        return self.chart.coordinates(q), self.chart.speeds(q, v)
+    def body(self, name: str) -> int:
+        """Its index of one of our moving bodies."""
+        return int(self.model.body(name).id)
 
     def _each(self, states: States, result: Callable[[Any], Any]) -> Array:
         """One state at a time: positions, velocities and M are up to date in the data that `result` gets."""

@@ -61,6 +61,18 @@ class LoopEngine:
     version: str = trees.VERSION
     capabilities: frozenset[str] = CAPABILITIES
 
+    def ties_as_numbers(self) -> list[str]:
+        """Its constraints for programs in C++: 3 or 6, then twice joint, R row by row and p of the place on it."""
+        lines = []
+        for tie in self.ties:
+            m = tie.model
+            ends = (m.joint1_id, m.joint1_placement), (m.joint2_id, m.joint2_placement)
+            size = "6" if m.type == pin.ContactType.CONTACT_6D else "3"
+            numbers = [[str(joint), *(repr(float(x)) for x in (*X.rotation.ravel(), *X.translation))]
+                       for joint, X in ends]  # fmt: skip
+            lines.append(" ".join([size, *numbers[0], *numbers[1]]))
+        return lines
+
     def forward_dynamics(self, states: States) -> Array:
         """V' by `constraintDynamics`."""
         a = self._each(states, lambda solved: solved.a)

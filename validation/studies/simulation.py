@@ -21,7 +21,7 @@ from validation.reference import References
 from validation.stability import four_bars
 from validation.stability.singular import ends_of_crank
 from validation.stability.soft_closures import SOLIMP
-from validation.studies.timing import models
+from validation.timing.models import panda7
 
 # Of each joint [N m/rad, N m s/rad]: what RK4 with a millisecond holds at the wrist, whose inertia is the smallest.
 STIFFNESS, DAMPING, TARGET = 20.0, 1.0, 0.4
@@ -108,7 +108,7 @@ def arm(repeats: int, span: float = 10.0, h: float = 1e-3) -> Race:
     Raises:
         ValueError: MuJoCo can't hold the arm.
     """
-    panda = models()["panda, 7 joints"]
+    panda = panda7()
     bodies = [body if body.joint is None else replace(body, joint=replace(body.joint, elements=()))
               for body in panda.bodies]  # fmt: skip
     system = replace(panda, bodies=tuple(bodies))

@@ -1,4 +1,4 @@
-"""Times the planar flexible robot, ours and Exudyn's in turn: `python -m validation.studies.flexible_worker`.
+"""Times the planar flexible robot, ours and Exudyn's in turn: `python -m validation.timing.flexible_worker`.
 
 Arguments: repeats, evaluations a repeat, shape functions a strip (one or more). Prints `FlexibleTiming`s as JSON.
 """
@@ -12,16 +12,16 @@ from collections.abc import Callable, Iterable
 from dataclasses import asdict
 from functools import partial
 from statistics import median
-from time import perf_counter_ns
+from time import thread_time_ns
 
 import numpy as np
 
 from validation.adapters.exudyn_planar import smallest
 from validation.adapters.exudyn_system import Part
 from validation.assembly import assemble
-from validation.studies.equal_accuracy import NotTheSameError, Pair, pairs, robot
-from validation.studies.native_loop import GeneratedLoop
-from validation.studies.timing_flexible import FlexibleTiming
+from validation.timing.equal_accuracy import NotTheSameError, Pair, pairs, robot
+from validation.timing.flexible import FlexibleTiming
+from validation.timing.flexible_loop import GeneratedLoop
 
 # Elastic coordinates of the states: the strips bend by some 3 % of their lengths [m].
 _DEFLECTION = 0.01
@@ -79,9 +79,9 @@ def _summary(times: Times) -> tuple[float, float]:
 
 
 def _nanoseconds(run: Callable[[], None]) -> int:
-    start = perf_counter_ns()
+    start = thread_time_ns()
     run()
-    return perf_counter_ns() - start
+    return thread_time_ns() - start
 
 
 if __name__ == "__main__":

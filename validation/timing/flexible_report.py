@@ -8,7 +8,8 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from validation.studies.timing_flexible import CALLS, FlexibleTiming
+from validation.timing.flexible import CALLS, FlexibleTiming
+from validation.timing.sections import Section
 
 _LIMITS = (
     "`planar_robot`: three motors with harmonic drives, the first of them elastic, and two strips that bend. Exudyn "
@@ -28,28 +29,21 @@ _LIMITS = (
     "with it that system's own small work, so the truth lies between the two. Both are medians over the repeats; "
     "minima are what a calm machine gives.",
 )
-_HEAD = (
-    "| ours, functions (nv) | Exudyn, elements (coordinates + equations) | error, ours and Exudyn's | quantity | "
-    "ours, ns (min, median) | Exudyn, ns | calls, ns | ratio | net ratio |"
-)
+_HEAD = ("#ours: functions (nv)", "#Exudyn: elements (coordinates + equations)", "error: ours, Exudyn's", "quantity",
+         "#ours [ns]", "#Exudyn [ns]", "#calls [ns]", "#ratio", "#net ratio")  # fmt: skip
 
 
-def flexible_lines(rows: Iterable[Mapping[str, Any]]) -> list[str]:
-    """The section in Markdown; none where nothing was timed."""
-    rows = list(rows)
-    if not rows:
-        return []
-    lines = ["", "# A flexible robot against Exudyn, at equal accuracy", ""]
-    lines += [line for text in _LIMITS for line in (text, "")]
-    lines += [_HEAD, "|---:|---:|---|---|---:|---:|---:|---:|---:|"]
+def flexible_section(rows: Iterable[Mapping[str, Any]]) -> Section:
+    """The section of the report."""
+    cells = []
     for row in rows:
         nv, coordinates, equations = row["sizes"]
         ours, theirs, calls = (", ".join(f"{x:.0f}" for x in row[side]) for side in ("ours", "theirs", "calls"))
         errors = ", ".join(f"{x:.1e}" for x in row["error"])
-        lines.append(f"| {row['functions']} ({nv}) | {row['elements']} ({coordinates} + {equations}) | {errors} | "
-                     f"{row['quantity']} | {ours} | {theirs} | {calls} | **{row['ratio']:.1f}** | "
-                     f"**{row['corrected']:.1f}** |")  # fmt: skip
-    return lines
+        sizes = f"{row['functions']} ({nv})", f"{row['elements']} ({coordinates} + {equations})"
+        ratios = f"{row['ratio']:.1f}", f"{row['corrected']:.1f}"
+        cells.append((*sizes, errors, row["quantity"], ours, theirs, calls, *ratios))
+    return Section("A flexible robot against Exudyn, at equal accuracy", _LIMITS, _HEAD, tuple(cells))
 
 
 def show_flexible(rows: Iterable[FlexibleTiming]) -> None:

@@ -10,8 +10,8 @@ import pytest
 import reference_models
 import symofros as sf
 from validation.adapters.exudyn_planar import Cable, planar_tree, smallest
-from validation.studies import equal_accuracy
-from validation.studies.equal_accuracy import (
+from validation.timing import equal_accuracy
+from validation.timing.equal_accuracy import (
     EA,
     POSTURE,
     NotTheSameError,
@@ -21,9 +21,9 @@ from validation.studies.equal_accuracy import (
     robot,
     their_frequencies,
 )
-from validation.studies.flexible_worker import JOBS, measure
-from validation.studies.native_loop import GeneratedLoop
-from validation.studies.timing_flexible_report import flexible_lines
+from validation.timing.flexible_loop import GeneratedLoop
+from validation.timing.flexible_report import flexible_section
+from validation.timing.flexible_worker import JOBS, measure
 
 # Of the two lowest frequencies, those of the elastic drive and of the first bending: three functions and two elements
 # both have them to 1.3e-5.
@@ -76,9 +76,9 @@ def test_the_study_runs_and_reports() -> None:
     for row in rows:
         assert row.sizes == (10, 42, 32) and row.elements == 2
         assert 0 < row.ours[0] <= row.ours[1] and row.calls[0] < row.theirs[0] and 0 < row.corrected < row.ratio
-    text = "\n".join(flexible_lines(asdict(row) for row in rows))
-    assert "at equal accuracy" in text and "| 3 (10) | 2 (42 + 32) | 2.8e-02, 1.9e-02 | M + h + Q |" in text
-    assert flexible_lines([]) == []
+    section = flexible_section(asdict(row) for row in rows)
+    assert "at equal accuracy" in section.title
+    assert ("3 (10)", "2 (42 + 32)", "2.8e-02, 1.9e-02", "M + h + Q") in [row[:4] for row in section.rows]
 
 
 def test_the_loop_computes_what_the_model_does(rng: np.random.Generator) -> None:

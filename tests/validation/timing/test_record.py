@@ -1,0 +1,90 @@
+"""Ratios, the best of a peer's ways, growth, targets, and records that parts of runs add to."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.validation.timing.records import cubic, entry, made
+from validation.timing.growth import CHAINS, exponent, growth
+from validation.timing.record import Record, as_data, read
+from validation.timing.targets import TARGETS, Target, Verdict, verdicts
+
+
+def test_ratios_are_of_medians() -> None:
+    pair = entry(ours=100.0, theirs=800.0, batch=20.0)
+    assert pair.ratio == 8.0 and pair.batch_ratio == 40.0
+    assert entry(batch=None).batch_ratio is None
+
+
+def test_a_peers_best_is_its_fastest_way_by_the_median() -> None:
+    record = Record([entry(variant="gcc 12, local", theirs=900.0), entry(variant="clang 19, world", theirs=700.0),
+                     entry(variant="clang 19, local", theirs=750.0), entry(peer="mujoco", theirs=10.0)])  # fmt: skip
+    best, gcc = (record.best("panda", "dynamics", "pinocchio", family) for family in ("", "gcc"))
+    assert best is not None and best.variant == "clang 19, world"
+    assert gcc is not None and gcc.ratio == 9.0
+    assert record.best("panda", "bias", "pinocchio") is None
+
+
+@pytest.mark.parametrize("slope", [0.0, 1.0, 2.5, 3.0])
+def test_the_exponent_of_a_power_law_is_its_power(slope: float) -> None:
+    assert exponent(CHAINS, [3.0 * n**slope for n in CHAINS]) == pytest.approx(slope, abs=1e-12)
+
+
+def test_the_exponent_is_of_the_upper_part() -> None:
+    """A constant hides the growth of short chains."""
+    assert exponent(CHAINS, [100.0 if n < 7 else n**2.0 for n in CHAINS]) == pytest.approx(2.0, abs=1e-12)
+    assert np.isnan(exponent([7], [1.0]))
+
+
+def test_growth_is_of_each_side_and_quantity() -> None:
+    found = {(curve.who, curve.quantity): curve.exponent for curve in growth(cubic())}
+    assert found["symofros", "time [ns]"] == pytest.approx(3.0)
+    assert found["pinocchio", "time [ns]"] == pytest.approx(1.5)
+    assert found["symofros", "operations"] == pytest.approx(2.0)
+    assert ("mujoco", "time [ns]") not in found
+
+
+@pytest.mark.parametrize(("ratio", "words"), [(7.0, "met, 0% above"), (8.4, "met, 20% above"), (6.3, "missed by 10%")])
+def test_a_verdict_says_by_how_much(ratio: float, words: str) -> None:
+    found = Verdict(Target("panda", "dynamics", "pinocchio", 7.0), entry(), ratio)
+    assert found.words == words and found.met == words.startswith("met")
+
+
+def test_what_was_not_measured_is_not_met() -> None:
+    found = verdicts(Record())
+    assert len(found) == len(TARGETS)
+    assert all(not verdict.met and verdict.words == "not measured" for verdict in found)
+
+
+def test_targets_use_the_family_and_the_batch_they_name() -> None:
+    record = Record([entry(variant="gcc 12, local", theirs=1200.0), entry(variant="clang 19, local", theirs=800.0)])
+    found = [v for v in verdicts(record) if v.entry is not None]
+    ratios = {(v.target.how, v.target.family): v.ratio for v in found}
+    assert ratios == {("scalar", ""): 8.0, ("scalar", "gcc"): 12.0, ("batch", ""): 40.0}
+
+
+def test_a_record_survives_its_file(tmp_path: Path) -> None:
+    record = Record([entry(), entry(batch=None)], [made()], [("panda", "bias", "sympy", "too large")],
+                    [("panda", "bias", "casadi", "no compiler")], [], {"cores": 2})  # fmt: skip
+    (tmp_path / "timing.json").write_text(json.dumps(as_data(record)))
+    assert read(tmp_path / "timing.json") == record
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"schema": 1}', "{"])
+def test_a_file_of_another_kind_is_an_empty_record(tmp_path: Path, text: str) -> None:
+    (tmp_path / "timing.json").write_text(text)
+    assert read(tmp_path / "timing.json") == Record()
+    assert read(tmp_path / "nowhere.json") == Record()
+
+
+def test_a_part_replaces_its_own_figures_only() -> None:
+    record = Record([entry(), entry(peer="mujoco"), entry(function="bias"), entry("ur5")],
+                    [made(), made(by="casadi")], [("panda", "dynamics", "pinocchio", "no clang")])  # fmt: skip
+    record.forget(["panda"], ["dynamics"], ["pinocchio"])
+    assert [(x.model, x.function, x.peer) for x in record.entries] == [
+        ("panda", "dynamics", "mujoco"), ("panda", "bias", "pinocchio"), ("ur5", "dynamics", "pinocchio")]  # fmt: skip
+    assert [x.by for x in record.costs] == ["casadi"] and not record.skipped

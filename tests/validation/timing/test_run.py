@@ -1,0 +1,144 @@
+"""What workers print becomes a record; what is not there is said; parts of a run; the report."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from tests.validation.timing.records import cubic, entry, made
+from validation.__main__ import app
+from validation.timing import command, engines, worker
+from validation.timing.models import FUNCTIONS, SCENES
+from validation.timing.programs import Compiler, Skipped, build, compilers
+from validation.timing.record import Record
+from validation.timing.report import write_report
+from validation.timing.run import jobs, peaks, take
+from validation.timing.sections import sections
+from validation.timing.worker import Job
+
+JOB = Job("panda", ("pinocchio", "sympy"), ("dynamics",), 3, 100)
+LINES = [
+    json.dumps({"doing": "dynamics"}), "a warning of an engine", "3", json.dumps({"entry": asdict(entry(theirs=5.0))}),
+    json.dumps({"cost": asdict(made())}), json.dumps({"skipped": ["panda", "dynamics", "sympy", "too large"]}),
+]  # fmt: skip
+
+
+def test_what_a_worker_prints_becomes_a_record() -> None:
+    record, told = Record([entry(theirs=1.0)]), []
+    for line in LINES:
+        take(line, JOB, record, lambda *what: told.append(what))
+    assert told == [("panda", "dynamics")]
+    assert [x.theirs[1] for x in record.entries] == [5.0], "the old figure is replaced"
+    assert record.costs == [made()] and record.skipped == [("panda", "dynamics", "sympy", "too large")]
+
+
+def test_jobs_are_the_functions_that_a_model_is_timed_at() -> None:
+    found = jobs(["panda", "chain7"], ("mujoco",), ["dynamics", "step"], 5, 100)
+    assert [(job.model, job.functions) for job in found] == [("panda", ("dynamics", "step")), ("chain7", ("dynamics",))]
+    assert jobs(["chain7"], ("mujoco",), ["bias"], 5, 100) == []
+    left = jobs(["panda"], ("mujoco",), ["dynamics", "step"], 5, 100, Record([entry("panda", "dynamics")]))
+    assert [job.functions for job in left] == [("step",)], "resumed"
+
+
+def test_a_model_is_timed_beside_engines_and_symbolic_peers() -> None:
+    """Whole, in this process; Pinocchio's minutes of compilation are left to the run."""
+    said: list[tuple[str, object]] = []
+    functions = ("dynamics", "forward_dynamics", "frame_jacobian", "step")
+    worker.work(Job("planar2R", ("mujoco", "casadi", "sympy"), functions, 3, 64), lambda *what: said.append(what))
+    entries = [value for kind, value in said if kind == "entry" and isinstance(value, dict)]
+    pairs = {(x["function"], x["peer"]) for x in entries}
+    assert {(name, peer) for name in functions[:2] for peer in ("mujoco", "casadi", "sympy")} <= pairs
+    assert ("step", "mujoco") in pairs and ("frame_jacobian", "casadi") in pairs
+    assert all(x["error"] < 1e-9 and 0.0 < x["ours"][0] <= x["ours"][1] for x in entries)
+    costs = [value for kind, value in said if kind == "cost" and isinstance(value, dict)]
+    assert {x["by"] for x in costs} == {"symofros", "casadi", "sympy"}
+    assert all(x["generation"] > 0 and x["text"] > 0 and x["code"] > 0 and x["memory"] > 0 for x in costs)
+
+
+def test_a_model_that_is_too_large_for_sympy_is_skipped_loudly() -> None:
+    said: list[tuple[str, object]] = []
+    worker.work(Job("ur5", ("sympy",), ("bias",), 3, 64), lambda *what: said.append(what))
+    (words,) = [value for kind, value in said if kind == "skipped" and isinstance(value, list)]
+    assert words[:3] == ["ur5", "bias", "sympy"] and "6 degrees of freedom" in words[3]
+
+
+def test_a_peer_that_disagrees_is_skipped_loudly(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(engines, "STEP", 2 * engines.STEP)
+    said: list[tuple[str, object]] = []
+    worker.work(Job("planar2R", ("mujoco",), ("step",), 3, 64), lambda *what: said.append(what))
+    (words,) = [value for kind, value in said if kind == "failed" and isinstance(value, list)]
+    assert "differs from ours by" in words[3] and not [value for kind, value in said if kind == "entry"]
+
+
+def test_missing_headers_say_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    def nothing(package: str) -> None:
+        raise engines.metadata.PackageNotFoundError(package)
+
+    monkeypatch.setattr(engines.metadata, "files", nothing)
+    with pytest.raises(Skipped, match=r"libpinocchio is not installed: pip install 'symofros\[timing\]'"):
+        engines.pinocchio_builds()
+
+
+def test_one_compiler_of_each_family_and_the_newest_clang(monkeypatch: pytest.MonkeyPatch) -> None:
+    there = {"gcc": "gcc 12.2.0", "clang": "clang 14.0.6", "clang-19": "clang 19.1.7", "clang-16": "clang 16.0.0"}
+    monkeypatch.setattr("validation.timing.programs._compiler",
+                        lambda name: Compiler(name, there[name], "") if name in there else None)  # fmt: skip
+    assert [found.name for found in compilers()] == ["gcc 12.2.0", "clang 19.1.7"]
+
+
+def test_a_program_is_compiled_once_for_its_content(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
+    compiler, text = compilers()[0], '__attribute__((visibility("default"))) double f(double x) { return 3.5 * x; }\n'
+    first, again = (build(compiler, {"f.c": text}, ("-O2",)) for _ in range(2))
+    other = build(compiler, {"f.c": text}, ("-O3",))
+    assert first == again and other.path != first.path
+    assert first.text > 0 and first.constants >= 8 and first.seconds > 0
+
+
+def test_a_core_has_a_peak() -> None:
+    found = peaks()
+    assert found["vector_flops"] > found["scalar_flops"] > 1e8 and found["copied_bytes"] > 1e8
+
+
+def test_the_report_shows_targets_costs_growth_and_what_was_left_out(tmp_path: Path) -> None:
+    record = cubic()
+    record.entries.append(entry(theirs=650.0))
+    record.costs.append(made())
+    record.skipped.append(("panda", "bias", "sympy", "too large\nwith details"))
+    record.machine = {"processor": "P", "load": [0.5, 1.0], "scalar_flops": 1e10, "vector_flops": 8e10,
+                      "copied_bytes": 1e11, "versions": {"pinocchio": "4.1.0"}}  # fmt: skip
+    page = write_report(record, tmp_path)
+    for text in (page.read_text(), (tmp_path / "timing.md").read_text()):
+        assert "missed by 7%" in text and "too large" in text and "with details" not in text
+        assert "4.1.0" in text and "n^3.0" in page.read_text()
+    cost = next(s for s in sections(record) if s.title == "How far from the machine's limit")
+    row = next(row for row in cost.rows if row[0] == SCENES["panda"].title)
+    # 1000 operations at 10 GFlop/s take 100 ns, which is what was measured; vectors in batches 20 ns, of 12.5.
+    assert row[cost.head.index("#distance")] == "1.0" and row[cost.head.index("#of batches")] == "1.6"
+
+
+@pytest.mark.parametrize("option", ["--model", "--peer", "--function"])
+def test_unknown_parts_are_bad_input(option: str) -> None:
+    result = CliRunner().invoke(app, ["timing", option, "nobody"])
+    assert result.exit_code == 2 and "nobody" in result.output
+
+
+def test_interrupted_it_keeps_what_was_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def half(job: Job, record: Record, done: object) -> None:
+        record.entries.append(entry())
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command, "run_job", half)
+    monkeypatch.setattr(command, "prepare", lambda peers: [])
+    arguments = ["timing", "--model", "panda", "--report", str(tmp_path)]
+    assert CliRunner().invoke(app, arguments).exit_code == 130
+    assert len(json.loads((tmp_path / "timing.json").read_text())["entries"]) == 1
+
+
+def test_every_scene_loads_and_every_function_has_a_name() -> None:
+    assert {name for scene in SCENES.values() for name in scene.functions} == set(FUNCTIONS)
+    assert SCENES["panda"].load().name == "panda7"

@@ -1,0 +1,101 @@
+"""What is timed: models from two to fifty-two degrees of freedom, and functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import reference_models
+import symofros as sf
+from reference_models.rigid.chain import chain
+from validation.cases import standard_set
+
+# Function of the generated code -> its name in tables.
+FUNCTIONS = {
+    "mass_matrix": "M",
+    "bias": "h",
+    "dynamics": "M + h",
+    "forward_dynamics": "forward dynamics",
+    "inverse_dynamics": "inverse dynamics",
+    "frame_jacobian": "frame Jacobian",
+    "inverse_dynamics_derivatives": "derivatives of inverse dynamics",
+    "forward_dynamics_derivatives": "derivatives of forward dynamics",
+    "step": "one step of RK4",
+}
+# Our C of derivatives of forward dynamics of a humanoid takes minutes to compile.
+_HUMANOID = tuple(name for name in FUNCTIONS if name != "forward_dynamics_derivatives")
+# Of chains: what exponents are fitted to. CasADi's C of the longest takes a minute a function to compile.
+_GROWTH = ("dynamics", "forward_dynamics")
+CHAINS = (2, 4, 7, 13, 22, 32, 52)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A model that is timed.
+
+    Attributes:
+        title: In tables.
+        make: Its description.
+        functions: What is timed of it.
+    """
+
+    title: str
+    make: Callable[[], sf.System]
+    functions: tuple[str, ...] = tuple(FUNCTIONS)
+
+    def load(self) -> sf.System:
+        """Its description, without friction and springs in joints, which engines have each in their own way."""
+        system = self.make()
+        bodies = [body if body.joint is None else replace(body, joint=replace(body.joint, elements=()))
+                  for body in system.bodies]  # fmt: skip
+        return replace(system, bodies=tuple(bodies))
+
+
+def _robot(label: str) -> sf.System:
+    return next(case for case in standard_set() if case.label == label).load().system
+
+
+def _locked(body: sf.Body) -> sf.Body:
+    joint = body.joint
+    if joint is None or "finger" not in joint.name:
+        return body
+    return replace(body, joint=replace(joint, kind="fixed", actuated=False))
+
+
+def panda7() -> sf.System:
+    """The seven joints of Panda, its fingers locked."""
+    panda = _robot("panda")
+    return replace(panda, name="panda7", bodies=tuple(map(_locked, panda.bodies)))
+
+
+def arm(joints: int) -> sf.System:
+    """Slender rods in a vertical plane, a metre and a kilogram each."""
+    rod = sf.Inertia(1.0, (0.5, 0.0, 0.0), (1e-3, 1 / 12, 1 / 12))
+    bodies = [
+        sf.RigidBody(f"rod{k}", sf.Joint(f"q{k}", "revolute", f"rod{k - 1}" if k > 1 else "world", axis=(0, 1, 0),
+                                         position=(1.0 if k > 1 else 0.0, 0, 0), actuated=True), rod)
+        for k in range(1, joints + 1)
+    ]  # fmt: skip
+    return sf.System(f"planar{joints}R", tuple(bodies))
+
+
+def _reference(name: str) -> sf.System:
+    return reference_models.MODELS[name]
+
+
+SCENES: dict[str, Scene] = {
+    "planar2R": Scene("planar 2R", partial(arm, 2)),
+    "planar3R": Scene("planar 3R", partial(arm, 3)),
+    "ur5": Scene("UR5", partial(_robot, "ur5")),
+    "panda": Scene("Panda, 7 joints", panda7),
+    "mss": Scene("MSS", partial(_reference, "mss")),
+    "talos": Scene("Talos", partial(_robot, "talos"), _HUMANOID),
+    "four_bar": Scene("four-bar, closed", partial(_reference, "four_bar"), ("forward_dynamics",)),
+    **{f"chain{n}": Scene(f"chain of {n}", partial(chain, n, symbolic=False), _GROWTH) for n in CHAINS[:-1]},
+    f"chain{CHAINS[-1]}": Scene(
+        f"chain of {CHAINS[-1]}",
+        partial(chain, CHAINS[-1], symbolic=False),
+        (*_GROWTH, "inverse_dynamics", "frame_jacobian", "step"),
+    ),  # fmt: skip
+}

@@ -1,0 +1,139 @@
+"""Our side: generated C, state by state as a control loop calls it, and by its batches."""
+
+from __future__ import annotations
+
+import ctypes
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from functools import partial
+from typing import Any, Literal
+
+import numpy as np
+
+import symofros as sf
+from symofros.passes.count import count_program
+from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
+from symofros.simulation.inputs import plan_inputs
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepper import Stepper
+from validation.geometry import Array
+from validation.timing.arrays import Arrays, loops
+from validation.timing.programs import BuildError, Compiler, build, source
+from validation.timing.task import START, STEP, Cost, Loop, Task
+
+NAME = "symofros"
+BATCH = "symofros, batch"
+# States in a call of a batch: their results stay in the cache, as those of engines do.
+BLOCK = 64
+# How many of a function's outputs engines have, too: Q, multipliers and derivatives by u are ours alone.
+_SHARED = {"dynamics": 2, "forward_dynamics": 1, "forward_dynamics_derivatives": 2}
+# More than any race steps through [s].
+_ENDLESS = 1e6
+# A solver finishes these state by state; they have no code by vectors.
+_BY_STATE = ("forward_dynamics_derivatives", "step")
+
+
+def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
+    """Each function state by state and, where it has code for that, by vectors.
+
+    Raises:
+        SymofrosError: The model can't be compiled.
+    """
+    for name in functions:
+        if name == "step":
+            yield _steps(task)
+            continue
+        yield _by_state(task, name)
+        if name not in _BY_STATE and not task.system.constraints:
+            yield _by_vectors(task, name)
+
+
+def _frames(task: Task, name: str) -> tuple[str, ...]:
+    return (task.frame,) if name.startswith("frame") else ()
+
+
+class _Generated:
+    """A function in its library, at the states of a task."""
+
+    def __init__(self, task: Task, name: str, batch: Literal["vector", "loop"]) -> None:
+        options = sf.Options((name,), _frames(task, name), batch=batch)
+        sf.compile_library(task.system, options)
+        start = time.perf_counter()  # Now that the library is in the cache, what is left is to make its text.
+        self.path, symbol = sf.compile_library(task.system, options)
+        self.seconds = time.perf_counter() - start
+        ffi, _ = loops()
+        self._library = ctypes.CDLL(str(self.path))
+        address = ctypes.cast(self._library[symbol], ctypes.c_void_p).value
+        model = ffi.cast("const sym_model *(*)(void)", address)()
+        pre = np.zeros(model.npre + 1)
+        model.init(model.par_default, ffi.from_buffer("double[]", pre))
+        self.function: Any = model.functions + 0
+        states, entry = task.states, model.functions[0]
+        given = {"pre": pre[: model.npre], "q": states.q, "v": states.v, "a": states.a, "u": states.u}
+        names = [ffi.string(item.name).decode() for item in getattr(entry, "in")[0 : entry.n_in]]
+        entered = [item.rows * item.cols for item in getattr(entry, "in")[0 : entry.n_in]]
+        sizes = [item.rows * item.cols for item in entry.out[0 : entry.n_out]]
+        inputs = [given.get(item, np.zeros(size)) for item, size in zip(names, entered, strict=True)]
+        self.arrays = Arrays(inputs, sizes, (int(entry.work), 0))
+
+
+def _by_state(task: Task, name: str) -> Loop:
+    made, native = _Generated(task, name, "loop"), loops()[1]
+    run = partial(native.loop_eval, made.function, made.arrays.overwritten())
+
+    def results() -> Array:
+        return made.arrays.results(lambda kept: native.loop_eval(made.function, kept, 1), _SHARED.get(name))
+
+    return Loop(name, NAME, run, results, _cost(task, name, made))
+
+
+def _by_vectors(task: Task, name: str) -> Loop:
+    made, native = _Generated(task, name, "vector"), loops()[1]
+    block = min(BLOCK, len(task.states))
+    filled = made.arrays.overwritten(block)
+
+    def results() -> Array:
+        return made.arrays.results(lambda kept: native.loop_batch(made.function, kept, 1, block), _SHARED.get(name))
+
+    # The made function is named, so that its library stays loaded.
+    return Loop(name, BATCH, lambda rounds: native.loop_batch(made.function, filled, rounds, block), results)
+
+
+def _cost(task: Task, name: str, made: _Generated) -> Cost:
+    program = sf.program_of(task.system, (name,), _frames(task, name))
+    counted = next(count for (stated, _), count in count_program(program).items() if stated == name)
+    toolchain = find_toolchain()
+    if toolchain is None:
+        raise BuildError("no C compiler was found: install gcc or clang")
+    # Compiled once more, by the compiler and the flags that it is used with, for the time and the sizes.
+    text = made.path.with_suffix(".c").read_text(encoding="utf-8")
+    sources = {"model.c": text, "symofros_model.h": source("symofros_model.h")}
+    compiler = Compiler(toolchain.command[0], "", toolchain.identity)
+    built = build(compiler, sources, (*toolchain.command[1:], *DEFAULT_FLAGS, "-std=gnu99"))
+    return Cost(
+        made.seconds, built.seconds, len(text), built.text, built.constants, asdict(counted), made.arrays.memory
+    )
+
+
+def _steps(task: Task) -> Loop:
+    """Our loop of RK4 in C, as many steps as there are states; a race goes on from where the last round ended."""
+    model = sf.compile(task.system)
+    q, v, steps = task.states.q[START], task.states.v[START], len(task.states)
+    settings = Settings.of(model, "rk4", STEP, 0.0, _ENDLESS, 1e-6, 1e-9, None, np.inf, None, steps, "projection", None)
+    stepper = Stepper(model, settings.method, plan_inputs(model, None), [], np.asarray(model.parameter_values))
+    settings.apply(stepper, 0.0, _ENDLESS, 0.0)
+
+    def run(rounds: int) -> None:
+        for _ in range(rounds):
+            stepper.advance(steps)
+            stepper.run.n_records = 0
+
+    def results() -> Array:
+        stepper.run.t = 0.0
+        stepper.start(q, v, 8)
+        run(1)
+        _, q_end, v_end = stepper.state
+        return np.concatenate([q_end, v_end])[None]
+
+    return Loop("step", NAME, run, results)

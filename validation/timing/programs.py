@@ -1,0 +1,168 @@
+"""Builds the native sides of a race, once for each content: compiler, flags, sources, processor."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from symofros.runtime.toolchain import cpu_identity
+
+# Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
+_LOOSE = ("-ffast-math",)
+_NEWEST, _OLDEST = 25, 11
+
+
+class BuildError(Exception):
+    """A native side can't be built; the message is for people."""
+
+
+class Skipped(Exception):
+    """A peer has no side for a model; the message says why, for people."""
+
+
+@dataclass(frozen=True)
+class Compiler:
+    """One that runs here.
+
+    Attributes:
+        path: Of the program.
+        name: Family and version: "gcc 12.2.0".
+        version: What it says of itself.
+    """
+
+    path: str
+    name: str
+    version: str
+
+
+@dataclass(frozen=True)
+class Built:
+    """A shared library.
+
+    Attributes:
+        path: In the cache.
+        seconds: That compiling it took, when it was.
+        text: Bytes of machine code.
+        constants: Bytes of constants.
+    """
+
+    path: Path
+    seconds: float
+    text: int
+    constants: int
+
+
+def compilers(language: str = "c") -> list[Compiler]:
+    """gcc, and the newest clang; "c" or "c++"."""
+    gcc, clang = {"c": ("gcc", "clang"), "c++": ("g++", "clang++")}[language]
+    newest = [f"{clang}-{version}" for version in range(_NEWEST, _OLDEST - 1, -1)]
+    clangs = [found for found in map(_compiler, (*newest, clang)) if found is not None]
+    clangs.sort(key=lambda found: _number(found.name), reverse=True)
+    first = _compiler(gcc)
+    return [*([first] if first else []), *clangs[:1]]
+
+
+@cache
+def _compiler(name: str) -> Compiler | None:
+    path = shutil.which(name)
+    if path is None:
+        return None
+    said = subprocess.run([path, "--version"], capture_output=True, text=True, check=True).stdout.splitlines()[0]
+    number = subprocess.run([path, "-dumpversion"], capture_output=True, text=True, check=True).stdout.strip()
+    full = next((word for word in said.split()[::-1] if word.startswith(number + ".")), number)
+    family = "clang" if "clang" in name else "gcc"
+    return Compiler(path, f"{family} {full}", said)
+
+
+def _number(name: str) -> tuple[int, ...]:
+    return tuple(int(part) for part in name.split()[1].split(".") if part.isdigit())
+
+
+def source(name: str) -> str:
+    """Text of a file of validation/native, or of the header of generated models."""
+    if name == "symofros_model.h":
+        return (files("symofros") / "codegen/templates/symofros_model.h").read_text(encoding="utf-8")
+    return (files("validation") / "native" / name).read_text(encoding="utf-8")
+
+
+def declared(name: str) -> str:
+    """What bindings read of a native file."""
+    return source(name).partition("/* cdef begin: what Python reads */")[2].partition("/* cdef end */")[0]
+
+
+def build(compiler: Compiler, sources: Mapping[str, str], flags: Sequence[str], link: Sequence[str] = (),
+          depends: Sequence[str] = ()) -> Built:  # fmt: skip
+    """The shared library of the first of some sources, compiled unless it is in the cache.
+
+    Args:
+        compiler: Which.
+        sources: File name -> text; the others are what the first includes.
+        flags: For compiling.
+        link: For linking.
+        depends: What else it depends on: versions of packages.
+
+    Raises:
+        BuildError: The compiler refused, with its words.
+    """
+    parts = [*sources, *sources.values(), *flags, *link, *depends, compiler.version, cpu_identity()]
+    key = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+    library, record = folder() / f"timing-{key}.so", folder() / f"timing-{key}.json"
+    if not (library.exists() and record.exists()):
+        folder().mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".timing-", dir=folder()) as private:
+            built = _compiled(compiler, Path(private), sources, flags, link)
+            facts = {name: value for name, value in asdict(built).items() if name != "path"}
+            (Path(private) / "facts.json").write_text(json.dumps(facts), encoding="utf-8")
+            os.replace(Path(private) / "facts.json", record)
+            os.replace(built.path, library)
+    return Built(library, **json.loads(record.read_text(encoding="utf-8")))
+
+
+def _compiled(compiler: Compiler, private: Path, sources: Mapping[str, str], flags: Sequence[str],
+              link: Sequence[str]) -> Built:  # fmt: skip
+    for name, text in sources.items():
+        (private / name).write_text(text, encoding="utf-8")
+    start = time.perf_counter()
+    _call([compiler.path, *flags, "-fPIC", "-fvisibility=hidden", "-c", next(iter(sources)), "-o", "side.o"], private)
+    seconds = time.perf_counter() - start
+    kept = [flag for flag in flags if flag not in _LOOSE]
+    _call([compiler.path, *kept, "-shared", "side.o", "-o", "side.so", *link], private)
+    sizes = _sections(private / "side.o")
+    code, constants = (sum(size for name, size in sizes.items() if name.startswith(prefix))
+                       for prefix in (".text", ".rodata"))  # fmt: skip
+    return Built(private / "side.so", seconds, code, constants)
+
+
+def _call(command: Sequence[str], directory: Path) -> None:
+    done = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        words = "\n".join(done.stderr.splitlines()[:20])
+        raise BuildError(f"{' '.join(command)}\nfailed with status {done.returncode}:\n{words}")
+
+
+def _sections(path: Path) -> dict[str, int]:
+    """Section -> bytes, as `size -A` of the binutils prints them."""
+    tool = shutil.which("size")
+    if tool is None:
+        return {}
+    printed = subprocess.run([tool, "-A", str(path)], capture_output=True, text=True, check=True).stdout
+    rows = [line.split() for line in printed.splitlines()]
+    return {row[0]: int(row[1]) for row in rows if len(row) == 3 and row[1].isdigit()}
+
+
+def folder() -> Path:
+    """Where compiled programs are kept."""
+    stated = os.environ.get("SYMOFROS_CACHE")
+    if stated:
+        return Path(stated)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "symofros"

@@ -1,0 +1,118 @@
+"""Sides of one function in turn, over the same states, on one processor; each checked against ours first."""
+
+from __future__ import annotations
+
+import math
+import os
+import statistics
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from time import thread_time_ns
+
+import numpy as np
+
+from validation.geometry import Array
+from validation.quantities import ROUNDING, SOLVE
+from validation.timing.task import Loop
+
+# Of the largest entry of a state's result. Integrators of quaternions differ in method, by the fourth power of a step.
+TOLERANCES = {"forward_dynamics": SOLVE, "forward_dynamics_derivatives": SOLVE, "step": SOLVE}
+# A clock's reading and a call from Python cost less than a thousandth of this [ns].
+LEAST = 1_000_000
+
+
+class DisagreementError(Exception):
+    """Two sides compute different things, so their times mean nothing."""
+
+
+@dataclass(frozen=True)
+class Times:
+    """Nanoseconds a state.
+
+    Attributes:
+        minimum: Over the repeats; median: likewise.
+    """
+
+    minimum: float
+    median: float
+
+
+def race(loops: Mapping[str, Loop], states: int, repeats: int) -> dict[str, Times]:
+    """Time sides in turn.
+
+    Args:
+        loops: By the names of their sides.
+        states: Of one round.
+        repeats: Interleaved.
+
+    Returns:
+        Times by the same names.
+    """
+    found: dict[str, list[float]] = {name: [] for name in loops}
+    with on_one_cpu():
+        rounds = {name: _rounds(loop.run) for name, loop in loops.items()}
+        for _ in range(repeats):
+            for name, loop in loops.items():
+                found[name].append(_nanoseconds(loop.run, rounds[name]) / (rounds[name] * states))
+    return {name: summary(times) for name, times in found.items()}
+
+
+def summary(times: Sequence[float]) -> Times:
+    """Minimum and median."""
+    return Times(min(times), statistics.median(times))
+
+
+def _rounds(run: Callable[[int], None]) -> int:
+    """As many as take LEAST together; also what warms caches and branches."""
+    return max(1, math.ceil(LEAST / max(min(_nanoseconds(run, 1) for _ in range(2)), 1)))
+
+
+def _nanoseconds(run: Callable[[int], None], rounds: int) -> int:
+    """Of this thread on the processor: when others have it, no time passes."""
+    start = thread_time_ns()
+    run(rounds)
+    return thread_time_ns() - start
+
+
+def error(found: Array, expected: Array) -> float:
+    """The largest difference of a state, relative to the state's largest entry.
+
+    States where everything vanishes are judged by the largest entry of all.
+    """
+    scale = np.abs(expected).max(axis=1)
+    scale = np.maximum(scale, np.abs(expected).max() * np.finfo(float).eps)
+    largest = np.abs(found - expected).max(axis=1)
+    return float(np.max(np.divide(largest, scale, out=largest.copy(), where=scale > 0.0)))
+
+
+def checked(function: str, name: str, found: Array, expected: Array) -> float:
+    """The error of a side.
+
+    Raises:
+        DisagreementError: It is more than rounding.
+    """
+    if found.shape != expected.shape:
+        raise DisagreementError(f"{function} by {name}: {found.shape[1]} numbers a state, not {expected.shape[1]}")
+    off = error(found, expected)
+    if not off <= TOLERANCES.get(function, ROUNDING):
+        raise DisagreementError(f"{function} by {name} differs from ours by {off:.1e}: their times mean nothing")
+    return off
+
+
+def pin_to_one_cpu() -> None:
+    """Keep this process on one processor, where the system can."""
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+
+
+@contextmanager
+def on_one_cpu() -> Iterator[None]:
+    """The same for a while: compilers may use all of them again."""
+    before = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
+    pin_to_one_cpu()
+    try:
+        yield
+    finally:
+        if before is not None:
+            os.sched_setaffinity(0, before)

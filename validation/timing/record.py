@@ -1,0 +1,183 @@
+"""What a run measured, as plain data that later runs add to."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Self
+
+from validation.timing.race import Times
+
+SCHEMA = 2
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="minutes")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One function of one model by us and by one build of one peer, timed in turn.
+
+    Attributes:
+        model: Its label.
+        nv: Degrees of freedom.
+        function: What was timed.
+        peer: Whom we raced; variant: how it was built and which way it went.
+        ours: Minimum and median, nanoseconds a state, state by state; theirs: likewise.
+        batch: Ours by vectors, if there is such code.
+        error: Largest relative difference of the results.
+        date: When (UTC).
+    """
+
+    model: str
+    nv: int
+    function: str
+    peer: str
+    variant: str
+    ours: tuple[float, float]
+    batch: tuple[float, float] | None
+    theirs: tuple[float, float]
+    error: float
+    date: str = field(default_factory=_now)
+
+    @classmethod
+    def of(cls, model: str, nv: int, function: str, peer: str, variant: str, ours: Times, batch: Times | None,
+           theirs: Times, error: float) -> Self:  # fmt: skip
+        """From the times of one race."""
+        pair = None if batch is None else (batch.minimum, batch.median)
+        return cls(model, nv, function, peer, variant, (ours.minimum, ours.median), pair,
+                   (theirs.minimum, theirs.median), error)  # fmt: skip
+
+    @property
+    def ratio(self) -> float:
+        """Of the medians, theirs to ours."""
+        return self.theirs[1] / self.ours[1]
+
+    @property
+    def batch_ratio(self) -> float | None:
+        """Of the medians, theirs to ours by vectors."""
+        return None if self.batch is None else self.theirs[1] / self.batch[1]
+
+
+@dataclass(frozen=True)
+class Made:
+    """What a generated function costs to make and to run.
+
+    Attributes:
+        model, nv, function: What.
+        by: Who generated it; variant: how it was built.
+        time: Median, nanoseconds a state.
+        generation, compilation: Seconds.
+        text, code, constants, memory: Bytes.
+        operations: By kind.
+    """
+
+    model: str
+    nv: int
+    function: str
+    by: str
+    variant: str
+    time: float
+    generation: float
+    compilation: float
+    text: int
+    code: int
+    constants: int
+    operations: Mapping[str, int]
+    memory: int
+
+    @property
+    def total(self) -> int:
+        """Operations of all kinds."""
+        return sum(self.operations.values())
+
+
+# Model, function, peer, why.
+Note = tuple[str, str, str, str]
+
+
+@dataclass
+class Record:
+    """Everything measured so far.
+
+    Attributes:
+        entries: Pairs of sides.
+        costs: Of generated functions.
+        skipped: What a peer has no side for: (model, function, peer, why).
+        failed: What should have been timed and was not: likewise.
+        flexible: Rows of the flexible robot.
+        machine: Facts of the last run: processor, peak rates, load, versions, flags.
+    """
+
+    entries: list[Entry] = field(default_factory=list)
+    costs: list[Made] = field(default_factory=list)
+    skipped: list[Note] = field(default_factory=list)
+    failed: list[Note] = field(default_factory=list)
+    flexible: list[dict[str, Any]] = field(default_factory=list)
+    machine: dict[str, Any] = field(default_factory=dict)
+
+    def forget(self, models: Iterable[str], functions: Iterable[str], peers: Iterable[str]) -> None:
+        """Drop what is about to be measured again."""
+        M, F, P = set(models), set(functions), set(peers)
+        self.entries = [x for x in self.entries if not (x.model in M and x.function in F and x.peer in P)]
+        self.costs = [x for x in self.costs if not (x.model in M and x.function in F and x.by in {*P, "symofros"})]
+        self.skipped, self.failed = (
+            [x for x in notes if not (x[0] in M and x[1] in F and x[2] in {*P, "symofros"})]
+            for notes in (self.skipped, self.failed)
+        )
+
+    def has(self, model: str, function: str) -> bool:
+        """Whether anything was timed of it."""
+        return any((x.model, x.function) == (model, function) for x in self.entries)
+
+    def best(self, model: str, function: str, peer: str, family: str = "") -> Entry | None:
+        """The peer's fastest way by the median, of a compiler's family if one is named."""
+        found = [x for x in self.entries if (x.model, x.function, x.peer) == (model, function, peer)
+                 and x.variant.startswith(family)]  # fmt: skip
+        return min(found, key=lambda x: x.theirs[1], default=None)
+
+    def cost(self, model: str, function: str, by: str) -> Made | None:
+        """Of the fastest build."""
+        found = [x for x in self.costs if (x.model, x.function, x.by) == (model, function, by)]
+        return min(found, key=lambda x: x.time, default=None)
+
+
+def as_data(record: Record) -> dict[str, Any]:
+    """A record as JSON holds it; ratios are written out for readers."""
+    return {
+        "schema": SCHEMA, "machine": record.machine,
+        "entries": [{**asdict(x), "ratio": x.ratio, "batch_ratio": x.batch_ratio} for x in record.entries],
+        "costs": [asdict(x) for x in record.costs], "skipped": record.skipped, "failed": record.failed,
+        "flexible": record.flexible,
+    }  # fmt: skip
+
+
+def read(path: Path) -> Record:
+    """The record of a file; an empty one where there is none, or one of another kind."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return Record()
+    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+        return Record()
+    skipped, failed = ([(a, b, c, d) for a, b, c, d in data[name]] for name in ("skipped", "failed"))
+    entries, costs = [entry(row) for row in data["entries"]], [made(row) for row in data["costs"]]
+    return Record(entries, costs, skipped, failed, data["flexible"], data["machine"])
+
+
+def entry(row: Mapping[str, Any]) -> Entry:
+    """An entry from JSON."""
+    values: dict[str, Any] = {item.name: row[item.name] for item in fields(Entry)}
+    for name in ("ours", "batch", "theirs"):
+        values[name] = None if values[name] is None else tuple(values[name])
+    return Entry(**values)
+
+
+def made(row: Mapping[str, Any]) -> Made:
+    """A cost from JSON."""
+    values: dict[str, Any] = {item.name: row[item.name] for item in fields(Made)}
+    return Made(**values)

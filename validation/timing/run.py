@@ -1,0 +1,141 @@
+"""A whole run: one process a model, what it prints added to the record as it comes."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+from symofros.runtime.toolchain import DEFAULT_FLAGS
+from validation.record import machine
+from validation.timing.arrays import first_compiler
+from validation.timing.engines import CLOSED, PINOCCHIO_FLAGS, pinocchio_builds
+from validation.timing.generated import BUILDS
+from validation.timing.models import SCENES
+from validation.timing.programs import BuildError, Skipped, compilers, source
+from validation.timing.race import pin_to_one_cpu
+from validation.timing.record import Record, entry, made
+from validation.timing.worker import Job
+
+Done = Callable[[str, str], None]
+
+
+def run_job(job: Job, record: Record, done: Done = lambda model, function: None) -> None:
+    """Time one model in a process of its own; what was measured before it ended, or Ctrl-C, is kept.
+
+    Args:
+        job: What.
+        record: Where results go.
+        done: Told of each function that is being timed.
+    """
+    stated = {"model": job.model, "peers": job.peers, "functions": job.functions, "repeats": job.repeats,
+              "states": job.states}  # fmt: skip
+    command = [sys.executable, "-m", "validation.timing.worker", json.dumps(stated)]
+    with tempfile.TemporaryFile("w+") as words:
+        worker = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=words, text=True)
+        assert worker.stdout is not None
+        try:
+            for line in worker.stdout:
+                take(line, job, record, done)
+            status = worker.wait()
+        except BaseException:
+            worker.kill()
+            worker.wait()
+            raise
+        finally:
+            worker.stdout.close()
+        if status != 0:
+            words.seek(0)
+            last = (words.read().strip() or "no word").splitlines()[-1]
+            record.failed.append((job.model, "what was left", "symofros", f"the worker ended with {status}: {last}"))
+
+
+def take(line: str, job: Job, record: Record, done: Done) -> None:
+    """Add what a worker printed to a record; lines of other origin are MuJoCo's or Pinocchio's, and are left."""
+    try:
+        ((kind, value),) = json.loads(line).items()
+    except (ValueError, AttributeError):
+        return
+    if kind == "doing":
+        record.forget([job.model], [value], job.peers)
+        done(job.model, value)
+    elif kind == "entry":
+        record.entries.append(entry(value))
+    elif kind == "cost":
+        record.costs.append(made(value))
+    elif kind in ("skipped", "failed"):
+        getattr(record, kind).append(tuple(value))
+
+
+def jobs(models: Iterable[str], peers: tuple[str, ...], functions: Iterable[str], repeats: int,
+         states: int, done: Record | None = None) -> list[Job]:  # fmt: skip
+    """What is to be done: each model's functions among those asked for, less what was done."""
+    wanted = set(functions)
+    found = []
+    for model in models:
+        left = [name for name in SCENES[model].functions if done is None or not done.has(model, name)]
+        chosen = tuple(name for name in left if name in wanted)
+        if chosen:
+            found.append(Job(model, peers, chosen, repeats, states))
+    return found
+
+
+def prepare(peers: Iterable[str]) -> list[str]:
+    """Compile what all models share, by all compilers at the same time; what can't be is told by each model, too.
+
+    Returns:
+        What went wrong, in words.
+    """
+    tasks: list[Callable[[], Any]] = [first_compiler]
+    if "pinocchio" in peers:
+        tasks += [pinocchio_builds, partial(pinocchio_builds, CLOSED)]
+    failures = []
+    with ThreadPoolExecutor() as pool:
+        for future in [pool.submit(job) for job in tasks]:
+            try:
+                future.result()
+            except (BuildError, Skipped) as error:
+                failures.append(str(error))
+    return failures
+
+
+def facts() -> Mapping[str, Any]:
+    """What times depend on: processor, its measured limits, versions, flags."""
+    packages = {"symofros": "symofros", "pinocchio": "pin", "mujoco": "mujoco", "casadi": "casadi", "sympy": "sympy",
+                "exudyn": "exudyn"}  # fmt: skip
+    versions = {}
+    for name, package in packages.items():
+        try:
+            versions[name] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            versions[name] = "not installed"
+    flags = {"symofros": " ".join(DEFAULT_FLAGS), "pinocchio": " ".join(PINOCCHIO_FLAGS),
+             "casadi, sympy": " or ".join(" ".join(flags) for flags in BUILDS) + " -march=native",
+             "mujoco": "as in its wheel"}  # fmt: skip
+    return {**machine(), "compilers": [found.version for found in compilers()], "versions": versions, "flags": flags,
+            **peaks()}  # fmt: skip
+
+
+def peaks() -> dict[str, float]:
+    """Measured limits of one core: operations a second in fused multiply-adds (two each), bytes copied a second."""
+    compiler = first_compiler()
+    with tempfile.TemporaryDirectory() as private:
+        text, program = Path(private) / "peak.c", Path(private) / "peak"
+        text.write_text(source("peak.c"), encoding="utf-8")
+        subprocess.run([compiler.path, "-O3", "-march=native", str(text), "-o", str(program)], check=True)
+        printed = subprocess.run([str(program)], capture_output=True, text=True, check=True, preexec_fn=pin_to_one_cpu)
+    scalar, vector, lanes, copied = map(float, printed.stdout.split())
+    return {"scalar_flops": 2.0 * scalar, "vector_flops": 2.0 * vector, "lanes": lanes, "copied_bytes": copied}
+
+
+def load() -> list[float]:
+    """Processes that ran in the last minute, on average; nothing where the system does not say."""
+    return [os.getloadavg()[0]] if hasattr(os, "getloadavg") else []

@@ -1,0 +1,222 @@
+"""A record as sections of a report: paragraphs, a table, figures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.findings import Chart, Curve, Figure
+from validation.timing.growth import Growth, growth
+from validation.timing.models import FUNCTIONS, SCENES
+from validation.timing.record import Entry, Made, Record
+from validation.timing.targets import Verdict, verdicts
+
+_GENERATORS = ("symofros", "casadi", "sympy")
+# What growth is drawn of.
+_DRAWN = ("time [ns]", "operations", "generation [s]", "compilation [s]")
+COLORS = {"symofros": 0, "symofros, batch": 2, "pinocchio": 1, "mujoco": 5, "casadi": 6, "sympy": 7}
+
+
+@dataclass(frozen=True)
+class Section:
+    """One question.
+
+    Attributes:
+        title: Of the section.
+        text: Paragraphs before the table.
+        head: Of the table's columns; those that begin with "#" hold numbers.
+        rows: Cells.
+        figures: After the table.
+    """
+
+    title: str
+    text: tuple[str, ...]
+    head: tuple[str, ...] = ()
+    rows: tuple[tuple[str, ...], ...] = ()
+    figures: tuple[Figure, ...] = ()
+
+
+def sections(record: Record) -> list[Section]:
+    """All that have something to show."""
+    found = [_targets(record), *(_function(record, name) for name in FUNCTIONS), _growth(record), _making(record),
+             _limits(record), _skipped(record)]  # fmt: skip
+    return [section for section in found if section.rows or section.figures]
+
+
+def headline(record: Record) -> str:
+    """The verdict in a sentence."""
+    found = verdicts(record)
+    measured = [verdict for verdict in found if verdict.entry is not None]
+    missing = f"; {len(found) - len(measured)} were not measured" if len(measured) < len(found) else ""
+    return f"{sum(verdict.met for verdict in measured)} of {len(found)} targets are met{missing}."
+
+
+def _targets(record: Record) -> Section:
+    rows = tuple(_target(verdict) for verdict in verdicts(record))
+    text = ("Ratios of medians, theirs to ours, each of one race. A peer's best is the fastest of its builds and ways, "
+            "chosen by its median alone.")  # fmt: skip
+    head = ("model", "function", "ours", "against", "#ratio", "#target", "verdict", "measured as")
+    return Section("Targets", (text,), head, rows)
+
+
+def _target(verdict: Verdict) -> tuple[str, ...]:
+    target, entry = verdict.target, verdict.entry
+    how = {"scalar": "state by state", "batch": "batch"}[target.how]
+    against = f"{target.peer}, {target.family}" if target.family else target.peer
+    found = f"{verdict.ratio:.2f}" if entry else "-"
+    return (SCENES[target.model].title, FUNCTIONS[target.function], how, against, found, f"{target.least:g}",
+            verdict.words, entry.variant if entry else "")  # fmt: skip
+
+
+def _function(record: Record, function: str) -> Section:
+    head = ("model", "#nv", "#ours [ns]", "#batch [ns]", "#Pinocchio, gcc", "#Pinocchio, best", "#ratio", "#in a batch",
+            "#MuJoCo", "#ratio", "#CasADi", "#ratio", "#SymPy", "#ratio")  # fmt: skip
+    rows = []
+    for model, scene in SCENES.items():
+        best = {peer: record.best(model, function, peer) for peer in ("pinocchio", "mujoco", "casadi", "sympy")}
+        known = [entry for entry in best.values() if entry is not None]
+        if known:
+            first = known[0]
+            gcc, pinocchio = record.best(model, function, "pinocchio", "gcc"), best["pinocchio"]
+            cells = [scene.title, str(first.nv), _pair(first.ours), _pair(first.batch), _theirs(gcc)]
+            cells += [_theirs(pinocchio), _ratio(pinocchio), _batch_ratio(pinocchio)]
+            for peer in ("mujoco", "casadi", "sympy"):
+                cells += [_theirs(best[peer]), _ratio(best[peer])]
+            rows.append(tuple(cells))
+    title = FUNCTIONS[function]
+    return Section(
+        title[0].upper() + title[1:], (_NOTES.get(function, ""),) if function in _NOTES else (), head, tuple(rows)
+    )
+
+
+_NOTES = {
+    "dynamics": "Ours is M + h + Q, in one function. Pinocchio's is crba, then nonLinearEffects; MuJoCo's shares its "
+    "kinematics between both; CasADi's is one function, common subexpressions shared.",
+    "forward_dynamics": "Pinocchio's is aba, CasADi's articulated bodies, MuJoCo's M + h, a sparse L D L^T "
+    "and a solve.",
+    "inverse_dynamics_derivatives": "By q and v. CasADi's are made by its differentiation of Newton-Euler.",
+    "forward_dynamics_derivatives": "By q and v; ours by u, too. CasADi's are -M^-1 times those of inverse dynamics at "
+    "the acceleration, all in one graph.",
+    "frame_jacobian": "Of the body that most joints carry, in world axes.",
+    "step": "Our loop of sf.simulate, mj_step with contacts, constraints and sensors off; free motion.",
+}
+
+
+def _pair(times: tuple[float, float] | None) -> str:
+    return "-" if times is None else ", ".join(_short(x) for x in times)
+
+
+def _theirs(entry: Entry | None) -> str:
+    return "-" if entry is None else _pair(entry.theirs)
+
+
+def _ratio(entry: Entry | None) -> str:
+    return "-" if entry is None else f"{entry.ratio:.2f}"
+
+
+def _batch_ratio(entry: Entry | None) -> str:
+    ratio = None if entry is None else entry.batch_ratio
+    return "-" if ratio is None else f"{ratio:.1f}"
+
+
+def _short(x: float) -> str:
+    return f"{x:.1f}" if x < 100 else f"{x:.0f}"
+
+
+def _all_costs(record: Record) -> list[Made]:
+    """Of the fastest build of each side."""
+    found = [record.cost(model, function, by) for model in SCENES for function in FUNCTIONS for by in _GENERATORS]
+    return [cost for cost in found if cost is not None]
+
+
+def _making(record: Record) -> Section:
+    text = (
+        "Generation is from the description to C text, compilation of that text alone, by the build that runs fastest, "
+        "at whatever load the machine had then."
+    )
+    head = ("model", "function", "by", "#generation [s]", "#compilation [s]", "#C text [kB]", "#machine code [kB]",
+            "#constants [kB]")  # fmt: skip
+    rows = tuple(
+        (*_named(cost), f"{cost.generation:.3f}", f"{cost.compilation:.2f}",
+         *(f"{x / 1e3:.1f}" for x in (cost.text, cost.code, cost.constants)))
+        for cost in _all_costs(record)
+    )  # fmt: skip
+    return Section("What it costs to make", (text,), head, rows)
+
+
+def _named(cost: Made) -> tuple[str, str, str]:
+    return SCENES[cost.model].title, FUNCTIONS[cost.function], cost.by
+
+
+def _limits(record: Record) -> Section:
+    flops, vector = record.machine.get("scalar_flops", math.nan), record.machine.get("vector_flops", math.nan)
+    copied = record.machine.get("copied_bytes", math.nan)
+    text = (
+        "Operations are what one call executes; a sine or cosine counts as one. Distance is the measured time over "
+        f"that of the same operations at this core's measured peak, {flops / 1e9:.1f} GFlop/s in fused multiply-adds, "
+        f"and for batches {vector / 1e9:.0f} GFlop/s in vectors: 1 is the limit of code in which every multiplication "
+        "has an addition to go with, and calls cost far more than the one operation that they count. Memory is what a "
+        f"call reads and writes; its limit is the time it takes at the {copied / 1e9:.0f} GB/s of copies in the "
+        "core's first cache."
+    )
+    head = ("model", "function", "by", "#mul", "#add", "#div", "#calls", "#time [ns]", "#limit [ns]", "#distance",
+            "#of batches", "#memory [B]", "#its limit [ns]")  # fmt: skip
+    rows = tuple(_limit(record, cost, flops, vector, copied) for cost in _all_costs(record))
+    return Section("How far from the machine's limit", (text,), head, rows)
+
+
+def _limit(record: Record, cost: Made, flops: float, vector: float, copied: float) -> tuple[str, ...]:
+    limit = 1e9 * cost.total / flops
+    alike = [x for x in record.entries if (x.model, x.function) == (cost.model, cost.function)]
+    batch = next((x.batch for x in alike if x.batch), None)
+    in_batch = f"{batch[1] / (1e9 * cost.total / vector):.1f}" if batch and cost.by == "symofros" else "-"
+    # A Jacobian of one joint takes no operations.
+    distance = f"{cost.time / limit:.1f}" if limit else "-"
+    return (*_named(cost), *(str(cost.operations.get(kind, 0)) for kind in ("mul", "add", "div", "call")),
+            _short(cost.time), _short(limit), distance, in_batch, str(cost.memory),
+            f"{1e9 * cost.memory / copied:.2f}")  # fmt: skip
+
+
+def _growth(record: Record) -> Section:
+    curves = growth(record)
+    rows = tuple((FUNCTIONS[c.function], c.quantity, c.who, f"{c.n[0]} ... {c.n[-1]}", f"{c.values[-1]:.3g}",
+                  f"{c.exponent:.2f}") for c in curves)  # fmt: skip
+    text = ("Over chains of generic bodies in space. The exponent is the slope on logarithmic axes, by least squares "
+            "over seven joints and more: time = c n^exponent.")  # fmt: skip
+    figures = []
+    for function in dict.fromkeys(c.function for c in curves):
+        of = [c for c in curves if c.function == function]
+        charts = [
+            _chart(of, "time [ns]"),
+            _chart(of, "operations"),
+            _chart(of, "generation [s]"),
+            _chart(of, "compilation [s]"),
+        ]
+        figures.append(Figure(f"{FUNCTIONS[function].capitalize()}: growth with the number of joints.",
+                              tuple(chart for chart in charts if chart.curves)))  # fmt: skip
+    head = ("function", "quantity", "by", "joints", "#at the longest", "#exponent")
+    return Section("Growth", (text,), head, rows, tuple(figures))
+
+
+def _chart(curves: Sequence[Growth], quantity: str) -> Chart:
+    chosen = [c for c in curves if c.quantity == quantity]
+    drawn = tuple(
+        Curve(f"{c.who}, n^{c.exponent:.1f}", np.array(c.n, float), np.array(c.values), COLORS[c.who], "joined")
+        for c in chosen
+    )
+    name = quantity.partition(" [")[0]
+    return Chart(name[0].upper() + name[1:], "joints n", quantity, drawn, log_x=True, log_y=True)
+
+
+def _skipped(record: Record) -> Section:
+    merged: dict[tuple[str, str, str], list[str]] = {}
+    for model, function, peer, why in (*record.failed, *record.skipped):
+        merged.setdefault((model, peer, why.splitlines()[0] if why else ""), []).append(
+            FUNCTIONS.get(function, function)
+        )
+    rows = tuple((SCENES[model].title if model in SCENES else model, peer, ", ".join(dict.fromkeys(names)), why)
+                 for (model, peer, why), names in merged.items())  # fmt: skip
+    return Section("What was not timed", (), ("model", "side", "functions", "why"), rows)

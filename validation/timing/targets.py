@@ -1,0 +1,87 @@
+"""How fast we mean to be, and how fast we are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from validation.timing.record import Entry, Record
+
+
+@dataclass(frozen=True)
+class Target:
+    """A ratio of medians, theirs to ours, that is to be reached.
+
+    Attributes:
+        model, function, peer: Of what.
+        least: The ratio.
+        how: Ours state by state, or by vectors.
+        family: Of the compiler of the peer; "" for its best.
+    """
+
+    model: str
+    function: str
+    peer: str
+    least: float
+    how: Literal["scalar", "batch"] = "scalar"
+    family: str = ""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A target and what was found.
+
+    Attributes:
+        target: The target.
+        entry: What it was measured by; None where it was not.
+        ratio: Found; 0 where it was not measured.
+    """
+
+    target: Target
+    entry: Entry | None
+    ratio: float
+
+    @property
+    def met(self) -> bool:
+        """Whether it is reached."""
+        return self.ratio >= self.target.least
+
+    @property
+    def words(self) -> str:
+        """Met or missed, and by how much."""
+        if self.entry is None:
+            return "not measured"
+        off = self.ratio / self.target.least - 1.0
+        return f"met, {off:.0%} above" if self.met else f"missed by {-off:.0%}"
+
+
+def _of(model: str, function: str, **least: float) -> list[Target]:
+    return [Target(model, function, peer, ratio) for peer, ratio in least.items()]
+
+
+TARGETS: tuple[Target, ...] = (
+    *_of("panda", "dynamics", pinocchio=7.0, mujoco=6.0, casadi=1.5),
+    Target("panda", "dynamics", "pinocchio", 10.0, family="gcc"),
+    *_of("ur5", "dynamics", pinocchio=7.0, mujoco=6.0, casadi=1.5),
+    *_of("talos", "dynamics", pinocchio=4.5, mujoco=3.5, casadi=1.5),
+    *_of("mss", "dynamics", pinocchio=3.5, mujoco=2.6, casadi=1.5),
+    *_of("chain52", "dynamics", pinocchio=1.9, mujoco=1.5, casadi=1.5),
+    *_of("panda", "forward_dynamics", pinocchio=4.5, mujoco=3.7),
+    *_of("talos", "forward_dynamics", pinocchio=2.8, mujoco=2.8),
+    *_of("panda", "inverse_dynamics_derivatives", pinocchio=3.0),
+    *_of("panda", "forward_dynamics_derivatives", pinocchio=3.0),
+    Target("panda", "dynamics", "pinocchio", 45.0, "batch"),
+    Target("panda", "dynamics", "mujoco", 36.0, "batch"),
+    Target("mss", "dynamics", "pinocchio", 20.0, "batch"),
+    Target("chain52", "dynamics", "pinocchio", 14.0, "batch"),
+)  # fmt: skip
+
+
+def verdicts(record: Record) -> list[Verdict]:
+    """Each target against the peer's fastest way, which depends on nothing of ours."""
+    found = []
+    for target in TARGETS:
+        entry = record.best(target.model, target.function, target.peer, target.family)
+        ratio = None if entry is None else entry.batch_ratio if target.how == "batch" else entry.ratio
+        found.append(Verdict(target, entry if ratio is not None else None, ratio or 0.0))
+    return found

@@ -1,0 +1,115 @@
+"""One model's states, the same for every side, and what a side is to a race."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import symofros as sf
+from validation.assembly import Assembly, assemble
+from validation.geometry import Array
+from validation.interface import States
+from validation.loops import assembled_states
+from validation.sampling import sample
+from validation.timing.models import SCENES
+
+STATES = 1000
+# Of the integrators: short, so that a motion of STATES steps stays near its start, and both sides' ends comparable [s].
+STEP = 1e-5
+# That state of the sample where a motion starts: after the special ones.
+START = 10
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What it takes to make a function, and what it takes to run it.
+
+    Attributes:
+        generation: From the description to C text [s].
+        compilation: From C text to machine code [s].
+        text: Bytes of C.
+        code: Bytes of machine code; constants: of constants.
+        operations: Executed: "mul", "add", "div", "call".
+        memory: Bytes read and written by one call: inputs, constants made in advance, outputs.
+    """
+
+    generation: float
+    compilation: float
+    text: int
+    code: int
+    constants: int
+    operations: Mapping[str, int]
+    memory: int
+
+
+@dataclass(frozen=True)
+class Loop:
+    """One function of one model by one side, ready to be timed.
+
+    Attributes:
+        function: Which.
+        variant: How it was built and which way it takes; "" where there is one.
+        run: So many rounds over all states, results left behind.
+        results: What it computes, in our conventions (n, size).
+        cost: What making it took, of generated code.
+    """
+
+    function: str
+    variant: str
+    run: Callable[[int], None]
+    results: Callable[[], Array]
+    cost: Cost | None = None
+
+
+@dataclass(frozen=True)
+class Task:
+    """One model.
+
+    Attributes:
+        label: Its name on the command line.
+        system: The description.
+        assembly: The same as numbers.
+        states: With u, and in `applied` the forces that it makes.
+        body: The moving body whose Jacobian is timed: the one that most joints carry.
+    """
+
+    label: str
+    system: sf.System
+    assembly: Assembly
+    states: States
+    body: int
+
+    @property
+    def frame(self) -> str:
+        """The frame of that body."""
+        return self.assembly.movers[self.body].body
+
+
+def task(label: str, count: int = STATES) -> Task:
+    """A model with its states."""
+    system = SCENES[label].load()
+    assembly = assemble(system)
+    states = sample(assembly, assembly.motors + len(system.inputs), count)
+    if system.constraints:
+        closed = assembled_states(system, states)
+        again = np.arange(count) % len(closed)  # Assembly is a search: some postures in turn.
+        states = replace(states, **{name: getattr(closed, name)[again] for name in ("q", "v", "a", "u")})
+    tau = np.zeros((count, assembly.nv))
+    at = len(system.inputs)
+    for described in assembly.free_joints:
+        if described.joint.actuated:
+            size = described.v.stop - described.v.start
+            tau[:, described.v] = states.u[:, at : at + size]
+            at += size
+    states = replace(states, applied=tau)
+    depths: list[int] = []
+    for mover in assembly.movers:
+        depths.append(1 + (depths[mover.parent] if mover.parent >= 0 else 0))
+    return Task(label, system, assembly, states, int(np.argmax(depths)))
+
+
+def flat(*parts: Array) -> Array:
+    """Results of one function, side by side (n, size)."""
+    return np.concatenate([part.reshape(len(part), -1) for part in parts], axis=1)

@@ -1,0 +1,121 @@
+"""Times one model in a process of its own: `python -m validation.timing.worker`.
+
+Arguments: a job as JSON: {"model", "peers", "functions", "repeats", "states"}. Prints a JSON object a line:
+{"entry": ...} of a pair of sides, {"cost": ...} of a generated function, {"skipped": ...} of a peer that has no side,
+{"failed": ...} of one that should have, {"doing": ...}.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+import symofros as sf
+from validation.timing.arrays import first_compiler
+from validation.timing.engines import mujoco_loops, pinocchio_loops
+from validation.timing.generated import casadi_loops, sympy_loops
+from validation.timing.ours import BATCH, NAME, our_loops
+from validation.timing.programs import BuildError, Skipped
+from validation.timing.race import DisagreementError, checked, race
+from validation.timing.record import Entry, Made
+from validation.timing.task import Loop, Task, task
+
+Say = Callable[[str, Any], None]
+PEERS = ("pinocchio", "mujoco", "casadi", "sympy")
+
+
+@dataclass(frozen=True)
+class Job:
+    """What one worker is to do.
+
+    Attributes:
+        model: Its label.
+        peers: Whom it races.
+        functions: At what.
+        repeats: Interleaved.
+        states: In a round.
+    """
+
+    model: str
+    peers: tuple[str, ...]
+    functions: tuple[str, ...]
+    repeats: int
+    states: int
+
+
+def work(job: Job, say: Say) -> None:
+    """Do a job; `say` gets each result as it is there."""
+    first_compiler()
+    given = task(job.model, job.states)
+    for function in job.functions:
+        say("doing", function)
+        try:
+            _function(given, job, function, say)
+        except (BuildError, DisagreementError, sf.SymofrosError) as error:
+            say("failed", [job.model, function, "symofros", str(error)])
+
+
+def _function(given: Task, job: Job, function: str, say: Say) -> None:
+    ours = {loop.variant: loop for loop in our_loops(given, [function])}
+    expected = ours[NAME].results()
+    if BATCH in ours:
+        checked(function, BATCH, ours[BATCH].results(), expected)
+    sides = dict(ours)
+    errors: dict[str, float] = {}
+    peers: dict[str, str] = {}
+    for peer in job.peers:
+        for loop in _offered(given, job, function, peer, say):
+            name = f"{peer}: {loop.variant}"
+            try:
+                errors[name] = checked(function, name, loop.results(), expected)
+            except DisagreementError as error:
+                say("failed", [job.model, function, peer, str(error)])
+                continue
+            sides[name], peers[name] = loop, peer
+    times = race(sides, job.states, job.repeats)
+    for name, peer in peers.items():
+        made = Entry.of(job.model, given.assembly.nv, function, peer, sides[name].variant, times[NAME],
+                        times.get(BATCH), times[name], errors[name])  # fmt: skip
+        say("entry", asdict(made))
+    for name, loop in sides.items():
+        if loop.cost is not None:
+            by = peers.get(name, NAME)
+            made_by = Made(
+                job.model, given.assembly.nv, function, by, loop.variant, times[name].median, **vars(loop.cost)
+            )
+            say("cost", asdict(made_by))
+
+
+def _offered(given: Task, job: Job, function: str, peer: str, say: Say) -> Iterable[Loop]:
+    def warn(words: str) -> None:
+        say("failed", [job.model, function, peer, words])
+
+    sources: dict[str, Callable[[], Iterator[Loop]]] = {
+        "pinocchio": lambda: pinocchio_loops(given, [function], warn),
+        "mujoco": lambda: mujoco_loops(given, [function]),
+        "casadi": lambda: casadi_loops(given, [function]),
+        "sympy": lambda: sympy_loops(given, [function]),
+    }
+    try:
+        return list(sources[peer]())
+    except Skipped as error:
+        say("skipped", [job.model, function, peer, str(error)])
+    except (BuildError, ImportError) as error:
+        warn(str(error))
+    return []
+
+
+def _print(kind: str, value: Any) -> None:
+    print(json.dumps({kind: value}), flush=True)
+
+
+if __name__ == "__main__":
+    np.seterr(all="ignore")
+    stated = json.loads(sys.argv[1])
+    work(Job(stated["model"], tuple(stated["peers"]), tuple(stated["functions"]), stated["repeats"], stated["states"]),
+         _print)  # fmt: skip
