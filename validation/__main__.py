@@ -20,6 +20,7 @@ from validation.cases import Case, named, standard_set
 from validation.check import ModelResult, Settings
 from validation.console import output, progress, show
 from validation.junit import to_junit
+from validation.passes import command as passes
 from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
@@ -153,6 +154,7 @@ exports_report.register(app)
 fuzz_report.register(app)
 mutation_report.register(app)
 oracle.register(app)
+passes.register(app)
 stability.register(app)
 timing.register(app)
 simulation_report.register(app)

@@ -1,0 +1,149 @@
+"""One model with all passes, then with each left out in turn: operations, code, time."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import nullcontext
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+import reference_models
+import symofros as sf
+from symofros.passes.count import count_program
+from validation.geometry import Array
+from validation.passes.switches import PASSES, Without
+from validation.timing.arrays import Arrays, loops
+from validation.timing.models import SCENES
+from validation.timing.race import error, race
+from validation.timing.task import Loop
+
+STATES = 256
+ALL, AGAIN, APART = "all passes", "nothing (a copy)", "functions apart"
+# Rounding differs by pass; results may not.
+SAME = 1e-11
+MODELS: dict[str, Callable[[], sf.System]] = {
+    "panda7": SCENES["panda"].load,
+    "talos": SCENES["talos"].load,
+    "planar_robot": lambda: reference_models.MODELS["planar_robot"],
+    "flexible_mss": lambda: reference_models.MODELS["flexible_mss"],
+}
+# M, h and Q in one function share their kinematics.
+_FUSED, _PARTS = "dynamics", ("mass_matrix", "bias", "generalized_force")
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One model without one pass.
+
+    Attributes:
+        model: Its label.
+        nv: Degrees of freedom.
+        without: Name of the pass; ALL for none, AGAIN for none in a copy of the same library, which shows what the
+            placement of code makes; APART for M, h and Q by three functions.
+        operations: Executed by one call.
+        text: Bytes of C.
+        compilation: From C text to machine code, with generation [s].
+        minimum: Time of one state [ns]; median: likewise.
+        off: Largest relative difference of results from those with all passes.
+    """
+
+    model: str
+    nv: int
+    without: str
+    operations: int
+    text: int
+    compilation: float
+    minimum: float
+    median: float
+    off: float
+
+
+def measure(label: str, repeats: int, done: Callable[[str], None] = lambda words: None) -> Iterator[Measured]:
+    """All of one model, raced together.
+
+    Raises:
+        ArithmeticError: A pass changes what is computed.
+    """
+    system = MODELS[label]()
+    built = {ALL: [_Variant(system, _FUSED)], AGAIN: [_Variant(system, _FUSED, copied=True)]}
+    for item in PASSES:
+        built[item.name] = [_Variant(system, _FUSED, item.without, item.options)]
+        done(f"{label} without {item.name}")
+    built[APART] = [_Variant(system, name) for name in _PARTS]
+    expected = built[ALL][0].results()
+    off = {name: error(np.concatenate([one.results() for one in variants], axis=1), expected)
+           for name, variants in built.items()}  # fmt: skip
+    wrong = {name: value for name, value in off.items() if not value <= SAME}
+    if wrong:
+        raise ArithmeticError(
+            f"{label}: results change without {', '.join(f'{n} ({x:.1e})' for n, x in wrong.items())}"
+        )
+    runs = {f"{name}/{i}": one.loop for name, variants in built.items() for i, one in enumerate(variants)}
+    times = race(runs, STATES, repeats)
+    for name, variants in built.items():
+        mine = [times[f"{name}/{i}"] for i in range(len(variants))]
+        yield Measured(
+            label, variants[0].nv, name, sum(one.operations for one in variants), sum(one.text for one in variants),
+            sum(one.seconds for one in variants), sum(t.minimum for t in mine), sum(t.median for t in mine), off[name],
+        )  # fmt: skip
+
+
+class _Variant:
+    """One function of one model, compiled."""
+
+    def __init__(
+        self, system: sf.System, function: str, without: Without = nullcontext,
+        options: Callable[[sf.Options], sf.Options] = lambda options: options, copied: bool = False,
+    ) -> None:  # fmt: skip
+        chosen = options(sf.Options((function,), batch="loop"))
+        with without():
+            program = sf.program_of(system, (function,))
+            start = time.perf_counter()
+            path, symbol = sf.compile_library(system, chosen)
+        self.seconds = time.perf_counter() - start
+        self.text = len(path.with_suffix(".c").read_text(encoding="utf-8"))
+        self.operations = count_program(program)[function, ""].total
+        if not copied:
+            self._open(path, symbol)
+            return
+        with tempfile.TemporaryDirectory() as private:
+            self._open(Path(shutil.copy(path, private)), symbol)
+
+    def _open(self, path: Path, symbol: str) -> None:
+        ffi, native = loops()
+        self._library = ctypes.CDLL(str(path))  # Stays loaded as long as this.
+        address = ctypes.cast(self._library[symbol], ctypes.c_void_p).value
+        model = ffi.cast("const sym_model *(*)(void)", address)()
+        self.nv = int(model.nv)
+        pre = np.zeros(model.npre + 1)
+        model.init(model.par_default, ffi.from_buffer("double[]", pre))
+        entry, given = model.functions[0], {"pre": pre[: model.npre], **_states(model.nq, model.nv, model.nu)}
+        inputs = [given.get(ffi.string(item.name).decode(), np.zeros(item.rows * item.cols))
+                  for item in getattr(entry, "in")[0 : entry.n_in]]  # fmt: skip
+        sizes = [item.rows * item.cols for item in entry.out[0 : entry.n_out]]
+        self._function, self._arrays = model.functions + 0, Arrays(inputs, sizes, (int(entry.work), 0))
+        run = partial(native.loop_eval, self._function, self._arrays.overwritten())
+        self.loop = Loop(_FUSED, "", run, self.results)
+
+    def results(self) -> Array:
+        """All outputs (STATES, size)."""
+        native = loops()[1]
+        return self._arrays.results(lambda kept: native.loop_eval(self._function, kept, 1))
+
+
+def _states(nq: int, nv: int, nu: int) -> Mapping[str, Array]:
+    """Deflections stay small; angles need not be large to cost what they cost."""
+    rng = np.random.default_rng(11)
+    return {name: rng.uniform(-0.5, 0.5, (STATES, size)) for name, size in (("q", nq), ("v", nv), ("u", nu))}
+
+
+def as_data(rows: list[Measured]) -> list[dict[str, object]]:
+    """For JSON."""
+    return [asdict(row) for row in rows]

@@ -1,0 +1,127 @@
+"""Each pass of the generator, and how to leave it out. Results stay the same within rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass, replace
+from typing import Any
+
+import symofros as sf
+from symofros.codegen import function as functions
+from symofros.codegen.statements import StatementWriter
+from symofros.dynamics import inertia
+from symofros.expr.graph import Edge, Graph
+from symofros.expr.ops import ADD, DIV, MUL
+from symofros.expr.vector import Sym3, Vec3
+from symofros.kinematics import links, rotations
+from symofros.kinematics.rotations import MatrixTurn, Turn
+from symofros.passes import stage
+from symofros.runtime.toolchain import DEFAULT_FLAGS
+
+Without = Callable[[], AbstractContextManager[object]]
+
+
+@dataclass(frozen=True)
+class Pass:
+    """One of them.
+
+    Attributes:
+        name: In tables.
+        what: It does, in a sentence.
+        without: Leaves it out of what is generated meanwhile.
+        options: Leaves it out of what is compiled.
+    """
+
+    name: str
+    what: str
+    without: Without = nullcontext
+    options: Callable[[sf.Options], sf.Options] = lambda options: options
+
+
+@contextmanager
+def _replaced(owner: Any, name: str, value: object) -> Iterator[None]:
+    before = getattr(owner, name)
+    setattr(owner, name, value)
+    try:
+        yield
+    finally:
+        setattr(owner, name, before)
+
+
+def _without_sharing() -> AbstractContextManager[None]:
+    """Every sum, product and quotient is a node of its own."""
+    known = Graph._node
+
+    def fresh(self: Graph, key: object, op: str, args: tuple[Edge, ...]) -> int:
+        return known(self, object() if op in (ADD, MUL, DIV) else key, op, args)
+
+    return _replaced(Graph, "_node", fresh)
+
+
+def _without_regrouping() -> AbstractContextManager[None]:
+    """Inertia stays with its link, unless it is clamped to the parent."""
+    known = inertia._split
+
+    def kept(
+        link: links.MovingLink, own: inertia.LinkInertia
+    ) -> tuple[inertia.LinkInertia, inertia.LinkInertia | None]:
+        return known(link, own) if not link.columns and link.rates is None else (own, None)
+
+    return _replaced(inertia, "_split", kept)
+
+
+@contextmanager
+def _without_turns() -> Iterator[None]:
+    """Vectors and tensors are multiplied by whole rotation matrices."""
+
+    def apply(self: Turn, v_B: Vec3) -> Vec3:
+        return self.matrix().times(v_B)
+
+    def apply_inverse(self: Turn, v_A: Vec3) -> Vec3:
+        return self.matrix().T.times(v_A)
+
+    def conjugate(self: Turn, S_B: Sym3) -> Sym3:
+        return MatrixTurn(self.matrix()).conjugate(self.g, S_B)
+
+    with (
+        _replaced(Turn, "apply", apply),
+        _replaced(Turn, "apply_inverse", apply_inverse),
+        _replaced(Turn, "conjugate", conjugate),
+    ):
+        yield
+
+
+def _without_staging() -> AbstractContextManager[None]:
+    """What parameters determine is computed in every call."""
+    return _replaced(
+        stage, "_parameter_only", lambda graph: {n for n, slot in graph.slot.items() if slot.group == "par"}
+    )
+
+
+def _in_one_piece() -> AbstractContextManager[None]:
+    return _replaced(functions, "MAX_STATEMENTS", 10**9)
+
+
+PASSES = (
+    Pass("sharing", "Equal operations are one node of the graph.", _without_sharing),
+    Pass("regrouping", "What a joint cannot tell from its parent's inertia is booked there, before run time.",
+         _without_regrouping),
+    Pass("elementary turns", "Rotations act as products of turns about coordinate axes, by 4 multiplications each.",
+         _without_turns),
+    Pass("rounding noise", "Entries of constant rotations within 1e-15 of 0 and 1 are 0 and 1: cos(pi/2) is 6e-17.",
+         lambda: _replaced(rotations, "EXACT", -1.0)),
+    Pass("constant factors", "c1 (c2 x) becomes (c1 c2) x.",
+         lambda: _replaced(Graph, "_scale", lambda self, a, b: _both_numbers(self, a, b))),
+    Pass("staging", "What parameters alone determine is computed once for each set of them.", _without_staging),
+    Pass("blocks of sines", "Sines and cosines of up to eight angles by polynomials in one vector; without: libm's.",
+         lambda: _replaced(StatementWriter, "_blocks", lambda self: {})),
+    Pass("packs", "Columns that are computed alike share vectors.", options=lambda o: replace(o, packs=False)),
+    Pass("no search for vectors", "The compiler's own search for statements that could share vectors is off.",
+         options=lambda o: replace(o, flags=tuple(f for f in DEFAULT_FLAGS if f != "-fno-tree-slp-vectorize"))),
+    Pass("pieces", "Functions past 1000 statements are compiled in pieces.", _in_one_piece),
+)  # fmt: skip
+
+
+def _both_numbers(g: Graph, a: int, b: int) -> Edge | None:
+    return g.constant(g.value[a] * g.value[b]) if a in g.value and b in g.value else None
