@@ -8,17 +8,16 @@ from __future__ import annotations
 
 import hashlib
 import os
-import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 from symofros.errors import CompileError
-from symofros.runtime.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, cpu_identity
+from symofros.runtime.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, call_compiler, cpu_identity
 
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-_SHOWN_LINES = 12
+_REMEDY = "check Options(flags=…) and the compiler; backend='interpreter' needs none"
 # Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
 _LOOSE = {"-ffast-math", "-Ofast", "-funsafe-math-optimizations"}
 
@@ -77,17 +76,7 @@ def _compile(private: Path, source: str, header: str, toolchain: Toolchain, flag
     (private / "model.c").write_text(source, encoding="utf-8")
     output = f"model{_SUFFIX}"
     if not _LOOSE & set(flags):
-        _run([*toolchain.command, *flags, *SHARED_FLAGS, "-o", output, "model.c", "-lm"], private)
+        call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-o", output, "model.c", "-lm"], private, _REMEDY)
         return
-    _run([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "-o", "model.o", "model.c"], private)
-    _run([*toolchain.command, "-shared", "-o", output, "model.o", "-lm"], private)
-
-
-def _run(command: list[str], folder: Path) -> None:
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        words = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
-        raise CompileError(
-            f"the C compiler failed with status {done.returncode}\n  command: {' '.join(command)}\n{words}\n"
-            "  remedy: check Options(flags=…) and the compiler; backend='interpreter' needs none"
-        )
+    call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "-o", "model.o", "model.c"], private, _REMEDY)
+    call_compiler([*toolchain.command, "-shared", "-o", output, "model.o", "-lm"], private, _REMEDY)
