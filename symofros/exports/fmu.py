@@ -42,12 +42,6 @@ def write_fmu3(material: Material, folder: Path) -> Exported:
 
 
 def _write(material: Material, folder: Path, version: int) -> Exported:
-    if material.record.driven and material.outputs:
-        raise ExportError(str(Problem(
-            f"'{material.record.name}': positions of frames as outputs of an FMU", "a joint of prescribed motion",
-            "directional derivatives of outputs are exact, and those by a prescribed motion are not generated",
-            "outputs=()",
-        )))  # fmt: skip
     name = material.c_name
     sources = model_files(material)
     token = _token(material, sources, version)
