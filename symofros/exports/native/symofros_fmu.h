@@ -7,7 +7,10 @@
 
 typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FMU_STEPPING, FMU_TERMINATED } fmu_phase;
 
-enum { FMU_OK, FMU_NOT_NOW, FMU_UNKNOWN, FMU_NO_MOTION };
+enum {
+    FMU_OK, FMU_NOT_NOW, FMU_UNKNOWN, FMU_NO_MOTION, FMU_WRONG_MODE, FMU_NO_START, FMU_STOP_BEFORE_START, FMU_NO_MEMORY,
+    FMU_FOREIGN, FMU_TOO_SHORT
+};
 
 typedef struct fmu_snapshot { /* followed by q, v, u, par */
     char hash[24];
