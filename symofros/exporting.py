@@ -13,7 +13,6 @@ from symofros.codegen.interpreted import InterpretedUnit
 from symofros.codegen.names import identifier
 from symofros.compiler import GENERATOR, compile_system, describe, generate, plan, requested
 from symofros.description.system import System
-from symofros.dynamics.functions import Request
 from symofros.errors import AssemblyError, ExportError, Problem, UnknownNameError, did_you_mean
 from symofros.exports.c_package import write_c_package
 from symofros.exports.fmu import write_fmu2, write_fmu3
@@ -137,8 +136,8 @@ def _material(
     record = describe(tree, options)
     c_name = identifier(name or record.name)
     shown = _outputs(record.frame_names, [key[1] for key in requests if key[0] in FRAME_FUNCTIONS], outputs)
-    if differentiated and record.driven:
-        requests += [Request("frame_derivatives", frame) for frame in shown]
+    if differentiated and record.driven and shown:
+        requests += requested(tree, Options(("frame_derivatives",), shown))
     program, source = generate(tree, requests, record, c_name=c_name)
     interpreted = compile_system(system, Options(backend="interpreter"))
     q, v = _start(interpreted, start)
