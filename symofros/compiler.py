@@ -7,7 +7,7 @@
 | write_program | SpanningTree, requests | Program: named functions over one expression graph (Jourdain) |
 | run_passes | Program | Program: staged, verified |
 | model_source | Program | C text |
-| build_library | C text | shared library, cached by content |
+| build_library | C text | shared library, cached by content; recalled without the text where it is known |
 | Model | libraries, or programs | callable functions |
 """
 
@@ -47,7 +47,7 @@ from symofros.expr.program import Program
 from symofros.kinematics.joint import neutral_coordinates
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS, Options
 from symofros.passes import run_passes
-from symofros.runtime.build import build_library
+from symofros.runtime.build import build_library, recall_library
 from symofros.runtime.functions import Rate
 from symofros.runtime.kernel import Kernel, Unit
 from symofros.runtime.library import CompiledUnit
@@ -169,41 +169,49 @@ class _Builder:
     def __init__(self, tree: SpanningTree, record: ModelRecord, options: Options) -> None:
         self._tree, self._record, self._options = tree, record, options
         self._toolchain = _choose_toolchain(options)
+        self._stated = repr((tree.system, options))  # Dataclasses print every field.
 
     def functions(self, requests: tuple[Key, ...]) -> Unit:
         """Functions of the model."""
-        return self._unit(generate(self._tree, requests, self._record, self._options.constraints)[0])
+        form = self._options.constraints
+        return self._unit(requests, lambda: generate(self._tree, requests, self._record, form)[0])
 
     def formulas(self, formulas: tuple[Any, ...]) -> Unit:
         """Numbers, formula texts or SymPy expressions over the model's names, with their derivatives."""
         stated = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
         what = f"system '{self._tree.system.name}': formula"
         values = [(as_value(item.formula, what), item.order) for item in stated]
-        return self._unit(run_passes(formula_program(self._tree, values)))
+        return self._unit(values, lambda: run_passes(formula_program(self._tree, values)))
 
-    def _unit(self, program: Program) -> Unit:
+    def _unit(self, what: object, write: Callable[[], Program]) -> Unit:
+        """What was asked for, written unless a library of it is known."""
+        program = cache(write)
         if self._toolchain is None:
-            return InterpretedUnit(program)
-        in_lanes = self._in_lanes(program) if self._options.batch == "vector" else None
-        return self._compiled(program, self._toolchain, False, in_lanes)
+            return InterpretedUnit(program())
+        in_lanes = self._in_lanes(what, program) if self._options.batch == "vector" else None
+        return self._compiled((what, "one by one"), program, self._toolchain, False, in_lanes)
 
     def _compiled(
-        self, program: Program, toolchain: Toolchain, vectors: bool,
+        self, what: object, program: Callable[[], Program], toolchain: Toolchain, vectors: bool,
         in_lanes: Callable[[Key], Kernel | None] | None = None,
     ) -> CompiledUnit:  # fmt: skip
         header = template("symofros_model.h")
-        source = model_source(program, self._record, GENERATOR, vectors, packs=self._options.packs)
-        path = build_library(source, header, toolchain, self._options.flags)
+        path = recall_library(
+            f"{self._stated}{what!r}",
+            lambda: model_source(program(), self._record, GENERATOR, vectors, packs=self._options.packs),
+            header, toolchain, self._options.flags,
+        )  # fmt: skip
         return CompiledUnit(path, f"{identifier(self._record.name)}_model", header, self._record.hash, in_lanes)
 
-    def _in_lanes(self, program: Program) -> Callable[[Key], Kernel | None]:
+    def _in_lanes(self, what: object, program: Callable[[], Program]) -> Callable[[Key], Kernel | None]:
         """Function -> the same by vectors, compiled when it is asked for; None for one that a solver finishes."""
 
         def compiled(key: Key) -> Kernel | None:
-            function = next(f for f in program.functions if (f.name, f.frame) == key)
+            function = next(f for f in program().functions if (f.name, f.frame) == key)
             if function.solver is not None or self._toolchain is None:
                 return None
-            return self._compiled(replace(program, functions=(function,)), self._toolchain, True).kernels[key]
+            alone = replace(program(), functions=(function,))
+            return self._compiled((what, "in lanes", key), lambda: alone, self._toolchain, True).kernels[key]
 
         return compiled
 

@@ -41,6 +41,8 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
     "fmu2": write_fmu2,
     "fmu3": write_fmu3,
 }
+# Targets that give exact derivatives of their outputs, by inputs too.
+_DIFFERENTIATED = ("fmu2", "fmu3")
 _DESCRIBED: dict[str, Callable[[System, str | None, Path, str], Exported]] = {"urdf": write_urdf, "mjcf": write_mjcf}
 # What wrappers call: the paper's table 1, and what stepping and linearisation need.
 _FUNCTIONS = (
@@ -103,7 +105,7 @@ def export(
         plan(system)
         return _DESCRIBED[target](system, name, place, GENERATOR)
     stepping = _stepping(method, dt, rtol, atol)
-    material = _material(system, name, frames, outputs, start or {}, stepping)
+    material = _material(system, name, frames, outputs, start or {}, stepping, target in _DIFFERENTIATED)
     return _COMPILED[target](material, place)
 
 
@@ -121,8 +123,9 @@ def _stepping(method: str, dt: float, rtol: float, atol: float) -> Stepping:
 
 def _material(
     system: System, name: str | None, frames: Sequence[str] | None, outputs: Sequence[str] | None,
-    start: Mapping[str, float], stepping: Stepping,
+    start: Mapping[str, float], stepping: Stepping, differentiated: bool,
 ) -> Material:  # fmt: skip
+    """What an export is made of; `differentiated`: with the derivatives of outputs by prescribed motions, if any."""
     tree = plan(system)
     _refuse_variational(system, stepping)
     needs = tuple(NEEDS.get(stepping.method.kind, {}).values())
@@ -132,8 +135,10 @@ def _material(
     requests = requested(tree, options)
     record = describe(tree, options)
     c_name = identifier(name or record.name)
-    program, source = generate(tree, requests, record, c_name=c_name)
     shown = _outputs(record.frame_names, [key[1] for key in requests if key[0] in FRAME_FUNCTIONS], outputs)
+    if differentiated and record.driven and shown:
+        requests += requested(tree, Options(("frame_derivatives",), shown))
+    program, source = generate(tree, requests, record, c_name=c_name)
     interpreted = compile_system(system, Options(backend="interpreter"))
     q, v = _start(interpreted, start)
     kernels = InterpretedUnit(program).kernels

@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 
 # Compiled models are kept between runs and shared by parallel workers, apart from the user's own cache.
-os.environ.setdefault("SYMOFROS_CACHE", str(Path(__file__).parent.parent / ".pytest_cache" / "models"))
+_CACHE = Path(__file__).parent.parent / ".pytest_cache"
+os.environ.setdefault("SYMOFROS_CACHE", str(_CACHE / "models"))
+# zig would use the home folder, which a machine of CI may lack; it does not end where it can't be made.
+os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(_CACHE / "zig"))
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

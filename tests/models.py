@@ -6,6 +6,7 @@ from functools import cache
 
 import symofros as sf
 from reference_models import MODELS
+from reference_models.closed.spatial import delta_guess, stewart_guess
 from reference_models.rigid.random_tree import KINDS, MORE_KINDS, random_tree
 
 TREES = {f"tree{seed}": seed for seed in range(8)}
@@ -18,6 +19,18 @@ REFERENCES = (
     "ssrms", "spdm", "mss", "random_tree1", "random_tree4", "random_tree70",
 )  # fmt: skip
 CASES = (*TREES, *REFERENCES)
+
+# Mechanisms with constraints -> where to begin with closing their loops.
+GUESSES = {
+    "four_bar": [1.2, -1.2, 1.2],
+    "slider_crank": [0.5, -0.7, 0.4],
+    "parallelogram": [1.0, -1.0, 1.0, 1.0],
+    "bricard": [0.0] * 5,
+    "stewart": stewart_guess(),
+    "delta": delta_guess(),
+    "rolling_disc": [0, 0, 0.5, 0.5, 0.5, 0.5, 0.5],
+    "sleigh": [0.1, 0.2, 0.3],
+}
 
 
 @cache

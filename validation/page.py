@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import math
 import platform
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from importlib import metadata
-from typing import Any
+from pathlib import Path
+from typing import Any, Protocol
 
 import jinja2
 import numpy as np
 
 import symofros as sf
+from symofros.atomic import write_atomically
 from validation.findings import Chart, Check, Figure
 from validation.record import machine
 
@@ -28,6 +31,63 @@ def render(template: str, filters: Mapping[str, Callable[..., object]], **values
     )  # fmt: skip
     environment.filters |= {"number": short, **filters}
     return environment.get_template(template).render(machine=machine(), **values)
+
+
+class Run(Protocol):
+    """What a command that writes a report has done."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether all was done and every number is within its bounds."""
+        ...
+
+    @property
+    def failures(self) -> dict[str, str]:
+        """What could not be done -> why."""
+        ...
+
+    @property
+    def quick(self) -> bool:
+        """Whether the short way was taken."""
+        ...
+
+    @property
+    def seconds(self) -> float:
+        """Wall time."""
+        ...
+
+
+def run_data(run: Run, *distributions: str) -> dict[str, Any]:
+    """How a run went and on what, for JSON."""
+    return {"ok": run.ok, "quick": run.quick, "seconds": round(run.seconds, 1), "failures": run.failures,
+            "versions": versions(*distributions), "machine": machine()}  # fmt: skip
+
+
+def write_pages(folder: Path, name: str, data: str, rendered: Callable[[str], str]) -> Path:
+    """Write a report's three files: NAME.json (everything), NAME.md (a summary), NAME.html (one self-contained page).
+
+    Args:
+        folder: Made where it is missing.
+        name: Of the report.
+        data: Its JSON.
+        rendered: Template -> text.
+
+    Returns:
+        The page.
+
+    Raises:
+        OSError: The folder can't be written to.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    write_atomically(folder / f"{name}.json", data)
+    for kind in ("md", "html"):
+        write_atomically(folder / f"{name}.{kind}", rendered(f"{name}.{kind}.j2"))
+    return folder / f"{name}.html"
+
+
+def compact(data: Mapping[str, Any]) -> str:
+    """JSON on one line."""
+    return json.dumps(data, allow_nan=False) + "\n"
 
 
 def short(x: float) -> str:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import jinja2
 from markupsafe import Markup
 
-from symofros.atomic import write_atomically
 from validation.adapters import ROUTES
 from validation.compare import Comparison
 from validation.conventions import DIFFERENCES
 from validation.figures import error_against_condition, error_distributions
+from validation.page import render, write_pages
 from validation.quantities import MOTION_ENERGY, QUANTITIES, ROUNDING, SMALL, SOLVE
 from validation.record import Record, to_json
 from validation.tables import COLUMNS, by_engine, by_model, failures, headline, short, unsupported, worst
@@ -26,11 +25,8 @@ def write_report(record: Record, folder: Path) -> Path:
     Raises:
         OSError: The folder can't be written to.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    write_atomically(folder / "check.json", to_json(record))
-    write_atomically(folder / "check.md", to_markdown(record))
-    write_atomically(folder / "check.html", to_html(record))
-    return folder / "check.html"
+    texts = {"check.md.j2": to_markdown, "check.html.j2": to_html}
+    return write_pages(folder, "check", to_json(record), lambda template: texts[template](record))
 
 
 def to_html(record: Record) -> str:
@@ -55,14 +51,10 @@ def to_markdown(record: Record) -> str:
 
 
 def _render(template: str, record: Record, **more: object) -> str:
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("validation"), undefined=jinja2.StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True, autoescape=jinja2.select_autoescape(["html.j2"]),
-    )  # fmt: skip
-    environment.filters |= {"short": _short, "cell": _markdown_cell}
-    return environment.get_template(template).render(
-        record=record, headline=headline(record), columns=COLUMNS, models=by_model(record), failures=failures(record),
-        unsupported=unsupported(record), rounding=worst(_rounded(record)),
+    return render(
+        template, {"short": _short, "cell": _markdown_cell}, record=record, headline=headline(record), columns=COLUMNS,
+        models=by_model(record), failures=failures(record), unsupported=unsupported(record),
+        rounding=worst(_rounded(record)),
         solve=worst(row for row in record.compared if row.quantity == "forward_dynamics"),
         ROUNDING=ROUNDING, SOLVE=SOLVE, SMALL=SMALL, **more,
     )  # fmt: skip

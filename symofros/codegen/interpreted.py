@@ -48,6 +48,15 @@ class InterpretedKernel:
         solver = self._function.solver
         return outputs if solver is None else _TWINS[solver.routine](self, solver, named, outputs)
 
+    def bind(self, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
+        """The function on fixed memory, for one state."""
+
+        def evaluate() -> None:
+            for into, found in zip(outputs, self.run(1, pre, [values[None] for values in inputs]), strict=True):
+                into[...] = found[0]
+
+        return evaluate
+
     def evaluate(self, function: Function, named: Mapping[str, Array]) -> list[Array]:
         """The outputs of this function, or of a part of it, for one state."""
         return [output[0] for output in interpret(self._program, function, named, 1)]

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from symofros.errors import CompileError
-from symofros.runtime.toolchain import find_toolchain
+from symofros.runtime.toolchain import call_compiler, find_toolchain
 
 # No -march=native: what is exported runs on other machines of the kind.
 FLAGS = ("-O2", "-fno-math-errno", "-std=c99", "-fPIC", "-shared", "-fvisibility=hidden")
-_SHOWN_LINES = 12
 
 
 def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path]) -> bytes:
@@ -34,11 +32,5 @@ def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path])
             (Path(private) / name).write_text(text, encoding="utf-8")
         folders = [f"-I{folder}" for folder in include]
         command = [*toolchain.command, *FLAGS, *folders, "-o", "library", main, "-lm"]
-        done = subprocess.run(command, cwd=private, capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            words = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
-            raise CompileError(
-                f"the C compiler failed with status {done.returncode}\n  command: {' '.join(command)}\n{words}\n"
-                "  remedy: check $CC and the compiler"
-            )
+        call_compiler(command, Path(private), "check $CC and the compiler")
         return (Path(private) / "library").read_bytes()

@@ -26,6 +26,7 @@ from symofros.exports.unity import unity
 _MACHINES = {"x86_64": "x86_64", "amd64": "x86_64", "aarch64": "aarch64", "arm64": "aarch64"}
 _SYSTEMS = {"linux": ("linux", ".so"), "darwin": ("darwin", ".dylib"), "win32": ("windows", ".dll")}
 _OLD_NAMES = {("x86_64", "linux"): "linux64", ("x86_64", "darwin"): "darwin64", ("x86_64", "windows"): "win64"}
+_HEADERS = ("symofros_fmu.h", "symofros_fmi.h")
 _INTERFACE = {2: ("symofros_fmi2.c",), 3: ("symofros_fmi3.c", "symofros_fmi3_none.c")}
 # The same content gives the same archive, byte for byte.
 _EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -42,18 +43,11 @@ def write_fmu3(material: Material, folder: Path) -> Exported:
 
 
 def _write(material: Material, folder: Path, version: int) -> Exported:
-    if material.record.driven and material.outputs:
-        raise ExportError(str(Problem(
-            f"'{material.record.name}': positions of frames as outputs of an FMU", "a joint of prescribed motion",
-            "directional derivatives of outputs are exact, and those by a prescribed motion are not generated",
-            "outputs=()",
-        )))  # fmt: skip
     name = material.c_name
     sources = model_files(material)
     token = _token(material, sources, version)
     sources[f"{name}_fmi{version}.c"] = _glue(material, version, token)
-    sources["symofros_fmu.h"] = hand_written("symofros_fmu.h")
-    for file in _INTERFACE[version]:
+    for file in (*_HEADERS, *_INTERFACE[version]):
         sources[file] = hand_written(file)
     library = shared_library(sources, f"{name}_fmi{version}.c", [fmi_headers()])
     place, suffix = _platform(version)
@@ -90,7 +84,7 @@ def _glue(material: Material, version: int, token: str) -> str:
         [
             f"#define SYM_FMU_PLANT {name}_plant", f"#define SYM_FMU_TOKEN {c_string(token)}",
             f"#define SYM_FMU_FRAMES {len(material.outputs)}",
-            f"static const char *const sym_fmu_frames[] = {{{frames}}};", '#include "symofros_fmu.h"',
+            f"static const char *const sym_fmu_frames[] = {{{frames}}};", *(f'#include "{file}"' for file in _HEADERS),
         ],
         [f'#include "fmi{version}Functions.h"', *(f'#include "{file}"' for file in _INTERFACE[version])],
     )  # fmt: skip

@@ -96,10 +96,11 @@ def _variables(material: Material) -> Iterator[Variable]:
     for i, kind in enumerate(("kinetic", "potential")):
         yield Variable(reference + i, f"energy.{kind}", "local", "continuous", "calculated", unit="J")
     reference += 2
+    prescribed = tuple(range(at_u + nu - record.driven, at_u + nu))
     for frame in material.outputs:
         for i, axis in enumerate("xyz"):
             yield Variable(reference + i, f"p.{quoted(frame)}.{axis}", "output", "continuous", "calculated", unit="m",
-                           depends=_moved_by(material, frame, i, at_q))  # fmt: skip
+                           depends=_moved_by(material, frame, i, at_q) + prescribed)  # fmt: skip
         reference += 3
 
 

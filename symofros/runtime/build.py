@@ -1,24 +1,28 @@
 """C text -> shared library, cached by content.
 
 The key covers the C text, the header, flags, compiler and processor. A library is compiled in a private folder and
-renamed into place, so that concurrent processes and killed compilations never leave a broken one behind.
+renamed into place, so that concurrent processes and killed compilations never leave a broken one behind. A second key
+spares the C text: what was asked for, of which state of this package; its file names the library.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
-import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import numpy as np
+
+from symofros.atomic import write_atomically
 from symofros.errors import CompileError
-from symofros.runtime.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, cpu_identity
+from symofros.runtime.identity import CODE_IDENTITY
+from symofros.runtime.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, call_compiler, cpu_identity
 
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-_SHOWN_LINES = 12
+_REMEDY = "check Options(flags=…) and the compiler; backend='interpreter' needs none"
 # Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
 _LOOSE = {"-ffast-math", "-Ofast", "-funsafe-math-optimizations"}
 
@@ -29,6 +33,40 @@ def cache_folder() -> Path:
     if stated:
         return Path(stated)
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "symofros"
+
+
+def recall_library(
+    recipe: str, source: Callable[[], str], header: str, toolchain: Toolchain, flags: Sequence[str] | None = None
+) -> Path:
+    """The library of what a recipe states; its C text is only asked for where no library is known.
+
+    Args:
+        recipe: All that the C text depends on, but for the code that writes it.
+        source: Gives the text.
+        header: As for `build_library`, and so the others.
+        toolchain: The compiler.
+        flags: In place of the default ones.
+
+    Raises:
+        CompileError: As for `build_library`.
+    """
+    folder = cache_folder()
+    known = folder / f"{_key(recipe, CODE_IDENTITY, np.__version__, header, toolchain=toolchain, flags=flags)}.known"
+    try:
+        library = folder / Path(known.read_text(encoding="utf-8")).name
+        if library.is_file():
+            return library
+    except OSError:
+        pass
+    library = build_library(source(), header, toolchain, flags)
+    write_atomically(known, library.name)
+    return library
+
+
+def _key(*parts: str, toolchain: Toolchain, flags: Sequence[str] | None) -> str:
+    chosen = DEFAULT_FLAGS if flags is None else flags
+    stated = [*parts, *chosen, *SHARED_FLAGS, toolchain.identity, cpu_identity()]
+    return hashlib.sha256("\0".join(stated).encode()).hexdigest()[:32]
 
 
 def build_library(source: str, header: str, toolchain: Toolchain, flags: Sequence[str] | None = None) -> Path:
@@ -43,9 +81,7 @@ def build_library(source: str, header: str, toolchain: Toolchain, flags: Sequenc
     Raises:
         CompileError: The compiler refused, with its command and words; or the cache folder can't be written.
     """
-    chosen = tuple(DEFAULT_FLAGS if flags is None else flags)
-    parts = [source, header, *chosen, *SHARED_FLAGS, toolchain.identity, cpu_identity()]
-    key = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+    key = _key(source, header, toolchain=toolchain, flags=flags)
     folder = cache_folder()
     library = folder / f"{key}{_SUFFIX}"
     if library.exists():
@@ -53,7 +89,7 @@ def build_library(source: str, header: str, toolchain: Toolchain, flags: Sequenc
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=f".{key[:8]}-", dir=folder) as private:
-            _compile(Path(private), source, header, toolchain, chosen)
+            _compile(Path(private), source, header, toolchain, tuple(DEFAULT_FLAGS if flags is None else flags))
             _flush(Path(private) / f"model{_SUFFIX}")
             os.replace(Path(private) / "model.c", folder / f"{key}.c")
             os.replace(Path(private) / f"model{_SUFFIX}", library)
@@ -77,17 +113,7 @@ def _compile(private: Path, source: str, header: str, toolchain: Toolchain, flag
     (private / "model.c").write_text(source, encoding="utf-8")
     output = f"model{_SUFFIX}"
     if not _LOOSE & set(flags):
-        _run([*toolchain.command, *flags, *SHARED_FLAGS, "-o", output, "model.c", "-lm"], private)
+        call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-o", output, "model.c", "-lm"], private, _REMEDY)
         return
-    _run([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "-o", "model.o", "model.c"], private)
-    _run([*toolchain.command, "-shared", "-o", output, "model.o", "-lm"], private)
-
-
-def _run(command: list[str], folder: Path) -> None:
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        words = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
-        raise CompileError(
-            f"the C compiler failed with status {done.returncode}\n  command: {' '.join(command)}\n{words}\n"
-            "  remedy: check Options(flags=…) and the compiler; backend='interpreter' needs none"
-        )
+    call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "-o", "model.o", "model.c"], private, _REMEDY)
+    call_compiler([*toolchain.command, "-shared", "-o", output, "model.o", "-lm"], private, _REMEDY)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -57,6 +58,18 @@ class Kernel(Protocol):
 
         Returns:
             One array an output, (n, *shape).
+        """
+        ...
+
+    def bind(self, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
+        """The function on fixed memory, for one state: a call reads the inputs and overwrites the outputs.
+
+        C gets addresses: the caller keeps this kernel and all arrays for as long as the result is called.
+
+        Args:
+            pre: (1, npre), from `prepare`.
+            inputs: Each (size), C-contiguous, in the signature's order.
+            outputs: Each of its shape, C-contiguous.
         """
         ...
 

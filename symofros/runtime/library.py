@@ -6,7 +6,7 @@ import ctypes
 import re
 import threading
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -150,3 +150,13 @@ class CompiledKernel:
             self._scratch.work,
         )  # fmt: skip
         return outputs
+
+    def bind(self, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
+        """The function on fixed memory, for one state."""
+        ffi = self._unit.ffi
+        read = [ffi.from_buffer("double[]", array) for array in (pre, *inputs)]
+        written = [ffi.from_buffer("double[]", array) for array in outputs]
+        return partial(
+            self._function.eval, ffi.new("double *[]", read), ffi.new("double *[]", written),
+            ffi.new("double[]", max(1, self._function.work)),
+        )  # fmt: skip

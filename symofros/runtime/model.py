@@ -7,7 +7,9 @@ from typing import Literal, overload
 
 import numpy as np
 
+from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.runtime import linear, manifold
+from symofros.runtime.bound import Bound, bind
 from symofros.runtime.functions import Functions
 from symofros.runtime.functions import Given as Given
 from symofros.runtime.functions import Key as Key
@@ -45,6 +47,31 @@ class Model(Functions):
     def difference(self, q0: Given, q1: Given) -> Array:
         """The dq (..., nv) that leads from q0 to q1 (..., nq)."""
         return manifold.difference(self.record, self._array("q0", q0, self.nq), self._array("q1", q1, self.nq))
+
+    # Calls without checks.
+
+    def bind(self, name: str, frame: str = "", *, par: Given | None = None, **arrays: Array) -> Bound:
+        """A function bound to fixed memory: a call takes a fraction of a microsecond more than its C.
+
+        `M = model.bind("mass_matrix")`, then write into `M.inputs["q"]`, call `M()`, read `M.outputs["M"]`.
+
+        Args:
+            name: Of the function, as of the method.
+            frame: The frame that it is about, for frame functions.
+            par: Run-time parameters (npar); the model's by default.
+            arrays: Memory of the caller's for inputs and outputs, by name; what is left out is allocated.
+
+        Raises:
+            UnknownNameError: There is no such function, frame, input or output.
+            ShapeError: An array is not a writeable, contiguous float64 array of its shape.
+        """
+        values = self.parameter_values if par is None else self._array("par", par, self.npar)
+        frame = self._frame(frame) if frame else ""
+        known = FRAME_FUNCTIONS if frame else MODEL_FUNCTIONS
+        if name not in known:
+            raise self._unknown("function", name, known, "frame functions are bound with their frame, others without")
+        kernel = self._kernels.get((name, frame)) or self._make(name, frame)
+        return bind(kernel, values, arrays, {"u": np.array(self.record.u_default)})
 
     # Dynamics: M(q) v' + h(q, v) = Q(q, v, u).
 

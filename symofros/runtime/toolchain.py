@@ -9,6 +9,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -19,6 +20,7 @@ from symofros.errors import CompileError
 # What can share vectors does so already (codegen/packs.py): the compiler's own search for more costs up to a quarter.
 DEFAULT_FLAGS = ("-O2", "-march=native", "-fno-math-errno", "-fno-tree-slp-vectorize")
 SHARED_FLAGS = ("-shared", "-fPIC", "-fvisibility=hidden", "-std=gnu99")
+_SHOWN_LINES = 12
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,26 @@ def find_toolchain(compiler: str | None = None) -> Toolchain | None:
         command = (sys.executable, "-m", "ziglang", "cc")
         return Toolchain(command, _version(command), is_fallback=True)
     return None
+
+
+def call_compiler(command: Sequence[str], folder: Path, remedy: str) -> None:
+    """Run a compiler in a folder.
+
+    Args:
+        command: With its arguments.
+        folder: Where.
+        remedy: What to do about a refusal.
+
+    Raises:
+        CompileError: It refused: with its command and words.
+    """
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        words = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
+        raise CompileError(
+            f"the C compiler failed with status {done.returncode}\n  command: {' '.join(command)}\n{words}\n"
+            f"  remedy: {remedy}"
+        )
 
 
 def _version(command: tuple[str, ...]) -> str:

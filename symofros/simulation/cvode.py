@@ -126,7 +126,7 @@ class Cvode:
         code = step(self._memory, run.t_end if t is None else t, ctypes.cast(self.y, ctypes.c_void_p),
                     ctypes.byref(reached), mode)  # fmt: skip
         if code < 0:
-            failed = getattr(self.stepper, "failure", None) is not None
+            failed = self.stepper.failure is not None
             return (native.CALLBACK if failed else _STATUS.get(code, native.DIVERGED)), []
         status = self._place(reached.value)
         met: list[int] = []

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from symofros.runtime.kernel import Array
 from symofros.simulation import stepper as native
 from symofros.simulation.loops import Recorded
 from symofros.simulation.outcome import Kind, Outcome
@@ -16,22 +18,23 @@ from symofros.simulation.stepper import Stepper
 _ROUNDING = float(np.finfo(np.float64).eps)
 
 
-def diagnose(stepper: Stepper, recorded: Recorded, settings: Settings) -> Outcome:
+def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], settings: Settings) -> Outcome:
     """How a run ended.
 
     Args:
         stepper: At its last state.
         recorded: What it left.
+        states: All that it recorded: t (n), q, v, u.
         settings: Of the run.
     """
     status, interrupted = recorded.status, recorded.interrupted
     t, q, v = stepper.state
-    run, notes = stepper.run, _notes(stepper, recorded)
+    run, notes = stepper.run, _notes(stepper, states)
 
     def outcome(kind: Kind, reason: str, advice: str = "") -> Outcome:
         return Outcome(kind, t, reason, advice, notes)
 
-    failure = getattr(stepper, "failure", None)
+    failure = stepper.failure
     if interrupted or isinstance(failure, KeyboardInterrupt):
         return outcome("interrupted", "Ctrl-C; the part up to here is kept")
     if status == native.EVENT:
@@ -90,14 +93,14 @@ def _steady(settings: Settings) -> str:
     return "a smaller dt, an adaptive or an implicit method; for stiff beams and contacts, an implicit one"
 
 
-def _notes(stepper: Stepper, recorded: Recorded) -> tuple[str, ...]:
+def _notes(stepper: Stepper, states: Sequence[Array]) -> tuple[str, ...]:
     run = stepper.run
     notes = []
     if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
         notes.append(f"a singular posture was passed at t = {run.t_rank:.6g} s: the constraints' rank fell from"
                      f" {run.rank_max} to {run.rank_min}")  # fmt: skip
     elif stepper.model.nc:
-        t, q, _, u = recorded.arrays()
+        t, q, _, u = states
         close = nearest_to_singular(stepper.model, t, q, u, stepper.par, int(run.rank_max))
         if close:
             when, share = close

@@ -102,10 +102,11 @@ def simulate(
         drive = run_cvode if settings.method.kind == "cvode" else run_own
         recorded = drive(stepper, q, v, settings, max_steps, show)
     seconds = time.perf_counter() - began
-    outcome = diagnose(stepper, recorded, settings)
+    states = recorded.arrays()
+    outcome = diagnose(stepper, recorded, states, settings)
     met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
     statistics = _statistics(stepper, seconds)
-    t, q_all, v_all, u_all = recorded.arrays()
+    t, q_all, v_all, u_all = states
     return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics)
 
 

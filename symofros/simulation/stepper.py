@@ -97,6 +97,7 @@ class Stepper:
         self.ffi, self.native = library()
         self.model, self.method, self.events = model, method, events
         self.par = par
+        self.failure: BaseException | None = None  # What an input function raised.
         self._keep: list[Any] = []  # What C holds pointers to.
         self.scene = self.ffi.new("sym_scene *")
         self.run = self.ffi.new("sym_run *")
@@ -169,7 +170,6 @@ class Stepper:
     def _attach(self, function: Any) -> None:
         """A Python function as the inputs; what it raises is kept and ends the run."""
         nq, nv, nu = self.model.nq, self.model.nv, self.model.nu
-        self.failure: BaseException | None = None
 
         def call(_data: Any, t: float, q: Any, v: Any, u: Any) -> int:
             try:

@@ -8,6 +8,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 import symofros as sf
 from reference_models import MODELS
+from validation.cases import named
 
 BATCH = 1000
 
@@ -21,3 +22,28 @@ def test_dynamics(benchmark: BenchmarkFixture, model: str, states: int) -> None:
     u = np.zeros((states, compiled.nu))
     M, _, _ = benchmark(compiled.dynamics, q, v, u)
     assert M.shape == (states, compiled.nv, compiled.nv)
+
+
+def panda() -> sf.Model:
+    return sf.compile(named(["panda"], False)[0].load().system, sf.Options(functions=("mass_matrix",)))
+
+
+def test_one_mass_matrix(benchmark: BenchmarkFixture) -> None:
+    """The method: arguments of any kind and shape are checked, the result is a new array."""
+    model = panda()
+    assert benchmark(model.mass_matrix, model.neutral()).shape == (model.nv, model.nv)
+
+
+@pytest.mark.parametrize("copied", [False, True], ids=["call", "copy_and_call"])
+def test_one_mass_matrix_bound(benchmark: BenchmarkFixture, copied: bool) -> None:
+    """On fixed memory; with and without writing a configuration into it."""
+    model = panda()
+    bound, q = model.bind("mass_matrix"), model.neutral()
+    inside = bound.inputs["q"]
+
+    def write_and_call() -> None:
+        inside[:] = q
+        bound()
+
+    benchmark(write_and_call if copied else bound)
+    assert bound.outputs["M"].any()

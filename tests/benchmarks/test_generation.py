@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -57,8 +55,3 @@ def test_operation_counts(benchmark: BenchmarkFixture, model: str) -> None:
     for (name, _), count in count_program(program).items():
         benchmark.extra_info[name] = str(count)
         print(f"{model:<12} {name:<17} {count}")
-
-
-def test_import(benchmark: BenchmarkFixture) -> None:
-    """A new interpreter that imports the package."""
-    benchmark.pedantic(subprocess.run, args=([sys.executable, "-c", "import symofros"],), rounds=3)

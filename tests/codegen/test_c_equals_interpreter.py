@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -61,10 +63,11 @@ def test_within_rounding_as_shipped(case: str) -> None:
         np.testing.assert_allclose(values, results[1][name], atol=tolerance, err_msg=name)
 
 
-def test_chunks_compute_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_chunks_compute_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Values that cross chunks go through reused work slots; none may be overwritten early."""
     from symofros.codegen import function
 
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))  # Where no library of longer chunks is known.
     monkeypatch.setattr(function, "MAX_STATEMENTS", 7)
     c, twin = built("tree2", flags=EXACT_FLAGS), built("tree2", backend="interpreter")
     results = everything(c, np.random.default_rng(3)), everything(twin, np.random.default_rng(3))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -82,8 +83,9 @@ def test_small_models_stay_scalar() -> None:
     assert "sym_pack" not in source(MODELS["double_pendulum"], ("dynamics",))
 
 
-def test_vectors_cross_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_vectors_cross_chunks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A function in many chunks passes whole vectors from one to the next."""
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))  # What is kept there was made by a generator as it is.
     monkeypatch.setattr("symofros.codegen.function.MAX_STATEMENTS", 60)
     text = source(MODELS["chain22"], ("mass_matrix",))
     assert "sym_pack_load(work + " in text

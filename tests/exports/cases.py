@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import tempfile
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +59,28 @@ def need(*programs: str) -> None:
     for program in programs:
         if shutil.which(program) is None:
             pytest.fail(f"{program} is not installed; .ci/run installs it")
+
+
+@cache
+def sanitizers(compiler: str, wanted: str) -> tuple[str, ...]:
+    """Flags of those sanitizers, separated by commas, whose programs run on this machine.
+
+    Address and thread sanitizers of these compilers end at once where addresses are randomised over more than 28 bits
+    (vm.mmap_rnd_bits), where the virtual memory of a process is limited, or on an emulated kernel; the leak checker
+    where no process may trace another. None of that is a fault of ours.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "empty.c"
+        source.write_text("int main(void) { return 0; }\n")
+        works = []
+        for name in wanted.split(","):
+            built = subprocess.run([compiler, f"-fsanitize={name}", "-o", "empty", source], cwd=folder)
+            assert built.returncode == 0, f"{compiler} has no {name} sanitizer; .ci/run installs it"
+            if all(subprocess.run(["./empty"], cwd=folder, capture_output=True).returncode == 0 for _ in range(5)):
+                works.append(name)
+    if not works:
+        pytest.skip(f"programs with {compiler} -fsanitize={wanted} do not run on this machine, not even an empty one")
+    return f"-fsanitize={','.join(works)}", "-fno-sanitize-recover=all"
 
 
 def run(*command: str | Path, cwd: Path) -> str:

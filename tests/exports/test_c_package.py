@@ -12,7 +12,19 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.exports.cases import MODELS, STARTS, STEP, STRICT, need, relative, run, sources, system_of, trajectory
+from tests.exports.cases import (
+    MODELS,
+    STARTS,
+    STEP,
+    STRICT,
+    need,
+    relative,
+    run,
+    sanitizers,
+    sources,
+    system_of,
+    trajectory,
+)
 
 HERE = Path(__file__).parent
 # The same steps in the same order, compiled with other flags: fused products round differently.
@@ -97,8 +109,8 @@ def test_cmake_builds_tests_and_installs(package: tuple[str, Path], tmp_path: Pa
 
 
 @pytest.mark.tools
-@pytest.mark.parametrize("sanitizers", ["address,undefined", "thread", "valgrind"])
-def test_two_models_in_threads_under_checkers(tmp_path: Path, sanitizers: str) -> None:
+@pytest.mark.parametrize("checker", ["address,undefined", "thread", "valgrind"])
+def test_two_models_in_threads_under_checkers(tmp_path: Path, checker: str) -> None:
     need("clang", "valgrind")
     for name in ("planar_robot", "four_bar"):
         sf.export(system_of(name), "c", tmp_path / name, start=STARTS[name], frames=[])
@@ -108,12 +120,12 @@ def test_two_models_in_threads_under_checkers(tmp_path: Path, sanitizers: str) -
         tmp_path / n / f"{n}{part}.c" for n in ("planar_robot", "four_bar") for part in ("", "_plant", "_selftest")
     ]
     flags = ["-g", "-O1", *STRICT, "-D_POSIX_C_SOURCE=200809L", "-Iplanar_robot", "-Ifour_bar", "-pthread"]
-    if sanitizers == "valgrind":
+    if checker == "valgrind":
         run("gcc", *flags, "-o", "threads", "threads.c", *files, "four_bar/symofros_stepper.c", "-lm", cwd=tmp_path)
         out = run("valgrind", "--error-exitcode=9", "--leak-check=full", "-q", "./threads", cwd=tmp_path)
     else:
-        run("clang", *flags, f"-fsanitize={sanitizers}", "-fno-sanitize-recover=all", "-o", "threads", "threads.c",
-            *files, "four_bar/symofros_stepper.c", "-lm", cwd=tmp_path)  # fmt: skip
+        run("clang", *flags, *sanitizers("clang", checker), "-o", "threads", "threads.c", *files,
+            "four_bar/symofros_stepper.c", "-lm", cwd=tmp_path)  # fmt: skip
         out = run("./threads", cwd=tmp_path)
     assert out == "0 bad\n"
 
@@ -133,7 +145,7 @@ DRIVEN = sf.RigidBody("b", sf.Joint("j", "revolute", prescribed=True), sf.Inerti
 @pytest.mark.parametrize(("name", "body"), [("no_inputs", BODY), ("no_states", DRIVEN)])
 def test_models_without_inputs_or_states(tmp_path: Path, name: str, body: sf.RigidBody) -> None:
     sf.export(sf.System(name, (body,)), "c", tmp_path)
-    flags = (*STRICT, "-O1", "-g", "-fsanitize=undefined,address", "-fno-sanitize-recover=all")
+    flags = (*STRICT, "-O1", "-g", *sanitizers("gcc", "undefined,address"))
     run("gcc", *flags, "-o", "example", *sources(tmp_path), "-lm", cwd=tmp_path)
     assert "selftest" in run("./example", "0.01", "--fast", cwd=tmp_path)
 

@@ -33,9 +33,20 @@ FLOATING = sf.System("floating", (
                  (sf.Frame("end", (1, 0, 0.2)),)),
 ))  # fmt: skip
 
+# The importer moves the first joint and the last; the tip moves with them.
+DRIVEN = sf.System("driven", (
+    sf.RigidBody("base", sf.Joint("crank", "revolute", axis=(1, 0.5, 0), prescribed=True), None,
+                 (sf.Frame("end", (0.7, 0, 0.1)),)),
+    sf.RigidBody("arm", sf.Joint("q1", "revolute", "base", "end", axis=(0, 1, 0), actuated=True),
+                 sf.Inertia(1.0, (0.3, 0.1, 0)), (sf.Frame("end", (0.8, 0, 0)),)),
+    sf.RigidBody("head", sf.Joint("neck", "universal", "arm", "end", prescribed=True), sf.Inertia(0.5, (0.1, 0, 0.2)),
+                 (sf.Frame("tip", (0.2, 0.3, 0.1)),)),
+))  # fmt: skip
+OWN = {"floating": FLOATING, "driven": DRIVEN}
+
 
 def system_called(name: str) -> sf.System:
-    return FLOATING if name == "floating" else system_of(name)
+    return OWN[name] if name in OWN else system_of(name)
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +74,7 @@ def columns(result: Any, prefix: str) -> np.ndarray:
     return np.array([result[name][-1] for name in result.dtype.names if name.startswith(prefix)])
 
 
-@pytest.mark.parametrize("name", [*MODELS, "floating"])
+@pytest.mark.parametrize("name", [*MODELS, *OWN])
 def test_valid(made: Any, name: str, version: int) -> None:
     assert validate_fmu(str(made(name, version))) == []
 
@@ -76,7 +87,7 @@ def test_co_simulation_moves_as_python_does(made: Any, name: str, version: int) 
     assert relative(columns(found, "v."), wanted.v[-1]) < SAME
 
 
-@pytest.mark.parametrize("name", [*MODELS, "floating"])
+@pytest.mark.parametrize("name", [*MODELS, *OWN])
 def test_model_exchange_moves_as_python_does(made: Any, name: str, version: int) -> None:
     found = fmpy.simulate_fmu(str(made(name, version)), fmi_type="ModelExchange", stop_time=0.2, output_interval=0.01,
                               relative_tolerance=1e-9)  # fmt: skip
@@ -163,7 +174,7 @@ def unit(made: Any, version: int, tmp_path: Path) -> Iterator[Any]:
         shutil.rmtree(tmp_path, ignore_errors=True)
 
 
-@pytest.mark.parametrize("name", [*MODELS, "floating"])
+@pytest.mark.parametrize("name", [*MODELS, *OWN])
 def test_directional_derivatives_are_those_of_the_functions(unit: Any, name: str, rng: np.random.Generator) -> None:
     it = unit(name, cosim=False)
     it.start()
@@ -272,6 +283,13 @@ def test_units_and_dependencies(made: Any, version: int) -> None:
     outputs = {output.variable.name: output.dependencies for output in description.outputs}
     assert outputs["p.tool.z"] == []  # A planar robot.
     assert {variable.name for variable in outputs["p.tool.x"]} >= {"q.q1", "q.'link1.bend_y[0]'"}
+
+
+def test_a_frame_that_an_input_moves_depends_on_it(made: Any, version: int) -> None:
+    description = fmpy.read_model_description(str(made("driven", version)))
+    outputs = {output.variable.name: output.dependencies for output in description.outputs}
+    names = {variable.name for variable in outputs["p.tip.x"]}
+    assert names >= {"q.q1", "u.crank", "u.'neck.angle2'"} and "u.q1" not in names
 
 
 def test_without_fmpy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -65,6 +65,32 @@ def test_functions(block: tuple[str, Path]) -> None:
     assert V[0] == pytest.approx(float(model.potential_energy(q)), rel=SAME, abs=SAME)
 
 
+def test_parameters_of_the_model(tmp_path: Path) -> None:
+    """In their order, for every function; none are the defaults."""
+    system = system_of("four_bar")
+    folder = tmp_path / "block"
+    sf.export(system, "sfunction", folder, start=STARTS["four_bar"])
+    run("gcc", *STRICT, "-O2", f"-I{HEADERS}", "-I.", "-o", "../run", "symoSFunction.c", "four_bar.c",
+        "four_bar_plant.c", "symofros_stepper.c", "-lm", cwd=folder)  # fmt: skip
+    model = sf.compile(system)
+    q, v = first_state(model, "four_bar")
+    words = [repr(float(x)) for x in (*q, *v)]
+
+    def energies(*parameters: float) -> list[float]:
+        stated = f"BLOCK_PARAMETERS={' '.join(map(repr, parameters))}"
+        found = ports(run("env", stated, "./run", "four_bar", "energy", "0", "1", *words, cwd=tmp_path))
+        return [float(port[0]) for port in found]
+
+    other = {name: 1.5 * value + 0.1 * i for i, (name, value) in enumerate(model.parameters.items())}
+    for parameters, wanted in (((), model), (other.values(), model.with_parameters(**other))):
+        T, V = energies(*parameters)
+        assert pytest.approx(float(wanted.kinetic_energy(q, v)), rel=SAME) == T
+        assert pytest.approx(float(wanted.potential_energy(q)), rel=SAME) == V
+    for wrong in ((1.0,) * (model.npar + 1), (1.0,) * (model.npar - 1)):
+        with pytest.raises(AssertionError, match="Parameters has one number a parameter of the model, or is"):
+            energies(*wrong)
+
+
 @pytest.mark.parametrize("words", [("nothing", "direct_dynamics"), ("MODEL", "fly")])
 def test_wrong_parameters_of_the_block(block: tuple[str, Path], words: tuple[str, str]) -> None:
     name, folder = block

@@ -10,18 +10,8 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from reference_models.closed.spatial import delta_guess, stewart_guess
+from tests.models import GUESSES
 
-GUESSES = {
-    "four_bar": [1.2, -1.2, 1.2],
-    "slider_crank": [0.5, -0.7, 0.4],
-    "parallelogram": [1.0, -1.0, 1.0, 1.0],
-    "bricard": [0.0] * 5,
-    "stewart": stewart_guess(),
-    "delta": delta_guess(),
-    "rolling_disc": [0, 0, 0.5, 0.5, 0.5, 0.5, 0.5],
-    "sleigh": [0.1, 0.2, 0.3],
-}
 SOLID = sf.Inertia(1.5, (0.1, -0.2, 0.05), (0.3, 0.4, 0.5))
 
 

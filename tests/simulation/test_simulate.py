@@ -288,6 +288,30 @@ class TestEnds:
         with pytest.raises(sf.SymofrosError, match=words):
             sf.simulate(pendulum, **settings)
 
+    def test_a_rejected_step_leaves_the_derivatives_as_they_are(self) -> None:
+        run = sf.simulate(sf.compile(MODELS["double_pendulum"]), [0.5, -1.0], [0.3, 1.0], 1.0, method="rodas4", dt=0.5)
+        found = run.statistics
+        assert found.rejected > 5 and found.jacobians == found.steps
+        # One at the state, one for the derivative by time; five more stages of each attempt.
+        assert found.evaluations == 2 * found.steps + 5 * (found.steps + found.rejected)
+
+    def test_events_are_evaluated_once_a_step(self, pendulum: sf.Model) -> None:
+        """Each evaluation asks for the inputs, at its time."""
+        asked: list[float] = []
+
+        def law(t: float, q: np.ndarray, v: np.ndarray) -> list[float]:
+            asked.append(t)
+            return [0.0]
+
+        def calls(events: dict[str, str]) -> int:
+            asked.clear()
+            run = sf.simulate(pendulum, [0.5], t_end=0.01, method="rk4", u=law, output=[0.0], events=events,
+                              stabilisation="none")  # fmt: skip
+            assert not run.events
+            return len(asked)
+
+        assert calls({"a": "q + 9", "b": "q - 9", "c": "dq - 9"}) - calls({}) == 1 + 10
+
     def test_an_interpreted_model_is_refused(self) -> None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

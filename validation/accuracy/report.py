@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from markupsafe import Markup
 
-from symofros.atomic import write_atomically
 from validation.charts import svg
 from validation.findings import Chart, Study
-from validation.page import check_data, figure_data, render, versions
-from validation.record import machine
+from validation.page import check_data, compact, figure_data, render, run_data, versions, write_pages
 
 
 @dataclass(frozen=True)
@@ -56,20 +53,12 @@ def write_report(run: Accuracy, folder: Path) -> Path:
     Raises:
         OSError: The folder can't be written to.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    write_atomically(folder / "accuracy.json", json.dumps(as_data(run), allow_nan=False) + "\n")
-    write_atomically(folder / "accuracy.md", _render("accuracy.md.j2", run))
-    write_atomically(folder / "accuracy.html", _render("accuracy.html.j2", run))
-    return folder / "accuracy.html"
+    return write_pages(folder, "accuracy", compact(as_data(run)), lambda template: _render(template, run))
 
 
 def as_data(run: Accuracy) -> dict[str, Any]:
     """Everything, as plain data; None where there is no number."""
-    return {
-        "ok": run.ok, "quick": run.quick, "seconds": round(run.seconds, 1), "failures": run.failures,
-        "versions": versions(), "machine": machine(),
-        "studies": {name: _study(study) for name, study in run.studies.items()},
-    }  # fmt: skip
+    return run_data(run) | {"studies": {name: _study(study) for name, study in run.studies.items()}}
 
 
 def _study(study: Study) -> dict[str, Any]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -225,6 +226,17 @@ def compiled(spec: Any) -> Any | Unsupported:
         return spec.compile()
     except ValueError as error:
         return Unsupported(explain(str(error)))
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Without MuJoCo's warnings: it would log them into a file in the folder that the user happens to be in."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda message: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
 
 
 def explain(message: str) -> str:

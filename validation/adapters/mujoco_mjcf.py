@@ -7,8 +7,6 @@ it ignores is set to zero in the compiled model.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,7 +14,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from validation.adapters.mujoco import MujocoEngine, explain
+from validation.adapters.mujoco import MujocoEngine, explain, quiet
 from validation.assembly import Assembly, Mover, assemble
 from validation.conventions import Chart, Encoding, Slot
 from validation.geometry import Array
@@ -63,7 +61,7 @@ def build(subject: Subject) -> MjcfEngine | Unsupported:
     """MuJoCo's model of the file that the description was read from."""
     if subject.mjcf is None:
         return Unsupported("not read from an MJCF file")
-    with _quiet():
+    with quiet():
         model = _read(subject.mjcf.path)
     if isinstance(model, Unsupported):
         return model
@@ -75,17 +73,6 @@ def build(subject: Subject) -> MjcfEngine | Unsupported:
     frames = tuple(found for name in subject.frames if (found := _frame(model, name)) is not None)
     capabilities = MJCF_ROUTE if len(frames) == len(subject.frames) else MJCF_ROUTE - FRAME_QUANTITIES
     return MjcfEngine(NAME, model, chart, capabilities=capabilities, frames=frames)
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Without MuJoCo's remarks on the file: it would log them into the folder that the user happens to be in."""
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda message: None)
-    try:
-        yield
-    finally:
-        mujoco.set_mju_user_warning(before)
 
 
 def _read(path: Path) -> Any | Unsupported:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -11,18 +9,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from validation.adapters.mujoco import quiet
 from validation.geometry import Array
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Without its file MUJOCO_LOG.TXT in the working directory; what it says is counted by kind in the data."""
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda said: None)
-    try:
-        yield
-    finally:
-        mujoco.set_mju_user_warning(before)
 
 
 @dataclass(frozen=True)
@@ -62,8 +50,8 @@ def move(mjcf: str, q0: Array, v0: Array, t_end: float, samples: int = 200) -> M
     for sample in range(samples + 1):
         due = steps * sample // samples
         if due > taken:
-            with _quiet():
-                mujoco.mj_step(m, d, due - taken)
+            with quiet():
+                mujoco.mj_step(m, d, due - taken)  # What it says is counted by kind in d.warning.
             taken = due
         mujoco.mj_forward(m, d)
         mujoco.mj_energyPos(m, d)
@@ -100,7 +88,7 @@ def servo(engine: Any, q0: Array, v0: Array, targets: Array, stiffness: float, d
     d.qpos[:] = engine.chart.coordinates(q0[None])[0]
     d.qvel[:] = engine.chart.speeds(q0[None], v0[None])[0]
     began = perf_counter()
-    with _quiet():
+    with quiet():
         mujoco.mj_step(m, d, steps)
     seconds = perf_counter() - began
     # Coordinates of hinges and slides are those of the speeds: the chart's transform reorders both.

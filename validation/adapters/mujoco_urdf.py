@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 import mujoco
 import numpy as np
 
-from validation.adapters.mujoco import MujocoEngine, chart_of, compiled, explain
+from validation.adapters.mujoco import MujocoEngine, chart_of, compiled, explain, quiet
 from validation.assembly import Assembly, assemble
 from validation.interface import Subject, Unsupported, UrdfSource
 from validation.quantities import SECOND_ROUTE
@@ -26,22 +24,11 @@ def build(subject: Subject) -> MujocoEngine | Unsupported:
     for part in (part for mover in assembly.movers for part in mover.masses):
         if part.mass == 0.0 and np.any(part.J_BC):
             return Unsupported(f"body '{part.body}': inertia without mass, which MuJoCo drops when it fuses bodies")
-    with _quiet():
+    with quiet():
         engine = _read(subject.urdf, assembly)
     if isinstance(engine, Unsupported):
         return Unsupported(f"its own reading of the file: {engine.reason}")
     return engine
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Without MuJoCo's remarks on the file: it would log them into the folder that the user happens to be in."""
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda message: None)
-    try:
-        yield
-    finally:
-        mujoco.set_mju_user_warning(before)
 
 
 def _read(source: UrdfSource, assembly: Assembly) -> MujocoEngine | Unsupported:

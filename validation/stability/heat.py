@@ -41,15 +41,7 @@ def svg(found: Map, x: Grid, y: Grid, quantity: str) -> str:
     rows, down = _borders(found.y, y, HEIGHT - _BOTTOM, _TOP)
     parts = [text((left + WIDTH - _RIGHT) / 2, 16, escape(found.subject.name), "middle", "row")]
     parts += _legend(found, left, quantity)
-    every_x, every_y = _stride(columns, _APART[0]), _stride(rows, _APART[1])
-    for j, line_of_cells in enumerate(found.cells):
-        for i, one in enumerate(line_of_cells):
-            box = (columns[i], rows[j + 1], columns[i + 1] - columns[i], rows[j] - rows[j + 1])
-            rectangle, sign, dark = _cell(box, one.value, one.ended, found.bound)
-            parts.append(rectangle)
-            if i % every_x == 0 and j % every_y == 0 and box[2] * every_x > _NARROW:
-                kind = "decade light" if dark else "decade"
-                parts.append(text(box[0] + box[2] / 2, box[1] + box[3] / 2 + 3.5, sign, "middle", kind))
+    parts += _filled(found, columns, rows)
     parts += _edge(found.good, columns, rows)
     parts += _named(found.x, x, across, columns, "x", rows[0])
     parts += _named(found.y, y, down, rows, "y", left)
@@ -79,19 +71,34 @@ def _stride(borders: list[float], apart: float) -> int:
     return math.ceil(apart / float(np.median(np.abs(np.diff(borders)))) - 1e-9)
 
 
-def _cell(box: tuple[float, float, float, float], value: float, ended: str, bound: float) -> tuple[str, str, bool]:
-    """The rectangle, what is written into it, and whether that must be light."""
-    left, top, width, height = box
-    place = f'x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" height="{height:.1f}"'
+def _filled(found: Map, columns: list[float], rows: list[float]) -> list[str]:
+    """The cells, those of one colour as one path, which keeps the page small; then what is written into them."""
+    every_x, every_y = _stride(columns, _APART[0]), _stride(rows, _APART[1])
+    areas: dict[str, list[str]] = {}
+    written: dict[str, list[str]] = {"decade": [], "decade light": []}
+    for j, line_of_cells in enumerate(found.cells):
+        for i, one in enumerate(line_of_cells):
+            left, top, width, height = columns[i], rows[j + 1], columns[i + 1] - columns[i], rows[j] - rows[j + 1]
+            colour, sign, dark = _cell(one.value, one.ended, found.bound)
+            areas.setdefault(colour, []).append(f"M{left:.1f} {top:.1f}h{width:.1f}v{height:.1f}h{-width:.1f}z")
+            if i % every_x == 0 and j % every_y == 0 and width * every_x > _NARROW:
+                place = f'x="{left + width / 2:.1f}" y="{top + height / 2 + 3.5:.1f}"'
+                written["decade light" if dark else "decade"].append(f"<text {place}>{sign}</text>")
+    filled = [f'<path {colour} d="{"".join(boxes)}"/>' for colour, boxes in areas.items()]
+    return filled + [f'<g class="{kind}">{"".join(texts)}</g>' for kind, texts in written.items() if texts]
+
+
+def _cell(value: float, ended: str, bound: float) -> tuple[str, str, bool]:
+    """The colour, what is written into the cell, and whether that must be light."""
     if ended not in FINISHED:
         kind = "refused" if ended == "refused" else "ended"
         sign = "r" if ended == "refused" else "×"
-        return f'<rect class="{kind}" {place}/>', sign, kind == "ended"
+        return f'class="{kind}"', sign, kind == "ended"
     over = math.log10(max(value, 1e-300) / bound)
     kind = "bad" if over > 0.0 else "good"
     depth = 0.12 + 0.78 * min(abs(over) / _DEEP[kind], 1.0)
     decade = f"{min(max(round(math.log10(max(value, 1e-300))), -99), 99)}".replace("-", "−")
-    return f'<rect class="{kind}-cell" fill-opacity="{depth:.2f}" {place}/>', decade, depth > _DARK
+    return f'class="{kind}-cell" fill-opacity="{depth:.2f}"', decade, depth > _DARK
 
 
 def _edge(good: npt.NDArray[np.bool_], columns: list[float], rows: list[float]) -> list[str]:

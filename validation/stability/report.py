@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from markupsafe import Markup, escape
 
-from symofros.atomic import write_atomically
-from validation.page import check_data, render, rounded, versions
-from validation.record import machine
+from validation.page import check_data, compact, render, rounded, run_data, versions, write_pages
 from validation.stability import heat
 from validation.stability.scene import FINISHED, Map, Maps, Scene, Verdict
 
@@ -106,22 +102,13 @@ def write_report(atlas: Atlas, folder: Path) -> Path:
     Raises:
         OSError: The folder can't be written to.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    write_atomically(folder / "stability.json", json.dumps(as_data(atlas), allow_nan=False) + "\n")
-    filters: dict[str, Callable[..., object]] = {"map": _map, "prose": _prose}
-    for kind in ("md", "html"):
-        said = render(f"stability.{kind}.j2", filters, atlas=atlas, versions=versions(*ENGINES))
-        write_atomically(folder / f"stability.{kind}", said)
-    return folder / "stability.html"
+    return write_pages(folder, "stability", compact(as_data(atlas)), lambda template: _render(template, atlas))
 
 
 def as_data(atlas: Atlas) -> dict[str, Any]:
     """Everything, as plain data; None where there is no number."""
-    return {
-        "ok": atlas.ok, "quick": atlas.quick, "seconds": round(atlas.seconds, 1), "failures": atlas.failures,
-        "unfinished": atlas.unfinished, "versions": versions(*ENGINES), "machine": machine(),
-        "scenes": {name: _page(page) for name, page in atlas.pages.items()},
-    }  # fmt: skip
+    scenes = {name: _page(page) for name, page in atlas.pages.items()}
+    return run_data(atlas, *ENGINES) | {"unfinished": atlas.unfinished, "scenes": scenes}
 
 
 def _page(page: Page) -> dict[str, Any]:
@@ -143,6 +130,10 @@ def _cells(scene: Scene, found: Map) -> dict[str, Any]:
         "values": [rounded(row) for row in found.values],
         "ended": [[c.ended for c in row] for row in found.cells], "said": notes[:8],
     }  # fmt: skip
+
+
+def _render(template: str, atlas: Atlas) -> str:
+    return render(template, {"map": _map, "prose": _prose}, atlas=atlas, versions=versions(*ENGINES))
 
 
 def _map(found: Map, scene: Scene) -> Markup:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from abc import ABC, abstractmethod
+from typing import Annotated, Any, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 from typing_extensions import TypeAliasType
 
@@ -20,6 +21,22 @@ class Entry(BaseModel):
     """A mapping of the file. Strict: no unknown keys, and a text is not taken for a number."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True)
+
+
+class CheckedEntry(Entry, ABC):
+    """One whose noun checks itself when it is made."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        try:
+            self.build()
+        except DescriptionError as error:
+            raise fault(error.problems[0]) from None
+        return self
+
+    @abstractmethod
+    def build(self) -> object:
+        """The noun."""
 
 
 def three(values: list[Value]) -> Vector:

@@ -16,6 +16,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from symofros.description.frames import Frame
 from symofros.description.native.fields import (
     MOMENTS,
+    CheckedEntry,
     Entry,
     Formula,
     Four,
@@ -38,7 +39,7 @@ from symofros.description.native.schema_constraints import ClosureEntry, Nonholo
 from symofros.description.native.schema_forces import ConnectionEntry, ElementEntry, LoadEntry, RotorEntry
 from symofros.description.system import WORLD, Body, Inertia, Input, Joint, JointKind, Limits, Parameter, RigidBody
 from symofros.description.values import IDENTITY, Rotation, RotationKind
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import Problem
 
 VERSION = 1
 SCHEMA_FILE = Path(__file__).with_name("schema.json")
@@ -95,7 +96,7 @@ class MomentsEntry(Entry):
     iyz: Formula = 0.0
 
 
-class InertiaEntry(Entry):
+class InertiaEntry(CheckedEntry):
     """Mass, mass centre and inertia matrix of a rigid body."""
 
     mass: Formula
@@ -110,14 +111,6 @@ class InertiaEntry(Entry):
     """The point the moments are about; with `body`, they are along the body's axes."""
     rotation: RotationEntry | None = None
     """From the body frame to the axes of the moments; only with about: center_of_mass."""
-
-    @model_validator(mode="after")
-    def _possible(self) -> Self:
-        try:
-            self.build()
-        except DescriptionError as error:
-            raise fault(error.problems[0]) from None
-        return self
 
     def build(self) -> Inertia:
         """The Inertia."""

@@ -2,34 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field
 
 from symofros.description.beam import Beam, BeamLoad, Direction, Family, Retain, Samples, UserShape
 from symofros.description.frames import Frame
-from symofros.description.native.fields import Entry, Formula, Name, Number, Three, fault, three
+from symofros.description.native.fields import CheckedEntry, Entry, Formula, Name, Number, Three, three
 from symofros.description.system import Joint
-from symofros.errors import DescriptionError
 
 Count = Annotated[int, Field(ge=0, le=40)]
 Sampled = Annotated[list[Number], Field(min_length=4, max_length=10_000)]
 
 
-class SamplesEntry(Entry):
+class SamplesEntry(CheckedEntry):
     """A shape function by its values at stations."""
 
     xi: Sampled
     """x/L, rising from 0 to 1."""
     values: Sampled
-
-    @model_validator(mode="after")
-    def _possible(self) -> Self:
-        try:
-            self.build()
-        except DescriptionError as error:
-            raise fault(error.problems[0]) from None
-        return self
 
     def build(self) -> Samples:
         """The Samples."""

@@ -1,4 +1,4 @@
-/* FMI 2.0 over symofros_fmu.h. Written by hand. */
+/* FMI 2.0 over symofros_fmi.h. Written by hand. */
 
 static fmi2Status say(const fmu *f, fmi2Status status, const char *message) {
     fmi2CallbackLogger logger;
@@ -10,17 +10,16 @@ static fmi2Status say(const fmu *f, fmi2Status status, const char *message) {
 }
 
 static fmi2Status outcome(const fmu *f, int found) {
-    switch (found) {
-    case FMU_OK: return fmi2OK;
-    case FMU_UNKNOWN: return say(f, fmi2Error, "no such variable, or not one for this call");
-    case FMU_NO_MOTION: return say(f, fmi2Discard, "no finite acceleration, or constraints that can't be met");
-    default: return say(f, fmi2Error, "not allowed in this mode, or not a legal value");
-    }
+    if (found == FMU_OK) return fmi2OK;
+    return say(f, found == FMU_NO_MOTION ? fmi2Discard : fmi2Error, fmi_words(found));
 }
 
+#define ANSWER(found) \
+    fmu *f = c; \
+    return f == NULL ? fmi2Error : outcome(f, found)
 #define ALLOWED(condition) \
     if (f == NULL) return fmi2Error; \
-    if (!(condition)) return say(f, fmi2Error, "the call is not allowed in this mode")
+    if (!(condition)) return outcome(f, FMU_WRONG_MODE)
 
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 const char *fmi2GetVersion(void) { return fmi2Version; }
@@ -58,12 +57,7 @@ void fmi2FreeInstance(fmi2Component c) {
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean has_stop, fmi2Real stop) {
-    fmu *f = c;
-    ALLOWED(f->phase == FMU_INSTANTIATED);
-    if (has_stop && !(stop >= start)) return say(f, fmi2Error, "the stop time is before the start time");
-    if (has_tolerance && tolerance > 0.0 && f->it->run.adaptive) f->it->run.rtol = tolerance;
-    f->it->t = start, f->stops = has_stop, f->stop = stop;
-    return fmi2OK;
+    ANSWER(fmi_prepare(f, has_tolerance, tolerance, start, has_stop, stop));
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
@@ -74,45 +68,23 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-    fmu *f = c;
-    ALLOWED(f->phase == FMU_INITIALISING);
-    return fmu_initialise(f) == FMU_OK ? fmi2OK : say(f, fmi2Error, "no state near the start meets the constraints");
+    ANSWER(fmi_exit_initialisation(f));
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-    fmu *f = c;
-    ALLOWED(f->phase >= FMU_EVENT && f->phase <= FMU_STEPPING);
-    f->phase = FMU_TERMINATED;
-    return fmi2OK;
+    ANSWER(fmi_terminate(f));
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-    fmu *f = c;
-    ALLOWED(1);
-    fmu_reset(f);
-    return fmi2OK;
+    ANSWER(fmi_reset(f));
 }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Real value[]) {
-    fmu *f = c;
-    size_t i;
-    ALLOWED(f->phase != FMU_INSTANTIATED);
-    for (i = 0; i < n; ++i) {
-        const int found = fmu_get(f, vr[i], &value[i]);
-        if (found != FMU_OK) return outcome(f, found);
-    }
-    return fmi2OK;
+    ANSWER(fmi_get(f, vr, n, value));
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Real value[]) {
-    fmu *f = c;
-    size_t i;
-    ALLOWED(1);
-    for (i = 0; i < n; ++i) {
-        const int found = fmu_set(f, vr[i], value[i]);
-        if (found != FMU_OK) return outcome(f, found);
-    }
-    return fmi2OK;
+    ANSWER(fmi_set(f, vr, n, value));
 }
 
 /* All variables are real. */
@@ -131,67 +103,39 @@ NONE(fmi2SetBoolean, const fmi2Boolean)
 NONE(fmi2SetString, const fmi2String)
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    fmu *f = c;
-    ALLOWED(1);
-    if (*state == NULL) *state = malloc(fmu_snapshot_size(f));
-    if (*state == NULL) return say(f, fmi2Error, "no memory");
-    fmu_save(f, *state);
-    return fmi2OK;
+    ANSWER(fmi_save(f, state));
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-    fmu *f = c;
-    ALLOWED(state != NULL);
-    return fmu_load(f, state) ? fmi2OK : say(f, fmi2Error, "the state is of another model or kind");
+    ANSWER(fmi_load(f, state));
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    fmu *f = c;
-    ALLOWED(1);
-    if (state != NULL) free(*state), *state = NULL;
-    return fmi2OK;
+    ANSWER(fmi_forget(state));
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
-    fmu *f = c;
-    ALLOWED(state != NULL);
-    *size = fmu_snapshot_size(f);
-    return fmi2OK;
+    ANSWER(fmi_size(f, state, size));
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    fmu *f = c;
-    ALLOWED(state != NULL);
-    if (size < fmu_snapshot_size(f)) return say(f, fmi2Error, "too few bytes");
-    memcpy(bytes, state, fmu_snapshot_size(f));
-    return fmi2OK;
+    ANSWER(fmi_pack(f, state, bytes, size));
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
-    fmu *f = c;
-    ALLOWED(1);
-    if (size != fmu_snapshot_size(f)) return say(f, fmi2Error, "bytes of another model");
-    if (*state == NULL) *state = malloc(size);
-    if (*state == NULL) return say(f, fmi2Error, "no memory");
-    memcpy(*state, bytes, size);
-    return fmi2OK;
+    ANSWER(fmi_unpack(f, bytes, size, state));
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,
                                         const fmi2ValueReference known[], size_t n_known, const fmi2Real seed[],
                                         fmi2Real sensitivity[]) {
-    fmu *f = c;
-    ALLOWED(f->phase != FMU_INSTANTIATED && f->phase != FMU_TERMINATED);
-    return outcome(f, fmu_differentiate(f, n_unknown, unknown, n_known, known, seed, sensitivity));
+    ANSWER(fmi_differentiate(f, unknown, n_unknown, known, n_known, seed, sensitivity));
 }
 
 /* Model Exchange. */
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-    fmu *f = c;
-    ALLOWED(!f->cosim && (f->phase == FMU_CONTINUOUS || f->phase == FMU_EVENT));
-    f->phase = FMU_EVENT;
-    return fmi2OK;
+    ANSWER(fmi_event_mode(f));
 }
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
@@ -204,10 +148,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-    fmu *f = c;
-    ALLOWED(!f->cosim && f->phase == FMU_EVENT);
-    f->phase = FMU_CONTINUOUS;
-    return fmi2OK;
+    ANSWER(fmi_continuous_mode(f));
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean final, fmi2Boolean *event, fmi2Boolean *terminate) {
@@ -219,40 +160,19 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean final, fmi2B
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
-    fmu *f = c;
-    ALLOWED(!f->cosim && (f->phase == FMU_CONTINUOUS || f->phase == FMU_EVENT));
-    f->it->t = t, f->fresh = 0;
-    return fmi2OK;
+    ANSWER(fmi_set_time(f, t));
 }
 
-#define STATES(f) ((size_t)(f)->it->model->nq + (size_t)(f)->it->model->nv)
-
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
-    fmu *f = c;
-    size_t nq;
-    ALLOWED(!f->cosim && f->phase == FMU_CONTINUOUS && n == STATES(f));
-    nq = (size_t)f->it->model->nq;
-    memcpy(f->it->q, x, nq * sizeof *x), memcpy(f->it->v, x + nq, (n - nq) * sizeof *x);
-    f->fresh = 0;
-    return fmi2OK;
+    ANSWER(fmi_set_states(f, x, n));
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-    fmu *f = c;
-    size_t nq;
-    ALLOWED(!f->cosim && f->phase >= FMU_INITIALISING && n == STATES(f));
-    nq = (size_t)f->it->model->nq;
-    memcpy(x, f->it->q, nq * sizeof *x), memcpy(x + nq, f->it->v, (n - nq) * sizeof *x);
-    return fmi2OK;
+    ANSWER(fmi_get_states(f, x, n));
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t n) {
-    fmu *f = c;
-    int found;
-    ALLOWED(!f->cosim && f->phase >= FMU_INITIALISING && n == STATES(f));
-    found = fmu_refresh(f);
-    if (found == FMU_OK) memcpy(derivatives, f->rates, n * sizeof *derivatives);
-    return outcome(f, found);
+    ANSWER(fmi_get_rates(f, derivatives, n));
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real indicators[], size_t n) {
@@ -263,11 +183,7 @@ fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real indicators[], size_t
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real nominals[], size_t n) {
-    fmu *f = c;
-    size_t i;
-    ALLOWED(!f->cosim && n == STATES(f));
-    for (i = 0; i < n; ++i) nominals[i] = 1.0;
-    return fmi2OK;
+    ANSWER(fmi_nominals(f, nominals, n));
 }
 
 /* Co-Simulation. */

@@ -1,4 +1,4 @@
-/* FMI 3.0 over symofros_fmu.h. Written by hand. */
+/* FMI 3.0 over symofros_fmi.h. Written by hand. */
 
 static fmi3Status say(const fmu *f, fmi3Status status, const char *message) {
     fmi3LogMessageCallback logger;
@@ -8,17 +8,16 @@ static fmi3Status say(const fmu *f, fmi3Status status, const char *message) {
 }
 
 static fmi3Status outcome(const fmu *f, int found) {
-    switch (found) {
-    case FMU_OK: return fmi3OK;
-    case FMU_UNKNOWN: return say(f, fmi3Error, "no such variable, or not one for this call");
-    case FMU_NO_MOTION: return say(f, fmi3Discard, "no finite acceleration, or constraints that can't be met");
-    default: return say(f, fmi3Error, "not allowed in this mode, or not a legal value");
-    }
+    if (found == FMU_OK) return fmi3OK;
+    return say(f, found == FMU_NO_MOTION ? fmi3Discard : fmi3Error, fmi_words(found));
 }
 
+#define ANSWER(found) \
+    fmu *f = c; \
+    return f == NULL ? fmi3Error : outcome(f, found)
 #define ALLOWED(condition) \
     if (f == NULL) return fmi3Error; \
-    if (!(condition)) return say(f, fmi3Error, "the call is not allowed in this mode")
+    if (!(condition)) return outcome(f, FMU_WRONG_MODE)
 
 const char *fmi3GetVersion(void) { return fmi3Version; }
 
@@ -83,118 +82,68 @@ void fmi3FreeInstance(fmi3Instance c) {
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance, fmi3Float64 tolerance,
                                        fmi3Float64 start, fmi3Boolean has_stop, fmi3Float64 stop) {
     fmu *f = c;
-    ALLOWED(f->phase == FMU_INSTANTIATED);
-    if (has_stop && !(stop >= start)) return say(f, fmi3Error, "the stop time is before the start time");
-    if (has_tolerance && tolerance > 0.0 && f->it->run.adaptive) f->it->run.rtol = tolerance;
-    f->it->t = start, f->stops = has_stop ? 1 : 0, f->stop = stop;
-    f->phase = FMU_INITIALISING;
-    return fmi3OK;
+    int found;
+    ALLOWED(1);
+    found = fmi_prepare(f, has_tolerance, tolerance, start, has_stop ? 1 : 0, stop);
+    if (found == FMU_OK) f->phase = FMU_INITIALISING;
+    return outcome(f, found);
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
-    fmu *f = c;
-    ALLOWED(f->phase == FMU_INITIALISING);
-    return fmu_initialise(f) == FMU_OK ? fmi3OK : say(f, fmi3Error, "no state near the start meets the constraints");
+    ANSWER(fmi_exit_initialisation(f));
 }
 
 fmi3Status fmi3EnterEventMode(fmi3Instance c) {
-    fmu *f = c;
-    ALLOWED(!f->cosim && (f->phase == FMU_CONTINUOUS || f->phase == FMU_EVENT));
-    f->phase = FMU_EVENT;
-    return fmi3OK;
+    ANSWER(fmi_event_mode(f));
 }
 
 fmi3Status fmi3Terminate(fmi3Instance c) {
-    fmu *f = c;
-    ALLOWED(f->phase >= FMU_EVENT && f->phase <= FMU_STEPPING);
-    f->phase = FMU_TERMINATED;
-    return fmi3OK;
+    ANSWER(fmi_terminate(f));
 }
 
 fmi3Status fmi3Reset(fmi3Instance c) {
-    fmu *f = c;
-    ALLOWED(1);
-    fmu_reset(f);
-    return fmi3OK;
+    ANSWER(fmi_reset(f));
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Float64 value[], size_t nv) {
-    fmu *f = c;
-    size_t i;
-    ALLOWED(f->phase != FMU_INSTANTIATED && n == nv);
-    for (i = 0; i < n; ++i) {
-        const int found = fmu_get(f, vr[i], &value[i]);
-        if (found != FMU_OK) return outcome(f, found);
-    }
-    return fmi3OK;
+    ANSWER(n != nv ? FMU_WRONG_MODE : fmi_get(f, vr, n, value));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, const fmi3Float64 value[],
                           size_t nv) {
-    fmu *f = c;
-    size_t i;
-    ALLOWED(n == nv);
-    for (i = 0; i < n; ++i) {
-        const int found = fmu_set(f, vr[i], value[i]);
-        if (found != FMU_OK) return outcome(f, found);
-    }
-    return fmi3OK;
+    ANSWER(n != nv ? FMU_WRONG_MODE : fmi_set(f, vr, n, value));
 }
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {
-    fmu *f = c;
-    ALLOWED(1);
-    if (*state == NULL) *state = malloc(fmu_snapshot_size(f));
-    if (*state == NULL) return say(f, fmi3Error, "no memory");
-    fmu_save(f, *state);
-    return fmi3OK;
+    ANSWER(fmi_save(f, state));
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
-    fmu *f = c;
-    ALLOWED(state != NULL);
-    return fmu_load(f, state) ? fmi3OK : say(f, fmi3Error, "the state is of another model or kind");
+    ANSWER(fmi_load(f, state));
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state) {
-    fmu *f = c;
-    ALLOWED(1);
-    if (state != NULL) free(*state), *state = NULL;
-    return fmi3OK;
+    ANSWER(fmi_forget(state));
 }
 
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size) {
-    fmu *f = c;
-    ALLOWED(state != NULL);
-    *size = fmu_snapshot_size(f);
-    return fmi3OK;
+    ANSWER(fmi_size(f, state, size));
 }
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
-    fmu *f = c;
-    ALLOWED(state != NULL);
-    if (size < fmu_snapshot_size(f)) return say(f, fmi3Error, "too few bytes");
-    memcpy(bytes, state, fmu_snapshot_size(f));
-    return fmi3OK;
+    ANSWER(fmi_pack(f, state, bytes, size));
 }
 
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *state) {
-    fmu *f = c;
-    ALLOWED(1);
-    if (size != fmu_snapshot_size(f)) return say(f, fmi3Error, "bytes of another model");
-    if (*state == NULL) *state = malloc(size);
-    if (*state == NULL) return say(f, fmi3Error, "no memory");
-    memcpy(*state, bytes, size);
-    return fmi3OK;
+    ANSWER(fmi_unpack(f, bytes, size, state));
 }
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknown[], size_t n_unknown,
                                         const fmi3ValueReference known[], size_t n_known, const fmi3Float64 seed[],
                                         size_t n_seed, fmi3Float64 sensitivity[], size_t n_sensitivity) {
-    fmu *f = c;
-    ALLOWED(f->phase != FMU_INSTANTIATED && f->phase != FMU_TERMINATED && n_seed == n_known &&
-            n_sensitivity == n_unknown);
-    return outcome(f, fmu_differentiate(f, n_unknown, unknown, n_known, known, seed, sensitivity));
+    ANSWER(n_seed != n_known || n_sensitivity != n_unknown
+               ? FMU_WRONG_MODE
+               : fmi_differentiate(f, unknown, n_unknown, known, n_known, seed, sensitivity));
 }
 
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference unknown[], size_t n_unknown,
@@ -225,10 +174,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Bool
 /* Model Exchange. */
 
 fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) {
-    fmu *f = c;
-    ALLOWED(!f->cosim && f->phase == FMU_EVENT);
-    f->phase = FMU_CONTINUOUS;
-    return fmi3OK;
+    ANSWER(fmi_continuous_mode(f));
 }
 
 fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean final, fmi3Boolean *event, fmi3Boolean *terminate) {
@@ -240,40 +186,19 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean final, fmi3Bo
 }
 
 fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 t) {
-    fmu *f = c;
-    ALLOWED(!f->cosim && (f->phase == FMU_CONTINUOUS || f->phase == FMU_EVENT));
-    f->it->t = t, f->fresh = 0;
-    return fmi3OK;
+    ANSWER(fmi_set_time(f, t));
 }
 
-#define STATES(f) ((size_t)(f)->it->model->nq + (size_t)(f)->it->model->nv)
-
 fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 x[], size_t n) {
-    fmu *f = c;
-    size_t nq;
-    ALLOWED(!f->cosim && f->phase == FMU_CONTINUOUS && n == STATES(f));
-    nq = (size_t)f->it->model->nq;
-    memcpy(f->it->q, x, nq * sizeof *x), memcpy(f->it->v, x + nq, (n - nq) * sizeof *x);
-    f->fresh = 0;
-    return fmi3OK;
+    ANSWER(fmi_set_states(f, x, n));
 }
 
 fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t n) {
-    fmu *f = c;
-    size_t nq;
-    ALLOWED(!f->cosim && f->phase >= FMU_INITIALISING && n == STATES(f));
-    nq = (size_t)f->it->model->nq;
-    memcpy(x, f->it->q, nq * sizeof *x), memcpy(x + nq, f->it->v, (n - nq) * sizeof *x);
-    return fmi3OK;
+    ANSWER(fmi_get_states(f, x, n));
 }
 
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 derivatives[], size_t n) {
-    fmu *f = c;
-    int found;
-    ALLOWED(!f->cosim && f->phase >= FMU_INITIALISING && n == STATES(f));
-    found = fmu_refresh(f);
-    if (found == FMU_OK) memcpy(derivatives, f->rates, n * sizeof *derivatives);
-    return outcome(f, found);
+    ANSWER(fmi_get_rates(f, derivatives, n));
 }
 
 fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 indicators[], size_t n) {
@@ -284,11 +209,7 @@ fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 indicators[], size
 }
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64 nominals[], size_t n) {
-    fmu *f = c;
-    size_t i;
-    ALLOWED(!f->cosim && n == STATES(f));
-    for (i = 0; i < n; ++i) nominals[i] = 1.0;
-    return fmi3OK;
+    ANSWER(fmi_nominals(f, nominals, n));
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *n) {
@@ -301,7 +222,7 @@ fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *n) {
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *n) {
     fmu *f = c;
     ALLOWED(!f->cosim);
-    *n = STATES(f);
+    *n = fmi_states(f);
     return fmi3OK;
 }
 

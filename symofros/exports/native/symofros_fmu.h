@@ -7,7 +7,10 @@
 
 typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FMU_STEPPING, FMU_TERMINATED } fmu_phase;
 
-enum { FMU_OK, FMU_NOT_NOW, FMU_UNKNOWN, FMU_NO_MOTION };
+enum {
+    FMU_OK, FMU_NOT_NOW, FMU_UNKNOWN, FMU_NO_MOTION, FMU_WRONG_MODE, FMU_NO_START, FMU_STOP_BEFORE_START, FMU_NO_MEMORY,
+    FMU_FOREIGN, FMU_TOO_SHORT
+};
 
 typedef struct fmu_snapshot { /* followed by q, v, u, par */
     char hash[24];
@@ -22,6 +25,7 @@ typedef struct fmu {
     double stop;
     double *rates, *change, *dq, *dv, *du, *dlam, *matrix, *jacobian;
     const sym_function *pose[SYM_FMU_FRAMES + 1], *slope[SYM_FMU_FRAMES + 1];
+    const sym_function *driven[SYM_FMU_FRAMES + 1]; /* by prescribed motions; NULL where there are none */
     const sym_function *kinetic, *potential;
     /* Of the environment. */
     void *environment, *logger;
@@ -62,7 +66,7 @@ static fmu *fmu_new(int cosim, const char *name, void *(*allocate)(size_t, size_
     const sym_plant *plant = SYM_FMU_PLANT();
     const sym_model *m = plant->model();
     const size_t nq = (size_t)m->nq, nv = (size_t)m->nv, nu = (size_t)m->nu, nc = (size_t)m->nc, n = nv + nc;
-    const size_t doubles = 2 * (nq + nv) + nq + nv + nu + nc + n * n + 3 * n + nv + 6 * nv + 12 + 16;
+    const size_t doubles = 2 * (nq + nv) + nq + nv + nu + nc + n * n + 3 * n + nv + 30 * nv + 18 * nu + 16;
     const size_t head = (sizeof(fmu) + 15) / 16 * 16, size = (sym_instance_size(plant) + 15) / 16 * 16;
     const size_t length = name == NULL ? 0 : strlen(name);
     char *memory = allocate(1, head + size + doubles * sizeof(double) + length + 1);
@@ -79,7 +83,7 @@ static fmu *fmu_new(int cosim, const char *name, void *(*allocate)(size_t, size_
     at = (double *)(void *)(memory + head + size);
     f->rates = fmu_part(&at, nq + nv), f->change = fmu_part(&at, nq + nv);
     f->dq = fmu_part(&at, nq), f->dv = fmu_part(&at, nv), f->du = fmu_part(&at, nu), f->dlam = fmu_part(&at, nc);
-    f->matrix = fmu_part(&at, n * n + 3 * n + nv), f->jacobian = fmu_part(&at, 6 * nv + 12);
+    f->matrix = fmu_part(&at, n * n + 3 * n + nv), f->jacobian = fmu_part(&at, 30 * nv + 18 * nu);
     f->name = (char *)(void *)at;
     if (length > 0) memcpy(f->name, name, length);
     f->name[length] = '\0';
@@ -88,6 +92,7 @@ static fmu *fmu_new(int cosim, const char *name, void *(*allocate)(size_t, size_
     for (i = 0; i < SYM_FMU_FRAMES; ++i) {
         f->pose[i] = sym_find(m, "frame_pose", sym_fmu_frames[i]);
         f->slope[i] = sym_find(m, "frame_jacobian", sym_fmu_frames[i]);
+        f->driven[i] = sym_find(m, "frame_derivatives", sym_fmu_frames[i]);
     }
     return f;
 }
@@ -176,6 +181,29 @@ static int fmu_step(fmu *f, double t, double h) {
     return sym_instance_advance(f->it, t + h, 0.0) == SYM_DONE ? FMU_OK : FMU_NO_MOTION;
 }
 
+/* The change of a frame's coordinate with f->dq and f->du. */
+static int fmu_moved(fmu *f, size_t frame, size_t row, double *change) {
+    sym_instance *it = f->it;
+    const size_t nv = (size_t)it->model->nv, nu = (size_t)it->model->nu;
+    double *out[8], *at = f->jacobian, sum = 0.0;
+    size_t j;
+    out[0] = f->jacobian;
+    if (!sym_instance_call(it, f->slope[frame], out)) return FMU_UNKNOWN;
+    sym_instance_tangent(it, f->dq, f->matrix);
+    for (j = 0; j < nv; ++j) sum += f->jacobian[row * nv + j] * f->matrix[j];
+    if (f->driven[frame] != NULL) { /* six rows each, by q or v or u: pose_by_u is the second */
+        static const int of_inputs[8] = {0, 1, 0, 0, 1, 0, 0, 1};
+        for (j = 0; j < 8; ++j) {
+            out[j] = at;
+            at += 6 * (of_inputs[j] ? nu : nv);
+        }
+        if (!sym_instance_call(it, f->driven[frame], out)) return FMU_UNKNOWN;
+        for (j = 0; j < nu; ++j) sum += out[1][row * nu + j] * f->du[j];
+    }
+    *change = sum;
+    return FMU_OK;
+}
+
 /* seeds of knowns (states and inputs) -> changes of unknowns (rates, multipliers, outputs): exact. */
 static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, size_t n_known, const uint32_t *known,
                              const double *seed, double *found) {
@@ -203,16 +231,10 @@ static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, 
         case FMU_DQ: found[k] = f->change[i]; break;
         case FMU_DV: found[k] = f->change[nq + i]; break;
         case FMU_LAM: found[k] = f->dlam[i]; break;
-        case FMU_FRAME: {
-            double *out[1], sum = 0.0;
-            size_t j;
-            out[0] = f->jacobian;
-            if (!sym_instance_call(it, f->slope[i / 3], out)) return FMU_UNKNOWN;
-            sym_instance_tangent(it, f->dq, f->matrix);
-            for (j = 0; j < nv; ++j) sum += f->jacobian[(i % 3) * nv + j] * f->matrix[j];
-            found[k] = sum;
+        case FMU_FRAME:
+            status = fmu_moved(f, i / 3, i % 3, &found[k]);
+            if (status != FMU_OK) return status;
             break;
-        }
         default: return FMU_UNKNOWN;
         }
     }

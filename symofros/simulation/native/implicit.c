@@ -124,12 +124,13 @@ static int32_t sym_rosenbrock_step(sym_run *r, double h, const double *k, double
     const double g = 1.0 / (h * m->gamma);
     sym_scratch w = sym_scratch_of(r, rest);
     double *U = w.u, sum = 0.0;
-    int32_t i, j, l, status, rank;
-    sym_here(r);
-    status = sym_accelerate(r); /* the derivatives need a and lam of the present state */
-    if (status == 0) status = sym_terms(r);
-    if (status == 0) status = sym_slope_by_time(r, k, y, w.slope_t);
-    if (status != 0) return status;
+    int32_t i, j, l, status = 0, rank;
+    if (!r->linear) { /* the scene is at the present state, a and lam included, as sym_first_slope left it */
+        status = sym_terms(r);
+        if (status == 0) status = sym_slope_by_time(r, k, y, w.slope_t);
+        if (status != 0) return status;
+        r->linear = 1;
+    }
     rank = sym_rosenbrock_matrix(r, g, &w);
     if (rank < nv) return SYM_NO_CONVERGENCE;
     for (i = 0; i < m->stages; ++i) {

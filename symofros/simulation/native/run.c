@@ -30,7 +30,7 @@ static int32_t sym_first_slope(sym_run *r, double *k) {
     if (!r->fresh) {
         sym_here(r);
         status = sym_accelerate(r);
-        r->fresh = 1;
+        r->fresh = 1, r->linear = 0;
         if (status == 0) {
             memcpy(k, r->v, (size_t)nv * sizeof *k);
             memcpy(k + nv, r->scene->a, (size_t)nv * sizeof *k);
@@ -99,6 +99,15 @@ static int32_t sym_record(sym_run *r) {
     return 0;
 }
 
+/* All events at the scene's point. */
+static int32_t sym_event_values(sym_run *r, double *values) {
+    const sym_scene *s = r->scene;
+    if (sym_inputs(r->scene) != 0) return SYM_CALLBACK;
+    sym_evaluate(&s->events);
+    memcpy(values, s->events.out[0], (size_t)s->n_events * sizeof *values);
+    return 0;
+}
+
 static double sym_event_value(sym_run *r, int32_t which) {
     if (sym_inputs(r->scene) != 0) return NAN;
     sym_evaluate(&r->scene->events);
@@ -138,19 +147,22 @@ static int32_t sym_locate(sym_run *r, sym_memory *m, double h, int32_t *ready, i
     return 0;
 }
 
-/* Events of the step just made, in the order of time up to the first terminal one, whose x is returned through it. */
-static int32_t sym_events(sym_run *r, sym_memory *m, double h, int32_t *ready, double *stop_x) {
+/* Events of the step just made, which ends at t1, in the order of time up to the first terminal one, whose x is
+ * returned through it. r->event: the values at t1; then, for each event met, its x; then which it is. */
+static int32_t sym_events(sym_run *r, sym_memory *m, double h, double t1, int32_t *ready, double *stop_x) {
     sym_scene *s = r->scene;
     int32_t i, status, n = 0;
-    double after = 0.0;
     *stop_x = 2.0;
     r->stopped_by = -1;
-    for (i = 0; i < s->n_events; ++i) {
+    sym_place(r, t1, m->y1);
+    status = sym_event_values(r, r->event + s->n_events);
+    if (status != 0) return status;
+    for (i = 0; i < s->n_events; ++i) { /* n <= i: what is written over has been read */
+        const double before = r->event[i], after = r->event[s->n_events + i];
         double x;
-        sym_place(r, r->t + h, m->y1);
-        after = sym_event_value(r, i);
-        if (!sym_crosses(s->event_direction[i], r->event[i], after)) continue;
-        status = sym_locate(r, m, h, ready, i, r->event[i], after, &x);
+        r->event[i] = after;
+        if (!sym_crosses(s->event_direction[i], before, after)) continue;
+        status = sym_locate(r, m, h, ready, i, before, after, &x);
         if (status != 0) return status;
         if (s->event_terminal[i] && x < *stop_x) *stop_x = x, r->stopped_by = i;
         r->event[s->n_events + n] = x;
@@ -278,11 +290,14 @@ SYM_EXPORT int32_t sym_start(sym_run *r) {
     status = sym_first_slope(r, m.k);
     if (status != 0) return status;
     if (s->n_events > 0) {
-        sym_evaluate(&s->events);
-        memcpy(r->event, s->events.out[0], (size_t)s->n_events * sizeof *r->event);
+        status = sym_event_values(r, r->event);
+        if (status != 0) return status;
     }
     r->h_next = r->h;
-    return r->adaptive && !(r->h > 0.0) ? sym_first_step(r, &m) : 0;
+    if (!r->adaptive || r->h > 0.0) return 0;
+    status = sym_first_step(r, &m);
+    if (r->method == SYM_METHOD_ROSENBROCK) r->fresh = 0; /* its derivatives need the scene back there */
+    return status;
 }
 
 /* The size of the next step after one of size h with that error. */
@@ -301,7 +316,7 @@ static int32_t sym_accept(sym_run *r, sym_memory *m, double h, double t1) {
     int32_t ready = 0, status, stopped = 0;
     double stop_x = 2.0;
     if (s->n_events > 0) {
-        status = sym_events(r, m, h, &ready, &stop_x);
+        status = sym_events(r, m, h, t1, &ready, &stop_x);
         if (status != 0) return status;
         stopped = stop_x <= 1.0;
     }
@@ -325,12 +340,10 @@ static int32_t sym_accept(sym_run *r, sym_memory *m, double h, double t1) {
         r->fresh = 1;
     }
     ++r->steps;
-    if (s->n_events > 0) {
-        int32_t i;
+    if (s->n_events > 0 && (r->project || stopped)) { /* the state is no longer the one that sym_events saw */
         sym_here(r);
-        if (sym_inputs(s) != 0) return SYM_CALLBACK;
-        sym_evaluate(&s->events);
-        for (i = 0; i < s->n_events; ++i) r->event[i] = s->events.out[0][i];
+        status = sym_event_values(r, r->event);
+        if (status != 0) return status;
     }
     if (r->every > 0 && (r->steps % r->every == 0 || r->t >= r->t_end || stopped)) {
         sym_here(r);
@@ -342,13 +355,8 @@ static int32_t sym_accept(sym_run *r, sym_memory *m, double h, double t1) {
 }
 
 static int32_t sym_room(const sym_run *r) {
-    int64_t wanted = 1, i = r->at_grid;
-    if (r->every == 0) { /* as many as may fall into one step */
-        wanted = 0;
-        while (i < r->n_grid && r->grid[i] <= r->t + r->h_next * 1.0000001 && wanted <= r->capacity) ++i, ++wanted;
-        if (wanted > r->capacity) wanted = r->capacity;
-    }
-    return r->n_records + wanted <= r->capacity && r->n_found + r->scene->n_events <= r->event_capacity;
+    const int32_t records = r->every == 0 || r->n_records < r->capacity; /* a grid fits as a whole */
+    return records && r->n_found + r->scene->n_events <= r->event_capacity;
 }
 
 SYM_EXPORT int32_t sym_advance(sym_run *r, int64_t max_steps) {
@@ -377,10 +385,8 @@ SYM_EXPORT int32_t sym_advance(sym_run *r, int64_t max_steps) {
         }
         if (status != 0) return status;
         if (r->adaptive) {
-            const double next = sym_next_size(r, h, error);
+            r->h_next = sym_next_size(r, h, error);
             r->error_last = error > 1e-4 ? error : 1e-4;
-            /* A step shortened to meet the end says nothing against the size that was found before. */
-            r->h_next = next;
         }
         status = sym_accept(r, &m, h, t1);
         if (status != 0) return status;

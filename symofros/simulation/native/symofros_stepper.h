@@ -81,16 +81,17 @@ typedef struct sym_run {
     double t, *q, *v;  /* (nq), (nv) */
     double *y;         /* work, sym_work_size doubles */
     int32_t *pivots;   /* 2 (nv + nc) */
-    double *event;     /* (n_events) values at the present state */
+    double *event;     /* 3 n_events: values at the present state, and work */
     double h_next, error_last;
     int64_t steps, rejected, evaluations, jacobians;
     int32_t rank_max, rank_min;
     double t_rank;     /* when the rank was lowest */
-    int32_t fresh;     /* whether a, lam of the present state are in the scene */
+    int32_t fresh;     /* whether the slope at the present state is known */
+    int32_t linear;    /* whether its derivatives are, which a rejected step leaves as they are */
     /* Pacing: the clock at the start, steps that came late, and by how much [s]. */
     double clock0, late_max, late_sum;
     int64_t late_steps, paced_steps;
-    /* Records: row after row; full at capacity. */
+    /* Records: row after row; full at capacity, which is n_grid at least. */
     int64_t capacity, n_records;
     double *record_t, *record_q, *record_v, *record_u;
     int64_t event_capacity, n_found;

@@ -1,6 +1,6 @@
 /* What stands at the end of an S-function; here the engine's part: sizes, start, steps of classical Runge-Kutta.
  *
- *     block MODEL FUNCTION T_END STEP NUMBERS...    numbers: of all input ports, one after the other
+ *     [BLOCK_PARAMETERS='1 2'] block MODEL FUNCTION T_END STEP NUMBERS...    numbers: of all input ports, in order
  *
  * prints the outputs at the end, a port a line. */
 #include <stdio.h>
@@ -32,14 +32,21 @@ static void step(SimStruct *S, double *x, double t, double h, double *k) {
 
 int main(int argc, char **argv) {
     const mxArray name = {argc > 1 ? argv[1] : NULL, NULL, 1}, function = {argc > 2 ? argv[2] : NULL, NULL, 1};
-    const mxArray none = {NULL, NULL, 0};
+    const char *stated = getenv("BLOCK_PARAMETERS"); /* Parameters of the model, one after the other; none: [] */
+    double numbers[64];
+    mxArray parameters = {NULL, numbers, 0};
     SimStruct block;
     double *memory, *at, *x;
     int i, j, given = 5;
     long k, count;
     if (argc < 5) return 2;
+    for (; stated != NULL && *stated != '\0' && parameters.count < 64; ++parameters.count) {
+        char *rest;
+        numbers[parameters.count] = strtod(stated, &rest);
+        stated = rest;
+    }
     memset(&block, 0, sizeof block);
-    block.parameters[0] = &name, block.parameters[1] = &function, block.parameters[2] = &none;
+    block.parameters[0] = &name, block.parameters[1] = &function, block.parameters[2] = &parameters;
     block.given_parameters = 3;
     mdlInitializeSizes(&block);
     if (block.error != NULL) {

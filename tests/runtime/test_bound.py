@@ -1,0 +1,98 @@
+"""Functions bound to their memory: the same numbers, without checks, and no array that C could not hold."""
+
+from __future__ import annotations
+
+import gc
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from tests.models import model
+
+FUNCTIONS = {
+    "mass_matrix": ("q",),
+    "bias": ("q", "v"),
+    "generalized_force": ("q", "v", "u"),
+    "inverse_dynamics": ("q", "v", "a"),
+    "kinetic_energy": ("q", "v"),
+}
+
+
+@pytest.fixture(params=["c", "interpreter"])
+def m(request: pytest.FixtureRequest) -> sf.Model:
+    return model("parametrised0", request.param)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_the_same_as_the_method(m: sf.Model, name: str, rng: np.random.Generator) -> None:
+    bound = m.bind(name)
+    (result,) = bound.outputs.values()
+    gc.collect()  # What C has the addresses of must be held by the Bound.
+    for _ in range(3):
+        given = dict(zip("qv", m.random_state(rng), strict=True)) | {"a": rng.normal(size=m.nv), "u": np.ones(m.nu)}
+        for group in FUNCTIONS[name]:
+            bound.inputs[group][:] = given[group]
+        bound()
+        assert np.array_equal(result, getattr(m, name)(*(given[group] for group in FUNCTIONS[name])))
+
+
+def test_memory_of_the_caller_is_used(m: sf.Model, rng: np.random.Generator) -> None:
+    q, M = m.random_state(rng)[0], np.full((m.nv, m.nv), np.nan)
+    bound = m.bind("mass_matrix", q=q, M=M)
+    assert bound.inputs["q"] is q and bound.outputs["M"] is M
+    bound()
+    q[:] = m.random_state(rng)[0]
+    bound()
+    assert np.array_equal(M, m.mass_matrix(q))
+
+
+def test_parameters_and_frames(m: sf.Model, rng: np.random.Generator) -> None:
+    frame, par = m.names.frames[-1], 1.5 * m.parameter_values
+    bound = m.bind("frame_pose", frame, par=par)
+    bound.inputs["q"][:] = q = m.random_state(rng)[0]
+    bound()
+    for found, expected in zip(bound.outputs.values(), m.frame_pose(frame, q, par=par), strict=True):
+        assert np.array_equal(found, expected)
+
+
+def test_inputs_begin_at_their_defaults() -> None:
+    ball = sf.RigidBody("b", sf.Joint("j", "ball", prescribed=True), sf.Inertia(1.0))
+    arm = sf.RigidBody("a", sf.Joint("q1", "revolute", "b"), sf.Inertia(1.0, (1, 0, 0)))
+    m = sf.compile(sf.System("s", [ball, arm]))
+    bound = m.bind("bias")
+    bound()
+    assert bound.inputs["u"].tolist() == list(m.record.u_default) and bound.inputs["u"].any()
+    assert np.array_equal(bound.outputs["h"], m.bias([0.0], [0.0]))
+
+
+@pytest.mark.parametrize(
+    "array", [np.zeros(3), np.zeros(4)[::2], np.zeros(2, dtype=np.float32), [0.0, 0.0], np.zeros((1, 2))]
+)
+def test_other_arrays_are_refused(array: np.ndarray) -> None:
+    m = sf.compile(MODELS["double_pendulum"])
+    with pytest.raises(sf.ShapeError, match=r"mass_matrix: 'q' can't be bound(.|\n)*shape \(2,\)"):
+        m.bind("mass_matrix", q=array)
+
+
+def test_read_only_arrays_are_refused() -> None:
+    m = sf.compile(MODELS["double_pendulum"])
+    M = np.zeros((2, 2))
+    M.flags.writeable = False
+    with pytest.raises(sf.ShapeError, match="not contiguous or not writeable"):
+        m.bind("mass_matrix", M=M)
+
+
+@pytest.mark.parametrize(
+    ("name", "frame", "arrays", "message"),
+    [
+        ("mass_matrx", "", {}, "no function 'mass_matrx'(.|\n)*mass_matrix"),
+        ("frame_pose", "", {}, "bound with their frame"),
+        ("frame_pose", "tp", {}, "no frame 'tp'"),
+        ("mass_matrix", "", {"v": np.zeros(2)}, "mass_matrix: neither input nor output 'v'"),
+    ],
+)
+def test_unknown_names_are_refused(name: str, frame: str, arrays: dict[str, np.ndarray], message: str) -> None:
+    with pytest.raises(sf.UnknownNameError, match=message):
+        sf.compile(MODELS["double_pendulum"]).bind(name, frame, **arrays)
