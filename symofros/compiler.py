@@ -174,12 +174,12 @@ class _Builder:
         """Functions of the model."""
         return self._unit(generate(self._tree, requests, self._record, self._options.constraints)[0])
 
-    def formulas(self, formulas: tuple[Any, ...]) -> Unit:
-        """Numbers, formula texts or SymPy expressions over the model's names, with their derivatives."""
+    def formulas(self, formulas: tuple[Any, ...], derivatives: bool) -> Unit:
+        """Numbers, formula texts or SymPy expressions over the model's names."""
         stated = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
         what = f"system '{self._tree.system.name}': formula"
         values = [(as_value(item.formula, what), item.order) for item in stated]
-        return self._unit(run_passes(formula_program(self._tree, values)))
+        return self._unit(run_passes(formula_program(self._tree, values, derivatives)))
 
     def _unit(self, program: Program) -> Unit:
         if self._toolchain is None:

@@ -129,13 +129,19 @@ class CompiledKernel:
         """The parameter-only part of the work."""
         return self._unit.prepare(par)
 
+    def in_lanes(self) -> Kernel:
+        """The same by vectors, compiled at the first call; itself where there is no such thing."""
+        if self._lanes is None:
+            make = self._unit.in_lanes
+            self._lanes = (make((self.signature.name, self.signature.frame)) if make is not None else None) or self
+        return self._lanes
+
     def run(self, n: int, pre: Array, inputs: list[Array]) -> list[Array]:
         """Evaluate n states in C: by vectors if they are many, in a loop over the states otherwise."""
-        if n >= MANY and len(pre) == 1 and self._unit.in_lanes is not None:
-            if self._lanes is None:
-                self._lanes = self._unit.in_lanes((self.signature.name, self.signature.frame)) or self
-            if self._lanes is not self:
-                return self._lanes.run(n, pre, inputs)
+        if n >= MANY and len(pre) == 1:
+            lanes = self.in_lanes()
+            if lanes is not self:
+                return lanes.run(n, pre, inputs)
         ffi, function = self._unit.ffi, self._function
         outputs = [np.empty((n, *shape)) for _, shape in self.signature.outputs]
         given = [pre, *inputs]

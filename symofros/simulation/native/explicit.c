@@ -1,32 +1,37 @@
 /* Explicit Runge-Kutta methods by their tableau, and semi-implicit Euler. Slopes k: (dense_stages, n), n = 2 nv. */
 
-/* Stages first to end - 1, those before them being known. */
-static int32_t sym_stages(sym_run *r, double h, int32_t first, int32_t end, double *k, double *y) {
+/* The y of stage i, those before it being known. */
+static void sym_stage(const sym_run *r, double h, int32_t i, const double *k, double *y) {
     const sym_tableau *m = &r->tableau;
     const int32_t nv = r->scene->nv, n = 2 * nv;
-    int32_t i, j, l, status;
+    const double *a = m->a + (size_t)i * m->dense_stages;
+    int32_t j, l;
+    memset(y, 0, (size_t)n * sizeof *y);
+    for (j = 0; j < i; ++j) {
+        const double s = a[j], *kj = k + (size_t)j * n;
+        if (s != 0.0)
+            for (l = 0; l < n; ++l) y[l] += s * kj[l];
+    }
+    for (l = 0; l < n; ++l) y[l] *= h;
+    for (l = 0; l < nv; ++l) y[nv + l] += r->v[l];
+}
+
+/* Stages first to end - 1, those before them being known. */
+static int32_t sym_stages(sym_run *r, double h, int32_t first, int32_t end, double *k, double *y) {
+    int32_t i, status;
     for (i = first; i < end; ++i) {
-        const double *a = m->a + (size_t)i * m->dense_stages;
-        memset(y, 0, (size_t)n * sizeof *y);
-        for (j = 0; j < i; ++j) {
-            const double s = a[j], *kj = k + (size_t)j * n;
-            if (s != 0.0)
-                for (l = 0; l < n; ++l) y[l] += s * kj[l];
-        }
-        for (l = 0; l < n; ++l) y[l] *= h;
-        for (l = 0; l < nv; ++l) y[nv + l] += r->v[l];
-        status = sym_slope(r, r->t + m->c[i] * h, y, k + (size_t)i * n);
+        sym_stage(r, h, i, k, y);
+        status = sym_slope(r, r->t + r->tableau.c[i] * h, y, k + (size_t)i * 2 * r->scene->nv);
         if (status != 0) return status;
     }
     return 0;
 }
 
-static int32_t sym_explicit_step(sym_run *r, double h, double *k, double *y1, double *y) {
+/* y at the end of the step, its stages being known. */
+static void sym_explicit_sum(const sym_run *r, double h, const double *k, double *y1) {
     const sym_tableau *m = &r->tableau;
     const int32_t nv = r->scene->nv, n = 2 * nv;
     int32_t i, l;
-    const int32_t status = sym_stages(r, h, 1, m->stages, k, y);
-    if (status != 0) return status;
     memset(y1, 0, (size_t)n * sizeof *y1);
     for (i = 0; i < m->stages; ++i) {
         const double s = m->b[i], *ki = k + (size_t)i * n;
@@ -35,7 +40,6 @@ static int32_t sym_explicit_step(sym_run *r, double h, double *k, double *y1, do
     }
     for (l = 0; l < n; ++l) y1[l] *= h;
     for (l = 0; l < nv; ++l) y1[nv + l] += r->v[l];
-    return 0;
 }
 
 /* v1 = v + h v', then q1 = q moved by h v1: symplectic for constant mass, one evaluation a step. */
