@@ -91,13 +91,13 @@ class Crew:
         self._native, self._ffi = self.single.native, self.single.ffi
         self._crew = self._ffi.new("sym_crew *")
         self._slots = min(_SLOTS, max(2, -(-starts.n // by)))
-        self._lay_out(model, starts)
+        self._lay_out(model, settings, starts)
         self._place(starts, ends)
         crew = self._crew
         crew.next, crew.by, crew.n, crew.max_steps = first, by, starts.n, max_steps or 0
         self._native.sym_crew_start(crew)
 
-    def _lay_out(self, model: Model, starts: Starts) -> None:
+    def _lay_out(self, model: Model, settings: Settings, starts: Starts) -> None:
         crew, single, slots = self._crew, self.single, self._slots
         crew.like, crew.slots = single.run, slots
         samples = int(single.run.n_grid)
@@ -107,10 +107,12 @@ class Crew:
             kind = f"sym_{name[:-1]}[]"
             setattr(crew, name, single.own(kind, slots * (max(1, single.scene.n_signals) if name == "signals" else 1)))
         crew.whose, crew.status = single.own("int64_t[]", slots), single.own("int32_t[]", slots)
-        size = model.nq + model.nv + int(self._native.sym_work_size(single.run))
-        for name, width in (("own", size), ("q", model.nq), ("v", model.nv), ("u", model.nu), ("t", 1), ("step", 1),
-                            ("end", 1)):  # fmt: skip
+        n, stages = 2 * model.nv, max(1, len(settings.method.tableau.b))
+        widths = {"q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "step": 1, "end": 1, "y1": n, "stage": n,
+                  "size": n, "dense": n, "base": n, "length": n, "k": stages * n, "states": model.nq + model.nv}  # fmt: skip
+        for name, width in widths.items():
             setattr(crew, name, single.numbers(np.zeros(slots * width)))
+        single.run.y = single.numbers(np.zeros(self._native.sym_work_size(single.run)))
         for name, sizes in (("forward", (model.nv, model.nc, 1)), ("law", (single.scene.n_law,)), ("project", ())):
             self._many(name, sizes, starts.par)
 

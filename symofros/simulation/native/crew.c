@@ -1,8 +1,17 @@
 /* Many trajectories, the accelerations of those in hand by one call: symofros_crew.h. */
 
+/* Where a slot's work lies. */
+static sym_memory sym_crew_memory(const sym_crew *c, int32_t slot) {
+    const size_t n = 2 * (size_t)c->like->scene->nv, at = (size_t)slot * n;
+    sym_memory m;
+    m.y1 = c->y1 + at, m.stage = c->stage + at, m.size = c->size + at, m.end = c->dense + at, m.k = c->k + at;
+    m.rest = NULL;
+    m.step = (size_t)c->slots * n;
+    return m;
+}
+
 SYM_EXPORT void sym_crew_start(sym_crew *c) {
     const sym_scene *like = c->like->scene;
-    const size_t size = (size_t)like->nq + (size_t)like->nv + sym_work_size(c->like);
     int32_t i;
     for (i = 0; i < c->slots; ++i) {
         sym_scene *s = c->scenes + i;
@@ -16,7 +25,7 @@ SYM_EXPORT void sym_crew_start(sym_crew *c) {
         s->signals = c->signals + (size_t)i * s->n_signals;
         memcpy(c->signals + (size_t)i * s->n_signals, like->signals, (size_t)s->n_signals * sizeof *like->signals);
         r->scene = s;
-        r->q = c->own + (size_t)i * size, r->v = r->q + s->nq, r->y = r->v + s->nv;
+        r->q = c->states + (size_t)i * ((size_t)s->nq + (size_t)s->nv), r->v = r->q + s->nq;
     }
     c->in_hand = 0;
 }
@@ -59,9 +68,12 @@ static void sym_crew_move(sym_crew *c, int32_t to) {
     sym_run *r = c->runs + to, *other = c->runs + from;
     const sym_run places = *r;
     const sym_scene *s = places.scene, *left = other->scene;
+    const sym_memory m = sym_crew_memory(c, to), last = sym_crew_memory(c, from);
     *r = *other;
-    r->scene = places.scene, r->q = places.q, r->v = places.v, r->y = places.y;
-    memcpy(r->q, other->q, (size_t)(c->runs[1].q - c->runs[0].q) * sizeof *r->q);
+    r->scene = places.scene, r->q = places.q, r->v = places.v;
+    memcpy(r->q, other->q, ((size_t)s->nq + (size_t)s->nv) * sizeof *r->q);
+    memcpy(m.size, last.size, 2 * (size_t)s->nv * sizeof *m.size);
+    memcpy(m.k, last.k, 2 * (size_t)s->nv * sizeof *m.k);
     memcpy(s->q, left->q, (size_t)s->nq * sizeof *s->q);
     memcpy(s->v, left->v, (size_t)s->nv * sizeof *s->v);
     memcpy(s->u, left->u, (size_t)s->nu * sizeof *s->u);
@@ -81,7 +93,7 @@ static void sym_crew_put(sym_crew *c, int32_t slot, int32_t status) {
     --c->in_hand;
 }
 
-/* Take up the next trajectory; its first slope and step are found by itself. */
+/* Take up the next trajectory; its first slope and step are found by itself, in the single run's work. */
 static void sym_crew_take(sym_crew *c) {
     const int32_t slot = c->in_hand++;
     const int64_t which = c->next;
@@ -99,6 +111,7 @@ static void sym_crew_take(sym_crew *c) {
     r->record_u = c->record_u + which * r->capacity * s->nu;
     if (status == 0) status = sym_start(r);
     if (status == 0 && r->t >= r->t_end) status = SYM_DONE;
+    memcpy(sym_crew_memory(c, slot).k, sym_lay_out(r).k, 2 * (size_t)s->nv * sizeof(double));
     if (status != 0) sym_crew_put(c, slot, status);
 }
 
@@ -145,7 +158,7 @@ static void sym_crew_first_slopes(sym_crew *c) {
     if (wanted > 0) sym_crew_accelerate(c);
     for (i = 0; i < c->in_hand; ++i) {
         sym_run *r = c->runs + i;
-        const sym_memory m = sym_lay_out(r);
+        const sym_memory m = sym_crew_memory(c, i);
         int32_t status = 0;
         if (!r->fresh) {
             status = sym_accelerated(r);
@@ -155,22 +168,42 @@ static void sym_crew_first_slopes(sym_crew *c) {
     }
 }
 
+/* Steps of all in hand begin: (0, v) and their lengths, as often as y has entries. */
+static void sym_crew_begin(sym_crew *c) {
+    const int32_t nv = c->like->scene->nv, n = 2 * nv;
+    int32_t i, l;
+    for (i = 0; i < c->in_hand; ++i) {
+        double *base = c->base + (size_t)i * n, *length = c->length + (size_t)i * n;
+        for (l = 0; l < nv; ++l) base[l] = 0.0, base[nv + l] = c->runs[i].v[l];
+        for (l = 0; l < n; ++l) length[l] = c->step[i];
+    }
+}
+
+/* y = (0, v) + h sum of weighted slopes, of all in hand: sym_moved. */
+static void sym_crew_moved(const sym_crew *c, int32_t stages, const double *weights, double *restrict y) {
+    const size_t n = 2 * (size_t)c->like->scene->nv, size = (size_t)c->in_hand * n;
+    const double *restrict base = c->base, *restrict length = c->length;
+    size_t l;
+    sym_sum(size, stages, weights, c->k, (size_t)c->slots * n, y);
+    for (l = 0; l < size; ++l) y[l] = length[l] * y[l] + base[l];
+}
+
 /* A stage of all in hand. */
 static void sym_crew_stage(sym_crew *c, int32_t stage) {
+    const sym_tableau *method = &c->like->tableau;
     int32_t i;
+    sym_crew_moved(c, stage, method->a + (size_t)stage * method->dense_stages, c->stage);
     for (i = 0; i < c->in_hand; ++i) {
         sym_run *r = c->runs + i;
-        const sym_memory m = sym_lay_out(r);
-        sym_stage(r, c->step[i], stage, m.k, m.stage);
-        sym_place(r, r->t + r->tableau.c[stage] * c->step[i], m.stage);
+        sym_place(r, r->t + method->c[stage] * c->step[i], sym_crew_memory(c, i).stage);
     }
     sym_crew_accelerate(c);
     for (i = 0; i < c->in_hand; ++i) {
         sym_run *r = c->runs + i;
-        const sym_memory m = sym_lay_out(r);
+        const sym_memory m = sym_crew_memory(c, i);
         const int32_t status = sym_accelerated(r);
         if (c->status[i] == 0) c->status[i] = status; /* one that has failed goes on in company, for nothing */
-        sym_rate(r->scene, m.stage, m.k + (size_t)stage * 2 * r->scene->nv);
+        sym_rate(r->scene, m.stage, m.k + (size_t)stage * m.step);
     }
 }
 
@@ -180,17 +213,21 @@ static void sym_crew_round(sym_crew *c) {
     int32_t i, stage;
     sym_crew_first_slopes(c);
     for (i = c->in_hand - 1; i >= 0; --i) {
-        sym_memory m = sym_lay_out(c->runs + i);
+        sym_memory m = sym_crew_memory(c, i);
         if (c->status[i] == 0) c->status[i] = sym_plan(c->runs + i, &m, c->step + i, c->end + i);
         if (c->status[i] != 0) sym_crew_put(c, i, c->status[i]);
     }
-    for (stage = 1; stage < c->like->tableau.stages && c->in_hand > 0; ++stage) sym_crew_stage(c, stage);
+    if (c->in_hand == 0) return;
+    sym_crew_begin(c);
+    for (stage = 1; stage < c->like->tableau.stages; ++stage) sym_crew_stage(c, stage);
+    if (c->like->method == SYM_METHOD_EXPLICIT) sym_crew_moved(c, c->like->tableau.stages, c->like->tableau.b, c->y1);
     for (i = c->in_hand - 1; i >= 0; --i) {
         sym_run *r = c->runs + i;
-        sym_memory m = sym_lay_out(r);
+        sym_memory m = sym_crew_memory(c, i);
         int32_t status = c->status[i];
         double error = 0.0;
-        if (status == 0) status = sym_complete(r, &m, c->step[i], &error);
+        if (r->method == SYM_METHOD_SEMI_IMPLICIT) sym_semi_implicit_step(r, c->step[i], m.k, m.y1);
+        if (status == 0) status = sym_examine(r, &m, c->step[i], &error);
         status = sym_judge(r, &m, c->step[i], c->end[i], status, error);
         if (status == 0 && r->t >= r->t_end) status = SYM_DONE;
         if (status != 0 || (c->max_steps > 0 && r->steps >= c->max_steps)) sym_crew_put(c, i, status);

@@ -38,16 +38,17 @@ static void sym_move(sym_run *r, double t, const double *y) {
     r->t = t;
 }
 
+/* The error of an explicit step whose y1 is known. Returns 0 or a status. */
+static int32_t sym_examine(sym_run *r, const sym_memory *m, double h, double *error) {
+    *error = r->adaptive ? sym_explicit_error(r, m, h) : 0.0;
+    return sym_finite(2 * r->scene->nv, m->y1) ? 0 : SYM_DIVERGED;
+}
+
 /* y1 and the error of an explicit step whose stages are known. */
 static int32_t sym_complete(sym_run *r, sym_memory *m, double h, double *error) {
-    *error = 0.0;
-    if (r->method == SYM_METHOD_EXPLICIT) {
-        sym_explicit_sum(r, h, m->k, m->y1);
-        if (r->adaptive) *error = sym_explicit_error(r, h, m->k, m->size, m->y1);
-    } else {
-        sym_semi_implicit_step(r, h, m->k, m->y1);
-    }
-    return sym_finite(2 * r->scene->nv, m->y1) ? 0 : SYM_DIVERGED;
+    if (r->method == SYM_METHOD_EXPLICIT) sym_moved(r, m, h, r->tableau.stages, r->tableau.b, m->y1);
+    else sym_semi_implicit_step(r, h, m->k, m->y1);
+    return sym_examine(r, m, h, error);
 }
 
 /* One attempt at a step of length h: y1, and the error over its bound where the method estimates one. */
@@ -55,7 +56,7 @@ static int32_t sym_try(sym_run *r, sym_memory *m, double h, double *error) {
     int32_t status;
     *error = 0.0;
     if (r->method == SYM_METHOD_EXPLICIT || r->method == SYM_METHOD_SEMI_IMPLICIT) {
-        status = sym_stages(r, h, 1, r->tableau.stages, m->k, m->stage);
+        status = sym_stages(r, m, h, 1, r->tableau.stages);
         return status != 0 ? status : sym_complete(r, m, h, error);
     }
     if (r->method == SYM_METHOD_ROSENBROCK) {
@@ -164,7 +165,7 @@ static int32_t sym_accept(sym_run *r, sym_memory *m, double h, double t1) {
         status = sym_return(r);
         if (status != 0) return status;
     } else if (ends && !stopped) { /* the last slope is the next step's first; its chart starts anew */
-        memcpy(m->k + nv, m->k + (size_t)r->tableau.last * 2 * nv + nv, (size_t)nv * sizeof(double));
+        memcpy(m->k + nv, m->k + (size_t)r->tableau.last * m->step + nv, (size_t)nv * sizeof(double));
         memcpy(m->k, r->v, (size_t)nv * sizeof(double));
         r->fresh = 1;
     }

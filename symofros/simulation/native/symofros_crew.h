@@ -34,7 +34,10 @@ typedef struct sym_crew {
     int64_t *whose;             /* (slots) which trajectory a slot holds */
     double *step, *end;         /* (slots) length of the present step, time at its end */
     int32_t *status;            /* (slots) how it fares */
-    double *own;                /* (slots, nq + nv + sym_work_size) states and work of the runs */
+    double *states;             /* (slots, nq + nv) present states of the runs */
+    /* Their work, n = 2 nv: as in a single run, but for slopes (dense_stages, slots, n); (0, v), and n times the length
+     * of the step, so that the sums of stages are loops over all. */
+    double *y1, *stage, *size, *dense, *k, *base, *length;
     double *q, *v, *u, *t;      /* (slots, ...) the points at which functions are evaluated */
     sym_rows q0, v0, constant;  /* first states and constant inputs of all trajectories */
     const int64_t *signal_stride; /* (n_signals) doubles from the samples of one trajectory to those of the next */

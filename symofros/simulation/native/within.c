@@ -1,22 +1,5 @@
 /* What lies within a step: dense output, events, records asked for at times. */
 
-typedef struct sym_memory { /* where things lie in sym_run.y */
-    double *y1, *stage, *size, *end, *k, *rest;
-} sym_memory;
-
-static sym_memory sym_lay_out(const sym_run *r) {
-    const size_t n = 2 * (size_t)r->scene->nv;
-    const size_t stages = r->tableau.dense_stages > 1 ? (size_t)r->tableau.dense_stages : 1;
-    sym_memory m;
-    m.y1 = r->y;
-    m.stage = m.y1 + n;
-    m.size = m.stage + n;
-    m.end = m.size + n;
-    m.k = m.end + n;
-    m.rest = m.k + stages * n;
-    return m;
-}
-
 /* Dense output: y at x in [0, 1] of the step that has just been made. */
 static int32_t sym_dense(sym_run *r, sym_memory *m, double h, int32_t *ready, double x, double *y) {
     const sym_tableau *tableau = &r->tableau;
@@ -24,7 +7,7 @@ static int32_t sym_dense(sym_run *r, sym_memory *m, double h, int32_t *ready, do
     int32_t i, j, l, status;
     if (r->method == SYM_METHOD_EXPLICIT && tableau->degree > 0) {
         if (!*ready) {
-            status = sym_stages(r, h, tableau->stages, tableau->dense_stages, m->k, m->stage);
+            status = sym_stages(r, m, h, tableau->stages, tableau->dense_stages);
             if (status != 0) return status;
             *ready = 1;
         }
@@ -34,7 +17,7 @@ static int32_t sym_dense(sym_run *r, sym_memory *m, double h, int32_t *ready, do
             double s = 0.0;
             for (j = tableau->degree - 1; j >= 0; --j) s = (s + p[j]) * x;
             if (s != 0.0)
-                for (l = 0; l < n; ++l) y[l] += h * s * m->k[(size_t)i * n + l];
+                for (l = 0; l < n; ++l) y[l] += h * s * m->k[(size_t)i * m->step + l];
         }
         for (l = 0; l < nv; ++l) y[nv + l] += r->v[l];
         return 0;
