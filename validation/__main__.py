@@ -24,7 +24,15 @@ from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
 from validation.stability import command as stability
-from validation.studies import exports_report, fuzz_report, mutation_report, oracle, simulation_report, timing_report
+from validation.studies import (
+    exports_report,
+    fuzz_report,
+    mutation_report,
+    oracle,
+    rollouts_report,
+    simulation_report,
+    timing_report,
+)
 
 
 class Exit(IntEnum):
@@ -155,6 +163,7 @@ oracle.register(app)
 stability.register(app)
 timing_report.register(app)
 simulation_report.register(app)
+rollouts_report.register(app)
 
 if __name__ == "__main__":
     app()

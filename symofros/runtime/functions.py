@@ -221,8 +221,7 @@ class Functions:
 
     def _pre(self, kernel: Kernel, key: Key, par: Array | None, batch: tuple[int, ...]) -> Array:
         if par is not None:
-            flat = flat(par, batch)
-            return kernel.prepare(flat)
+            return kernel.prepare(flat(par, batch))
         if key not in self._prepared:
             self._prepared[key] = kernel.prepare(self._par.reshape(1, -1))
         return self._prepared[key]

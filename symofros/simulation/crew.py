@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from threading import Event
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -62,10 +61,11 @@ class Ends:
     @classmethod
     def of(cls, model: Model, n: int, samples: int) -> Ends:
         """Room for n trajectories of so many samples, none of which is reached yet."""
-        counts = [np.zeros(n, dtype=np.int64) for _ in range(2)]
-        recorded = [np.full((n, samples, size), np.nan) for size in (model.nq, model.nv, model.nu)]
-        return cls(np.zeros(n, dtype=np.int32), np.zeros(n), np.zeros((n, model.nq)), np.zeros((n, model.nv)),
-                   *counts, *recorded)  # fmt: skip
+        q, v, u = (np.full((n, samples, size), np.nan) for size in (model.nq, model.nv, model.nu))
+        return cls(
+            np.zeros(n, dtype=np.int32), np.zeros(n), np.zeros((n, model.nq)), np.zeros((n, model.nv)),
+            np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64), q, v, u,
+        )  # fmt: skip
 
 
 class Crew:
@@ -108,8 +108,10 @@ class Crew:
             setattr(crew, name, single.own(kind, slots * (max(1, single.scene.n_signals) if name == "signals" else 1)))
         crew.whose, crew.status = single.own("int64_t[]", slots), single.own("int32_t[]", slots)
         n, stages = 2 * model.nv, max(1, len(settings.method.tableau.b))
-        widths = {"q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "step": 1, "end": 1, "y1": n, "stage": n,
-                  "size": n, "dense": n, "base": n, "length": n, "k": stages * n, "states": model.nq + model.nv}  # fmt: skip
+        widths = {
+            "q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "states": model.nq + model.nv, "step": 1, "end": 1,
+            "y1": n, "stage": n, "size": n, "dense": n, "base": n, "length": n, "k": stages * n,
+        }  # fmt: skip
         for name, width in widths.items():
             setattr(crew, name, single.numbers(np.zeros(slots * width)))
         single.run.y = single.numbers(np.zeros(self._native.sym_work_size(single.run)))
@@ -175,4 +177,3 @@ def run_crews(crews: Sequence[Crew]) -> None:
                 stop.set()
     except KeyboardInterrupt:
         pass
-

@@ -38,7 +38,8 @@ class Signal:
         if not good or not np.all(np.isfinite(t)) or not np.all(np.diff(t) > 0) or not np.all(np.isfinite(values)):
             raise ShapeError(str(Problem(
                 "signal: not samples over time", f"t {t.shape}, values {values.shape}",
-                "t (n) increases, values are (n), (n, nu) or (..., n, nu), all finite", "sort the samples, drop repeated times",
+                "t (n) increases, values are (n), (n, nu) or (..., n, nu), all finite",
+                "sort the samples, drop repeated times",
             )))  # fmt: skip
         if self.kind not in ("linear", "hold"):
             raise ValueError(str(Problem("signal: unknown kind", repr(self.kind), "'linear' or 'hold'", "use one")))

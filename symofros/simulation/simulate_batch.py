@@ -6,6 +6,7 @@ import math
 import time
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.functions import flat
@@ -101,7 +102,8 @@ def simulate_batch(
     shape = _batch_shape(rows, given.shapes)
     n = math.prod(shape)
     inputs = given.spread(model, shape)
-    starts = Starts(*(flat(array, shape) for array in rows.values()), inputs, n, t0)
+    q, v, values = (flat(array, shape) for array in rows.values())
+    starts = Starts(q, v, values, inputs, n, t0)
     ends = Ends.of(model, n, len(settings.grid))
     began = time.perf_counter()
     crews = [Crew(model, settings, starts, ends, t_end, max_steps, i, count) for i in range(min(count, n))]
@@ -109,12 +111,13 @@ def simulate_batch(
         ends.status[_off(model, settings, starts, crews[0])] = native.OFF
         began = time.perf_counter()
         run_crews(crews)
+    seconds = time.perf_counter() - began
+    shared = rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar))
+    q, v, u_samples = (_shaped(array, shape) for array in (ends.q_samples, ends.v_samples, ends.u_samples))
     return Trajectories(
-        model, settings.grid, *(_shaped(array, shape) for array in (ends.q_samples, ends.v_samples, ends.u_samples)),
-        rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar)),
-        *(_shaped(array, shape) for array in (ends.t, ends.q, ends.v)),
-        *(array.reshape(shape) for array in (ends.status, ends.steps, ends.rejected)),
-        method, time.perf_counter() - began,
+        model, settings.grid, q, v, u_samples, shared, _shaped(ends.t, shape), _shaped(ends.q, shape),
+        _shaped(ends.v, shape), ends.status.reshape(shape), ends.steps.reshape(shape), ends.rejected.reshape(shape),
+        method, seconds,
     )  # fmt: skip
 
 
@@ -143,7 +146,7 @@ def _shaped(rows: Array, shape: Shape) -> Array:
     return rows.reshape(shape + rows.shape[1:])
 
 
-def _off(model: Model, settings: Settings, starts: Starts, crew: Crew) -> Array:
+def _off(model: Model, settings: Settings, starts: Starts, crew: Crew) -> npt.NDArray[np.bool_]:
     """Which trajectories start off the constraints (n); as `check_start`, which refuses a single one."""
     n = starts.n
     off = np.zeros(n, dtype=np.bool_)

@@ -80,7 +80,7 @@ class Trajectories:
     @property
     def kinds(self) -> npt.NDArray[np.str_]:
         """How each ended, in a word (...): the kind of its Outcome."""
-        return np.vectorize(lambda status: _ENDS[int(status)][0], otypes=["U16"])(self.status)
+        return np.asarray(np.vectorize(lambda status: _ENDS[int(status)][0], otypes=["U16"])(self.status))
 
     def outcome(self, index: Index) -> Outcome:
         """How one run ended."""

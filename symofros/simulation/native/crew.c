@@ -35,7 +35,7 @@ static void sym_crew_prepare(sym_many *many, sym_scene *scene, sym_call *call, i
     if (call->function == NULL) return;
     call->pre = many->pre.at + which * many->pre.stride;
     sym_bind(scene, call);
-    if (many->pre.stride != 0)
+    if (many->pre.stride != 0 && many->pre_here != NULL)
         memcpy(many->pre_here + slot * many->pre.stride, call->pre, (size_t)many->pre.stride * sizeof(double));
 }
 
@@ -109,6 +109,7 @@ static void sym_crew_take(sym_crew *c) {
     r->record_q = c->record_q + which * r->capacity * s->nq;
     r->record_v = c->record_v + which * r->capacity * s->nv;
     r->record_u = c->record_u + which * r->capacity * s->nu;
+    if (status == 0 && !(sym_finite(s->nq, r->q) && sym_finite(s->nv, r->v))) status = SYM_DIVERGED;
     if (status == 0) status = sym_start(r);
     if (status == 0 && r->t >= r->t_end) status = SYM_DONE;
     memcpy(sym_crew_memory(c, slot).k, sym_lay_out(r).k, 2 * (size_t)s->nv * sizeof(double));

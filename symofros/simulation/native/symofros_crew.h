@@ -19,7 +19,7 @@ typedef struct sym_many { /* a function of the model, evaluated for all in hand 
     const sym_function *function; /* NULL: absent, or evaluated one by one */
     double *work;
     sym_rows pre;     /* the parameters' part of all trajectories */
-    double *pre_here; /* (slots, npre) of those in hand, where each has its own */
+    double *pre_here; /* (slots, npre) of those in hand; NULL where they are never evaluated together */
     double *out[8];   /* (slots, ...) each */
 } sym_many;
 
