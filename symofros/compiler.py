@@ -23,7 +23,7 @@ from typing import Any
 
 from symofros.beams.deformation import small_coordinates
 from symofros.codegen.interpreted import InterpretedUnit
-from symofros.codegen.model import model_source
+from symofros.codegen.model import Lanes, model_source
 from symofros.codegen.names import identifier
 from symofros.codegen.templates import template
 from symofros.description.beam import Beam
@@ -115,7 +115,7 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
     tree = plan(system)
     record = describe(tree, options)
     program, _ = generate(tree, requested(tree, options), record, options.constraints)
-    source = model_source(program, record, GENERATOR, options.batch == "vector")
+    source = model_source(program, record, GENERATOR, "shared" if options.batch == "vector" else "none")
     path = build_library(source, template("symofros_model.h"), toolchain, options.flags)
     return path, f"{identifier(record.name)}_model"
 
@@ -185,25 +185,29 @@ class _Builder:
         if self._toolchain is None:
             return InterpretedUnit(program)
         in_lanes = self._in_lanes(program) if self._options.batch == "vector" else None
-        return self._compiled(program, self._toolchain, False, in_lanes)
+        return self._compiled(program, self._toolchain, "none", in_lanes)
 
     def _compiled(
-        self, program: Program, toolchain: Toolchain, vectors: bool,
-        in_lanes: Callable[[Key], Kernel | None] | None = None,
+        self, program: Program, toolchain: Toolchain, vectors: Lanes,
+        in_lanes: Callable[[Key, bool], Kernel | None] | None = None,
     ) -> CompiledUnit:  # fmt: skip
         header = template("symofros_model.h")
         source = model_source(program, self._record, GENERATOR, vectors)
         path = build_library(source, header, toolchain, self._options.flags)
         return CompiledUnit(path, f"{identifier(self._record.name)}_model", header, self._record.hash, in_lanes)
 
-    def _in_lanes(self, program: Program) -> Callable[[Key], Kernel | None]:
-        """Function -> the same by vectors, compiled when it is asked for; None for one that a solver finishes."""
+    def _in_lanes(self, program: Program) -> Callable[[Key, bool], Kernel | None]:
+        """Function, and whether states have parameters of their own -> the same by vectors, compiled when asked for.
 
-        def compiled(key: Key) -> Kernel | None:
+        None for a function that a solver finishes.
+        """
+
+        def compiled(key: Key, own: bool) -> Kernel | None:
             function = next(f for f in program.functions if (f.name, f.frame) == key)
             if function.solver is not None or self._toolchain is None:
                 return None
-            return self._compiled(replace(program, functions=(function,)), self._toolchain, True).kernels[key]
+            one = replace(program, functions=(function,))
+            return self._compiled(one, self._toolchain, "own" if own else "shared").kernels[key]
 
         return compiled
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from string import Template
+from typing import Literal
 
 from symofros.codegen import lanes, trigonometry
 from symofros.codegen.function import FunctionWriter
@@ -15,10 +16,11 @@ from symofros.passes.count import count_program
 from symofros.runtime.record import ModelRecord
 
 _INIT = "init_par"
+Lanes = Literal["none", "shared", "own"]
 
 
 def model_source(
-    program: Program, record: ModelRecord, generator: str, in_lanes: bool = False, c_name: str | None = None
+    program: Program, record: ModelRecord, generator: str, in_lanes: Lanes = "none", c_name: str | None = None
 ) -> str:
     """The C file of a program.
 
@@ -26,15 +28,16 @@ def model_source(
         program: Staged.
         record: Names and defaults.
         generator: Name and version of what wrote it.
-        in_lanes: Whether batches take several states at once; functions with a solver never do.
+        in_lanes: Whether batches take several states at once that share parameters, or that each have their own;
+            functions with a solver never do.
         c_name: What symbols begin with; made of the record's name by default.
     """
     name = c_name or identifier(record.name)
-    in_lanes = in_lanes and any(function.solver is None for function in program.functions)
+    vectors = in_lanes != "none" and any(function.solver is None for function in program.functions)
     texts = [_init_function(program, name)]
     rows = []
     for i, function in enumerate(program.functions):
-        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}", in_lanes)
+        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}", vectors)
         texts.append(text)
         rows.append(row)
     counts = count_program(program)
@@ -46,8 +49,8 @@ def model_source(
         operations=_comment("\n".join(lines)),
         functions="\n\n".join(
             [
-                *trigonometry.routines(texts, in_lanes),
-                *([lanes.routines()] if in_lanes else []),
+                *trigonometry.routines(texts, vectors),
+                *([lanes.routines(in_lanes == "own")] if vectors else []),
                 *_routines(program),
                 *texts,
             ]

@@ -211,7 +211,7 @@ class Functions:
         batch = self._batch_shape(name, shapes, given)
         n = int(np.prod(batch))
         pre = self._pre(kernel, (name, frame), par_array, batch)
-        outputs = kernel.run(n, pre, [flat(array, batch) for array in arrays])
+        outputs = kernel.run(n, pre, [flat(array, batch) for array in arrays], self._threads)
         shaped = zip(outputs, kernel.signature.outputs, strict=True)
         return [output.reshape(batch + shape) for output, (_, shape) in shaped]
 

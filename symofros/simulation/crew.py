@@ -128,7 +128,7 @@ class Crew:
         many.pre.at, many.pre.stride = single.shared(pre), pre.shape[1] if len(pre) > 1 else 0
         if not sizes:
             return
-        vectors = kernel.in_lanes()
+        vectors = kernel.in_lanes(own=many.pre.stride != 0)
         assert isinstance(vectors, CompiledKernel)
         many.function = self._ffi.cast("sym_function *", vectors.address)
         many.work = single.numbers(np.zeros(max(1, vectors.work)))
