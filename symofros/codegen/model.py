@@ -29,7 +29,7 @@ def model_source(
         record: Names and defaults.
         generator: Name and version of what wrote it.
         in_lanes: Whether batches take several states at once that share parameters, or that each have their own;
-            functions with a solver never do.
+            functions with a solver never do: it takes the time, and it pivots (docs/theory/code.md).
         c_name: What symbols begin with; made of the record's name by default.
     """
     name = c_name or identifier(record.name)
