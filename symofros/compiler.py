@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.beams.deformation import small_coordinates
+from symofros.codegen.dispatch import dispatch_source
 from symofros.codegen.interpreted import InterpretedUnit
 from symofros.codegen.model import Lanes, model_source
 from symofros.codegen.names import identifier
@@ -116,8 +117,13 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
     record = describe(tree, options)
     program, _ = generate(tree, requested(tree, options), record, options.constraints)
     source = model_source(program, record, GENERATOR, "shared" if options.batch == "vector" else "none")
-    path = build_library(source, template("symofros_model.h"), toolchain, options.flags)
-    return path, f"{identifier(record.name)}_model"
+    symbol = f"{identifier(record.name)}_model"
+    return _built(source, toolchain, options, symbol), symbol
+
+
+def _built(source: str, toolchain: Toolchain, options: Options, symbol: str) -> Path:
+    dispatch = dispatch_source(symbol) if options.processors == "any" else ""
+    return build_library(source, template("symofros_model.h"), toolchain, options.flags, dispatch, symbol)
 
 
 def program_of(system: System, functions: Iterable[str], frames: Iterable[str] = ()) -> Program:
@@ -193,8 +199,9 @@ class _Builder:
     ) -> CompiledUnit:  # fmt: skip
         header = template("symofros_model.h")
         source = model_source(program, self._record, GENERATOR, vectors)
-        path = build_library(source, header, toolchain, self._options.flags)
-        return CompiledUnit(path, f"{identifier(self._record.name)}_model", header, self._record.hash, in_lanes)
+        symbol = f"{identifier(self._record.name)}_model"
+        path = _built(source, toolchain, self._options, symbol)
+        return CompiledUnit(path, symbol, header, self._record.hash, in_lanes)
 
     def _in_lanes(self, program: Program) -> Callable[[Key, bool], Kernel | None]:
         """Function, and whether states have parameters of their own -> the same by vectors, compiled when asked for.

@@ -58,6 +58,9 @@ class Options:
             singular, and usually slower (docs/theory/constraints.md, section 8).
         batch: How large batches are evaluated: "vector", several states at once, by code that is compiled for each
             function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
+        processors: "native" compiles for this machine's processor; "any" for all of its family, AVX-512, AVX2 and the
+            oldest in one library, which chooses when it is loaded: thrice the compilation, for folders and images
+            that several kinds of machines share.
     """
 
     functions: tuple[str, ...] | None = None
@@ -67,3 +70,4 @@ class Options:
     compiler: str | None = None
     constraints: Literal["multipliers", "null_space"] = "multipliers"
     batch: Literal["vector", "loop"] = "vector"
+    processors: Literal["native", "any"] = "native"

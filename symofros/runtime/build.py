@@ -1,21 +1,23 @@
 """C text -> shared library, cached by content.
 
-The key covers the C text, the header, flags, compiler and processor. A library is compiled in a private folder and
-renamed into place, so that concurrent processes and killed compilations never leave a broken one behind.
+The key covers the C text, the header, flags, compiler and processor, or the processor's family where the library is for
+any of it. A library is compiled in a private folder and renamed into place, so that concurrent processes and killed
+compilations never leave a broken one behind.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import platform
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from symofros.errors import CompileError
-from symofros.runtime.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, cpu_identity
+from symofros.runtime.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, cpu_identity, kinds
 
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _SHOWN_LINES = 12
@@ -31,7 +33,10 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "symofros"
 
 
-def build_library(source: str, header: str, toolchain: Toolchain, flags: Sequence[str] | None = None) -> Path:
+def build_library(
+    source: str, header: str, toolchain: Toolchain, flags: Sequence[str] | None = None, dispatch: str = "",
+    symbol: str = "",
+) -> Path:  # fmt: skip
     """The shared library of a C file, compiled unless it is in the cache.
 
     Args:
@@ -39,12 +44,17 @@ def build_library(source: str, header: str, toolchain: Toolchain, flags: Sequenc
         header: Text of symofros_model.h.
         toolchain: The compiler.
         flags: In place of the default ones.
+        dispatch: Text of the C file that chooses among the kinds of processors; none: for this machine's alone.
+        symbol: The exported function, which each kind has under a name of its own.
 
     Raises:
         CompileError: The compiler refused, with its command and words; or the cache folder can't be written.
     """
     chosen = tuple(DEFAULT_FLAGS if flags is None else flags)
-    parts = [source, header, *chosen, *SHARED_FLAGS, toolchain.identity, cpu_identity()]
+    if dispatch and flags is None:
+        chosen = tuple(flag for flag in DEFAULT_FLAGS if not flag.startswith("-march"))
+    suited = platform.machine() if dispatch else cpu_identity()
+    parts = [source, header, dispatch, *chosen, *SHARED_FLAGS, toolchain.identity, suited]
     key = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
     folder = cache_folder()
     library = folder / f"{key}{_SUFFIX}"
@@ -53,7 +63,11 @@ def build_library(source: str, header: str, toolchain: Toolchain, flags: Sequenc
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=f".{key[:8]}-", dir=folder) as private:
-            _compile(Path(private), source, header, toolchain, chosen)
+            _write(Path(private), {"symofros_model.h": header, "model.c": source, "dispatch.c": dispatch})
+            if dispatch:
+                _compile_for_any(Path(private), toolchain, chosen, symbol)
+            else:
+                _compile(Path(private), toolchain, chosen)
             _flush(Path(private) / f"model{_SUFFIX}")
             os.replace(Path(private) / "model.c", folder / f"{key}.c")
             os.replace(Path(private) / f"model{_SUFFIX}", library)
@@ -72,15 +86,33 @@ def _flush(path: Path) -> None:
         os.fsync(stream.fileno())
 
 
-def _compile(private: Path, source: str, header: str, toolchain: Toolchain, flags: tuple[str, ...]) -> None:
-    (private / "symofros_model.h").write_text(header, encoding="utf-8")
-    (private / "model.c").write_text(source, encoding="utf-8")
-    output = f"model{_SUFFIX}"
+def _write(private: Path, files: Mapping[str, str]) -> None:
+    for name, text in files.items():
+        (private / name).write_text(text, encoding="utf-8")
+
+
+def _compile(private: Path, toolchain: Toolchain, flags: tuple[str, ...]) -> None:
     if not _LOOSE & set(flags):
+        output = f"model{_SUFFIX}"
         _run([*toolchain.command, *flags, *SHARED_FLAGS, "-o", output, "model.c", "-lm"], private)
         return
     _run([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "-o", "model.o", "model.c"], private)
-    _run([*toolchain.command, "-shared", "-o", output, "model.o", "-lm"], private)
+    _link(private, toolchain, ["model.o"])
+
+
+def _compile_for_any(private: Path, toolchain: Toolchain, flags: tuple[str, ...], symbol: str) -> None:
+    """The model for each kind of processor, and what chooses."""
+    objects = ["dispatch.o"]
+    _run([*toolchain.command, *SHARED_FLAGS, "-c", "-o", "dispatch.o", "dispatch.c"], private)
+    for name, _, extra in kinds():
+        renamed = f"-D{symbol}={symbol}_{name}"
+        objects.append(f"{name}.o")
+        _run([*toolchain.command, *flags, *extra, renamed, *SHARED_FLAGS, "-c", "-o", objects[-1], "model.c"], private)
+    _link(private, toolchain, objects)
+
+
+def _link(private: Path, toolchain: Toolchain, objects: list[str]) -> None:
+    _run([*toolchain.command, "-shared", "-o", f"model{_SUFFIX}", *objects, "-lm"], private)
 
 
 def _run(command: list[str], folder: Path) -> None:

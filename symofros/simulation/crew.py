@@ -17,8 +17,8 @@ from symofros.simulation.batch_inputs import BatchInputs
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepper import Stepper
 
-# Trajectories in hand at once: four vectors of eight; more would leave the first cache.
-_SLOTS = 32
+# Trajectories in hand at once: eight vectors of eight; few enough for the first two caches.
+_SLOTS = 64
 # Steps of each between looks at Ctrl-C.
 _ROUNDS = 64
 
