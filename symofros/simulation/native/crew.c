@@ -135,10 +135,11 @@ static void sym_crew_evaluate(const sym_crew *c, const sym_many *many) {
     f->batch(c->in_hand > 1 ? (size_t)c->in_hand : 2, in, stride, many->out, many->work);
 }
 
-/* Inputs and accelerations at the points of all in hand. */
+/* Inputs and accelerations at the points of all in hand. Constant inputs are there since a trajectory was taken up. */
 static void sym_crew_accelerate(sym_crew *c) {
     int32_t i, k;
-    for (i = 0; i < c->in_hand; ++i) sym_samples(c->scenes + i);
+    if (c->like->scene->n_signals > 0)
+        for (i = 0; i < c->in_hand; ++i) sym_samples(c->scenes + i);
     if (c->law.function != NULL) {
         const int32_t n = c->scenes->n_law;
         sym_crew_evaluate(c, &c->law);
