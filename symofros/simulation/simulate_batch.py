@@ -105,19 +105,19 @@ def simulate_batch(
     q, v, values = (flat(array, shape) for array in rows.values())
     starts = Starts(q, v, values, inputs, n, t0)
     ends = Ends.of(model, n, len(settings.grid))
-    began = time.perf_counter()
+    began = time.perf_counter(), time.process_time()
     crews = [Crew(model, settings, starts, ends, t_end, max_steps, i, count) for i in range(min(count, n))]
     if crews:
         ends.status[_off(model, settings, starts, crews[0])] = native.OFF
-        began = time.perf_counter()
+        began = time.perf_counter(), time.process_time()
         run_crews(crews)
-    seconds = time.perf_counter() - began
+    seconds = time.perf_counter() - began[0], time.process_time() - began[1]
     shared = rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar))
     q, v, u_samples = (_shaped(array, shape) for array in (ends.q_samples, ends.v_samples, ends.u_samples))
     return Trajectories(
         model, settings.grid, q, v, u_samples, shared, _shaped(ends.t, shape), _shaped(ends.q, shape),
         _shaped(ends.v, shape), ends.status.reshape(shape), ends.steps.reshape(shape), ends.rejected.reshape(shape),
-        method, seconds,
+        method, *seconds,
     )  # fmt: skip
 
 

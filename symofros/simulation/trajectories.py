@@ -50,6 +50,7 @@ class Trajectories:
         rejected: Steps tried in vain (...).
         method: Name of the method.
         seconds: On the clock, for all.
+        processor_seconds: That the process used meanwhile, all threads together: other programs do not lengthen them.
     """
 
     model: Model
@@ -66,6 +67,7 @@ class Trajectories:
     rejected: npt.NDArray[np.int64]
     method: str
     seconds: float
+    processor_seconds: float
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -31,8 +31,8 @@ class Rollout:
         threads: That share the work.
         error: Of the joints at the end, the largest over all trajectories, against dop853 at 1e-12 [rad].
         steps: Taken by all trajectories together.
-        nanoseconds: A step and thread: minimum and median over the repeats.
-        ratio: Median over the repeats of MuJoCo's seconds over these; 1 for MuJoCo itself.
+        nanoseconds: Of processor time a step: minimum and median over the repeats.
+        ratio: Median over the repeats of MuJoCo's processor time over this; 1 for MuJoCo itself.
     """
 
     scene: str
@@ -96,14 +96,14 @@ def _scene(
         errors["mujoco"] = float(np.abs(q - exact).max())
         for name, way in ways.items():
             run = _moved(sf.simulate_batch(m, *start, span, u=law, threads=threads, **way))  # type: ignore[arg-type]
-            times[name].append(run.seconds)
+            times[name].append(run.processor_seconds)
             errors[name] = float(np.abs(run.q_last - exact).max())
             counts[name] = int(run.steps.sum() + run.rejected.sum())
     words = {"mujoco": f"RK4, {1e3 * STEP:g} ms", "rk4": f"RK4, {1e3 * STEP:g} ms", "dopri5": "dopri5, rtol 1e-6",
              "semi_implicit_euler": f"semi-implicit Euler, {1e3 * STEP:g} ms"}  # fmt: skip
     rows = []
     for name, spent in times.items():
-        each = [1e9 * threads * x / counts[name] for x in spent]
+        each = [1e9 * x / counts[name] for x in spent]
         ratio = median(theirs / mine for theirs, mine in zip(times["mujoco"], spent, strict=True))
         who = "MuJoCo, rollout" if name == "mujoco" else "SYMOFROS"
         rows.append(Rollout(scene, who, words[name], threads, errors[name], counts[name], (min(each), median(each)),
