@@ -20,8 +20,8 @@ from validation.studies import rollouts
 _LIMITS = (
     "Loops in C on both sides, in turn, from the same starts; times are the processor's, so that other programs do not "
     "lengthen them, and the loops' alone, without compiling, loading or copying the starts. MuJoCo keeps the state "
-    "after each step, we the last one (some nanoseconds a step). The arm's joints are free of friction and of limits on "
-    "both sides, and nothing touches; springs and dampers of the joints are the PD control. The ratio is the median "
+    "after each step, we the last one (some nanoseconds a step). The arm's joints are free of friction and of limits "
+    "on both sides, and nothing touches; springs and dampers of the joints are the PD control. The ratio is the median "
     "over interleaved repeats of the whole times, so that of an adaptive method is one of time to the end, at the "
     "errors shown."
 )
