@@ -150,6 +150,21 @@ def test_a_bad_one_is_lost_alone(method: str) -> None:
     assert "38 finished" in str(found) and "first: [3]: diverged" in str(found) and "smaller dt" in str(found)
 
 
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_some_end_on_the_way(method: str) -> None:
+    """Where a law has no value, runs end at different times; places they leave are filled in the middle of a step."""
+    m = model("cart_pole")
+    q, v = starts(m, 30)
+    v[:, 0] = np.random.default_rng(4).permutation(np.linspace(-2.0, 4.0, 30))
+    law = {m.names.u[0]: f"sqrt(1 - {m.names.q[0]})"}
+    found = sf.simulate_batch(m, q, v, 0.7, u=law, method=method, dt=1e-2)
+    assert 5 < found.ok.sum() < 25 and len(np.unique(found.t_last[~found.ok])) > 5
+    assert set(found.kinds) == {"finished", "diverged" if method == "rk4" else "step too small"}
+    for i in range(30):
+        alone = sf.simulate_batch(m, q[i], v[i], 0.7, u=law, method=method, dt=1e-2)
+        assert all(np.array_equal(a[i], b, equal_nan=True) for a, b in zip(bits(found), bits(alone), strict=True)), i
+
+
 def test_off_the_constraints() -> None:
     m = model("four_bar")
     q, v = starts(m, 4)
