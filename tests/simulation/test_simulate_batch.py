@@ -157,11 +157,12 @@ def test_some_end_on_the_way(method: str) -> None:
     q, v = starts(m, 30)
     v[:, 0] = np.random.default_rng(4).permutation(np.linspace(-2.0, 4.0, 30))
     law = {m.names.u[0]: f"sqrt(1 - {m.names.q[0]})"}
-    found = sf.simulate_batch(m, q, v, 0.7, u=law, method=method, dt=1e-2)
+    way: dict[str, Any] = {"u": law, "method": method, "dt": 1e-2, "rtol": 1e-12, "atol": 1e-12}
+    found = sf.simulate_batch(m, q, v, 0.7, **way)
     assert 5 < found.ok.sum() < 25 and len(np.unique(found.t_last[~found.ok])) > 5
     assert set(found.kinds) == {"finished", "diverged" if method == "rk4" else "step too small"}
     for i in range(30):
-        alone = sf.simulate_batch(m, q[i], v[i], 0.7, u=law, method=method, dt=1e-2)
+        alone = sf.simulate_batch(m, q[i], v[i], 0.7, **way)
         assert all(np.array_equal(a[i], b, equal_nan=True) for a, b in zip(bits(found), bits(alone), strict=True)), i
 
 
