@@ -75,7 +75,9 @@ if TYPE_CHECKING:
     from symofros.simulation.modes import modes as modes
     from symofros.simulation.outcome import Outcome as Outcome
     from symofros.simulation.simulate import simulate as simulate
+    from symofros.simulation.simulate_batch import simulate_batch as simulate_batch
     from symofros.simulation.state_space import state_space as state_space
+    from symofros.simulation.trajectories import Trajectories as Trajectories
     from symofros.simulation.trajectory import Trajectory as Trajectory
 
     compile = compile_system
@@ -105,6 +107,8 @@ _LAZY = {
     "Signal": ("symofros.simulation.inputs", "Signal"),
     "Outcome": ("symofros.simulation.outcome", "Outcome"),
     "simulate": ("symofros.simulation.simulate", "simulate"),
+    "simulate_batch": ("symofros.simulation.simulate_batch", "simulate_batch"),
+    "Trajectories": ("symofros.simulation.trajectories", "Trajectories"),
     "Trajectory": ("symofros.simulation.trajectory", "Trajectory"),
     "state_space": ("symofros.simulation.state_space", "state_space"),
 }

@@ -22,8 +22,9 @@ from pathlib import Path
 from typing import Any
 
 from symofros.beams.deformation import small_coordinates
+from symofros.codegen.dispatch import dispatch_source
 from symofros.codegen.interpreted import InterpretedUnit
-from symofros.codegen.model import model_source
+from symofros.codegen.model import Lanes, model_source
 from symofros.codegen.names import identifier
 from symofros.codegen.templates import template
 from symofros.description.beam import Beam
@@ -115,9 +116,17 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
     tree = plan(system)
     record = describe(tree, options)
     program, _ = generate(tree, requested(tree, options), record, options.constraints)
-    source = model_source(program, record, GENERATOR, options.batch == "vector", packs=options.packs)
-    path = build_library(source, template("symofros_model.h"), toolchain, options.flags)
-    return path, f"{identifier(record.name)}_model"
+    source = model_source(
+        program, record, GENERATOR, "shared" if options.batch == "vector" else "none", packs=options.packs
+    )
+    symbol = f"{identifier(record.name)}_model"
+    how = toolchain, options.flags, _dispatch(options, symbol), symbol
+    return build_library(source, template("symofros_model.h"), *how), symbol
+
+
+def _dispatch(options: Options, symbol: str) -> str:
+    """What chooses among kinds of processors, where there are several."""
+    return dispatch_source(symbol) if options.processors == "any" else ""
 
 
 def program_of(system: System, functions: Iterable[str], frames: Iterable[str] = ()) -> Program:
@@ -176,12 +185,12 @@ class _Builder:
         form = self._options.constraints
         return self._unit(requests, lambda: generate(self._tree, requests, self._record, form)[0])
 
-    def formulas(self, formulas: tuple[Any, ...]) -> Unit:
-        """Numbers, formula texts or SymPy expressions over the model's names, with their derivatives."""
+    def formulas(self, formulas: tuple[Any, ...], derivatives: bool) -> Unit:
+        """Numbers, formula texts or SymPy expressions over the model's names."""
         stated = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
         what = f"system '{self._tree.system.name}': formula"
         values = [(as_value(item.formula, what), item.order) for item in stated]
-        return self._unit(values, lambda: run_passes(formula_program(self._tree, values)))
+        return self._unit((values, derivatives), lambda: run_passes(formula_program(self._tree, values, derivatives)))
 
     def _unit(self, what: object, write: Callable[[], Program]) -> Unit:
         """What was asked for, written unless a library of it is known."""
@@ -189,29 +198,34 @@ class _Builder:
         if self._toolchain is None:
             return InterpretedUnit(program())
         in_lanes = self._in_lanes(what, program) if self._options.batch == "vector" else None
-        return self._compiled((what, "one by one"), program, self._toolchain, False, in_lanes)
+        return self._compiled((what, "one by one"), program, self._toolchain, "none", in_lanes)
 
     def _compiled(
-        self, what: object, program: Callable[[], Program], toolchain: Toolchain, vectors: bool,
-        in_lanes: Callable[[Key], Kernel | None] | None = None,
+        self, what: object, program: Callable[[], Program], toolchain: Toolchain, vectors: Lanes,
+        in_lanes: Callable[[Key, bool], Kernel | None] | None = None,
     ) -> CompiledUnit:  # fmt: skip
         header = template("symofros_model.h")
+        symbol = f"{identifier(self._record.name)}_model"
         path = recall_library(
             f"{self._stated}{what!r}",
             lambda: model_source(program(), self._record, GENERATOR, vectors, packs=self._options.packs),
-            header, toolchain, self._options.flags,
+            header, toolchain, self._options.flags, _dispatch(self._options, symbol), symbol,
         )  # fmt: skip
-        return CompiledUnit(path, f"{identifier(self._record.name)}_model", header, self._record.hash, in_lanes)
+        return CompiledUnit(path, symbol, header, self._record.hash, in_lanes)
 
-    def _in_lanes(self, what: object, program: Callable[[], Program]) -> Callable[[Key], Kernel | None]:
-        """Function -> the same by vectors, compiled when it is asked for; None for one that a solver finishes."""
+    def _in_lanes(self, what: object, program: Callable[[], Program]) -> Callable[[Key, bool], Kernel | None]:
+        """Function, and whether states have parameters of their own -> the same by vectors, compiled when asked for.
 
-        def compiled(key: Key) -> Kernel | None:
+        None for a function that a solver finishes.
+        """
+
+        def compiled(key: Key, own: bool) -> Kernel | None:
             function = next(f for f in program().functions if (f.name, f.frame) == key)
             if function.solver is not None or self._toolchain is None:
                 return None
-            alone = replace(program(), functions=(function,))
-            return self._compiled((what, "in lanes", key), lambda: alone, self._toolchain, True).kernels[key]
+            one = replace(program(), functions=(function,))
+            lanes: Lanes = "own" if own else "shared"
+            return self._compiled((what, lanes, key), lambda: one, self._toolchain, lanes).kernels[key]
 
         return compiled
 

@@ -25,7 +25,7 @@ from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
 from validation.stability import command as stability
-from validation.studies import exports_report, fuzz_report, mutation_report, oracle, simulation_report
+from validation.studies import exports_report, fuzz_report, mutation_report, oracle, rollouts_report, simulation_report
 from validation.timing import command as timing
 
 
@@ -158,6 +158,7 @@ passes.register(app)
 stability.register(app)
 timing.register(app)
 simulation_report.register(app)
+rollouts_report.register(app)
 
 if __name__ == "__main__":
     app()

@@ -87,7 +87,7 @@ class FunctionWriter:
         return FunctionText(code, self.work, self._lanes() if lanes else "")
 
     def _lanes(self) -> str:
-        """On vectors: the parameters' part is one for all lanes, outputs are cleared beforehand."""
+        """On vectors: the parameters' part is one for all lanes or one for each, outputs are cleared beforehand."""
         writer = self.writer.in_lanes()
         parts = [self._chunk(i, writer) for i in range(len(self.chunks))]
         pre, *others = self.inputs
@@ -95,7 +95,7 @@ class FunctionWriter:
         body += [f"    sym_v *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
         body += self._calls(f"{self.c_name}_v")
         head = (
-            f"static void {self.c_name}_v(const double *restrict {pre}, const sym_v *const *in, sym_v *const *out,\n"
+            f"static void {self.c_name}_v(const sym_p *restrict {pre}, const sym_v *const *in, sym_v *const *out,\n"
             "    sym_v *restrict work) {"
         )
         return "\n".join([*parts, head, *body, "}"])
@@ -124,7 +124,8 @@ class FunctionWriter:
         text = "\n".join(lines)
         used = set(_ARRAY.findall(text))
         lines = [f"    (void){name};" for name in names if name not in used] + ([text] if text else [])
-        arguments = [f"const {real if i else 'double'} *restrict {name}" for i, name in enumerate(self.inputs)]
+        given = "sym_p" if writer.lanes else real
+        arguments = [f"const {real if i else given} *restrict {name}" for i, name in enumerate(self.inputs)]
         arguments += [f"{real} *restrict {output.name}" for output in self.outputs] + [f"{real} *restrict work"]
         # A single chunk may be inlined into its caller; several must stay apart.
         kind = "static SYM_NOINLINE" if len(self.chunks) > 1 else "static"

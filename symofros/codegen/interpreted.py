@@ -41,8 +41,8 @@ class InterpretedKernel:
             pre[:, i] = column
         return pre
 
-    def run(self, n: int, pre: Array, inputs: list[Array]) -> list[Array]:
-        """Evaluate n states."""
+    def run(self, n: int, pre: Array, inputs: list[Array], threads: int = 1) -> list[Array]:
+        """Evaluate n states; in one thread, since the interpreter keeps its lock."""
         named = dict(zip(self._function.inputs, inputs, strict=True)) | {"pre": pre}
         outputs = interpret(self._program, self._function, named, n)
         solver = self._function.solver

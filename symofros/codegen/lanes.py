@@ -43,12 +43,12 @@ def batch(c_name: str, program: Program, function: Function, in_lanes: bool) -> 
 
 
 def _call(c_name: str, program: Program, function: Function) -> list[str]:
-    """The way to the vectors, which share one set of parameters."""
-    inputs = [0, *(program.sizes[name] for name in function.inputs)]
+    """The way to the vectors, unless they share one set of parameters and are given several."""
+    inputs = [len(program.init), *(program.sizes[name] for name in function.inputs)]
     outputs = [prod(shape) for _, shape in function.returns]
     return [
         "#if SYM_LANES > 1",
-        "    if (n > 1 && in_stride[0] == 0) {",
+        "    if (n > 1 && (SYM_OWN || in_stride[0] == 0)) {",
         f"        static const size_t in_size[] = {{{', '.join(map(str, inputs))}}};",
         f"        static const size_t out_size[] = {{{', '.join(map(str, outputs))}}};",
         f"        sym_v *from[{len(inputs)}], *to[{len(outputs)}];",
@@ -68,16 +68,24 @@ def scratch(program: Program, function: Function, work: int) -> int:
         function: Whose inputs and outputs are kept in lanes.
         work: Scratch of one state.
     """
-    sizes = [*(program.sizes[name] for name in function.inputs), *(prod(shape) for _, shape in function.returns)]
+    sizes = [
+        len(program.init),
+        *(program.sizes[name] for name in function.inputs),
+        *(prod(shape) for _, shape in function.returns),
+    ]
     return _WIDEST * (1 + work + sum(max(size, _WIDEST) for size in sizes))
 
 
-def routines() -> str:
-    """The hand-written routines that batches in lanes call."""
+def routines(own: bool) -> str:
+    """The hand-written routines that batches in lanes call.
+
+    Args:
+        own: Whether each state may have parameters of its own.
+    """
     makers = {1: "SYM_BY_LANE", 2: "SYM_BY_LANES"}
     functions = [
         f"{makers[op.arity]}({op.name}, {op.c.partition('(')[0]})"
         for op in OPS.values()
         if op.name not in (ADD, MUL, DIV, HELD)
     ]
-    return Template(template("lanes.c.in")).substitute(functions="\n".join(functions))
+    return Template(template("lanes.c.in")).substitute(functions="\n".join(functions), own=int(own))

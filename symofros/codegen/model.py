@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from string import Template
+from typing import Literal
 
 from symofros.codegen import lanes, trigonometry
 from symofros.codegen.function import FunctionWriter
@@ -15,10 +16,11 @@ from symofros.passes.count import count_program
 from symofros.runtime.record import ModelRecord
 
 _INIT = "init_par"
+Lanes = Literal["none", "shared", "own"]
 
 
 def model_source(
-    program: Program, record: ModelRecord, generator: str, in_lanes: bool = False, c_name: str | None = None,
+    program: Program, record: ModelRecord, generator: str, in_lanes: Lanes = "none", c_name: str | None = None,
     packs: bool = False,
 ) -> str:  # fmt: skip
     """The C file of a program.
@@ -27,18 +29,19 @@ def model_source(
         program: Staged.
         record: Names and defaults.
         generator: Name and version of what wrote it.
-        in_lanes: Whether batches take several states at once; functions with a solver never do.
+        in_lanes: Whether batches take several states at once that share parameters, or that each have their own;
+            functions with a solver never do: it takes the time, and it pivots (docs/theory/code.md).
         c_name: What symbols begin with; made of the record's name by default.
         packs: Whether values that are computed alike share vectors, which takes a compiler of GNU C; not in lanes,
             where every value is a vector already.
     """
     name = c_name or identifier(record.name)
-    packs = packs and not in_lanes
-    in_lanes = in_lanes and any(function.solver is None for function in program.functions)
+    vectors = in_lanes != "none" and any(function.solver is None for function in program.functions)
+    packs = packs and not vectors
     texts = [_init_function(program, name)]
     rows = []
     for i, function in enumerate(program.functions):
-        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}", in_lanes, packs)
+        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}", vectors, packs)
         texts.append(text)
         rows.append(row)
     counts = count_program(program)
@@ -50,8 +53,8 @@ def model_source(
         operations=_comment("\n".join(lines)),
         functions="\n\n".join(
             [
-                *trigonometry.routines(texts, in_lanes),
-                *([lanes.routines()] if in_lanes else []),
+                *trigonometry.routines(texts, vectors),
+                *([lanes.routines(in_lanes == "own")] if vectors else []),
                 *([template("pack.c.in")] if packs and any("sym_pack " in text for text in texts) else []),
                 *_routines(program),
                 *texts,

@@ -79,7 +79,7 @@ class StatementWriter:
         self.lanes = False
 
     def in_lanes(self) -> StatementWriter:
-        """The same statements on vectors, one state a lane; given values and numbers stay single."""
+        """The same statements on vectors, one state a lane; numbers stay single, and so may given values."""
         twin = copy(self)
         twin.lanes = True
         return twin
@@ -230,8 +230,9 @@ class StatementWriter:
     def whole(self, edge: Edge) -> str:
         """The text of an edge where a vector may stand and a single number may not."""
         text = self.text(edge)
-        is_single = self.lanes and (self.graph.is_constant(edge) or abs(edge) in self.given)
-        return f"sym_set({text})" if is_single else text
+        if self.lanes and self.graph.is_constant(edge):
+            return f"sym_set({text})"
+        return f"SYM_WHOLE({text})" if self.lanes and abs(edge) in self.given else text
 
     def _operand(self, node: int, is_factor: bool = False, is_right: bool = False) -> str:
         """An operand's text, in parentheses where C would otherwise group or associate differently."""

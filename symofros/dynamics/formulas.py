@@ -14,12 +14,13 @@ from symofros.kinematics.links import Motion, set_in_motion
 from symofros.topology.tree import SpanningTree
 
 
-def formula_program(tree: SpanningTree, values: Sequence[tuple[Value, int]]) -> Program:
+def formula_program(tree: SpanningTree, values: Sequence[tuple[Value, int]], derivatives: bool = True) -> Program:
     """One function, "formulas", of q, v, u and t: the values, and their derivatives along the manifold of q and by v.
 
     Args:
         tree: Its names are what formulas may use.
         values: Numbers and formulas, and how often each is differentiated by t.
+        derivatives: Whether to form those by q and v.
 
     Raises:
         UnknownNameError: A formula uses a name that the mechanism lacks.
@@ -37,14 +38,12 @@ def formula_program(tree: SpanningTree, values: Sequence[tuple[Value, int]]) -> 
     motion = set_in_motion(Graph(), tree)
     g, nv, n = motion.g, len(names.v), len(values)
     edges = [_rate(motion, value, order) for value, order in values]
-    by_q, by_v = by_configuration(motion, edges), by_inputs(motion, edges, "v", nv)
-    outputs = (
-        Output("value", (n,), tuple(edges)),
-        Output("by_q", (n, nv), tuple(edge for row in by_q for edge in row)),
-        Output("by_v", (n, nv), tuple(edge for row in by_v for edge in row)),
-    )
+    outputs = [Output("value", (n,), tuple(edges))]
+    if derivatives:
+        slopes = {"by_q": by_configuration(motion, edges), "by_v": by_inputs(motion, edges, "v", nv)}
+        outputs += [Output(name, (n, nv), tuple(edge for row in rows for edge in row)) for name, rows in slopes.items()]
     sizes = {"q": len(names.q), "v": nv, "u": len(names.u), "par": len(names.par), "t": 1}
-    return Program(tree.system.name, g, sizes, (Function("formulas", "", ("q", "v", "u", "t"), outputs),))
+    return Program(tree.system.name, g, sizes, (Function("formulas", "", ("q", "v", "u", "t"), tuple(outputs)),))
 
 
 def _rate(motion: Motion, value: Value, order: int) -> Edge:

@@ -52,6 +52,7 @@ class Functions:
         units: Functions built already.
         par: Values of the run-time parameters; None for the defaults.
         formulas: Generates and compiles a user's formulas.
+        threads: How many share a large batch.
     """
 
     def __init__(
@@ -60,9 +61,11 @@ class Functions:
         build: Callable[[tuple[Key, ...]], Unit] | None,
         units: tuple[Unit, ...] = (),
         par: Array | None = None,
-        formulas: Callable[[tuple[Any, ...]], Unit] | None = None,
+        formulas: Callable[[tuple[Any, ...], bool], Unit] | None = None,
+        threads: int = 1,
     ) -> None:
         self.record = record
+        self._threads = threads
         self._build = build
         self._build_formulas = formulas
         self._par = np.array(record.par_default if par is None else par, dtype=np.float64)
@@ -121,7 +124,27 @@ class Functions:
                 raise self._unknown("run-time parameter", name, self.record.par_names,
                                     "constants are hard-coded: change them in the description")  # fmt: skip
             par[self.record.par_names.index(name)] = self._finite(name, value)
-        other = type(self)(self.record, self._build, (), par, self._build_formulas)
+        return self._like(par, self._threads)
+
+    @property
+    def threads(self) -> int:
+        """How many share a large batch."""
+        return self._threads
+
+    def with_threads(self, threads: int) -> Self:
+        """The same compiled code, large batches of which so many threads share; results do not change by a bit.
+
+        Raises:
+            ValueError: Not a whole number above 0.
+        """
+        if not isinstance(threads, int) or threads < 1:
+            raise ValueError(str(Problem(f"model '{self.record.name}': not a number of threads", repr(threads)[:80],
+                                         "threads is a whole number, 1 or more", "os.cpu_count() at most pays"
+                                         )))  # fmt: skip
+        return self._like(self._par, threads)
+
+    def _like(self, par: Array, threads: int) -> Self:
+        other = type(self)(self.record, self._build, (), par, self._build_formulas, threads)
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
 
@@ -129,11 +152,12 @@ class Functions:
         """A function of the whole model as the thing that is called, made on demand; for loops of one's own."""
         return self._kernels.get((name, "")) or self._make(name, "")
 
-    def formulas(self, formulas: Sequence[Any]) -> Kernel:
+    def formulas(self, formulas: Sequence[Any], derivatives: bool = True) -> Kernel:
         """Formulas over the model's names, compiled: (q, v, u, t) -> values, and derivatives by q and by v.
 
         Args:
             formulas: Numbers, texts such as "10*(sin(t) - q1) - dq1", SymPy expressions, or Rates of them.
+            derivatives: Whether those are wanted, too.
 
         Raises:
             UnknownNameError: A formula uses a name that the mechanism lacks.
@@ -141,7 +165,7 @@ class Functions:
         """
         if self._build_formulas is None:
             raise SymofrosError(f"model '{self.record.name}': a model without its description compiles no formulas")
-        return self._build_formulas(tuple(formulas)).kernels["formulas", ""]
+        return self._build_formulas(tuple(formulas), derivatives).kernels["formulas", ""]
 
     @property
     def parameter_values(self) -> Array:
@@ -187,7 +211,7 @@ class Functions:
         batch = self._batch_shape(name, shapes, given)
         n = int(np.prod(batch))
         pre = self._pre(kernel, (name, frame), par_array, batch)
-        outputs = kernel.run(n, pre, [_flat(array, batch) for array in arrays])
+        outputs = kernel.run(n, pre, [flat(array, batch) for array in arrays], self._threads)
         shaped = zip(outputs, kernel.signature.outputs, strict=True)
         return [output.reshape(batch + shape) for output, (_, shape) in shaped]
 
@@ -197,8 +221,7 @@ class Functions:
 
     def _pre(self, kernel: Kernel, key: Key, par: Array | None, batch: tuple[int, ...]) -> Array:
         if par is not None:
-            flat = _flat(par, batch)
-            return kernel.prepare(flat)
+            return kernel.prepare(flat(par, batch))
         if key not in self._prepared:
             self._prepared[key] = kernel.prepare(self._par.reshape(1, -1))
         return self._prepared[key]
@@ -252,8 +275,8 @@ class Functions:
         return f"\n  remedy: its last dimension runs over {listed}" if shown else ""
 
 
-def _flat(array: Array, batch: tuple[int, ...]) -> Array:
-    """(n or 1, size), contiguous: one row where the array has no batch of its own."""
+def flat(array: Array, batch: tuple[int, ...]) -> Array:
+    """As rows (n or 1, size), contiguous: one row where the array has no batch of its own."""
     size = array.shape[-1]
     if array.size == size:
         return np.ascontiguousarray(array.reshape(1, size))

@@ -48,13 +48,14 @@ class Kernel(Protocol):
         """
         ...
 
-    def run(self, n: int, pre: Array, inputs: list[Array]) -> list[Array]:
+    def run(self, n: int, pre: Array, inputs: list[Array], threads: int = 1) -> list[Array]:
         """Evaluate n states.
 
         Args:
             n: Number of states.
             pre: (n or 1, npre), from `prepare`.
             inputs: Each (n or 1, size), C-contiguous, in the signature's order.
+            threads: How many may share the work.
 
         Returns:
             One array an output, (n, *shape).

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import re
 import threading
 from collections.abc import Callable
@@ -15,6 +16,7 @@ import numpy as np
 
 from symofros.errors import CompileError
 from symofros.runtime.kernel import Array, Kernel, Signature
+from symofros.runtime.sharing import share
 
 _ABI = 1
 # From here on a batch runs by vectors. What decides is the batch alone, so that no result depends on earlier calls;
@@ -41,7 +43,8 @@ class CompiledUnit:
         symbol: Its exported function, `NAME_model`.
         header: Text of symofros_model.h.
         expected_hash: What the struct must say.
-        in_lanes: Function -> the same by vectors, or None; asked for once, at the first large batch.
+        in_lanes: Function, and whether states have parameters of their own -> the same by vectors, or None; asked for
+            once, at the first large batch.
 
     Raises:
         CompileError: It does not load, or is not what it should be.
@@ -49,7 +52,7 @@ class CompiledUnit:
 
     def __init__(
         self, path: Path, symbol: str, header: str, expected_hash: str,
-        in_lanes: Callable[[tuple[str, str]], Kernel | None] | None = None,
+        in_lanes: Callable[[tuple[str, str], bool], Kernel | None] | None = None,
     ) -> None:  # fmt: skip
         self.in_lanes = in_lanes
         self.ffi = _interface(header)
@@ -82,6 +85,8 @@ class CompiledUnit:
         """Run the init function on each parameter set (m, npar) -> (m, npre)."""
         par = np.ascontiguousarray(par, dtype=np.float64)
         pre = np.empty((len(par), self.model.npre))
+        if pre.size == 0:
+            return pre
         for row_in, row_out in zip(par, pre, strict=True):
             self.model.init(self.ffi.from_buffer("double[]", row_in), self.ffi.from_buffer("double[]", row_out))
         return pre
@@ -101,7 +106,7 @@ class CompiledKernel:
         self._unit = unit
         self._function = function
         self._scratch = _Scratch()
-        self._lanes: Kernel | None = None
+        self._lanes: dict[bool, Kernel] = {}
         text = unit.ffi.string
 
         def array(entry: Any) -> tuple[str, tuple[int, ...]]:
@@ -129,26 +134,43 @@ class CompiledKernel:
         """The parameter-only part of the work."""
         return self._unit.prepare(par)
 
-    def run(self, n: int, pre: Array, inputs: list[Array]) -> list[Array]:
+    def in_lanes(self, own: bool = False) -> Kernel:
+        """The same by vectors, compiled at the first call; itself where there is no such thing.
+
+        Args:
+            own: Whether states have parameters of their own.
+        """
+        if own not in self._lanes:
+            make = self._unit.in_lanes
+            key = self.signature.name, self.signature.frame
+            self._lanes[own] = (make(key, own) if make is not None else None) or self
+        return self._lanes[own]
+
+    def run(self, n: int, pre: Array, inputs: list[Array], threads: int = 1) -> list[Array]:
         """Evaluate n states in C: by vectors if they are many, in a loop over the states otherwise."""
-        if n >= MANY and len(pre) == 1 and self._unit.in_lanes is not None:
-            if self._lanes is None:
-                self._lanes = self._unit.in_lanes((self.signature.name, self.signature.frame)) or self
-            if self._lanes is not self:
-                return self._lanes.run(n, pre, inputs)
-        ffi, function = self._unit.ffi, self._function
+        if n >= MANY:
+            lanes = self.in_lanes(own=len(pre) > 1 and pre.size > 0)
+            if lanes is not self:
+                return lanes.run(n, pre, inputs, threads)
+        ffi = self._unit.ffi
         outputs = [np.empty((n, *shape)) for _, shape in self.signature.outputs]
-        given = [pre, *inputs]
         # from_buffer keeps each array alive for the duration of the call.
-        in_buffers = [ffi.from_buffer("double[]", x) for x in given]
-        out_buffers = [ffi.from_buffer("double[]", y) for y in outputs]
-        strides = [0 if x.shape[0] == 1 else x.shape[1] for x in given]
-        if self._scratch.work is None:
-            self._scratch.work = ffi.new("double[]", max(1, function.work))
-        function.batch(
-            n, ffi.new("double *[]", in_buffers), ffi.new("size_t[]", strides), ffi.new("double *[]", out_buffers),
-            self._scratch.work,
-        )  # fmt: skip
+        rows_in = [ffi.from_buffer("double[]", x) for x in (pre, *inputs)]
+        rows_out = [ffi.from_buffer("double[]", y) for y in outputs]
+        strides = [0 if len(x) == 1 else x.shape[1] for x in (pre, *inputs)]
+        steps = [math.prod(shape) for _, shape in self.signature.outputs]
+        stride = ffi.new("size_t[]", strides)
+
+        def part(first: int, end: int) -> None:
+            if self._scratch.work is None:
+                self._scratch.work = ffi.new("double[]", max(1, self._function.work))
+            self._function.batch(
+                end - first, ffi.new("double *[]", [x + first * by for x, by in zip(rows_in, strides, strict=True)]),
+                stride, ffi.new("double *[]", [y + first * by for y, by in zip(rows_out, steps, strict=True)]),
+                self._scratch.work,
+            )  # fmt: skip
+
+        share(n, threads, part)
         return outputs
 
     def bind(self, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:

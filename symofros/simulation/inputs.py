@@ -20,7 +20,7 @@ class Signal:
 
     Attributes:
         t: Times (n), increasing [s].
-        values: (n), or (n, nu) where one signal gives every input.
+        values: (n), or (n, nu) where one signal gives every input; (..., n, nu) for the trajectories of a batch.
         kind: "linear" between samples, or "hold" each until the next.
     """
 
@@ -33,11 +33,13 @@ class Signal:
         t, values = np.asarray(self.t, dtype=np.float64), np.asarray(self.values, dtype=np.float64)
         object.__setattr__(self, "t", np.ascontiguousarray(t))
         object.__setattr__(self, "values", np.ascontiguousarray(values))
-        good = t.ndim == 1 and len(t) > 0 and values.ndim in (1, 2) and len(values) == len(t)
+        times = values.shape[0 if values.ndim == 1 else -2] if values.ndim else 0
+        good = t.ndim == 1 and len(t) > 0 and times == len(t)
         if not good or not np.all(np.isfinite(t)) or not np.all(np.diff(t) > 0) or not np.all(np.isfinite(values)):
             raise ShapeError(str(Problem(
                 "signal: not samples over time", f"t {t.shape}, values {values.shape}",
-                "t (n) increases, values are (n) or (n, nu), all finite", "sort the samples, drop repeated times",
+                "t (n) increases, values are (n), (n, nu) or (..., n, nu), all finite",
+                "sort the samples, drop repeated times",
             )))  # fmt: skip
         if self.kind not in ("linear", "hold"):
             raise ValueError(str(Problem("signal: unknown kind", repr(self.kind), "'linear' or 'hold'", "use one")))
@@ -97,8 +99,8 @@ def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
 
 
 def _signal_of_all(model: Model, signal: Signal, constant: Array) -> InputPlan:
-    values = signal.values.reshape(len(signal.t), -1)
-    if values.shape[1] != len(constant):
+    values = signal.values if signal.values.ndim > 1 else signal.values[:, np.newaxis]
+    if values.shape[1:] != constant.shape:
         raise ShapeError(str(Problem(
             f"model '{model.record.name}': a signal of all inputs has the wrong shape", str(signal.values.shape),
             f"values are (n, {len(constant)})", "give u={'name': Signal(...)} for single inputs",

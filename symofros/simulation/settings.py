@@ -151,7 +151,7 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
 
 
 # Beyond, a first state is a mistake and not what drift leaves.
-_CLOSED = 1e-6
+CLOSED = 1e-6
 
 
 def check_start(model: Model, settings: Settings, t: float, q: Array, v: Array, u: Array, par: Array) -> None:
@@ -166,10 +166,10 @@ def check_start(model: Model, settings: Settings, t: float, q: Array, v: Array, 
         ("phi", model.constraint(q, u=u, par=par, t=t)), ("G v - b", model.constraint_rate(q, v, u=u, par=par, t=t)),
     ):  # fmt: skip
         worst = int(np.argmax(np.abs(values)))
-        if not abs(values[worst]) <= _CLOSED:
+        if not abs(values[worst]) <= CLOSED:
             raise AssemblyError(str(Problem(
                 f"model '{model.record.name}': the first state does not keep '{model.names.constraints[worst]}'",
-                f"{what} = {values[worst]:.3g}", f"|{what}| <= {_CLOSED:g} at the start",
+                f"{what} = {values[worst]:.3g}", f"|{what}| <= {CLOSED:g} at the start",
                 "start from sf.assemble(model, q0, v0), or pull it in by stabilisation='baumgarte'",
             )))  # fmt: skip
 

@@ -17,7 +17,7 @@ from symofros.runtime.build import build_library
 from symofros.runtime.kernel import Array, Kernel
 from symofros.runtime.library import CompiledKernel
 from symofros.runtime.model import Model
-from symofros.runtime.toolchain import find_toolchain
+from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.methods import KIND_CODES, NEEDS, Method
@@ -30,12 +30,15 @@ _PARTS = (
     "implicit.c",
     "second_order.c",
     "pace.c",
+    "within.c",
     "run.c",
     "flat.c",
     "instance.c",
     "selftest.c",
 )
 _HEADERS = ("symofros_stepper.h", "symofros_instance.h")
+# Of Python's library only: many trajectories at once.
+_CREW, _CREW_HEADER = "crew.c", "symofros_crew.h"
 _SEGMENTS = {"linear": 0, "quaternion": 1, "pose": 2}
 
 GOING, DONE, FULL, EVENT = 0, 1, 2, 3
@@ -67,16 +70,16 @@ def library() -> tuple[Any, Any]:
     if toolchain is None:
         raise CompileError("simulation steps in C, and no C compiler was found\n"
                            "  remedy: install gcc or clang, or `pip install ziglang`")  # fmt: skip
-    header, headers = template("symofros_model.h"), native_headers()
+    header, headers = template("symofros_model.h"), native_headers() | {_CREW_HEADER: _native(_CREW_HEADER)}
     ffi = cffi.FFI()
-    for text in (header, headers["symofros_stepper.h"]):
+    for text in (header, headers["symofros_stepper.h"], headers[_CREW_HEADER]):
         match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", text, re.DOTALL)
         assert match is not None
         ffi.cdef(match.group(1))
-    source = native_source()
+    source = "\n".join([native_source(), f'#include "{_CREW_HEADER}"', _native(_CREW)])
     for name, text in reversed(headers.items()):  # In one file, as the cache keeps it; later ones include earlier ones.
         source = source.replace(f'#include "{name}"', text)
-    return ffi, ffi.dlopen(str(build_library(source, header, toolchain)))
+    return ffi, ffi.dlopen(str(build_library(source, header, toolchain, (*DEFAULT_FLAGS, "-O3"))))
 
 
 class Stepper:
@@ -99,6 +102,7 @@ class Stepper:
         self.par = par
         self.failure: BaseException | None = None  # What an input function raised.
         self._keep: list[Any] = []  # What C holds pointers to.
+        self.kernels: dict[str, CompiledKernel] = {}
         self.scene = self.ffi.new("sym_scene *")
         self.run = self.ffi.new("sym_run *")
         self._fill_scene(inputs)
@@ -112,40 +116,50 @@ class Stepper:
         self._keep.append(array)
         return self.ffi.cast("double *", self.ffi.from_buffer(array))
 
+    def shared(self, values: Array) -> Any:
+        """The numbers of a contiguous array themselves, as a C array; kept as long as the run."""
+        self._keep.append(values)
+        return self.ffi.cast("double *", self.ffi.from_buffer(values))
+
+    def keep(self, thing: Any) -> None:
+        """Let a thing that C points to live as long as the run."""
+        self._keep.append(thing)
+
     def _fill_scene(self, inputs: InputPlan) -> None:
         model, scene, ffi = self.model, self.scene, self.ffi
         scene.nq, scene.nv, scene.nu, scene.nc = model.nq, model.nv, model.nu, model.nc
         segments = [(_SEGMENTS[s.kind], s.q, s.v, s.size) for s in model.record.segments]
-        scene.n_segments, scene.segments = len(segments), self._own("sym_segment[]", segments)
+        scene.n_segments, scene.segments = len(segments), self.own("sym_segment[]", segments)
         for name, size in (("q", model.nq), ("v", model.nv), ("u", model.nu), ("t", 1), ("gains", 2 * model.nc),
                            ("a", model.nv), ("lam", model.nc), ("rank", 1)):  # fmt: skip
             setattr(scene, name, self.numbers(np.zeros(size)))
         scene.constant = self.numbers(inputs.constant)
         signals = []
         for index, t, values, linear in inputs.signals:
-            signals.append((index, int(linear), len(t), self.numbers(t), self.numbers(values)))
-        scene.n_signals, scene.signals = len(signals), self._own("sym_signal[]", signals)
-        given = sorted(inputs.formulas)
-        scene.n_law, scene.law_inputs = len(given), self._own("int32_t[]", given)
+            signals.append((index, int(linear), len(t), self.shared(t), self.shared(values)))
+        scene.n_signals, scene.signals = len(signals), self.own("sym_signal[]", signals)
+        given, implicit = sorted(inputs.formulas), self.method.kind in NEEDS
+        scene.n_law, scene.law_inputs = len(given), self.own("int32_t[]", given)
         if given:
-            self._bind("law", model.formulas([inputs.formulas[i] for i in given]), {})
+            self._bind("law", model.formulas([inputs.formulas[i] for i in given], implicit), {})
         scene.n_events = len(self.events)
-        scene.event_direction = self._own("int32_t[]", [event.sign for event in self.events])
-        scene.event_terminal = self._own("int32_t[]", [int(event.terminal) for event in self.events])
+        scene.event_direction = self.own("int32_t[]", [event.sign for event in self.events])
+        scene.event_terminal = self.own("int32_t[]", [int(event.terminal) for event in self.events])
         if self.events:
-            self._bind("events", model.formulas([event.formula for event in self.events]), {})
+            self._bind("events", model.formulas([event.formula for event in self.events], derivatives=False), {})
         self._bind("forward", model.kernel("forward_dynamics"), {"a": scene.a, "lam": scene.lam, "rank": scene.rank})
         for slot, name in NEEDS.get(self.method.kind, {}).items():
             self._bind(slot, model.kernel(name), {})
         if model.nc:
             self._bind("project", model.kernel("project"), {})
         on_speeds = [int(name in model.record.speed_conditions) for name in model.names.constraints]
-        scene.on_speeds = self._own("int32_t[]", on_speeds)
+        scene.on_speeds = self.own("int32_t[]", on_speeds)
         if inputs.callback is not None:
             self._attach(inputs.callback)
         scene.data = ffi.NULL
 
-    def _own(self, kind: str, values: Any) -> Any:
+    def own(self, kind: str, values: Any) -> Any:
+        """A C array of a size or of values, that lives as long as the run."""
         array = self.ffi.new(kind, values or 1)
         self._keep.append(array)
         return array
@@ -163,7 +177,7 @@ class Stepper:
         call.work = self.numbers(np.zeros(max(1, kernel.work)))
         for i, (name, shape) in enumerate(kernel.signature.outputs):
             call.out[i] = outputs[name] if name in outputs else self.numbers(np.zeros(shape))
-        self._keep.append(kernel)
+        self.kernels[slot] = kernel
         if not self.native.sym_bind(self.scene, self.ffi.addressof(self.scene, slot)):
             raise CompileError(f"the stepping loop knows not every input of '{kernel.signature.name}'")
 
@@ -209,7 +223,7 @@ class Stepper:
         run, model = self.run, self.model
         run.q, run.v = self.numbers(q), self.numbers(v)
         run.y = self.numbers(np.zeros(self.native.sym_work_size(run)))
-        run.pivots = self._own("int32_t[]", [0] * (2 * (model.nv + model.nc)))
+        run.pivots = self.own("int32_t[]", [0] * (2 * (model.nv + model.nc)))
         run.event = self.numbers(np.zeros(3 * max(1, len(self.events))))
         run.capacity, run.event_capacity = capacity, max(64, 2 * len(self.events))
         self._records = self._room(capacity, ("record_t", 1), ("record_q", model.nq), ("record_v", model.nv),

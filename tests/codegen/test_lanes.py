@@ -14,7 +14,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.codegen.model import model_source
+from symofros.codegen.model import Lanes, model_source
 from symofros.codegen.templates import template
 from symofros.compiler import compile_library, describe, generate, plan
 from symofros.options import MODEL_FUNCTIONS
@@ -138,32 +138,43 @@ def test_large_batches_take_vectors_by_themselves(monkeypatch: pytest.MonkeyPatc
     model, loop = (sf.compile(MODELS["chain7"], sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
     rng = np.random.default_rng(0)
     q, v = rng.standard_normal((2, library.MANY + 3, 7))
-    made: list[tuple[str, str]] = []
+    made: list[tuple[tuple[str, str], bool]] = []
     unit = model.kernel("dynamics")._unit  # type: ignore[attr-defined]
     original = unit.in_lanes
-    monkeypatch.setattr(unit, "in_lanes", lambda key: made.append(key) or original(key))
+    monkeypatch.setattr(unit, "in_lanes", lambda key, own: made.append((key, own)) or original(key, own))
     for n in (library.MANY - 1, library.MANY, library.MANY + 3):
         for found, expected in zip(model.dynamics(q[:n], v[:n], None), loop.dynamics(q[:n], v[:n], None), strict=True):
             assert np.array_equal(found, expected)
-    assert made == [("dynamics", "")]
+    assert made == [(("dynamics", ""), False)]
 
 
-def test_a_set_of_parameters_for_each_state_goes_one_by_one() -> None:
-    model, loop = (sf.compile(MODELS["rx90"], sf.Options(batch=batch)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
+@pytest.mark.parametrize("case", ["rx90", "friction_arm", "operations"])
+def test_parameters_of_each_state(case: str) -> None:
+    """One set for each state, and one for all through the same library."""
+    model, loop = (sf.compile(stated(case), sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
     rng = np.random.default_rng(0)
-    n = library.MANY
-    q, par = rng.standard_normal((n, model.nq)), rng.uniform(1.0, 2.0, (n, model.npar))
-    assert np.array_equal(model.mass_matrix(q, par=par), loop.mass_matrix(q, par=par))
+    n = library.MANY + 3
+    q, v = rng.uniform(-2.0, 2.0, (2, n, model.nq))
+    u, par = rng.uniform(-2.0, 2.0, (n, model.nu)), model.parameter_values * rng.uniform(0.5, 1.5, (n, model.npar))
+    assert model.npar > 0
+    for found, expected in zip(model.dynamics(q, v, u, par=par), loop.dynamics(q, v, u, par=par), strict=True):
+        assert np.array_equal(found, expected, equal_nan=True)
+    kernel = model.kernel("dynamics")
+    pre, inputs = kernel.prepare(par[:1]), [q, v, u, np.zeros((1, 1))]
+    own = kernel.in_lanes(own=True)  # type: ignore[attr-defined]
+    for found, expected in zip(own.run(n, pre, inputs), kernel.run(n, pre, inputs), strict=True):
+        assert own is not kernel and np.array_equal(found, expected, equal_nan=True)
 
 
+@pytest.mark.parametrize("lanes", ["shared", "own"])
 @pytest.mark.parametrize(
     "flags", [(), ("-std=gnu99", "-O2"), ("-std=gnu99", "-O2", "-mavx512f"), ("-std=gnu99", "-mavx")]
 )
-def test_builds_without_warnings(flags: tuple[str, ...], tmp_path: Path) -> None:
+def test_builds_without_warnings(flags: tuple[str, ...], lanes: Lanes, tmp_path: Path) -> None:
     """As strict C99, where batches are loops, and on vectors of every width."""
     if not any(word in platform.machine() for word in ("x86", "AMD64")) and len(flags) > 1:
         pytest.skip("flags of another processor")
     tree = plan(MODELS["friction_arm"])
     record = describe(tree, sf.Options())
     program, _ = generate(tree, [("dynamics", ""), ("forward_dynamics", "")], record)
-    compile_strictly(tmp_path, model_source(program, record, "test", in_lanes=True), COMPILERS[0], *flags)
+    compile_strictly(tmp_path, model_source(program, record, "test", in_lanes=lanes), COMPILERS[0], *flags)

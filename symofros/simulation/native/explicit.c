@@ -1,40 +1,56 @@
-/* Explicit Runge-Kutta methods by their tableau, and semi-implicit Euler. Slopes k: (dense_stages, n), n = 2 nv. */
+/* Explicit Runge-Kutta methods by their tableau, and semi-implicit Euler. n = 2 nv. */
 
-/* Stages first to end - 1, those before them being known. */
-static int32_t sym_stages(sym_run *r, double h, int32_t first, int32_t end, double *k, double *y) {
-    const sym_tableau *m = &r->tableau;
-    const int32_t nv = r->scene->nv, n = 2 * nv;
-    int32_t i, j, l, status;
-    for (i = first; i < end; ++i) {
-        const double *a = m->a + (size_t)i * m->dense_stages;
-        memset(y, 0, (size_t)n * sizeof *y);
-        for (j = 0; j < i; ++j) {
-            const double s = a[j], *kj = k + (size_t)j * n;
-            if (s != 0.0)
-                for (l = 0; l < n; ++l) y[l] += s * kj[l];
-        }
-        for (l = 0; l < n; ++l) y[l] *= h;
-        for (l = 0; l < nv; ++l) y[nv + l] += r->v[l];
-        status = sym_slope(r, r->t + m->c[i] * h, y, k + (size_t)i * n);
-        if (status != 0) return status;
-    }
-    return 0;
+typedef struct sym_memory { /* where a run's work lies: vectors of n, slopes k of stages, what implicit methods need */
+    double *y1, *stage, *size, *end, *k, *rest;
+    size_t step; /* from one stage's slopes to the next one's */
+} sym_memory;
+
+static sym_memory sym_lay_out(const sym_run *r) {
+    const size_t n = 2 * (size_t)r->scene->nv;
+    const size_t stages = r->tableau.dense_stages > 1 ? (size_t)r->tableau.dense_stages : 1;
+    sym_memory m;
+    m.y1 = r->y;
+    m.stage = m.y1 + n;
+    m.size = m.stage + n;
+    m.end = m.size + n;
+    m.k = m.end + n;
+    m.rest = m.k + stages * n;
+    m.step = n;
+    return m;
 }
 
-static int32_t sym_explicit_step(sym_run *r, double h, double *k, double *y1, double *y) {
-    const sym_tableau *m = &r->tableau;
-    const int32_t nv = r->scene->nv, n = 2 * nv;
-    int32_t i, l;
-    const int32_t status = sym_stages(r, h, 1, m->stages, k, y);
-    if (status != 0) return status;
-    memset(y1, 0, (size_t)n * sizeof *y1);
-    for (i = 0; i < m->stages; ++i) {
-        const double s = m->b[i], *ki = k + (size_t)i * n;
-        if (s != 0.0)
-            for (l = 0; l < n; ++l) y1[l] += s * ki[l];
+/* sum = weights[0] k_0 + ... + weights[stages - 1] k, of n entries. */
+static void sym_sum(size_t n, int32_t stages, const double *weights, const double *k, size_t step, double *restrict sum) {
+    int32_t j;
+    size_t l;
+    memset(sum, 0, n * sizeof *sum);
+    for (j = 0; j < stages; ++j) {
+        const double w = weights[j], *restrict kj = k + (size_t)j * step;
+        if (w != 0.0)
+            for (l = 0; l < n; ++l) sum[l] += w * kj[l];
     }
-    for (l = 0; l < n; ++l) y1[l] *= h;
-    for (l = 0; l < nv; ++l) y1[nv + l] += r->v[l];
+}
+
+/* y = (0, v) + h sum of weighted slopes. */
+static void sym_moved(const sym_run *r, const sym_memory *m, double h, int32_t stages, const double *weights, double *y) {
+    const int32_t nv = r->scene->nv;
+    int32_t l;
+    sym_sum(2 * (size_t)nv, stages, weights, m->k, m->step, y);
+    for (l = 0; l < nv; ++l) {
+        y[l] *= h;
+        y[nv + l] = h * y[nv + l] + r->v[l];
+    }
+}
+
+/* Stages first to end - 1, those before them being known. */
+static int32_t sym_stages(sym_run *r, const sym_memory *m, double h, int32_t first, int32_t end) {
+    const sym_tableau *method = &r->tableau;
+    int32_t i, status;
+    for (i = first; i < end; ++i) {
+        sym_moved(r, m, h, i, method->a + (size_t)i * method->dense_stages, m->stage);
+        status = sym_slope(r, r->t + method->c[i] * h, m->stage, m->k + (size_t)i * m->step);
+        if (status != 0) return status;
+    }
     return 0;
 }
 
@@ -68,25 +84,24 @@ static double sym_scale(const sym_run *r, int32_t l, const double *size, const d
     return r->atol + r->rtol * s;
 }
 
-static double sym_embedded(const sym_run *r, const double *weights, double h, const double *k, const double *size,
-                           const double *y1) {
+static double sym_embedded(const sym_run *r, const sym_memory *m, const double *weights, double h) {
     const int32_t n = 2 * r->scene->nv;
     double sum = 0.0;
     int32_t i, l;
     for (l = 0; l < n; ++l) {
         double e = 0.0;
-        for (i = 0; i < r->tableau.stages; ++i) e += weights[i] * k[(size_t)i * n + l];
-        e *= h / sym_scale(r, l, size, y1);
+        for (i = 0; i < r->tableau.stages; ++i) e += weights[i] * m->k[(size_t)i * m->step + l];
+        e *= h / sym_scale(r, l, m->size, m->y1);
         sum += e * e;
     }
     return sum / n;
 }
 
 /* Root mean square of the estimated error over its bound. */
-static double sym_explicit_error(const sym_run *r, double h, const double *k, const double *size, const double *y1) {
-    const double first = sym_embedded(r, r->tableau.e, h, k, size, y1);
+static double sym_explicit_error(const sym_run *r, const sym_memory *m, double h) {
+    const double first = sym_embedded(r, m, r->tableau.e, h);
     double second;
     if (r->tableau.errors < 2) return sqrt(first);
-    second = sym_embedded(r, r->tableau.e2, h, k, size, y1);
+    second = sym_embedded(r, m, r->tableau.e2, h);
     return first == 0.0 ? 0.0 : first / sqrt(first + 0.01 * second);
 }

@@ -36,12 +36,18 @@ static double sym_sampled(const sym_signal *signal, double t) {
     return signal->value[low] + x * (signal->value[high] - signal->value[low]);
 }
 
-/* The inputs at the point (q, v, t) that the scene holds. */
+/* The inputs that depend on time alone, at the scene's point (q, v, t). */
+static void sym_samples(sym_scene *s) {
+    int32_t i;
+    memcpy(s->u, s->constant, (size_t)s->nu * sizeof *s->u);
+    for (i = 0; i < s->n_signals; ++i) s->u[s->signals[i].input] = sym_sampled(&s->signals[i], *s->t);
+}
+
+/* The inputs at the scene's point. */
 static int32_t sym_inputs(sym_scene *s) {
     int32_t i;
     if (s->callback != NULL) return s->callback(s->data, *s->t, s->q, s->v, s->u);
-    memcpy(s->u, s->constant, (size_t)s->nu * sizeof *s->u);
-    for (i = 0; i < s->n_signals; ++i) s->u[s->signals[i].input] = sym_sampled(&s->signals[i], *s->t);
+    sym_samples(s);
     if (s->law.function != NULL) {
         sym_evaluate(&s->law);
         for (i = 0; i < s->n_law; ++i) s->u[s->law_inputs[i]] = s->law.out[0][i];
@@ -56,26 +62,41 @@ static int32_t sym_finite(int32_t n, const double *x) {
     return s == 0.0;
 }
 
-/* Accelerations and multipliers at the scene's point, inputs included. Returns 0 or a status. */
-static int32_t sym_accelerate(sym_run *r) {
-    sym_scene *s = r->scene;
-    if (sym_inputs(s) != 0) return SYM_CALLBACK;
-    sym_evaluate(&s->forward);
+/* What to say of accelerations just evaluated. Returns 0 or a status. */
+static int32_t sym_accelerated(sym_run *r) {
+    const sym_scene *s = r->scene;
     ++r->evaluations;
     if (s->nc > 0 && *s->rank < 0.0) return SYM_NO_MOTION;
     return sym_finite(s->nv, s->a) ? 0 : SYM_DIVERGED;
 }
 
-/* dy = f(t, y), in the chart about r->q. */
-static int32_t sym_slope(sym_run *r, double t, const double *y, double *dy) {
+/* Accelerations and multipliers at the scene's point, inputs included. Returns 0 or a status. */
+static int32_t sym_accelerate(sym_run *r) {
     sym_scene *s = r->scene;
-    int32_t status;
-    sym_retract(s, r->q, y, s->q);
-    memcpy(s->v, y + s->nv, (size_t)s->nv * sizeof *y);
-    *s->t = t;
-    status = sym_accelerate(r);
+    if (sym_inputs(s) != 0) return SYM_CALLBACK;
+    sym_evaluate(&s->forward);
+    return sym_accelerated(r);
+}
+
+/* The scene's point: y of the present chart at time t. */
+static void sym_place(sym_run *r, double t, const double *y) {
+    sym_retract(r->scene, r->q, y, r->scene->q);
+    memcpy(r->scene->v, y + r->scene->nv, (size_t)r->scene->nv * sizeof *y);
+    *r->scene->t = t;
+}
+
+/* dy = f(t, y), the scene's accelerations being those of y. */
+static void sym_rate(const sym_scene *s, const double *y, double *dy) {
     sym_chart_rate(s, y, y + s->nv, dy);
     memcpy(dy + s->nv, s->a, (size_t)s->nv * sizeof *dy);
+}
+
+/* dy = f(t, y), in the chart about r->q. */
+static int32_t sym_slope(sym_run *r, double t, const double *y, double *dy) {
+    int32_t status;
+    sym_place(r, t, y);
+    status = sym_accelerate(r);
+    sym_rate(r->scene, y, dy);
     return status;
 }
 

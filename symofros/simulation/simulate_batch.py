@@ -1,0 +1,163 @@
+"""sf.simulate_batch: a model, many first states, inputs and parameters -> Trajectories."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.runtime.functions import flat
+from symofros.runtime.kernel import Array
+from symofros.runtime.model import Given, Model
+from symofros.simulation import stepper as native
+from symofros.simulation.batch_inputs import Shape, sort_inputs
+from symofros.simulation.crew import Crew, Ends, Starts, run_crews
+from symofros.simulation.inputs import Inputs
+from symofros.simulation.methods import METHODS
+from symofros.simulation.settings import CLOSED, Settings, Stabilisation
+from symofros.simulation.trajectories import Trajectories
+
+_KINDS = ("explicit", "semi_implicit")
+
+
+def simulate_batch(
+    model: Model,
+    q0: Given | None = None,
+    v0: Given | None = None,
+    t_end: float = 1.0,
+    *,
+    u: Inputs | None = None,
+    method: str = "rk4",
+    dt: float | None = None,
+    t0: float = 0.0,
+    par: Given | None = None,
+    rtol: float = 1e-6,
+    atol: float = 1e-9,
+    adaptive: bool | None = None,
+    max_step: float = math.inf,
+    max_steps: int | None = None,
+    output: float | Given | None = None,
+    stabilisation: Stabilisation = "projection",
+    gains: Given | None = None,
+    threads: int | None = None,
+) -> Trajectories:
+    """Move a model from many states through time, in C, several trajectories in the lanes of a vector.
+
+    Each trajectory takes the steps that `simulate` would take, of its own length where the method adapts them, and has
+    the same states within rounding; it does not depend on the others, nor on the number of threads, to the last bit.
+    One that goes wrong ends with its outcome, and the others go on. Arguments not listed are those of `simulate`.
+
+    Args:
+        model: Compiled with backend "c".
+        q0: First configurations (..., nq), on the constraints; the neutral one by default.
+        v0: First speeds (..., nv); rest by default.
+        t_end: Where to end [s].
+        u: Inputs: an array (..., nu); a Signal of all, whose values are (n, nu), or (..., n, nu) where they differ; or
+            a mapping from names to numbers, arrays (...), formulas, and Signals of values (n) or (..., n, 1).
+        method: An explicit one: "rk4", "semi_implicit_euler", "euler", "dopri5" or "dop853".
+        dt: Step [s], 1e-3 where a fixed step needs one.
+        t0: Where to begin [s].
+        par: Run-time parameters (..., npar); the model's own by default.
+        rtol: Bound of the local error of adaptive methods.
+        atol: Bound alike, absolute.
+        adaptive: False steps an adaptive method by `dt`.
+        max_step: Longest step of adaptive methods [s].
+        max_steps: End each run after so many steps.
+        output: What to record of each: an interval [s] or times (m); the end alone by default.
+        stabilisation: How constraints are kept.
+        gains: Baumgarte's.
+        threads: How many share the work; by default those of the model (`Model.with_threads`).
+
+    Returns:
+        The Trajectories, whose batch dimensions are those of q0, v0, u and par broadcast together.
+
+    Raises:
+        ShapeError: An array does not fit, or batch dimensions do not broadcast.
+        UnknownNameError: A formula or an input's name is unknown.
+        SymofrosError: The settings contradict each other, or the method is implicit.
+    """
+    settings = Settings.of(
+        model, method, dt, t0, t_end, rtol, atol, adaptive, max_step, [t_end] if output is None else output, 1,
+        stabilisation, gains,
+    )  # fmt: skip
+    if settings.method.kind not in _KINDS:
+        explicit = [name for name, one in METHODS.items() if one.kind in _KINDS]
+        raise SymofrosError(str(Problem(
+            f"simulate_batch: '{method}' solves equations in each step", method, "batches take explicit methods: "
+            + ", ".join(explicit), "run sf.simulate for each state",
+        )))  # fmt: skip
+    count = model.threads if threads is None else threads
+    if count < 1:
+        raise SymofrosError(str(Problem("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1",
+                                        "leave it out")))  # fmt: skip
+    given = sort_inputs(model, u)
+    rows = {
+        "q0": _rows(model, "q0", model.neutral() if q0 is None else q0, model.nq),
+        "v0": _rows(model, "v0", np.zeros(model.nv) if v0 is None else v0, model.nv),
+        "par": _rows(model, "par", model.parameter_values if par is None else par, model.npar),
+    }
+    shape = _batch_shape(rows, given.shapes)
+    n = math.prod(shape)
+    inputs = given.spread(model, shape)
+    q, v, values = (flat(array, shape) for array in rows.values())
+    starts = Starts(q, v, values, inputs, n, t0)
+    ends = Ends.of(model, n, len(settings.grid))
+    began = time.perf_counter(), time.process_time()
+    crews = [Crew(model, settings, starts, ends, t_end, max_steps, i, count) for i in range(min(count, n))]
+    if crews:
+        ends.status[_off(model, settings, starts, crews[0])] = native.OFF
+        began = time.perf_counter(), time.process_time()
+        run_crews(crews)
+    seconds = time.perf_counter() - began[0], time.process_time() - began[1]
+    shared = rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar))
+    q, v, u_samples = (_shaped(array, shape) for array in (ends.q_samples, ends.v_samples, ends.u_samples))
+    return Trajectories(
+        model, settings.grid, q, v, u_samples, shared, _shaped(ends.t, shape), _shaped(ends.q, shape),
+        _shaped(ends.v, shape), ends.status.reshape(shape), ends.steps.reshape(shape), ends.rejected.reshape(shape),
+        method, *seconds,
+    )  # fmt: skip
+
+
+def _rows(model: Model, name: str, values: Given, size: int) -> Array:
+    array = np.asarray(values, dtype=np.float64)
+    if array.ndim == 0 or array.shape[-1] != size:
+        raise ShapeError(str(Problem(f"model '{model.record.name}': {name} has the wrong shape", str(array.shape),
+                                     f"{name} has shape (..., {size})", "one row a trajectory, or one for all"
+                                     )))  # fmt: skip
+    return array
+
+
+def _batch_shape(rows: dict[str, Array], inputs: list[Shape]) -> Shape:
+    try:
+        return np.broadcast_shapes(*(array.shape[:-1] for array in rows.values()), *inputs)
+    except ValueError:
+        found = [f"{name} {array.shape}" for name, array in rows.items()] + [f"inputs {shape}" for shape in inputs]
+        raise ShapeError(str(Problem(
+            "simulate_batch: batch dimensions do not broadcast", ", ".join(found),
+            "all but the last dimension of each array broadcast together",
+            "give each array the same leading dimensions, or none",
+        ))) from None  # fmt: skip
+
+
+def _shaped(rows: Array, shape: Shape) -> Array:
+    return rows.reshape(shape + rows.shape[1:])
+
+
+def _off(model: Model, settings: Settings, starts: Starts, crew: Crew) -> npt.NDArray[np.bool_]:
+    """Which trajectories start off the constraints (n); as `check_start`, which refuses a single one."""
+    n = starts.n
+    off = np.zeros(n, dtype=np.bool_)
+    if not model.nc or settings.stabilisation == "baumgarte":
+        return off
+    u = starts.inputs.constant
+    if model.record.driven:  # The motions of joints are inputs, by formulas too.
+        q, v = np.broadcast_to(starts.q, (n, model.nq)), np.broadcast_to(starts.v, (n, model.nv))
+        u = np.array([crew.single.inputs_at(starts.t, q[i], v[i]) for i in range(n)])
+    phi = model.constraint(starts.q, u=u, par=starts.par, t=starts.t)
+    rate = model.constraint_rate(starts.q, starts.v, u=u, par=starts.par, t=starts.t)
+    for values in (phi, rate):
+        off |= ~np.all(np.abs(values) <= CLOSED, axis=-1)
+    return off

@@ -1,0 +1,118 @@
+"""Many recorded motions of one model, and how each ended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.runtime.kernel import Array
+from symofros.runtime.model import Model
+from symofros.simulation import stepper as native
+from symofros.simulation.outcome import Kind, Outcome
+from symofros.simulation.trajectory import Statistics, Trajectory
+
+Index = int | tuple[int, ...]
+
+# Status of C -> kind, reason, advice.
+_ENDS: dict[int, tuple[Kind, str, str]] = {
+    native.DONE: ("finished", "the end asked for", ""),
+    native.GOING: ("interrupted", "max_steps are done, or Ctrl-C", ""),
+    native.DIVERGED: ("diverged", "a state is no longer finite",
+                      "a smaller dt or an adaptive method; sf.simulate from this state says more"),
+    native.NO_MOTION: ("singular", "the mass matrix is singular beyond what the constraints bind",
+                       "give every speed an inertia or a constraint"),
+    native.TINY_STEP: ("step too small", "the error bounds ask for steps below rounding",
+                       "look for a force that jumps or a singular posture here; loosen rtol"),
+    native.OFF: ("constraints lost", "the state is off the constraints and projection does not mend it",
+                 "start from sf.assemble; a smaller step; the loop may be stretched to its end"),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Trajectories:
+    """States over time of many runs of one model, whose batch dimensions are written (...).
+
+    Attributes:
+        model: What moved.
+        t: Times of the samples (m) [s], the same for all.
+        q: Configurations (..., m, nq); NaN where a run ended before.
+        v: Speeds (..., m, nv), as q.
+        u: Inputs (..., m, nu), as q.
+        par: Run-time parameters (..., npar), or (npar) where all runs share them.
+        t_last: When each run ended (...) [s].
+        q_last: Its last good configuration (..., nq).
+        v_last: Its last good speeds (..., nv).
+        status: C's last word for each (...); `kinds` and `outcome` put it in words.
+        steps: Steps taken (...).
+        rejected: Steps tried in vain (...).
+        method: Name of the method.
+        seconds: On the clock, for all.
+        processor_seconds: That the process used meanwhile, all threads together: other programs do not lengthen them.
+    """
+
+    model: Model
+    t: Array
+    q: Array
+    v: Array
+    u: Array
+    par: Array
+    t_last: Array
+    q_last: Array
+    v_last: Array
+    status: npt.NDArray[np.int32]
+    steps: npt.NDArray[np.int64]
+    rejected: npt.NDArray[np.int64]
+    method: str
+    seconds: float
+    processor_seconds: float
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The batch dimensions."""
+        return self.status.shape
+
+    @property
+    def ok(self) -> npt.NDArray[np.bool_]:
+        """Which runs came to their end (...)."""
+        return np.asarray(self.status == native.DONE)
+
+    @property
+    def kinds(self) -> npt.NDArray[np.str_]:
+        """How each ended, in a word (...): the kind of its Outcome."""
+        return np.asarray(np.vectorize(lambda status: _ENDS[int(status)][0], otypes=["U16"])(self.status))
+
+    def outcome(self, index: Index) -> Outcome:
+        """How one run ended."""
+        kind, reason, advice = _ENDS[int(self.status[index])]
+        return Outcome(kind, float(self.t_last[index]), reason, advice)
+
+    def __getitem__(self, index: Index) -> Trajectory:
+        """One run, as far as it was recorded; `index` addresses all batch dimensions."""
+        reached = self.t <= self.t_last[index] + 1e-9 * abs(self.t_last[index])
+        reached &= ~np.isnan(self.q[index]).any(axis=-1)
+        par = self.par[index] if self.par.ndim > 1 else self.par
+        statistics = Statistics(self.method, int(self.steps[index]), int(self.rejected[index]), -1, -1, self.seconds)
+        return Trajectory(self.model, self.t[reached], self.q[index][reached], self.v[index][reached],
+                          self.u[index][reached], par, self.outcome(index), (), statistics)  # fmt: skip
+
+    def __len__(self) -> int:
+        """Number of runs."""
+        return self.status.size
+
+    def __iter__(self) -> Iterator[Trajectory]:
+        """Run after run."""
+        return (self[index] for index in np.ndindex(self.shape))
+
+    def __str__(self) -> str:
+        """How many ended how, and the first that went wrong."""
+        kinds = self.kinds
+        names, counts = np.unique(kinds, return_counts=True)
+        lines = [", ".join(f"{count} {name}" for name, count in zip(names, counts, strict=True)) or "no trajectories"]
+        wrong = np.argwhere(~self.ok)
+        if len(wrong):
+            index = tuple(map(int, wrong[0]))
+            lines.append(f"  first: {list(index)}: {self.outcome(index)}")
+        return "\n".join(lines)

@@ -1,0 +1,35 @@
+"""Thousands of motions, few here: both sides move the same arm, and the report says what was measured."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from validation.__main__ import app
+from validation.studies import rollouts
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_both_sides_move_the_same_arm(threads: int) -> None:
+    rows = rollouts.run(1, trajectories=19, steps=20, threads=threads)
+    assert [row.scene for row in rows] == ["PD control"] * 4 + ["let go"] * 4
+    for scene in ("PD control", "let go"):
+        theirs, ours, adaptive, first_order = (row for row in rows if row.scene == scene)
+        assert theirs.ratio == 1.0 and theirs.steps == ours.steps == 19 * 20
+        # The same method and step: alike to a fraction of their error, which is above rounding under control.
+        assert 0 < ours.error < 1e-5 and theirs.error == pytest.approx(ours.error, rel=0.05, abs=1e-12)
+        assert adaptive.error < 1e-5 < first_order.error < 0.1
+        assert all(row.nanoseconds[0] > 0 for row in rows)
+
+
+def test_report(tmp_path: Path) -> None:
+    command = ["rollouts", "--trajectories", "9", "--steps", "5", "--repeats", "1", "--report", str(tmp_path)]
+    found = CliRunner().invoke(app, command)
+    assert found.exit_code == 0, found.output
+    data = json.loads((tmp_path / "rollouts.json").read_text())
+    assert data["trajectories"] == 9 and len(data["rollouts"]) == 8
+    text = (tmp_path / "rollouts.md").read_text()
+    assert "# 9 motions" in text and "| PD control | MuJoCo, rollout | RK4, 1 ms | 1 |" in text and "load" in text

@@ -1,0 +1,119 @@
+"""Thousands of motions of an arm at once, ours and MuJoCo's: same method, step and error, loops in C on both sides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from statistics import median
+
+import numpy as np
+
+import symofros as sf
+from validation.adapters import mujoco
+from validation.adapters.mujoco_rollout import roll_out
+from validation.geometry import Array
+from validation.interface import Subject, Unsupported
+from validation.studies.simulation import DAMPING, STIFFNESS, TARGET
+from validation.timing.models import SCENES
+
+TRAJECTORIES, STEPS, STEP = 10_000, 100, 1e-3
+# Starts about the neutral posture: of each joint [rad], of each speed [rad/s].
+_SPREAD, _SPEED = 0.5, 0.5
+
+
+@dataclass(frozen=True)
+class Rollout:
+    """One way to move all trajectories.
+
+    Attributes:
+        scene: What moves.
+        who: Whose loop.
+        how: Method and step, in words.
+        threads: That share the work.
+        error: Of the joints at the end, the largest over all trajectories, against dop853 at 1e-12 [rad].
+        steps: Taken by all trajectories together.
+        nanoseconds: Of processor time a step: minimum and median over the repeats.
+        ratio: Median over the repeats of MuJoCo's processor time over this; 1 for MuJoCo itself.
+    """
+
+    scene: str
+    who: str
+    how: str
+    threads: int
+    error: float
+    steps: int
+    nanoseconds: tuple[float, float]
+    ratio: float
+
+
+def arm() -> sf.System:
+    """The 7-joint arm, without the joints' own springs and dampers."""
+    return SCENES["panda"].load()
+
+
+def run(repeats: int, trajectories: int = TRAJECTORIES, steps: int = STEPS, threads: int = 1) -> list[Rollout]:
+    """PD control and free fall of the arm, each by every side in turn.
+
+    Raises:
+        ValueError: MuJoCo can't hold the arm, or a trajectory of ours does not come to its end.
+    """
+    system = arm()
+    engine = mujoco.build(Subject("panda7", system))
+    if isinstance(engine, Unsupported):
+        raise ValueError(f"MuJoCo: {engine.reason}")
+    m = sf.compile(system)
+    rng = np.random.default_rng(7)
+    q0 = m.neutral() + _SPREAD * rng.standard_normal((trajectories, m.nq))
+    v0 = _SPEED * rng.standard_normal((trajectories, m.nv))
+    rows = []
+    for scene, stiffness, damping in (("PD control", STIFFNESS, DAMPING), ("let go", 0.0, 0.0)):
+        rows += _scene(scene, m, engine, (q0, v0), stiffness, damping, steps, repeats, threads)
+    return rows
+
+
+def _scene(
+    scene: str, m: sf.Model, engine: object, start: tuple[Array, Array], stiffness: float, damping: float, steps: int,
+    repeats: int, threads: int,
+) -> list[Rollout]:  # fmt: skip
+    span = steps * STEP
+    law = None
+    if stiffness:
+        joints = zip(m.names.u, m.names.q, strict=True)
+        law = {u: f"{stiffness}*({TARGET} - {q}) - {damping}*d{q}" for u, q in joints}
+    exact = _moved(sf.simulate_batch(m, *start, span, u=law, method="dop853", rtol=1e-12, atol=1e-12)).q_last
+    ways = {
+        "rk4": {"method": "rk4", "dt": STEP}, "dopri5": {"method": "dopri5", "rtol": 1e-6, "atol": 1e-9},
+        "semi_implicit_euler": {"method": "semi_implicit_euler", "dt": STEP},
+    }  # fmt: skip
+    times: dict[str, list[float]] = {name: [] for name in ("mujoco", *ways)}
+    errors: dict[str, float] = {}
+    counts = {"mujoco": len(start[0]) * steps}
+    for _ in range(repeats):
+        q, seconds = roll_out(engine, *start, np.full(m.nq, TARGET), stiffness, damping, STEP, steps, threads)
+        times["mujoco"].append(seconds)
+        errors["mujoco"] = float(np.abs(q - exact).max())
+        for name, way in ways.items():
+            run = _moved(sf.simulate_batch(m, *start, span, u=law, threads=threads, **way))  # type: ignore[arg-type]
+            times[name].append(run.processor_seconds)
+            errors[name] = float(np.abs(run.q_last - exact).max())
+            counts[name] = int(run.steps.sum() + run.rejected.sum())
+    words = {"mujoco": f"RK4, {1e3 * STEP:g} ms", "rk4": f"RK4, {1e3 * STEP:g} ms", "dopri5": "dopri5, rtol 1e-6",
+             "semi_implicit_euler": f"semi-implicit Euler, {1e3 * STEP:g} ms"}  # fmt: skip
+    rows = []
+    for name, spent in times.items():
+        each = [1e9 * x / counts[name] for x in spent]
+        ratio = median(theirs / mine for theirs, mine in zip(times["mujoco"], spent, strict=True))
+        who = "MuJoCo, rollout" if name == "mujoco" else "SYMOFROS"
+        rows.append(Rollout(scene, who, words[name], threads, errors[name], counts[name], (min(each), median(each)),
+                            ratio))  # fmt: skip
+    return rows
+
+
+def _moved(run: sf.Trajectories) -> sf.Trajectories:
+    """A batch that came to its end.
+
+    Raises:
+        ValueError: It did not, so its time means nothing.
+    """
+    if not run.ok.all():
+        raise ValueError(f"{run.model.record.name}: {run}")
+    return run
