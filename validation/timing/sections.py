@@ -182,7 +182,7 @@ def _limit(record: Record, cost: Made, flops: float, vector: float, copied: floa
 
 def _growth(record: Record) -> Section:
     curves = growth(record)
-    rows = tuple((FUNCTIONS[c.function], c.quantity, c.who, f"{c.n[0]} ... {c.n[-1]}", f"{c.values[-1]:.3g}",
+    rows = tuple((FUNCTIONS[c.function], c.quantity, c.who, f"{c.n[0]} ... {c.n[-1]}", _of_any_size(c.values[-1]),
                   f"{c.exponent:.2f}") for c in curves)  # fmt: skip
     text = ("Over chains of generic bodies in space. The exponent is the slope on logarithmic axes, by least squares "
             "over seven joints and more: time = c n^exponent.")  # fmt: skip
@@ -199,6 +199,10 @@ def _growth(record: Record) -> Section:
                               tuple(chart for chart in charts if chart.curves)))  # fmt: skip
     head = ("function", "quantity", "by", "joints", "#at the longest", "#exponent")
     return Section("Growth", (text,), head, rows, tuple(figures))
+
+
+def _of_any_size(x: float) -> str:
+    return f"{x:.0f}" if x >= 100 else f"{x:.3g}"
 
 
 def _chart(curves: Sequence[Growth], quantity: str) -> Chart:
