@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from validation.geometry import Array
-from validation.timing.arrays import Arrays, loops
+from validation.timing.arrays import Arrays, Turns, loops
 from validation.timing.programs import Built, Compiler, Skipped, build, compilers
 from validation.timing.task import Cost, Loop, Task
 
@@ -116,7 +116,7 @@ def _loop(task: Task, made: Source, how: str, built: Built) -> Loop:
     states = task.states
     given = {"q": states.q, "v": states.v, "a": states.a, "tau": states.applied}
     arrays = Arrays([given[name] for name in made.inputs], made.sizes, made.scratch)
-    run = partial(native.loop_casadi, function, arrays.overwritten())
+    run = Turns(partial(native.loop_casadi, function), arrays.overwritten())
 
     def results() -> Array:
         assert library  # Named here, so that it stays loaded.

@@ -18,7 +18,7 @@ from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepper import Stepper
 from validation.geometry import Array
-from validation.timing.arrays import Arrays, loops
+from validation.timing.arrays import Arrays, Turns, loops
 from validation.timing.programs import BuildError, Compiler, build, source
 from validation.timing.task import START, STEP, Cost, Loop, Task
 
@@ -80,7 +80,7 @@ class _Generated:
 
 def _by_state(task: Task, name: str) -> Loop:
     made, native = _Generated(task, name, "loop"), loops()[1]
-    run = partial(native.loop_eval, made.function, made.arrays.overwritten())
+    run = Turns(partial(native.loop_eval, made.function), made.arrays.overwritten())
 
     def results() -> Array:
         return made.arrays.results(lambda kept: native.loop_eval(made.function, kept, 1), _SHARED.get(name))
@@ -91,13 +91,14 @@ def _by_state(task: Task, name: str) -> Loop:
 def _by_vectors(task: Task, name: str) -> Loop:
     made, native = _Generated(task, name, "vector"), loops()[1]
     block = min(BLOCK, len(task.states))
-    filled = made.arrays.overwritten(block)
+
+    def call(filled: Any, rounds: int) -> None:
+        native.loop_batch(made.function, filled, rounds, block)
 
     def results() -> Array:
         return made.arrays.results(lambda kept: native.loop_batch(made.function, kept, 1, block), _SHARED.get(name))
 
-    # The made function is named, so that its library stays loaded.
-    return Loop(name, BATCH, lambda rounds: native.loop_batch(made.function, filled, rounds, block), results)
+    return Loop(name, BATCH, Turns(call, made.arrays.overwritten(block)), results)
 
 
 def _cost(task: Task, name: str, made: _Generated) -> Cost:
