@@ -25,7 +25,8 @@ from validation.timing.targets import verdicts
 from validation.timing.task import STATES
 from validation.timing.worker import PEERS, Job
 
-REPEATS = 25
+# Twice through the places that arrays take.
+REPEATS = 32
 
 
 def register(app: typer.Typer) -> None:
