@@ -42,34 +42,30 @@ def first_compiler(language: str = "c") -> Compiler:
     return found[0]
 
 
-# Bytes of a line of the cache, and of a page.
-LINE, PAGE = 64, 4096
-# Where in a page results and scratch lie decides by up to two fifths how long a large function takes. A race goes
-# through this many places in turn, so that its median is over them.
-PLACES = 16
+# Bytes of a line of the cache.
+LINE = 64
 
 
-def room(size: int, line: int = 0) -> Array:
-    """Zeros that begin at a line of a page (size,)."""
-    raw = np.zeros(size + 2 * PAGE // 8)
-    start = (-raw.ctypes.data % PAGE + line * LINE) // 8
+def room(size: int) -> Array:
+    """Zeros that begin at a line of the cache (size,)."""
+    raw = np.zeros(size + LINE // 8)
+    start = (-raw.ctypes.data % LINE) // 8
     return raw[start : start + size]
 
 
 class Turns:
-    """What runs a function, each time with its arrays in another place.
+    """Runs copies of one function in turn, so that a median is over where the system happened to put their code.
 
     Args:
-        call: Of arrays and rounds.
-        places: The arrays.
+        copies: Each runs so many rounds.
     """
 
-    def __init__(self, call: Callable[[Any, int], object], places: Sequence[Any]) -> None:
-        self._call, self._places, self._next = call, places, 0
+    def __init__(self, copies: Sequence[Callable[[int], object]]) -> None:
+        self._copies, self._next = copies, 0
 
     def __call__(self, rounds: int) -> None:
-        """So many rounds at the next place."""
-        self._call(self._places[self._next % len(self._places)], rounds)
+        """So many rounds of the next copy."""
+        self._copies[self._next % len(self._copies)](rounds)
         self._next += 1
 
 
@@ -93,15 +89,9 @@ class Arrays:
         read = sum(int(array.shape[-1]) for array in self._inputs)
         return 8 * (sum(self.sizes) + read)
 
-    def overwritten(self, states: int = 1) -> list[Any]:
-        """Arrays of a race at each place: the results of so many states lie over those before."""
-        rng = np.random.default_rng(0)
-        found = []
-        for _ in range(PLACES):
-            lines = rng.integers(0, PAGE // LINE, len(self.sizes) + 1).tolist()
-            outputs = [room(states * size, line) for size, line in zip(self.sizes, lines, strict=False)]
-            found.append(self._filled(outputs, False, lines[-1]))
-        return found
+    def overwritten(self, states: int = 1) -> Any:
+        """Arrays of a race: the results of so many states lie over those before."""
+        return self._filled([room(states * size) for size in self.sizes], False)
 
     def results(self, run: Callable[[Any], None], shared: int | None = None) -> Array:
         """The first outputs of every state (n, size), of a run that gets arrays in which they are kept."""
@@ -109,7 +99,7 @@ class Arrays:
         run(self._filled(outputs, True))
         return np.concatenate(outputs[:shared], axis=1)
 
-    def _filled(self, outputs: Sequence[Array], keep: bool, line: int = 0) -> Any:
+    def _filled(self, outputs: Sequence[Array], keep: bool) -> Any:
         ffi, filled = self._ffi, self._ffi.new("loop_arrays *")
         filled.n, filled.n_in, filled.n_out, filled.keep = self.count, len(self._inputs), len(outputs), int(keep)
         strides = [array.shape[1] if array.ndim == 2 else 0 for array in self._inputs]
@@ -119,7 +109,7 @@ class Arrays:
         filled.out = self._keep(ffi.new("double *[]", [self._pointer(x) for x in outputs]))
         filled.size = self._keep(ffi.new("size_t[]", list(self.sizes)))
         doubles, integers = self._scratch
-        filled.work = self._pointer(room(doubles, line))
+        filled.work = self._pointer(room(doubles))
         filled.iwork = self._keep(ffi.new("long long[]", integers + 1))
         return self._keep(filled)
 

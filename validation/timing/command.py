@@ -25,8 +25,8 @@ from validation.timing.targets import verdicts
 from validation.timing.task import STATES
 from validation.timing.worker import PEERS, Job
 
-# Twice through the places that arrays take.
-REPEATS = 32
+# Four times through the copies of a library.
+REPEATS = 24
 
 
 def register(app: typer.Typer) -> None:

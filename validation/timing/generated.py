@@ -12,7 +12,7 @@ from functools import partial
 
 from validation.geometry import Array
 from validation.timing.arrays import Arrays, Turns, loops
-from validation.timing.programs import Built, Compiler, Skipped, build, compilers
+from validation.timing.programs import Built, Compiler, Skipped, build, compilers, copies
 from validation.timing.task import Cost, Loop, Task
 
 # Straight-line code is erratic: between builds of one source, times differ by half. The best of these counts.
@@ -110,17 +110,19 @@ def _compiled(text: str, way: tuple[Compiler, tuple[str, ...]]) -> Built:
 
 def _loop(task: Task, made: Source, how: str, built: Built) -> Loop:
     ffi, native = loops()
-    library = ctypes.CDLL(str(built.path))
-    address = ctypes.cast(library[made.name], ctypes.c_void_p).value
-    function = ffi.cast("int (*)(const double **, double **, long long *, double *, int)", address)
+    libraries = [ctypes.CDLL(str(copy)) for copy in copies(built.path)]
+    addresses = [ctypes.cast(library[made.name], ctypes.c_void_p).value for library in libraries]
+    kind = "int (*)(const double **, double **, long long *, double *, int)"
+    functions = [ffi.cast(kind, address) for address in addresses]
     states = task.states
     given = {"q": states.q, "v": states.v, "a": states.a, "tau": states.applied}
     arrays = Arrays([given[name] for name in made.inputs], made.sizes, made.scratch)
-    run = Turns(partial(native.loop_casadi, function), arrays.overwritten())
+    filled = arrays.overwritten()
+    run = Turns([partial(native.loop_casadi, function, filled) for function in functions])
 
     def results() -> Array:
-        assert library  # Named here, so that it stays loaded.
-        return arrays.results(lambda kept: native.loop_casadi(function, kept, 1))
+        assert libraries  # Named here, so that it stays loaded.
+        return arrays.results(lambda kept: native.loop_casadi(functions[0], kept, 1))
 
     return Loop(made.name, how, run, results, _cost(made, built, arrays))
 
