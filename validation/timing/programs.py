@@ -21,8 +21,8 @@ from symofros.runtime.toolchain import cpu_identity
 # Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
 _LOOSE = ("-ffast-math",)
 _NEWEST, _OLDEST = 25, 11
-# Where in memory the system keeps a library's code decides how fast a large function is: a humanoid's M + h took 1030 ns
-# from most copies of one file, and up to 1570 from others. So it is timed from this many copies.
+# Where in memory the system keeps a library's code decides how fast a large function is: a humanoid's M + h took
+# 1030 ns from most copies of one file, and up to 1570 from others. So it is timed from this many copies.
 COPIES = 6
 _PRIVATE = tempfile.TemporaryDirectory(prefix="symofros-timing-")
 _NUMBERS = itertools.count()
