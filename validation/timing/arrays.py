@@ -42,6 +42,33 @@ def first_compiler(language: str = "c") -> Compiler:
     return found[0]
 
 
+# Bytes of a line of the cache.
+LINE = 64
+
+
+def room(size: int) -> Array:
+    """Zeros that begin at a line of the cache (size,)."""
+    raw = np.zeros(size + LINE // 8)
+    start = (-raw.ctypes.data % LINE) // 8
+    return raw[start : start + size]
+
+
+class Turns:
+    """Runs copies of one function in turn, so that a median is over where the system happened to put their code.
+
+    Args:
+        copies: Each runs so many rounds.
+    """
+
+    def __init__(self, copies: Sequence[Callable[[int], object]]) -> None:
+        self._copies, self._next = copies, 0
+
+    def __call__(self, rounds: int) -> None:
+        """So many rounds of the next copy."""
+        self._copies[self._next % len(self._copies)](rounds)
+        self._next += 1
+
+
 class Arrays:
     """Inputs and outputs of one function at all states.
 
@@ -64,12 +91,12 @@ class Arrays:
 
     def overwritten(self, states: int = 1) -> Any:
         """Arrays of a race: the results of so many states lie over those before."""
-        return self._filled([np.zeros(states * size + 1) for size in self.sizes], keep=False)
+        return self._filled([room(states * size) for size in self.sizes], False)
 
     def results(self, run: Callable[[Any], None], shared: int | None = None) -> Array:
         """The first outputs of every state (n, size), of a run that gets arrays in which they are kept."""
-        outputs = [np.zeros((self.count, size)) for size in self.sizes]
-        run(self._filled(outputs, keep=True))
+        outputs = [room(self.count * size).reshape(self.count, size) for size in self.sizes]
+        run(self._filled(outputs, True))
         return np.concatenate(outputs[:shared], axis=1)
 
     def _filled(self, outputs: Sequence[Array], keep: bool) -> Any:
@@ -82,12 +109,16 @@ class Arrays:
         filled.out = self._keep(ffi.new("double *[]", [self._pointer(x) for x in outputs]))
         filled.size = self._keep(ffi.new("size_t[]", list(self.sizes)))
         doubles, integers = self._scratch
-        filled.work = self._keep(ffi.new("double[]", doubles + 1))
+        filled.work = self._pointer(room(doubles))
         filled.iwork = self._keep(ffi.new("long long[]", integers + 1))
         return self._keep(filled)
 
     def _pointer(self, array: Array) -> Any:
-        kept = self._keep(np.ascontiguousarray(array, dtype=np.float64))
+        kept = array
+        if array.ctypes.data % LINE or not array.flags.c_contiguous:
+            kept = room(array.size)
+            kept[:] = array.ravel()
+        self._keep(kept)
         return self._keep(self._ffi.from_buffer("double[]", kept))
 
     def _keep(self, value: Any) -> Any:

@@ -25,7 +25,8 @@ from validation.timing.targets import verdicts
 from validation.timing.task import STATES
 from validation.timing.worker import PEERS, Job
 
-REPEATS = 25
+# Four times through the copies of a library.
+REPEATS = 24
 
 
 def register(app: typer.Typer) -> None:
@@ -56,13 +57,15 @@ def timing(
     todo = jobs([name for name in models or SCENES if name in SCENES], tuple(peers or PEERS), functions or FUNCTIONS,
                 repeats, states, record if resume else None)  # fmt: skip
     flexible = LABEL in models if models else not (peers or functions) and not (resume and record.flexible)
-    before, limits, interrupted = load(), facts(), False
+    measures = bool(todo) or flexible
+    before, limits, interrupted = load(), facts() if measures else {}, False
 
     def save() -> Path:
         """After each model, so that even a kill leaves what was measured."""
         now = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime())
-        record.machine = {**limits, "load before and after": [*before, *load()], "date": now, "states": states,
-                          "repeats": repeats}  # fmt: skip
+        if measures:
+            record.machine = {**limits, "load before and after": [*before, *load()], "date": now, "states": states,
+                              "repeats": repeats}  # fmt: skip
         return write_report(record, report)
 
     try:

@@ -19,7 +19,7 @@ from validation.assembly import Assembly
 from validation.conventions import Chart
 from validation.geometry import Array, matrix_quaternion, quaternion_product
 from validation.interface import Subject, Unsupported
-from validation.timing.programs import BuildError, Built, Compiler, Skipped, build, compilers, declared, source
+from validation.timing.programs import BuildError, Built, Compiler, Skipped, build, compilers, copies, declared, source
 from validation.timing.task import START, STEP, Loop, Task, flat
 
 PINOCCHIO_FLAGS = (
@@ -115,7 +115,7 @@ def pinocchio_loops(task: Task, functions: Sequence[str], warn: Callable[[str], 
             Path(f"{tree}.ties").write_text(_ties_text(task), encoding="ascii")
         for compiler, built in builds:
             rows = {"q": states.q, "v": states.v, "a": states.a, "tau": states.applied}
-            yield from _loops(built.path, tree, task.body, rows, functions, compiler.name, convert)
+            yield from _loops(copies(built.path, 1)[0], tree, task.body, rows, functions, compiler.name, convert)
 
 
 def _ties_text(task: Task) -> str:

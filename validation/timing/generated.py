@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from functools import partial
 
 from validation.geometry import Array
-from validation.timing.arrays import Arrays, loops
-from validation.timing.programs import Built, Compiler, Skipped, build, compilers
+from validation.timing.arrays import Arrays, Turns, loops
+from validation.timing.programs import Built, Compiler, Skipped, build, compilers, copies
 from validation.timing.task import Cost, Loop, Task
 
 # Straight-line code is erratic: between builds of one source, times differ by half. The best of these counts.
@@ -59,10 +59,10 @@ def casadi_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
         raise Skipped(f"derivatives are made up to {MOST_DERIVED} degrees of freedom, beyond which they take minutes")
 
     def make(name: str) -> Source:
-        start = time.perf_counter()
+        start = time.thread_time()
         function = casadi_tree.CasadiTree(task.system).function(name, task.body)
         text = casadi_code.c_text(function)
-        seconds = time.perf_counter() - start
+        seconds = time.thread_time() - start
         sizes = tuple(int(function.numel_out(i)) for i in range(function.n_out()))
         iwork, work = casadi_code.work_sizes(function)
         operations = casadi_code.operations(function)
@@ -110,17 +110,19 @@ def _compiled(text: str, way: tuple[Compiler, tuple[str, ...]]) -> Built:
 
 def _loop(task: Task, made: Source, how: str, built: Built) -> Loop:
     ffi, native = loops()
-    library = ctypes.CDLL(str(built.path))
-    address = ctypes.cast(library[made.name], ctypes.c_void_p).value
-    function = ffi.cast("int (*)(const double **, double **, long long *, double *, int)", address)
+    libraries = [ctypes.CDLL(str(copy)) for copy in copies(built.path)]
+    addresses = [ctypes.cast(library[made.name], ctypes.c_void_p).value for library in libraries]
+    kind = "int (*)(const double **, double **, long long *, double *, int)"
+    functions = [ffi.cast(kind, address) for address in addresses]
     states = task.states
     given = {"q": states.q, "v": states.v, "a": states.a, "tau": states.applied}
     arrays = Arrays([given[name] for name in made.inputs], made.sizes, made.scratch)
-    run = partial(native.loop_casadi, function, arrays.overwritten())
+    filled = arrays.overwritten()
+    run = Turns([partial(native.loop_casadi, function, filled) for function in functions])
 
     def results() -> Array:
-        assert library  # Named here, so that it stays loaded.
-        return arrays.results(lambda kept: native.loop_casadi(function, kept, 1))
+        assert libraries  # Named here, so that it stays loaded.
+        return arrays.results(lambda kept: native.loop_casadi(functions[0], kept, 1))
 
     return Loop(made.name, how, run, results, _cost(made, built, arrays))
 

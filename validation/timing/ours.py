@@ -18,8 +18,8 @@ from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepper import Stepper
 from validation.geometry import Array
-from validation.timing.arrays import Arrays, loops
-from validation.timing.programs import BuildError, Compiler, build, source
+from validation.timing.arrays import Arrays, Turns, loops
+from validation.timing.programs import BuildError, Compiler, build, copies, source
 from validation.timing.task import START, STEP, Cost, Loop, Task
 
 NAME = "symofros"
@@ -59,16 +59,17 @@ class _Generated:
     def __init__(self, task: Task, name: str, batch: Literal["vector", "loop"]) -> None:
         options = sf.Options((name,), _frames(task, name), batch=batch)
         sf.compile_library(task.system, options)
-        start = time.perf_counter()  # Now that the library is in the cache, what is left is to make its text.
+        start = time.thread_time()  # Now that the library is in the cache, what is left is to make its text.
         self.path, symbol = sf.compile_library(task.system, options)
-        self.seconds = time.perf_counter() - start
+        self.seconds = time.thread_time() - start
         ffi, _ = loops()
-        self._library = ctypes.CDLL(str(self.path))
-        address = ctypes.cast(self._library[symbol], ctypes.c_void_p).value
-        model = ffi.cast("const sym_model *(*)(void)", address)()
+        self._libraries = [ctypes.CDLL(str(copy)) for copy in copies(self.path)]
+        addresses = [ctypes.cast(library[symbol], ctypes.c_void_p).value for library in self._libraries]
+        models = [ffi.cast("const sym_model *(*)(void)", address)() for address in addresses]
+        model = models[0]
         pre = np.zeros(model.npre + 1)
         model.init(model.par_default, ffi.from_buffer("double[]", pre))
-        self.function: Any = model.functions + 0
+        self.functions: list[Any] = [each.functions + 0 for each in models]
         states, entry = task.states, model.functions[0]
         given = {"pre": pre[: model.npre], "q": states.q, "v": states.v, "a": states.a, "u": states.u}
         names = [ffi.string(item.name).decode() for item in getattr(entry, "in")[0 : entry.n_in]]
@@ -80,10 +81,11 @@ class _Generated:
 
 def _by_state(task: Task, name: str) -> Loop:
     made, native = _Generated(task, name, "loop"), loops()[1]
-    run = partial(native.loop_eval, made.function, made.arrays.overwritten())
+    filled = made.arrays.overwritten()
+    run = Turns([partial(native.loop_eval, function, filled) for function in made.functions])
 
     def results() -> Array:
-        return made.arrays.results(lambda kept: native.loop_eval(made.function, kept, 1), _SHARED.get(name))
+        return made.arrays.results(lambda kept: native.loop_eval(made.functions[0], kept, 1), _SHARED.get(name))
 
     return Loop(name, NAME, run, results, _cost(task, name, made))
 
@@ -93,11 +95,13 @@ def _by_vectors(task: Task, name: str) -> Loop:
     block = min(BLOCK, len(task.states))
     filled = made.arrays.overwritten(block)
 
-    def results() -> Array:
-        return made.arrays.results(lambda kept: native.loop_batch(made.function, kept, 1, block), _SHARED.get(name))
+    def call(function: Any, rounds: int) -> None:
+        native.loop_batch(function, filled, rounds, block)
 
-    # The made function is named, so that its library stays loaded.
-    return Loop(name, BATCH, lambda rounds: native.loop_batch(made.function, filled, rounds, block), results)
+    def results() -> Array:
+        return made.arrays.results(lambda kept: native.loop_batch(made.functions[0], kept, 1, block), _SHARED.get(name))
+
+    return Loop(name, BATCH, Turns([partial(call, function) for function in made.functions]), results)
 
 
 def _cost(task: Task, name: str, made: _Generated) -> Cost:

@@ -20,6 +20,9 @@ _DRAWN = ("time [ns]", "operations", "generation [s]", "compilation [s]")
 COLORS = {"symofros": 0, "symofros, batch": 2, "pinocchio": 1, "mujoco": 5, "casadi": 6, "sympy": 7}
 
 
+Rows = tuple[tuple[str, ...], ...]
+
+
 @dataclass(frozen=True)
 class Section:
     """One question.
@@ -35,7 +38,7 @@ class Section:
     title: str
     text: tuple[str, ...]
     head: tuple[str, ...] = ()
-    rows: tuple[tuple[str, ...], ...] = ()
+    rows: Rows = ()
     figures: tuple[Figure, ...] = ()
 
 
@@ -86,10 +89,20 @@ def _function(record: Record, function: str) -> Section:
             for peer in ("mujoco", "casadi", "sympy"):
                 cells += [_theirs(best[peer]), _ratio(best[peer])]
             rows.append(tuple(cells))
-    title = FUNCTIONS[function]
-    return Section(
-        title[0].upper() + title[1:], (_NOTES.get(function, ""),) if function in _NOTES else (), head, tuple(rows)
-    )
+    notes = (_NOTES[function],) if function in _NOTES else ()
+    return Section(_title(function), notes, *_without_empty(head, rows))
+
+
+def _title(function: str) -> str:
+    """A sentence's beginning, unless it begins with a symbol."""
+    name = FUNCTIONS[function]
+    return name if len(name.split()[0]) == 1 else name[0].upper() + name[1:]
+
+
+def _without_empty(head: Sequence[str], rows: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], Rows]:
+    """A table without the columns in which nothing was measured."""
+    kept = [k for k in range(len(head)) if any(row[k] != "-" for row in rows)]
+    return tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows)
 
 
 _NOTES = {
@@ -134,8 +147,8 @@ def _all_costs(record: Record) -> list[Made]:
 
 def _making(record: Record) -> Section:
     text = (
-        "Generation is from the description to C text, compilation of that text alone, by the build that runs fastest, "
-        "at whatever load the machine had then."
+        "Generation is from the description to C text, the processor's time; compilation is of that text alone, by the "
+        "build that runs fastest, by the clock, at whatever load the machine had then: it is done once and kept."
     )
     head = ("model", "function", "by", "#generation [s]", "#compilation [s]", "#C text [kB]", "#machine code [kB]",
             "#constants [kB]")  # fmt: skip
@@ -182,7 +195,7 @@ def _limit(record: Record, cost: Made, flops: float, vector: float, copied: floa
 
 def _growth(record: Record) -> Section:
     curves = growth(record)
-    rows = tuple((FUNCTIONS[c.function], c.quantity, c.who, f"{c.n[0]} ... {c.n[-1]}", f"{c.values[-1]:.3g}",
+    rows = tuple((FUNCTIONS[c.function], c.quantity, c.who, f"{c.n[0]} ... {c.n[-1]}", _of_any_size(c.values[-1]),
                   f"{c.exponent:.2f}") for c in curves)  # fmt: skip
     text = ("Over chains of generic bodies in space. The exponent is the slope on logarithmic axes, by least squares "
             "over seven joints and more: time = c n^exponent.")  # fmt: skip
@@ -195,10 +208,14 @@ def _growth(record: Record) -> Section:
             _chart(of, "generation [s]"),
             _chart(of, "compilation [s]"),
         ]
-        figures.append(Figure(f"{FUNCTIONS[function].capitalize()}: growth with the number of joints.",
+        figures.append(Figure(f"{_title(function)}: growth with the number of joints.",
                               tuple(chart for chart in charts if chart.curves)))  # fmt: skip
     head = ("function", "quantity", "by", "joints", "#at the longest", "#exponent")
     return Section("Growth", (text,), head, rows, tuple(figures))
+
+
+def _of_any_size(x: float) -> str:
+    return f"{x:.0f}" if x >= 100 else f"{x:.3g}"
 
 
 def _chart(curves: Sequence[Growth], quantity: str) -> Chart:

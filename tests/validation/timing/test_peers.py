@@ -151,3 +151,16 @@ def test_closed_loops_are_timed_at_closed_postures() -> None:
     assert np.abs(model.constraint(given.states.q)).max() < 1e-9
     (loop,) = our_loops(given, ["forward_dynamics"])
     assert loop.results().shape == (100, 3)
+
+
+def test_closures_go_over_as_numbers() -> None:
+    from validation.adapters import pinocchio_loops
+    from validation.interface import Subject, Unsupported
+
+    engine = pinocchio_loops.build(Subject("four_bar", reference_models.MODELS["four_bar"]))
+    assert not isinstance(engine, Unsupported)
+    (line,) = engine.ties_as_numbers()
+    # A point of rocker and coupler: kind, then twice joint, R 9, p 3.
+    words = line.split()
+    assert len(words) == 1 + 2 * 13 and [words[0], words[1], words[14]] == ["3", "3", "2"]
+    assert [float(x) for x in words[11:14]] == [1.0, 0.0, 0.0]

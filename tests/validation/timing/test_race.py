@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from validation.timing import race as racing
+from validation.timing.arrays import Turns
 from validation.timing.race import DisagreementError, checked, error, race, summary
 from validation.timing.task import Loop
 
@@ -73,3 +74,11 @@ def test_sides_that_disagree_are_named() -> None:
         checked("bias", "them", np.array([[1.0 + 1e-11]]), np.array([[1.0]]))
     with pytest.raises(DisagreementError, match="2 numbers a state, not 1"):
         checked("bias", "them", np.zeros((1, 2)), np.zeros((1, 1)))
+
+
+def test_copies_run_in_turn() -> None:
+    order: list[tuple[str, int]] = []
+    turns = Turns([lambda rounds: order.append(("a", rounds)), lambda rounds: order.append(("b", rounds))])
+    for rounds in (1, 2, 3):
+        turns(rounds)
+    assert order == [("a", 1), ("b", 2), ("a", 3)]

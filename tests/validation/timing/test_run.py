@@ -13,7 +13,7 @@ from tests.validation.timing.records import cubic, entry, made
 from validation.__main__ import app
 from validation.timing import command, engines, worker
 from validation.timing.models import FUNCTIONS, SCENES
-from validation.timing.programs import Compiler, Skipped, build, compilers
+from validation.timing.programs import BuildError, Built, Compiler, Skipped, build, compilers
 from validation.timing.record import Record
 from validation.timing.report import write_report
 from validation.timing.run import jobs, peaks, take
@@ -81,6 +81,20 @@ def test_missing_headers_say_what_to_install(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(engines.metadata, "files", nothing)
     with pytest.raises(Skipped, match=r"libpinocchio is not installed: pip install 'symofros\[timing\]'"):
         engines.pinocchio_builds()
+
+
+def test_a_compiler_that_fails_is_told_and_the_other_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    def only_clang(compiler: Compiler, *rest: object) -> Built:
+        if compiler.name.startswith("gcc"):
+            raise BuildError("out of memory")
+        return Built(Path("side.so"), 1.0, 1, 1)
+
+    both = [Compiler("g++", "gcc 12", ""), Compiler("clang++", "clang 19", "")]
+    monkeypatch.setattr(engines, "compilers", lambda language: both)
+    monkeypatch.setattr(engines, "build", only_clang)
+    builds, failures = engines.pinocchio_builds()
+    assert [compiler.name for compiler, _ in builds] == ["clang 19"]
+    assert failures == ["Pinocchio by gcc 12: out of memory"]
 
 
 def test_one_compiler_of_each_family_and_the_newest_clang(monkeypatch: pytest.MonkeyPatch) -> None:
