@@ -55,6 +55,7 @@ from symofros.runtime.library import CompiledUnit
 from symofros.runtime.model import Key, Model
 from symofros.runtime.record import ClosureRecord, ModelRecord, Segment, SegmentKind
 from symofros.runtime.toolchain import Toolchain, find_toolchain
+from symofros.runtime.tuning import Build, builds, fastest
 from symofros.topology.coordinates import angles, joint_sizes
 from symofros.topology.graph import check
 from symofros.topology.tree import SpanningTree, build_tree, frame_of
@@ -116,12 +117,23 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
     tree = plan(system)
     record = describe(tree, options)
     program, _ = generate(tree, requested(tree, options), record, options.constraints)
-    source = model_source(
-        program, record, GENERATOR, "shared" if options.batch == "vector" else "none", packs=options.packs
-    )
     symbol = f"{identifier(record.name)}_model"
-    how = toolchain, options.flags, _dispatch(options, symbol), symbol
-    return build_library(source, template("symofros_model.h"), *how), symbol
+    lanes: Lanes = "shared" if options.batch == "vector" else "none"
+
+    def made(build: Build) -> Path:
+        source = model_source(program, record, GENERATOR, lanes, packs=build.packs)
+        how = build.toolchain, build.flags, _dispatch(options, symbol), symbol
+        return build_library(source, template("symofros_model.h"), *how)
+
+    return _chosen(made, options, toolchain, symbol, record.hash), symbol
+
+
+def _chosen(made: Callable[[Build], Path], options: Options, toolchain: Toolchain, symbol: str, of: str) -> Path:
+    """The library as the options have it, or the fastest of several."""
+    if not options.tune:
+        return made(Build(toolchain, options.flags, options.packs))
+    libraries = [made(build) for build in builds(options, toolchain)]
+    return fastest(libraries, lambda path: CompiledUnit(path, symbol, template("symofros_model.h"), of))
 
 
 def _dispatch(options: Options, symbol: str) -> str:
@@ -206,11 +218,15 @@ class _Builder:
     ) -> CompiledUnit:  # fmt: skip
         header = template("symofros_model.h")
         symbol = f"{identifier(self._record.name)}_model"
-        path = recall_library(
-            f"{self._stated}{what!r}",
-            lambda: model_source(program(), self._record, GENERATOR, vectors, packs=self._options.packs),
-            header, toolchain, self._options.flags, _dispatch(self._options, symbol), symbol,
-        )  # fmt: skip
+
+        def made(build: Build) -> Path:
+            return recall_library(
+                f"{self._stated}{what!r}{build.packs}",
+                lambda: model_source(program(), self._record, GENERATOR, vectors, packs=build.packs),
+                header, build.toolchain, build.flags, _dispatch(self._options, symbol), symbol,
+            )  # fmt: skip
+
+        path = _chosen(made, self._options, toolchain, symbol, self._record.hash)
         return CompiledUnit(path, symbol, header, self._record.hash, in_lanes)
 
     def _in_lanes(self, what: object, program: Callable[[], Program]) -> Callable[[Key, bool], Kernel | None]:

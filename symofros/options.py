@@ -59,6 +59,9 @@ class Options:
         batch: How large batches are evaluated: "vector", several states at once, by code that is compiled for each
             function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
         packs: Whether values of one state that are computed alike, such as entries of a row of M, share vectors.
+        tune: Whether to try compilers, flags and packs on each unit, and keep what is fastest on this machine: some six
+            compilations instead of one, the first time; the choice is kept in the cache. Results are those of the
+            chosen build, and of another within rounding.
         processors: "native" compiles for this machine's processor; "any" for all of its family, AVX-512, AVX2 and the
             oldest in one library, which chooses when it is loaded: thrice the compilation, for folders and images
             that several kinds of machines share.
@@ -72,4 +75,5 @@ class Options:
     constraints: Literal["multipliers", "null_space"] = "multipliers"
     batch: Literal["vector", "loop"] = "vector"
     packs: bool = True
+    tune: bool = False
     processors: Literal["native", "any"] = "native"

@@ -182,3 +182,17 @@ class CompiledKernel:
             self._function.eval, ffi.new("double *[]", read), ffi.new("double *[]", written),
             ffi.new("double[]", max(1, self._function.work)),
         )  # fmt: skip
+
+    def bind_batch(self, n: int, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
+        """The function on fixed memory, for n states, one after the other."""
+        ffi = self._unit.ffi
+        read = [ffi.from_buffer("double[]", array) for array in (pre, *inputs)]
+        written = [ffi.from_buffer("double[]", array) for array in outputs]
+        strides = [0 if len(array) == 1 else array.shape[1] for array in (pre, *inputs)]
+        stated = ffi.new("double *[]", read), ffi.new("size_t[]", strides), ffi.new("double *[]", written)
+        work, batch, kept = ffi.new("double[]", max(1, self._function.work)), self._function.batch, (read, written)
+
+        def call(_kept: object = kept) -> None:  # Arrays of pointers do not keep what they point to.
+            batch(n, *stated, work)
+
+        return call
