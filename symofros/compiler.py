@@ -16,6 +16,7 @@ from __future__ import annotations
 import hashlib
 import warnings
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -132,7 +133,11 @@ def _chosen(made: Callable[[Build], Path], options: Options, toolchain: Toolchai
     """The library as the options have it, or the fastest of several."""
     if not options.tune:
         return made(Build(toolchain, options.flags, options.packs))
-    libraries = [made(build) for build in builds(options, toolchain)]
+    first, *others = builds(options, toolchain)
+    libraries = [made(first)]
+    for build in others:
+        with suppress(CompileError):  # It was only worth a try.
+            libraries.append(made(build))
     return fastest(libraries, lambda path: CompiledUnit(path, symbol, template("symofros_model.h"), of))
 
 

@@ -13,9 +13,6 @@ from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import ONE, Edge, Graph
 from symofros.expr.packs import WIDTH, Pack
 
-# With fewer lanes a vector saves less than putting lanes in and reading them costs.
-_LEAST = 3
-
 
 @dataclass(frozen=True)
 class Store:
@@ -106,7 +103,7 @@ class PackPlan:
                 node = abs(pack.lanes[lane])
                 if node in wanted and node not in self._of and node not in parts:
                     homes.setdefault(node, lane)
-            if len(homes) >= _LEAST:
+            if len(homes) >= pack.least:
                 self._formed[pack] = _Formed(homes, frozenset(right))
                 self._of.update(dict.fromkeys(homes, pack))
 

@@ -10,7 +10,10 @@ from collections.abc import Iterator, Sequence
 
 from symofros.dynamics.mass_matrix import Matrix
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
-from symofros.expr.packs import WIDTH, Pack, Signed, combined
+from symofros.expr.packs import LEAST, WIDTH, Pack, Signed, combined
+
+# Rows of short matrices are cheaper by scalars, measured: from so many speeds on, packs of so many lanes pay.
+_MANY, _LANES = 16, 4
 
 
 class SingularMassMatrixError(ArithmeticError):
@@ -39,7 +42,8 @@ class Factors:
     def __init__(self, g: Graph, M: Matrix) -> None:
         self._g = g
         self._n = len(M)
-        rows = [_Row.of(g, M[i][: i + 1]) for i in range(self._n)]
+        least = _LANES if self._n >= _MANY else WIDTH
+        rows = [_Row.of(g, M[i][: i + 1], least) for i in range(self._n)]
         self._inverse: list[Edge] = [ZERO] * self._n
         self._L: list[_Row] = []
         for k in reversed(range(self._n)):
@@ -58,7 +62,7 @@ class Factors:
     def solve(self, right: Sequence[Edge]) -> list[Edge]:
         """The solution x of M x = right (nv)."""
         g, L = self._g, self._L
-        residue = _Row.of(g, right)
+        residue = _Row.of(g, right, L[0].least) if L else _Row.of(g, right)
         x: list[Edge] = [ZERO] * self._n
         for k in reversed(range(self._n)):
             x[k] = g.mul(residue[k], self._inverse[k])
@@ -88,17 +92,19 @@ class _Row:
     Attributes:
         g: The graph.
         packs: Its edges, WIDTH at a time.
+        least: As of a Pack.
     """
 
-    def __init__(self, g: Graph, packs: list[Signed]) -> None:
+    def __init__(self, g: Graph, packs: list[Signed], least: int = LEAST) -> None:
         self.g = g
         self.packs = packs
+        self.least = least
 
     @staticmethod
-    def of(g: Graph, edges: Sequence[Edge]) -> _Row:
+    def of(g: Graph, edges: Sequence[Edge], least: int = LEAST) -> _Row:
         """The row of some edges."""
         padded = [*edges, *[ZERO] * (-len(edges) % WIDTH)]
-        return _Row(g, [(ONE, Pack(tuple(padded[at : at + WIDTH]))) for at in range(0, len(padded), WIDTH)])
+        return _Row(g, [(ONE, Pack(tuple(padded[at : at + WIDTH]))) for at in range(0, len(padded), WIDTH)], least)
 
     def __getitem__(self, i: int) -> Edge:
         """Entry i."""
@@ -107,16 +113,18 @@ class _Row:
 
     def times(self, factor: Edge, size: int) -> _Row:
         """The first entries times a factor."""
-        return _Row(self.g, [combined(self.g, [(factor, self.packs[c])], of) for c, of in _chunks(size)])
+        return self._made([[(factor, mine)] for mine in self.packs], size)
 
     def less(self, factor: Edge, other: _Row, size: int) -> _Row:
         """Its first entries less a factor times those of another row."""
         if factor == ZERO:
             return self
-        return _Row(
-            self.g,
-            [combined(self.g, [(ONE, self.packs[c]), (-factor, other.packs[c])], of) for c, of in _chunks(size)],
-        )
+        pairs = zip(self.packs, other.packs, strict=False)  # A later row is longer.
+        return self._made([[(ONE, mine), (-factor, theirs)] for mine, theirs in pairs], size)
+
+    def _made(self, terms: list[list[tuple[Edge, Signed]]], size: int) -> _Row:
+        found = [combined(self.g, terms[c], of, self.least) for c, of in _chunks(size)]
+        return _Row(self.g, found, self.least)
 
 
 def _chunks(size: int) -> Iterator[tuple[int, range]]:

@@ -16,6 +16,8 @@ from symofros.expr.ops import MUL
 
 # Lanes of a pack: the doubles of the widest vectors.
 WIDTH = 8
+# With fewer lanes a vector saves less than putting lanes in and reading them costs.
+LEAST = 3
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -28,6 +30,7 @@ class Pack:
         base: The pack that most lanes are taken from, where they are given.
         literal: Lanes that `terms` give bit for bit; in the others the graph folded scalars in another way.
         own: Those of them whose nodes the combination made, which no operand of any lane can depend on.
+        least: It is worth a vector from so many lanes on that are wanted.
         start: Operands of all lanes are older than this node, results and what leads to them are not.
     """
 
@@ -37,6 +40,7 @@ class Pack:
     literal: frozenset[int] = frozenset()
     own: frozenset[int] = frozenset()
     start: int = 0
+    least: int = LEAST
 
     def with_lane(self, lane: int, edge: Edge) -> Pack:
         """The same with one lane given."""
@@ -52,13 +56,16 @@ EMPTY = Pack((ZERO,) * WIDTH)
 Signed = tuple[Edge, Pack]
 
 
-def combined(g: Graph, terms: Sequence[tuple[Edge, Signed]], of: Collection[int] = range(WIDTH)) -> Signed:
+def combined(
+    g: Graph, terms: Sequence[tuple[Edge, Signed]], of: Collection[int] = range(WIDTH), least: int = LEAST
+) -> Signed:
     """The sum of factor * pack, lane by lane, from the left.
 
     Args:
         g: The graph.
         terms: Factors that all lanes share, and what they multiply.
         of: Lanes that count; the others become zero.
+        least: It is worth a vector from so many lanes on that are wanted.
     """
     signed = tuple((g.mul(factor, sign), pack) for factor, (sign, pack) in terms)
     signed = tuple((factor, pack) for factor, pack in signed if factor != ZERO and any(pack.lanes))
@@ -82,7 +89,7 @@ def combined(g: Graph, terms: Sequence[tuple[Edge, Signed]], of: Collection[int]
         if is_literal and (lane in of or not any(pack.lanes[lane] for _, pack in signed)):
             literal.add(lane)
     own = frozenset(lane for lane in literal if abs(lanes[lane]) >= start)
-    pack = Pack(tuple(lanes), signed, None, frozenset(literal), own, start)
+    pack = Pack(tuple(lanes), signed, None, frozenset(literal), own, start, least)
     if len(own) > 1:
         g.packs.append(pack)
     return ONE, pack

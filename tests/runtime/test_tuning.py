@@ -1,0 +1,84 @@
+"""The fastest build is found once and remembered; what the options state is kept; results agree within rounding."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.codegen.templates import template
+from symofros.compiler import describe, plan
+from symofros.runtime import tuning
+from symofros.runtime.toolchain import find_toolchain
+from symofros.runtime.tuning import builds
+
+FUNCTIONS = ("mass_matrix", "forward_dynamics")
+
+
+@pytest.fixture(autouse=True)
+def own_cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
+
+
+def test_results_are_those_of_any_build(rng: np.random.Generator) -> None:
+    plain, tuned = (sf.compile(MODELS["rx90"], sf.Options(functions=FUNCTIONS, tune=tune)) for tune in (False, True))
+    q, v, u = (rng.uniform(-1.0, 1.0, (7, n)) for n in (plain.nq, plain.nv, plain.nu))
+    np.testing.assert_allclose(tuned.mass_matrix(q), plain.mass_matrix(q), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(tuned.forward_dynamics(q, v, u), plain.forward_dynamics(q, v, u), rtol=1e-10, atol=1e-10)
+
+
+def test_the_choice_is_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
+    options = sf.Options(functions=("mass_matrix",), batch="loop", tune=True)
+    chosen = sf.compile_library(MODELS["double_pendulum"], options)
+
+    def measured_again(*_: object) -> Path:
+        raise AssertionError("measured again")
+
+    monkeypatch.setattr(tuning, "_measured", measured_again)
+    assert sf.compile_library(MODELS["double_pendulum"], options) == chosen
+
+
+def test_the_fastest_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A clock by which only the last build takes less time than the others."""
+    made: list[Path] = []
+
+    def measured(libraries: dict[Path, None], load: object) -> Path:
+        made.extend(libraries)
+        return made[-1]
+
+    monkeypatch.setattr(tuning, "_measured", measured)
+    path, _ = sf.compile_library(MODELS["rx90"], sf.Options(functions=("mass_matrix",), batch="loop", tune=True))
+    assert len(made) >= 2
+    assert path == made[-1]
+
+
+def test_what_is_stated_is_kept() -> None:
+    toolchain = find_toolchain()
+    assert toolchain is not None
+    flags = ("-O1",)
+    stated = builds(sf.Options(flags=flags, compiler=toolchain.command[0], packs=False, tune=True), toolchain)
+    assert [(build.toolchain, build.flags, build.packs) for build in stated] == [(toolchain, flags, False)]
+    free = builds(sf.Options(tune=True), toolchain)
+    assert free[0] == tuning.Build(toolchain, None, True)
+    assert {build.packs for build in free} == {True, False}
+
+
+def test_slower_builds_lose() -> None:
+    """Without optimisation, everything takes several times as long."""
+    toolchain = find_toolchain()
+    assert toolchain is not None
+    found = {
+        flags: sf.compile_library(MODELS["spdm"], sf.Options(functions=("dynamics",), batch="loop", flags=flags))
+        for flags in (("-O0",), ("-O2",))
+    }
+    symbol = found[("-O2",)][1]
+    paths = [path for path, _ in found.values()]
+    record = describe(plan(MODELS["spdm"]), sf.Options(functions=("dynamics",), batch="loop"))
+
+    def load(path: Path) -> tuning.CompiledUnit:
+        return tuning.CompiledUnit(path, symbol, template("symofros_model.h"), record.hash)
+
+    assert tuning.fastest(paths, load) == found[("-O2",)][0]
