@@ -94,6 +94,8 @@ class PackPlan:
 
     def _choose(self, wanted: set[int]) -> None:
         for pack in self._graph.packs:
+            if not self._are_known(factor for factor, _ in pack.terms):
+                continue  # Parameters alone determine it, in lanes that this function does not need.
             right = {lane for lane in pack.literal if self._are_known(operand.lanes[lane] for _, operand in pack.terms)}
             # The lanes' nodes, less those that lanes which scalars give are made of.
             given = [edge for lane, edge in enumerate(pack.lanes) if lane not in right and self._are_known((edge,))]

@@ -118,3 +118,14 @@ def test_nothing_is_formed_for_two_lanes() -> None:
     wanted = needed_nodes(g, pack.lanes[:2])
     assert not PackPlan(g, wanted, {}, pack.lanes[:2]).home
     assert PackPlan(g, needed_nodes(g, pack.lanes[:3]), {}, pack.lanes[:3]).home
+
+
+def test_what_only_parameters_determine_stays_outside() -> None:
+    """A factor that is not among the given values can't be read: its pack is left to scalars."""
+    g = Graph()
+    c, x = g.input("par", 0), [g.input("x", i) for i in range(WIDTH)]
+    _, pack = combined(g, [(g.mul(c, c), (ONE, Pack(tuple(x))))])
+    wanted = [abs(edge) for edge in pack.lanes]
+    squared = abs(g.mul(c, c))
+    assert PackPlan(g, wanted, {squared}, wanted).home
+    assert not PackPlan(g, wanted, {}, wanted).home
