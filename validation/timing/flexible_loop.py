@@ -28,7 +28,7 @@ class GeneratedLoop:
     """
 
     def __init__(self, system: sf.System, functions: Sequence[str], q: Array, v: Array) -> None:
-        path, symbol = sf.compile_library(system, sf.Options(functions=tuple(functions)))
+        path, symbol = sf.compile_library(system, sf.Options(functions=tuple(functions), batch="loop"))
         header = (files("symofros") / "codegen/templates/symofros_model.h").read_text(encoding="utf-8")
         self._ffi: Any = cffi.FFI()
         self._ffi.cdef(header.partition("/* cdef begin: what bindings read */")[2].partition("/* cdef end */")[0])
