@@ -15,10 +15,11 @@ import typer
 from symofros.atomic import write_atomically
 from validation.accuracy import command as accuracy
 from validation.adapters import ROUTES
-from validation.campaign import run
+from validation.campaigns import command as campaign
 from validation.cases import Case, named, standard_set
 from validation.check import ModelResult, Settings
 from validation.console import output, progress, show
+from validation.crew import run
 from validation.junit import to_junit
 from validation.passes import command as passes
 from validation.record import Record, make_record, summary
@@ -150,6 +151,7 @@ def verdict(record: Record) -> Exit:
 
 
 accuracy.register(app)
+campaign.register(app)
 exports_report.register(app)
 fuzz_report.register(app)
 mutation_report.register(app)
