@@ -20,8 +20,10 @@ from validation.cases import Case, named, standard_set
 from validation.check import ModelResult, Settings
 from validation.console import output, progress, show
 from validation.crew import run
+from validation.dashboard import command as dashboard
 from validation.junit import to_junit
 from validation.passes import command as passes
+from validation.provenance import build
 from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
@@ -138,7 +140,7 @@ def _checked(cases: list[Case], settings: Settings, workers: int) -> Record:
             run(cases, settings, workers, done)
     finished = [results[case.label] for case in cases if case.label in results]
     unfinished = [case.label for case in cases if case.label not in results]
-    return make_record(settings, finished, time.perf_counter() - start, unfinished)
+    return make_record(settings, finished, time.perf_counter() - start, unfinished, build())
 
 
 def verdict(record: Record) -> Exit:
@@ -152,6 +154,7 @@ def verdict(record: Record) -> Exit:
 
 accuracy.register(app)
 campaign.register(app)
+dashboard.register(app)
 exports_report.register(app)
 fuzz_report.register(app)
 mutation_report.register(app)

@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 import symofros as sf
-from validation.campaigns import provenance
+from validation import provenance
 from validation.campaigns.errors import PlanError, StoreError, Unfinished
 from validation.campaigns.plan import Plan, SweepPlan, as_text, cases, identities, make, plan_hash
 from validation.campaigns.runner import Pool, run
@@ -93,10 +93,12 @@ def _complete(store: Store, plan: Plan, pool: Pool) -> None:
     if failures:
         raise Unfinished(store.folder, list(failures.values()))
     manifest = manifest_of(store.folder)
-    kept = {name: manifest[name] for name in ("hash", "plan", "begun")}
-    store.merge(
-        len(wanted), {**kept, "identities": manifest["models"], **provenance.facts(), "effort": effort(store.journal())}
-    )
+    told = {
+        **{name: manifest[name] for name in ("hash", "plan", "begun")}, "identities": manifest["models"],
+        "effort": effort(store.journal()), "versions": provenance.versions("distributed", "pyarrow"),
+        **provenance.stamp(),
+    }  # fmt: skip
+    store.merge(len(wanted), told)
 
 
 @contextmanager

@@ -13,6 +13,9 @@ import pyarrow.compute as pc
 from validation.campaigns.sweep import DONE
 
 _GROUP = ["model", "engine", "quantity"]
+# Of the batch with the largest error.
+_OF_WORST = ("error", "batch", "worst_state", "scale", "tolerance")
+_NULLS = pc.ScalarAggregateOptions(skip_nulls=False)
 _SHOWN = 20
 
 
@@ -46,12 +49,11 @@ def checked(rows: pa.Table) -> dict[str, Any]:
     ranked = judged.append_column("rank", pc.fill_null(judged["error"], math.inf))
     ordered = ranked.sort_by([("rank", "descending"), ("batch", "ascending")])
     sums = ordered.group_by(_GROUP, use_threads=False).aggregate(
-        [("agree", "all"), ("states", "sum"), ("error", "first"), ("batch", "first"), ("worst_state", "first"),
-         ("scale", "first"), ("tolerance", "first")]
-    )  # fmt: skip
+        [("agree", "all"), ("states", "sum"), *((name, "first", _NULLS) for name in _OF_WORST)]
+    )
     groups = [
         {**{name: row[name] for name in _GROUP}, "agree": row["agree_all"], "states": row["states_sum"],
-         **{name: row[f"{name}_first"] for name in ("error", "batch", "worst_state", "scale", "tolerance")}}
+         **{name: row[f"{name}_first"] for name in _OF_WORST}}
         for row in sums.to_pylist()
     ]  # fmt: skip
     groups.sort(key=lambda row: [row[name] for name in _GROUP])
@@ -104,7 +106,7 @@ def markdown(data: Mapping[str, Any]) -> str:
     lines += ["", f"Plan {data['hash']}; sessions: {spent['sessions']}, {spent['seconds']:.0f} s{rate}; "
               f"{spent['executions']} executions, {len(spent['repeated'])} batches begun twice; "
               f"{data['date']}; {', '.join(data['machine'].values())}; flags {data['flags']}; {versions}"
-              f"{'; revision ' + data['commit'] if data['commit'] else ''}.", "",
+              f"{'; revision ' + data['revision'] if data['revision'] else ''}.", "",
               "Every row: results.parquet. Written by `python -m validation campaign`.", ""]  # fmt: skip
     return "\n".join(lines)
 

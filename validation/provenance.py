@@ -15,8 +15,6 @@ from validation.record import machine
 
 # Whatever of these is installed has a say in the numbers.
 _NUMBERS = ("numpy", "scipy", "pin", "mujoco", "exudyn", "casadi", "example-robot-data")
-# These carry them only.
-_TOOLS = ("distributed", "pyarrow")
 
 
 def versions(*tools: str) -> dict[str, str]:
@@ -30,13 +28,16 @@ def versions(*tools: str) -> dict[str, str]:
     return found
 
 
-def facts() -> dict[str, Any]:
-    """Of this machine and this moment."""
+def stamp() -> dict[str, Any]:
+    """What every report states besides versions: machine, how C is compiled, revision of the source, date."""
+    return {"machine": machine(), **build(), "date": now()}
+
+
+def build() -> dict[str, str]:
+    """Flags and compiler of the generated C, and the revision of the source that makes it."""
     toolchain = find_toolchain()
-    return {
-        "versions": versions(*_TOOLS), "machine": machine(), "flags": " ".join(DEFAULT_FLAGS),
-        "compiler": toolchain.identity.partition(" ")[2] if toolchain else "none", "commit": commit(), "date": now(),
-    }  # fmt: skip
+    compiler = toolchain.identity.partition(" ")[2] if toolchain else "none"
+    return {"flags": " ".join(DEFAULT_FLAGS), "compiler": compiler, "revision": revision()}
 
 
 def now() -> str:
@@ -44,7 +45,7 @@ def now() -> str:
     return datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")
 
 
-def commit(folder: Path = Path(sf.__file__).parent) -> str:
+def revision(folder: Path = Path(sf.__file__).parent) -> str:
     """The source's revision, "+" where files differ from it; empty where there is no repository."""
     try:
         said = [
