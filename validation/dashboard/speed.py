@@ -73,9 +73,9 @@ def rollouts(data: Data) -> Card:
     rows = [row for row in data["rollouts"] if "MuJoCo" not in row["who"]]
     fastest = min(rows, key=lambda row: row["nanoseconds"][0])
     best = max(rows, key=lambda row: row["ratio"])
-    rate = 1e3 / fastest["nanoseconds"][0]
+    rate, motions = 1e3 / fastest["nanoseconds"][0], counted(data["trajectories"], "motion")
     return Card(
-        f"{counted(data['trajectories'], 'motion')} of a 7-joint arm at once: {rate:.2g} million steps a second and core.",
+        f"{motions} of a 7-joint arm at once: {rate:.2g} million steps a second and core.",
         None,
         (Fact(f"{fastest['nanoseconds'][0]:.0f} ns", f"a step: {fastest['scene']}, {fastest['how']}"),
          Fact(times(best["ratio"]), f"mujoco.rollout's time over ours: {best['scene']}, {best['how']}")),

@@ -17,6 +17,7 @@ from validation.campaigns.runner import Pool, execute, run
 from validation.campaigns.store import Store
 from validation.campaigns.summary import checked, effort, headline, markdown, swept
 from validation.campaigns.sweep import DONE
+from validation.campaigns.tasks import CHECKED
 
 MANIFEST: dict[str, Any] = {"hash": "abc", "plan": {}, "models": {}, "versions": {}, "begun": ""}
 
@@ -101,9 +102,13 @@ def row(**given: Any) -> dict[str, Any]:
     return base | given
 
 
+def table(*rows: dict[str, Any]) -> pa.Table:
+    return pa.Table.from_pylist(list(rows), CHECKED)
+
+
 def test_a_summary_keeps_the_worst_state_of_all_batches() -> None:
     rows = [row(), row(batch=1, error=4e-14, worst_state=7, scale=5.0), row(batch=2, error=1e-14)]
-    data = checked(pa.Table.from_pylist(rows))
+    data = checked(table(*rows))
     (group,) = data["groups"]
     assert data["ok"] and data["states"] == 30 and group["states"] == 30
     assert (group["error"], group["batch"], group["worst_state"], group["scale"]) == (4e-14, 1, 7, 5.0)
@@ -111,16 +116,16 @@ def test_a_summary_keeps_the_worst_state_of_all_batches() -> None:
 
 def test_what_is_no_number_is_the_worst() -> None:
     rows = [row(), row(batch=1, error=None, agree=False, status="disagree", worst_state=5)]
-    data = checked(pa.Table.from_pylist(rows))
+    data = checked(table(*rows))
     (group,) = data["groups"]
     assert not data["ok"] and group["error"] is None and group["worst_state"] == 5
     assert "1 of 1 comparisons disagree" in headline(data | {"kind": "check"})
 
 
 def test_agreement_with_nobody_is_none() -> None:
-    assert not checked(pa.Table.from_pylist([row(status="unsupported", agree=None, error=None)]))["ok"]
+    assert not checked(table(row(status="unsupported", agree=None, error=None)))["ok"]
     failed = [row(), row(batch=1, status="failed", agree=None, error=None, engine="any", quantity="all", note="none")]
-    assert not checked(pa.Table.from_pylist(failed))["ok"]
+    assert not checked(table(*failed))["ok"]
 
 
 def test_a_sweep_counts_its_failures() -> None:
