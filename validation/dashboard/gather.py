@@ -72,7 +72,7 @@ def gather(folder: Path, installed: Mapping[str, str], today: datetime.date) -> 
 
 def _entry(folder: Path, name: str, topic: Topic, installed: Mapping[str, str], today: datetime.date) -> Entry:
     nowhere = Origin("", "", "", {})
-    pages = [f"{name}.{kind}" for kind in ("html", "md") if (folder / f"{name}.{kind}").is_file()]
+    pages = [f"{name}.{kind}" for kind in ("html", "md", "json") if (folder / f"{name}.{kind}").is_file()]
     page = pages[0] if pages else ""
     try:
         data = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
