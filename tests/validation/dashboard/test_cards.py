@@ -66,7 +66,7 @@ def test_a_good_report(name: str, data: dict[str, Any], says: str) -> None:
             {"ok": False, "studies": {"one": STUDY | {"ok": False, "checks": [{"ok": False}]}}},
             "1 out of bounds",
         ),
-        ("stability", {"ok": False, "scenes": {"one": SCENE | MISSED}}, "1 out of bounds"),
+        ("stability", {"ok": False, "scenes": {"one": SCENE | {"checks": [{"ok": False}]}}}, "1 out of bounds"),
     ],
 )
 def test_a_bad_report(name: str, data: dict[str, Any], says: str) -> None:
