@@ -13,6 +13,8 @@ from validation.page import short
 
 # Values over this many times the smallest are better seen on a logarithmic axis.
 _WIDE = 1e3
+# Curves of a chart; the whole report shows the rest.
+_MOST = 6
 
 
 @dataclass(frozen=True)
@@ -59,22 +61,20 @@ def bounded(checks: Sequence[Mapping[str, Any]]) -> tuple[str, bool]:
     return ("all within their bounds" if not missed else f"{missed} out of bounds"), not missed
 
 
-def chart_of(data: Mapping[str, Any], title: str = "", most: int = 4) -> Chart:
+def chart_of(data: Mapping[str, Any]) -> Chart:
     """A chart as reports keep it in JSON; one of an older layout gets the axes that suit its values.
 
     Args:
         data: As `page.figure_data` wrote it.
-        title: Instead of its own.
-        most: How many of its curves.
     """
-    curves = data["curves"][:most]
+    curves = data["curves"][:_MOST]
     log = data.get("log") or [_wide(curves, "x"), _wide(curves, "y")]
     shown = [
         Curve(curve["label"], _numbers(curve["x"]), _numbers(curve["y"]), k, _kind(curve))
         for k, curve in enumerate(curves)
     ]
     marks = tuple(Mark(label, at) for label, at in data.get("marks", {}).items())
-    return Chart(title or data["title"], data["x"], data["y"], tuple(shown), marks, bool(log[0]), bool(log[1]))
+    return Chart(data["title"], data["x"], data["y"], tuple(shown), marks, bool(log[0]), bool(log[1]))
 
 
 def _kind(curve: Mapping[str, Any]) -> Kind:

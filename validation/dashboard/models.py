@@ -94,7 +94,7 @@ def _charts(data: Any) -> Iterator[Chart]:
     """Whatever charts the report keeps, wherever."""
     if isinstance(data, Mapping):
         if {"title", "x", "y", "curves"} <= set(data):
-            yield chart_of(data, most=6)
+            yield chart_of(data)
             return
         data = list(data.values())
     if isinstance(data, list):

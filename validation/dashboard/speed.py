@@ -25,19 +25,21 @@ def timing(data: Data) -> Card:
         if key not in best or row["theirs"][1] < best[key]["theirs"][1]:
             best[key] = row
     peers = list(dict.fromkeys(row["peer"] for row in best.values()))
-    facts = []
+    facts, medians = [], []
     for peer in peers:
         ratios = [row["ratio"] for row in best.values() if row["peer"] == peer]
-        span = f"{times(min(ratios))} to {times(max(ratios))}"
         middle = times(float(np.median(ratios)))
+        medians.append(f"{peer} {middle}")
+        span = f"{times(min(ratios))} to {times(max(ratios))}"
         facts.append(Fact(middle, f"{peer}'s time over ours, median of {len(ratios)}; {span}"))
     failed = len(data.get("failed") or data.get("failures") or ())
     functions = {row["function"] for row in best.values()}
-    said = f"{counted(len(best), 'race')} over {counted(len({row['model'] for row in best.values()}), 'model')} and " \
-           f"{counted(len(functions), 'function')} against {', '.join(peers)}"  # fmt: skip
+    sizes = (len(best), "race"), (len({row["model"] for row in best.values()}), "model"), (len(functions), "function")
+    races, models, of_them = (counted(number, noun) for number, noun in sizes)
     rest = f"; {failed} could not be timed" if failed else ""
+    said = f"{races} over {models} and {of_them}; median of their time over ours: {', '.join(medians)}{rest}."
     charts = tuple(_growth(list(best.values()), name) for name in _TELLING if name in functions)[:2]
-    return Card(f"{said}{rest}.", None if not failed else False, tuple(facts), charts)
+    return Card(said, None if not failed else False, tuple(facts), charts)
 
 
 def _growth(rows: Sequence[Data], function: str) -> Chart:
