@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+import dask
 import distributed
 
 from validation.campaigns.store import Store
@@ -24,6 +25,8 @@ from validation.campaigns.tasks import Task
 
 # Batches handed out ahead of each worker: enough that none waits, few enough that little is queued.
 AHEAD = 2
+# A batch is given up when so many workers have died under it: one may be killed by chance, or by hand.
+DEATHS = 2
 _PATIENCE = 60.0  # [s] for the first worker of a cluster.
 
 
@@ -57,6 +60,7 @@ class Pool:
         page = None if self.dashboard is None else f"127.0.0.1:{self.dashboard}"
         # One thread each: engines and our own scratch are not asked whether they share a process.
         with (
+            dask.config.set({"distributed.scheduler.allowed-failures": DEATHS - 1}),
             distributed.LocalCluster(
                 n_workers=self.workers, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=page,
                 worker_dashboard_address=None, silence_logs=logging.CRITICAL,
@@ -88,27 +92,50 @@ def run(store: Store, tasks: Sequence[Task], pool: Pool, done: Callable[[Task], 
         Batch -> why it could not be done: it killed its worker each time, or raised what no row can say.
     """
     failures: dict[int, str] = {}
-    waiting, by_key = iter(tasks), {f"{store.hash}-{task.number}": task for task in tasks}
     with pool.client() as client:
-
-        def submit(task: Task) -> distributed.Future:
-            key = f"{store.hash}-{task.number}"
-            return client.submit(execute, task, store.folder.resolve(), store.hash, key=key)
-
         width = AHEAD * sum(client.nthreads().values())
-        active = distributed.as_completed([submit(task) for task in islice(waiting, width)])
-        for future in active:
-            task = by_key[future.key]
-            if future.status == "finished":
-                part = future.result()
-                if store.part(task.number) is None:
-                    store.write(task.number, part)
-                done(task)
+        suspects: list[Task] = []
+        for task, error in _outcomes(client, store, tasks, width):
+            if isinstance(error, distributed.KilledWorker):
+                suspects.append(task)
+            elif error is not None:
+                failures[task.number] = reason(task, error)
             else:
-                failures[task.number] = reason(task, future.exception())
-            for following in islice(waiting, 1):
-                active.add(submit(following))
+                done(task)
+        # Whoever waited behind a batch that kills its worker is under suspicion, too; alone, each shows what it is.
+        for suspect in suspects:
+            for task, error in _outcomes(client, store, [suspect], 1):
+                if error is not None:
+                    failures[task.number] = reason(task, error)
+                else:
+                    done(task)
     return failures
+
+
+def _outcomes(
+    client: distributed.Client, store: Store, tasks: Sequence[Task], width: int
+) -> Iterator[tuple[Task, BaseException | None]]:
+    """Each batch when its part is written, or with what went wrong; `width` at most are handed out at a time."""
+    waiting, by_key = iter(tasks), {f"{store.hash}-{task.number}": task for task in tasks}
+
+    def submit(task: Task) -> distributed.Future:
+        key = f"{store.hash}-{task.number}"
+        return client.submit(execute, task, store.folder.resolve(), store.hash, key=key)
+
+    active = distributed.as_completed([submit(task) for task in islice(waiting, width)])
+    for future in active:
+        task = by_key[future.key]
+        error = None
+        if future.status == "finished":
+            part = future.result()
+            if store.part(task.number) is None:
+                store.write(task.number, part)
+        else:
+            error = future.exception()
+        future.release()  # Else a batch that failed could not be tried again.
+        yield task, error
+        for following in islice(waiting, 1):
+            active.add(submit(following))
 
 
 def execute(task: Task, folder: Path, hash: str) -> bytes:
