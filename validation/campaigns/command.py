@@ -14,6 +14,7 @@ from symofros.atomic import write_atomically
 from validation.campaigns.errors import PlanError, Unfinished
 from validation.campaigns.plan import make, read
 from validation.cases import standard_set
+from validation.page import compact
 
 STATES = 100_000
 
@@ -105,7 +106,7 @@ def _tell(data: dict[str, Any], folder: Path, report: Path | None, as_json: bool
 
     for place in filter(None, (folder, report)):
         place.mkdir(parents=True, exist_ok=True)
-        write_atomically(place / "campaign.json", json.dumps(data, indent=1, allow_nan=False) + "\n")
+        write_atomically(place / "campaign.json", compact(data))
         write_atomically(place / "campaign.md", markdown(data))
     typer.echo(json.dumps(data, allow_nan=False) if as_json else markdown(data))
     raise typer.Exit(0 if data["ok"] else 1)
