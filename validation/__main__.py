@@ -15,12 +15,15 @@ import typer
 from symofros.atomic import write_atomically
 from validation.accuracy import command as accuracy
 from validation.adapters import ROUTES
-from validation.campaign import run
+from validation.campaigns import command as campaign
 from validation.cases import Case, named, standard_set
 from validation.check import ModelResult, Settings
 from validation.console import output, progress, show
+from validation.crew import run
+from validation.dashboard import command as dashboard
 from validation.junit import to_junit
 from validation.passes import command as passes
+from validation.provenance import build
 from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
@@ -137,7 +140,7 @@ def _checked(cases: list[Case], settings: Settings, workers: int) -> Record:
             run(cases, settings, workers, done)
     finished = [results[case.label] for case in cases if case.label in results]
     unfinished = [case.label for case in cases if case.label not in results]
-    return make_record(settings, finished, time.perf_counter() - start, unfinished)
+    return make_record(settings, finished, time.perf_counter() - start, unfinished, build())
 
 
 def verdict(record: Record) -> Exit:
@@ -150,6 +153,8 @@ def verdict(record: Record) -> Exit:
 
 
 accuracy.register(app)
+campaign.register(app)
+dashboard.register(app)
 exports_report.register(app)
 fuzz_report.register(app)
 mutation_report.register(app)

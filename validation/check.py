@@ -19,7 +19,7 @@ from validation.adapters import compiled as our_c
 from validation.adapters.compiled import SymofrosEngine
 from validation.assembly import Assembly, assemble
 from validation.closed import ConstrainedEngine, condition, joined_frames, of_clear_rank
-from validation.compare import Comparison, Scales, compute, judge, state_errors, typical_scales
+from validation.compare import Comparison, Scales, compute, judge, scaled_errors, typical_scales
 from validation.frames import chosen_frames
 from validation.geometry import Array
 from validation.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
@@ -49,11 +49,14 @@ class Settings:
         states: Random states a model.
         seed: Of the states.
         engines: Names of the engines to compare with; None: all.
+        first: Number of the first state, where this is a part of a campaign. What does not depend on the number of
+            states, free motions and orders of truncation, belongs to part 0.
     """
 
     states: int = DEFAULT_STATES
     seed: int = 0
     engines: tuple[str, ...] | None = None
+    first: int = 0
 
     def routes(self) -> list[str]:
         """The engines asked for, in the order of reports."""
@@ -125,7 +128,8 @@ class _Check:
         start = time.perf_counter()
         self.ours = our_c.build(self.subject)
         self.seconds["symofros"] = time.perf_counter() - start
-        sampled = sample(self.assembly, self.ours.model.nu, self.settings.states, self.settings.seed)
+        asked = self.settings
+        sampled = sample(self.assembly, self.ours.model.nu, asked.states, asked.seed, asked.first)
         if self.subject.system.constraints:
             sampled = regular(self.ours, sampled)
         self.sides = Sides(self.subject, self.assembly, self.ours, sampled)
@@ -139,9 +143,10 @@ class _Check:
                 self.rows.append(Comparison(self.subject.label, "symofros", name, "unsupported", note=reason))
         for quantity in self._quantities():
             self._compare(quantity, engines)
-        if self._can_be_solved() and not self.subject.system.constraints:
-            self._fall(engines)
-        self._retained()
+        if asked.first == 0:
+            if self._can_be_solved() and not self.subject.system.constraints:
+                self._fall(engines)
+            self._retained()
         self._second_opinion()
         return self._result(engines)
 
@@ -236,13 +241,14 @@ class _Check:
         reference = self._value(engine, quantity, states)
         self.seconds[engine.name] += time.perf_counter() - start
         quantity = replace(quantity, tolerance=max(quantity.tolerance, self.sides.tolerance(engine)))
-        errors = state_errors(quantity, ours, reference, scales)
-        row = judge(self.subject.label, engine.name, quantity, errors)
+        errors, sizes = scaled_errors(quantity, ours, reference, scales)
+        row = judge(self.subject.label, engine.name, quantity, errors, sizes=sizes)
         condition = self._condition_of(engine)
         if quantity.name in SOLVED and not row.ok and EPS * condition > quantity.tolerance:
             # No solution in doubles is better than eps cond(M): where that is in the way, no more is asked for.
             note = f"condition {condition:.1e} allows no better"
-            row = judge(self.subject.label, engine.name, replace(quantity, tolerance=EPS * condition), errors, note)
+            widened = replace(quantity, tolerance=EPS * condition)
+            row = judge(self.subject.label, engine.name, widened, errors, note, sizes)
         return row
 
     def _condition_of(self, engine: Engine) -> float:

@@ -38,6 +38,7 @@ class Comparison:
         counts: States in each bin of BIN_EDGES, those that agree exactly first and those beyond the last edge last.
         note: The reason of what is unsupported or failed; else a remark.
         extra: Further figures, by name.
+        scale: What the largest error is relative to, in the unit of the quantity.
     """
 
     model: str
@@ -52,6 +53,7 @@ class Comparison:
     counts: tuple[int, ...] = ()
     note: str = ""
     extra: dict[str, float] = field(default_factory=dict)
+    scale: float | None = None
 
     @property
     def ok(self) -> bool:
@@ -95,12 +97,23 @@ def state_errors(quantity: Quantity, value: Array, reference: Array, scales: Sca
     Raises:
         ValueError: The two do not have the same shape.
     """
+    return scaled_errors(quantity, value, reference, scales)[0]
+
+
+def scaled_errors(quantity: Quantity, value: Array, reference: Array, scales: Scales) -> tuple[Array, Array]:
+    """The error of each state (N,), and what it is relative to (N,).
+
+    Raises:
+        ValueError: The two do not have the same shape.
+    """
     if value.shape != reference.shape:
         raise ValueError(f"{quantity.name}: shape {value.shape} against {reference.shape}")
     size = _largest(np.abs(reference), quantity.axes)
     difference = _largest(np.abs(value - reference), quantity.axes)
-    errors = difference / np.maximum(size, _floor(quantity, size, scales))
-    return np.asarray(errors.reshape(len(errors), -1).max(axis=1))
+    sizes = np.maximum(size, _floor(quantity, size, scales)).reshape(len(size), -1)
+    errors = difference.reshape(sizes.shape) / sizes
+    worst = errors.argmax(axis=1)[:, None]  # The first NaN, where there is one.
+    return np.take_along_axis(errors, worst, 1)[:, 0], np.take_along_axis(sizes, worst, 1)[:, 0]
 
 
 def _largest(x: Array, axes: int) -> Array:
@@ -123,15 +136,27 @@ def _floor(quantity: Quantity, size: Array, scales: Scales) -> float:
     return max(typical, natural) or 1.0
 
 
-def judge(model: str, engine: str, quantity: Quantity, errors: Array, note: str = "") -> Comparison:
-    """The verdict over a batch of states; a NaN disagrees."""
+def judge(
+    model: str, engine: str, quantity: Quantity, errors: Array, note: str = "", sizes: Array | None = None
+) -> Comparison:
+    """The verdict over a batch of states; a NaN disagrees.
+
+    Args:
+        model: Label of the model.
+        engine: Whose results ours were compared with.
+        quantity: What was compared.
+        errors: Of each state (N,).
+        note: A remark.
+        sizes: What the errors are relative to (N,), if it is to be kept.
+    """
     finite = bool(np.all(np.isfinite(errors)))
     worst = float(errors.max()) if finite else None
     agrees = worst is not None and worst <= quantity.tolerance
+    at = int(np.argmax(np.where(np.isfinite(errors), errors, np.inf)))
     return Comparison(
         model, engine, quantity.name, "agree" if agrees else "disagree", len(errors), worst, quantity.tolerance,
-        float(np.median(errors)) if finite else None, int(np.argmax(np.where(np.isfinite(errors), errors, np.inf))),
-        count(errors), note if finite else "not a finite number in some state",
+        float(np.median(errors)) if finite else None, at, count(errors),
+        note if finite else "not a finite number in some state", scale=None if sizes is None else float(sizes[at]),
     )  # fmt: skip
 
 

@@ -13,8 +13,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from validation.campaign import Report
 from validation.check import ModelResult
+from validation.crew import Report
 from validation.record import Record
 from validation.tables import BRIEF, Cell, Line, by_engine, by_model, failures, headline, unsupported
 

@@ -17,6 +17,7 @@ import numpy as np
 import symofros as sf
 from symofros.atomic import write_atomically
 from validation.findings import Chart, Check, Figure
+from validation.provenance import stamp
 from validation.record import machine
 
 # Digits of a curve's points in JSON: more than a figure shows.
@@ -60,7 +61,7 @@ class Run(Protocol):
 def run_data(run: Run, *distributions: str) -> dict[str, Any]:
     """How a run went and on what, for JSON."""
     return {"ok": run.ok, "quick": run.quick, "seconds": round(run.seconds, 1), "failures": run.failures,
-            "versions": versions(*distributions), "machine": machine()}  # fmt: skip
+            "versions": versions(*distributions), **stamp()}  # fmt: skip
 
 
 def write_pages(folder: Path, name: str, data: str, rendered: Callable[[str], str]) -> Path:
@@ -119,8 +120,11 @@ def figure_data(figure: Figure) -> dict[str, Any]:
 
 
 def _chart(chart: Chart) -> dict[str, Any]:
-    curves = [{"label": curve.label, "x": rounded(curve.x), "y": rounded(curve.y)} for curve in chart.curves]
-    return {"title": chart.title, "x": chart.x, "y": chart.y, "curves": curves,
+    curves = [
+        {"label": curve.label, "kind": curve.kind, "x": rounded(curve.x), "y": rounded(curve.y)}
+        for curve in chart.curves
+    ]
+    return {"title": chart.title, "x": chart.x, "y": chart.y, "log": [chart.log_x, chart.log_y], "curves": curves,
             "marks": {mark.label: mark.at for mark in chart.marks}}  # fmt: skip
 
 

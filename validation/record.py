@@ -7,8 +7,8 @@ import json
 import math
 import os
 import platform
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -34,6 +34,7 @@ class Record:
         versions: Package -> version.
         machine: What it ran on.
         unfinished: Models that were asked for, but the run was interrupted before.
+        build: Flags and compiler of the C, revision of the source.
     """
 
     settings: Settings
@@ -43,6 +44,7 @@ class Record:
     versions: dict[str, str]
     machine: dict[str, str]
     unfinished: tuple[str, ...] = ()
+    build: dict[str, str] = field(default_factory=dict)
 
     @property
     def ok(self) -> bool:
@@ -65,8 +67,9 @@ class Record:
 
 
 def make_record(
-    settings: Settings, models: Sequence[ModelResult], seconds: float, unfinished: Sequence[str] = ()
-) -> Record:
+    settings: Settings, models: Sequence[ModelResult], seconds: float, unfinished: Sequence[str] = (),
+    build: Mapping[str, str] | None = None,
+) -> Record:  # fmt: skip
     """Add to results what is needed to judge them later."""
     versions = {"symofros": sf.__version__, "python": platform.python_version(), "numpy": np.__version__}
     for model in models:
@@ -75,7 +78,7 @@ def make_record(
     if robots:
         versions["example-robot-data"] = robots
     now = datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")
-    return Record(settings, tuple(models), seconds, now, versions, machine(), tuple(unfinished))
+    return Record(settings, tuple(models), seconds, now, versions, machine(), tuple(unfinished), dict(build or {}))
 
 
 _OURS = frozenset({"interpreted", "description"})
@@ -140,6 +143,7 @@ def to_json(record: Record) -> str:
         "settings": asdict(record.settings),
         "versions": record.versions,
         "machine": record.machine,
+        **record.build,
         "models": [
             {
                 "model": model.label, "hash": model.hash, **model.sizes, "frames": model.frames, "notes": model.notes,

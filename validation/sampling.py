@@ -24,7 +24,7 @@ MANY_TURNS = 100.0  # [rad]
 FAST = 20.0  # [rad/s, m/s]
 
 
-def sample(assembly: Assembly, nu: int, count: int = DEFAULT_STATES, seed: int = 0) -> States:
+def sample(assembly: Assembly, nu: int, count: int = DEFAULT_STATES, seed: int = 0, first: int = 0) -> States:
     """Random states, the first few of them special.
 
     Args:
@@ -32,11 +32,13 @@ def sample(assembly: Assembly, nu: int, count: int = DEFAULT_STATES, seed: int =
         nu: Number of inputs.
         count: How many states; the special ones come first and count.
         seed: Any number.
+        first: Number of the first state, where these are a later part of many: drawn apart, none of them special.
 
     Returns:
         States without forces: `with_forces` adds them.
     """
-    rng = np.random.default_rng([seed, zlib.crc32(assembly.name.encode())])
+    part = [first] if first else []
+    rng = np.random.default_rng([seed, zlib.crc32(assembly.name.encode()), *part])
     q = np.empty((count, assembly.nq))
     for mover in assembly.movers:
         if not mover.joint.prescribed:
@@ -44,7 +46,7 @@ def sample(assembly: Assembly, nu: int, count: int = DEFAULT_STATES, seed: int =
     v = rng.uniform(-SPEED, SPEED, (count, assembly.nv))
     a = rng.uniform(-ACCELERATION, ACCELERATION, (count, assembly.nv))
     u = rng.uniform(-INPUT, INPUT, (count, nu))
-    for k, make_special in enumerate(_SPECIAL[:count]):
+    for k, make_special in enumerate(() if first else _SPECIAL[:count]):
         make_special(assembly, q[k], v[k])
     none = np.zeros((count, assembly.nv))
     return States(q, v, a, u, none, none)

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from validation.compare import BIN_EDGES, Scales, count, judge, state_errors
+from validation.compare import BIN_EDGES, Scales, count, judge, scaled_errors, state_errors
 from validation.quantities import QUANTITIES, SMALL
 
 ONES = Scales(inertia=1.0, energy=1.0)
@@ -82,3 +82,13 @@ def test_states_are_counted_by_decade() -> None:
     assert sum(counts) == len(errors) and counts[0] == 2 and counts[-1] == 2
     k = next(k for k, n in enumerate(counts) if k and n)
     assert BIN_EDGES[k - 1] <= 1.5e-15 < BIN_EDGES[k]
+
+
+def test_the_scale_of_an_error_is_that_of_its_worst_frame() -> None:
+    reference = np.array([[[2.0, 1.0], [8.0, 1.0]], [[4.0, 0.0], [1.0, 0.0]]])
+    value = reference + np.array([[[0.2, 0.0], [0.4, 0.0]], [[0.1, 0.0], [np.nan, 0.0]]])
+    errors, sizes = scaled_errors(QUANTITIES["frame_velocity"], value, reference, ONES)
+    assert errors[0] == pytest.approx(0.1) and np.isnan(errors[1])
+    assert sizes.tolist() == [2.0, 1.0]
+    row = judge("m", "e", QUANTITIES["bias"], np.array([1e-15, 3e-15]), sizes=np.array([5.0, 7.0]))
+    assert (row.worst_state, row.scale) == (1, 7.0)

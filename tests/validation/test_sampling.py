@@ -44,3 +44,10 @@ def test_special_states_come_first() -> None:
 def test_fewer_states_than_special_ones() -> None:
     assert len(sample(ASSEMBLY, 0, 1)) == 1
     assert len(sample(ASSEMBLY, 0, 4)) == 4
+
+
+def test_a_later_part_has_states_of_its_own_and_no_special_ones() -> None:
+    whole, part, again = sample(ASSEMBLY, 0, 20), sample(ASSEMBLY, 0, 20, first=20), sample(ASSEMBLY, 0, 20, first=20)
+    assert np.array_equal(part.q, again.q) and np.array_equal(part.v, again.v)
+    assert not np.isclose(part.v, whole.v).any() and (part.v != 0.0).all()
+    assert not np.isclose(part.v, sample(ASSEMBLY, 0, 20, first=40).v).any()

@@ -11,6 +11,8 @@ from typing import Annotated
 import typer
 
 from symofros.atomic import write_atomically
+from validation.page import versions
+from validation.provenance import stamp
 from validation.record import machine
 from validation.studies.exports import CALLS, ExportStudy, run_study
 
@@ -35,7 +37,7 @@ def command(
 ) -> None:
     """Time calls of an exported seven-joint arm: C, Python, MEX, FMU; and the worst case in C."""
     study = run_study(calls)
-    data = {"machine": machine(), **asdict(study)}
+    data = {"versions": versions(), **stamp(), **asdict(study)}
     report.mkdir(parents=True, exist_ok=True)
     write_atomically(report / "exports.json", json.dumps(data, indent=1) + "\n")
     text = "\n".join(_lines(study)) + "\n"

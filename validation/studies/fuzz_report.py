@@ -18,7 +18,7 @@ from rich.progress import Progress
 
 import symofros as sf
 from symofros.atomic import write_atomically
-from validation.record import machine
+from validation.provenance import stamp
 from validation.studies.fuzz import COMPILED, SLOWEST, FuzzResult, fuzz
 
 INPUTS = 120_000
@@ -73,7 +73,7 @@ def as_data(result: FuzzResult, seed: int, seconds: float) -> dict[str, Any]:
         "seconds": round(seconds, 1), "peak_memory_mib": round(peak), "kinds": kinds, "faults": faults,
         "versions": {"symofros": sf.__version__, "python": platform.python_version(),
                      **{name: metadata.version(name) for name in _READERS}},
-        "machine": machine(),
+        **stamp(),
     }  # fmt: skip
 
 

@@ -17,6 +17,8 @@ from rich.table import Table
 import reference_models
 from symofros.atomic import write_atomically
 from validation.cases import standard_set
+from validation.page import versions
+from validation.provenance import stamp
 from validation.studies.mutation import MutationScore, mutate
 
 # Models that an independent engine can represent whole, small and large, fixed and floating.
@@ -88,6 +90,7 @@ def as_data(scores: Sequence[MutationScore], faults: int, seed: int, seconds: fl
     return {
         "ok": all(score.ok for score in scores), "faults_per_model": faults, "seed": seed, "seconds": round(seconds, 1),
         "planted": sum(row["planted"] for row in rows), "models": rows, "kinds": dict(sorted(kinds.items())),
+        "versions": versions("pin"), **stamp(),
     }  # fmt: skip
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
+from importlib import metadata
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,7 +16,9 @@ from rich.progress import Progress
 from rich.table import Table
 from rich.text import Text
 
+from symofros.atomic import write_atomically
 from validation.console import output
+from validation.provenance import stamp, versions
 
 if TYPE_CHECKING:
     from validation.oracle.compare import Agreement
@@ -29,6 +33,7 @@ def command(
     chosen: Annotated[list[str] | None, typer.Option("--model", help="Only this model; repeatable.")] = None,
     points: Annotated[int, typer.Option(min=1, help="Rational points a model.")] = 2,
     seed: Annotated[int, typer.Option(min=0, help="Of the points.")] = 0,
+    report: Annotated[Path, typer.Option(help="Folder for oracle.json, unless models are chosen.")] = Path("reports"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the digits as JSON, nothing else.")] = False,
 ) -> None:
     """Compare with SymPy's derivations by Lagrange and by Kane, in extended precision.
@@ -50,9 +55,13 @@ def command(
             results.append(check(name, by, points, seed))
             bar.update(task, advance=1)
     ok = all(result.ok for result in results)
+    data = {"ok": ok, "points": points, "seed": seed, "comparisons": [asdict(result) for result in results],
+            "versions": {**versions(), "sympy": metadata.version("sympy")}, **stamp()}  # fmt: skip
+    if not chosen:
+        report.mkdir(parents=True, exist_ok=True)
+        write_atomically(report / "oracle.json", json.dumps(data, indent=1, allow_nan=False) + "\n")
     if as_json:
-        rows = [asdict(result) for result in results]
-        typer.echo(json.dumps({"ok": ok, "points": points, "seed": seed, "comparisons": rows}, allow_nan=False))
+        typer.echo(json.dumps(data, allow_nan=False))
     else:
         _show(results, output())
     raise typer.Exit(0 if ok else 1)

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from symofros.atomic import write_atomically
-from validation.record import machine
+from validation.provenance import stamp
 from validation.studies import rollouts
 
 _LIMITS = (
@@ -45,7 +45,7 @@ def rollouts_command(
     versions = {name: metadata.version(name) for name in ("symofros", "mujoco")}
     data: dict[str, Any] = {"rollouts": [asdict(row) for row in rows], "trajectories": trajectories,
                             "repeats": repeats, "load": os.getloadavg()[0], "versions": versions,
-                            "machine": machine()}  # fmt: skip
+                            **stamp()}  # fmt: skip
     report.mkdir(parents=True, exist_ok=True)
     write_atomically(report / "rollouts.json", json.dumps(data, indent=1) + "\n")
     write_atomically(report / "rollouts.md", as_markdown(data))

@@ -14,7 +14,7 @@ from rich.progress import Progress
 from rich.table import Table
 
 from symofros.atomic import write_atomically
-from validation.record import machine
+from validation.provenance import stamp
 from validation.studies import simulation
 
 _SCENES = {
@@ -58,7 +58,7 @@ def simulate(
     versions = {name: metadata.version(name) for name in ("symofros", "mujoco", "exudyn")}
     data: dict[str, Any] = {"races": [asdict(row) | {"real_time": row.real_time} for row in rows],
                             "iftomm": [asdict(row) for row in benchmarks], "repeats": repeats, "versions": versions,
-                            "machine": machine()}  # fmt: skip
+                            **stamp()}  # fmt: skip
     report.mkdir(parents=True, exist_ok=True)
     write_atomically(report / "simulation.json", json.dumps(data, indent=1) + "\n")
     write_atomically(report / "simulation.md", as_markdown(data))

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from tests.validation.subjects import URDF
-from validation.campaign import run, run_case
 from validation.cases import Case
 from validation.check import ModelResult, Settings
+from validation.crew import run, run_case
 from validation.interface import Subject
 
 FEW = Settings(states=10, engines=("pinocchio",))
@@ -41,7 +41,7 @@ def test_a_model_that_does_not_load_is_a_failed_row(tmp_path: Path) -> None:
 def test_a_fault_of_ours_is_a_failed_row_with_its_place() -> None:
     (row,) = run_case(Faulty("bad"), FEW).comparisons
     assert row.status == "failed" and row.quantity == "check"
-    assert row.note.startswith("ZeroDivisionError: a fault of ours (test_campaign.py:")
+    assert row.note.startswith("ZeroDivisionError: a fault of ours (test_crew.py:")
 
 
 @pytest.mark.parametrize("workers", [1, 2])

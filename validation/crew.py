@@ -20,7 +20,7 @@ from validation.check import ModelResult, Settings, check, failed
 Report = Callable[[ModelResult], None]
 
 # Loaded once into the process that the workers are forked from.
-_PRELOAD = ["validation.campaign", *(route.module for route in ROUTES.values())]
+_PRELOAD = ["validation.crew", *(route.module for route in ROUTES.values())]
 
 
 def run_case(case: Case, settings: Settings) -> ModelResult:

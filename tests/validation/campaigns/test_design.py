@@ -1,0 +1,37 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from validation.campaigns.design import Design, Range, points_of
+
+OVER = {"a": Range(low=1.0, high=2.0), "b": Range(low=1e-3, high=10.0, log=True)}
+
+
+def test_a_grid_takes_every_value_with_every_other() -> None:
+    over = {"a": Range(low=0.0, high=1.0, count=3), "b": Range(low=1.0, high=100.0, count=3, log=True)}
+    points = points_of(over, "grid", None, 0)
+    assert points[:, 0].tolist() == [0.0] * 3 + [0.5] * 3 + [1.0] * 3
+    np.testing.assert_allclose(points[:3, 1], [1.0, 10.0, 100.0], rtol=1e-14)
+    assert points[2, 1] == 100.0  # The ends are exact.
+
+
+def test_a_latin_hypercube_has_one_point_in_each_slice_of_each_parameter() -> None:
+    points = points_of(OVER, "latin_hypercube", 50, 7)
+    share = np.stack([points[:, 0] - 1.0, np.log(points[:, 1] / 1e-3) / np.log(1e4)], axis=1)
+    for column in share.T:
+        assert sorted((column * 50).astype(int)) == list(range(50))
+
+
+def test_a_sobol_sequence_is_even_in_two_dimensions() -> None:
+    points = points_of({"a": Range(low=0.0, high=1.0), "b": Range(low=0.0, high=1.0)}, "sobol", 64, 3)
+    cells = np.histogram2d(points[:, 0], points[:, 1], bins=8, range=[[0, 1], [0, 1]])[0]
+    assert (cells == 1).all()
+
+
+@pytest.mark.parametrize("design", ["latin_hypercube", "sobol"])
+def test_batches_are_parts_of_the_whole(design: Design) -> None:
+    whole = points_of(OVER, design, 64, 1)
+    parts = [points_of(OVER, design, 64, 1, first, 24) for first in range(0, 64, 24)]
+    assert np.array_equal(np.concatenate(parts), whole)
+    assert not np.array_equal(whole, points_of(OVER, design, 64, 2))

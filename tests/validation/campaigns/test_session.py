@@ -1,0 +1,197 @@
+from __future__ import annotations
+
+import json
+import os
+import signal
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pytest
+from typer.testing import CliRunner
+
+from validation.__main__ import app
+from validation.campaigns.plan import as_text, cases, identities, plan_hash, read
+from validation.campaigns.runner import Pool, execute, run
+from validation.campaigns.store import Store
+from validation.campaigns.summary import checked, effort, headline, markdown, swept
+from validation.campaigns.sweep import DONE
+from validation.campaigns.tasks import CHECKED
+
+MANIFEST: dict[str, Any] = {"hash": "abc", "plan": {}, "models": {}, "versions": {}, "begun": ""}
+
+
+@dataclass(frozen=True)
+class Scripted:
+    """A batch that does as told."""
+
+    number: int
+    deed: str = "work"
+    size: int = 1
+    title: str = "scripted"
+
+    def run(self) -> pa.Table:
+        if self.deed == "die":
+            os.kill(os.getpid(), signal.SIGKILL)
+        if self.deed == "raise":
+            raise ZeroDivisionError("a fault\nof ours")
+        return pa.table({"batch": [self.number]})
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Store:
+    return Store.create(tmp_path / "c", MANIFEST)
+
+
+def test_a_worker_does_not_do_again_what_is_done(store: Store) -> None:
+    first = execute(Scripted(4), store.folder, "abc")
+    assert execute(Scripted(4, "raise"), store.folder, "abc") == first == store.part(4)
+    assert [line["event"] for line in store.journal()] == ["begun", "done"]
+
+
+def test_a_worker_that_does_not_see_the_folder_hands_its_part_over(store: Store, tmp_path: Path) -> None:
+    handed = execute(Scripted(2), tmp_path / "elsewhere", "abc")
+    store.write(2, handed)
+    assert store.finished() == {2} and not (tmp_path / "elsewhere").exists()
+
+
+def test_batches_that_can_not_be_done_leave_the_others_alone(store: Store) -> None:
+    done: list[int] = []
+    tasks = [Scripted(0), Scripted(1, "raise"), Scripted(2, "die"), *(Scripted(k) for k in range(3, 12))]
+    failures = run(store, tasks, Pool(workers=1), lambda task: done.append(task.number))
+    assert sorted(done) == [0, *range(3, 12)] and store.finished() == set(done)
+    assert failures[1] == "scripted: ZeroDivisionError: a fault"
+    assert failures[2] == "scripted: the process that did it died, each time it was tried"
+
+
+def test_nothing_listens_but_on_the_loopback() -> None:
+    """Neither scheduler nor workers nor pages of dask."""
+    with Pool(workers=1).client() as client:
+        addresses = [client.scheduler.address, *client.scheduler_info()["workers"]]
+        assert all(address.startswith("tcp://127.0.0.1:") for address in addresses)
+        hosts = {address for address, _ in listening(os.getpid())}
+        assert hosts == {"0100007F"}, hosts
+
+
+def listening(process: int) -> set[tuple[str, int]]:
+    """Address (hexadecimal, as Linux prints it) and port of each socket that the process listens at."""
+    inodes = set()
+    for descriptor in Path(f"/proc/{process}/fd").iterdir():
+        try:
+            target = os.readlink(descriptor)
+        except OSError:
+            continue
+        if target.startswith("socket:["):
+            inodes.add(target[8:-1])
+    found = set()
+    for table in ("tcp", "tcp6"):
+        path = Path(f"/proc/net/{table}")
+        for line in path.read_text().splitlines()[1:] if path.is_file() else ():
+            words = line.split()
+            if words[3] == "0A" and words[9] in inodes:
+                address, _, port = words[1].partition(":")
+                found.add((address, int(port, 16)))
+    return found
+
+
+def row(**given: Any) -> dict[str, Any]:
+    base = {"batch": 0, "model": "arm", "engine": "pinocchio", "quantity": "bias", "status": "agree", "agree": True,
+            "states": 10, "states_asked": 10, "error": 1e-15, "worst_state": 3, "scale": 2.0, "tolerance": 1e-12,
+            "note": ""}  # fmt: skip
+    return base | given
+
+
+def table(*rows: dict[str, Any]) -> pa.Table:
+    return pa.Table.from_pylist(list(rows), CHECKED)
+
+
+def test_a_summary_keeps_the_worst_state_of_all_batches() -> None:
+    rows = [row(), row(batch=1, error=4e-14, worst_state=7, scale=5.0), row(batch=2, error=1e-14)]
+    data = checked(table(*rows))
+    (group,) = data["groups"]
+    assert data["ok"] and data["states"] == 30 and group["states"] == 30
+    assert (group["error"], group["batch"], group["worst_state"], group["scale"]) == (4e-14, 1, 7, 5.0)
+
+
+def test_what_is_no_number_is_the_worst() -> None:
+    rows = [row(), row(batch=1, error=None, agree=False, status="disagree", worst_state=5)]
+    data = checked(table(*rows))
+    (group,) = data["groups"]
+    assert not data["ok"] and group["error"] is None and group["worst_state"] == 5
+    assert "1 of 1 comparisons disagree" in headline(data | {"kind": "check"})
+
+
+def test_agreement_with_nobody_is_none() -> None:
+    assert not checked(table(row(status="unsupported", agree=None, error=None)))["ok"]
+    failed = [row(), row(batch=1, status="failed", agree=None, error=None, engine="any", quantity="all", note="none")]
+    assert not checked(table(*failed))["ok"]
+
+
+def test_a_sweep_counts_its_failures() -> None:
+    rows = pa.table(
+        {"batch": [0, 0], "point": [0, 1], "over:L": [1.0, 2.0], "f": [3.0, None], "outcome": [DONE, "lost"]}
+    )
+    data = swept(rows)
+    assert not data["ok"] and data["done"] == 1 and data["failed"] == {"lost": 1}
+    assert data["ranges"] == {"f": {"min": 3.0, "max": 3.0}}
+
+
+def test_effort_is_counted_from_the_journal() -> None:
+    lines = [{"event": "session", "time": 0.0}, {"event": "begun", "batch": 0, "time": 1.0},
+             {"event": "begun", "batch": 1, "time": 5.0}, {"event": "session", "time": 100.0},
+             {"event": "begun", "batch": 1, "time": 101.0}, {"event": "done", "batch": 1, "time": 103.0}]  # fmt: skip
+    assert effort(lines) == {"sessions": 2, "seconds": 8.0, "executions": 3, "repeated": [1]}
+
+
+def called(*words: str) -> tuple[int, str]:
+    result = CliRunner().invoke(app, ["campaign", *words])
+    return result.exit_code, result.output
+
+
+def test_a_campaign_from_the_command_line_and_what_is_said_of_it_later(tmp_path: Path) -> None:
+    """Done, shown, resumed (nothing is left to do), and not mistaken for another."""
+    folder, report = str(tmp_path / "c"), tmp_path / "reports"
+    asked = ("--models", "pendulum", "--states", "20", "--batch", "10", "--engines", "pinocchio", "-o", folder)
+    code, said = called("run", *asked, "--workers", "1", "--report", str(report), "--json")
+    data = json.loads(said.splitlines()[-1])
+    assert code == 0 and data["ok"] and data["states"] == 20 and data["effort"]["executions"] == 2
+    assert all(data[name] for name in ("machine", "versions", "flags", "date"))
+    assert json.loads((report / "campaign.json").read_text()) == data
+    code, said = called("show", folder)
+    assert code == 0 and said.strip() == markdown(data).strip()
+    code, said = called("resume", folder, "--json")
+    assert code == 0 and json.loads(said) == data
+    code, said = called("run", *asked, "--seed", "1")
+    assert code == 2 and "plan changed since: seed: 0 -> 1" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("run",), "give a plan, or --models"),
+        (("run", "--models", "pendulumm"), "did you mean 'pendulum'"),
+        (("run", "nowhere.toml"), "nowhere.toml"),
+        (("resume", "nowhere"), "no plan.json"),
+        (("show", "nowhere"), "no plan.json"),
+    ],
+)
+def test_bad_input_is_refused_in_words(tmp_path: Path, words: tuple[str, ...], says: str) -> None:
+    more = ("-o", str(tmp_path / "c")) if words[0] == "run" else ()
+    code, said = called(*words, *more)
+    assert code == 2 and says in said and "Traceback" not in said
+
+
+def test_how_far_a_campaign_is(tmp_path: Path) -> None:
+    folder = tmp_path / "c"
+    plan = tmp_path / "plan.toml"
+    plan.write_text('kind = "check"\nmodels = ["pendulum"]\nstates = 30\nbatch = 10\n')
+    asked = read(plan)
+    models = identities(cases(asked))
+    manifest = {"hash": plan_hash(asked, models), "plan": json.loads(as_text(asked)), "models": models, "versions": {}}
+    store = Store.create(folder, manifest | {"begun": ""})
+    store.write(1, store.encode(1, pa.table({"batch": [1]}), {}))
+    code, said = called("show", str(folder))
+    assert code == 0 and said.startswith(
+        "10 of 30 done, 1 of 3 batches; to go on: python -m validation campaign resume"
+    )

@@ -1,0 +1,83 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import reference_models
+import symofros as sf
+from validation.campaigns.plan import SweepPlan, make
+from validation.campaigns.sweep import DONE, Sweeper
+from validation.campaigns.tasks import tasks
+from validation.cases import Case
+
+END_STATE: dict[str, Any] = {
+    "kind": "sweep", "model": "double_pendulum", "quantity": "end_state", "design": "sobol", "points": 16, "batch": 6,
+    "over": {"m1": {"low": 0.5, "high": 2.0}, "L2": {"low": 0.2, "high": 0.8, "log": True}},
+    "start": {"q": {"q1": 0.4}, "v": {"q2": 0.1}}, "inputs": {"q1": 0.2}, "motion": {"t_end": 0.2, "dt": 0.002},
+}  # fmt: skip
+FREQUENCIES: dict[str, Any] = {
+    "kind": "sweep", "model": "spinning_beam", "quantity": "frequencies", "modes": 2,
+    "over": {"dhub": {"low": 0.0, "high": 6.0, "count": 3}, "L": {"low": 6.0, "high": 9.0, "count": 2}},
+}  # fmt: skip
+
+
+def sweeper(data: dict[str, Any]) -> Sweeper:
+    plan = make(data, "plan")
+    assert isinstance(plan, SweepPlan)
+    return Sweeper(plan, Case(plan.model))
+
+
+def test_end_states_are_those_of_single_simulations() -> None:
+    rows = [row for task in tasks(make(END_STATE, "plan")) for row in task.run().to_pylist()]
+    assert [row["point"] for row in rows] == list(range(16))
+    model = sf.compile(reference_models.MODELS["double_pendulum"])
+    for row in rows[::5]:
+        changed = model.with_parameters(m1=row["over:m1"], L2=row["over:L2"])
+        run = sf.simulate(changed, [0.4, 0.0], [0.0, 0.1], 0.2, dt=0.002, u={"q1": 0.2})
+        found = [row["q:q1"], row["q:q2"], row["v:q1"], row["v:q2"]]
+        # The same steps by vectors: rounding alone differs.
+        np.testing.assert_allclose(found, [*run.q[-1], *run.v[-1]], rtol=1e-10)
+        assert row["outcome"] == DONE
+
+
+def test_frequencies_are_those_of_the_steady_motion() -> None:
+    rows = sweeper(FREQUENCIES).table(0, 0, 6).to_pylist()
+    model = sf.compile(reference_models.MODELS["spinning_beam"])
+    for row in rows:
+        u, par = [0.0, row["over:dhub"], 0.0], [row["over:L"], model.parameters["rhoA"], model.parameters["EI"]]
+        rest = sf.equilibrium(model, u=u, par=par)
+        expected = sf.modes(model, rest.q, rest.v, u, par=par).frequencies[:2]
+        assert [row["frequency_1"], row["frequency_2"]] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_beam_at_rest_scales_with_its_length() -> None:
+    """omega ~ 1/L^2 at constant EI/rhoA: Euler-Bernoulli theory."""
+    rows = [row for row in sweeper(FREQUENCIES).table(0, 0, 2).to_pylist() if row["over:dhub"] == 0.0]
+    short, long = sorted(rows, key=lambda row: row["over:L"])
+    assert short["frequency_1"] / long["frequency_1"] == pytest.approx((9.0 / 6.0) ** 2, rel=1e-9)
+
+
+def test_a_point_that_fails_is_null_and_says_why() -> None:
+    data = END_STATE | {"over": {"m1": {"low": 1.0, "high": 1.0}}, "points": 1}
+    data = data | {"start": {"v": {"q2": 1e200}}}
+    (row,) = sweeper(data).table(0, 0, 1).to_pylist()
+    assert row["q:q1"] is None and row["outcome"] != DONE
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (
+            {"over": {"m9": {"low": 1.0, "high": 2.0}}},
+            "over.m9: 'm9' is no parameter and no input of",
+        ),
+        ({"start": {"q": {"q9": 1.0}}}, "start.q: no 'q9'; there are q1, q2"),
+        ({"inputs": {"motor": 1.0}}, "inputs: no 'motor'"),
+    ],
+)
+def test_names_that_the_model_lacks_are_refused(change: dict[str, Any], says: str) -> None:
+    with pytest.raises(sf.UnknownNameError) as caught:
+        sweeper(END_STATE | change)
+    assert says in str(caught.value)

@@ -1,0 +1,94 @@
+from __future__ import annotations
+
+import datetime
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from validation.dashboard.catalogue import TOPICS
+from validation.dashboard.gather import Entry, doubts, gather, origin_of
+
+TODAY = datetime.date(2026, 11, 21)
+FUZZ: dict[str, Any] = {
+    "ok": True, "inputs": 10, "peak_memory_mib": 50, "faults": [], "kinds": {"yaml": {"slowest": 0.5}},
+    "date": "2026-11-20 10:00 UTC", "versions": {"numpy": "2.0"}, "flags": "-O2",
+    "machine": {"processor": "Z80", "cores": "1", "system": "CP/M"},
+}  # fmt: skip
+
+
+def entry(folder: Path, name: str = "fuzz") -> Entry:
+    return next(one for one in gather(folder, {"numpy": "2.0"}, TODAY) if one.name == name)
+
+
+def write(folder: Path, data: object, name: str = "fuzz") -> Path:
+    (folder / f"{name}.json").write_text(data if isinstance(data, str) else json.dumps(data))
+    return folder
+
+
+def test_a_report_says_what_it_found_and_where_it_is_from(tmp_path: Path) -> None:
+    (tmp_path / "fuzz.md").write_text("")
+    found = entry(write(tmp_path, FUZZ))
+    assert found.verdict == "good" and not found.remarks and found.page == "fuzz.md"
+    assert found.card is not None and found.card.headline == "10 hostile inputs: 0 crashed or hung a reader."
+    assert found.origin.machine == "Z80, 1 cores, CP/M" and found.origin.flags == "-O2"
+    assert found.command == "python -m validation fuzz"
+
+
+def test_an_absent_report_says_so(tmp_path: Path) -> None:
+    assert {one.verdict for one in gather(tmp_path, {}, TODAY)} == {"absent"}
+    assert entry(tmp_path).remarks == ("is not made yet",)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [("{", "can't be read"), ("[]", "layout that is not known"), ('{"ok": true}', "layout that is not known")],
+)
+def test_a_broken_report_says_so_and_spares_the_others(tmp_path: Path, text: str, says: str) -> None:
+    write(tmp_path, FUZZ, "fuzz")
+    found = entry(write(tmp_path, text, "mutation"), "mutation")
+    assert found.verdict == "absent" and says in found.remarks[0]
+    assert entry(tmp_path).verdict == "good"
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"versions": {"numpy": "1.0"}}, "stale: made with numpy 1.0, now 2.0"),
+        ({"date": "2026-09-01 10:00 UTC"}, "stale: 81 days old"),
+        ({"date": ""}, "does not say when it was made"),
+        ({"machine": {}}, "does not say on which machine"),
+        ({"versions": {}}, "does not say with which versions"),
+    ],
+)
+def test_doubts_are_told(tmp_path: Path, change: dict[str, Any], says: str) -> None:
+    assert entry(write(tmp_path, FUZZ | change)).remarks == (says,)
+
+
+def test_a_package_that_is_not_installed_makes_nothing_stale() -> None:
+    origin = origin_of(FUZZ | {"versions": {"adams": "1"}})
+    assert doubts(origin, {"numpy": "2.0"}, TODAY) == []
+
+
+@pytest.mark.parametrize("place", ["top", "machine", "facts"])
+def test_origins_are_found_wherever_a_report_keeps_them(place: str) -> None:
+    told = {"date": "2026-01-01", "flags": {"ours": "-O2", "theirs": "-O3"}, "versions": {"numpy": "2"},
+            "processor": "Z80"}  # fmt: skip
+    data = told | {"machine": {"processor": "Z80"}} if place == "top" else {place: told}
+    origin = origin_of(data)
+    assert (origin.date, origin.machine, origin.versions) == ("2026-01-01", "Z80", {"numpy": "2"})
+    assert origin.flags == "ours -O2; theirs -O3"
+
+
+REPORTS = Path(__file__).parents[3] / "reports"
+PRESENT = [name for name in TOPICS if (REPORTS / f"{name}.json").is_file()]
+
+
+@pytest.mark.parametrize("name", PRESENT)
+def test_the_reports_that_are_here_are_understood(name: str) -> None:
+    found = entry(REPORTS, name)
+    assert found.card is not None, found.remarks
+    assert found.card.headline.endswith(".") and found.page
+    for chart in found.card.charts:
+        assert any(len(curve.x) for curve in chart.curves)

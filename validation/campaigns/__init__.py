@@ -1,0 +1,1 @@
+"""Long campaigns over dask.distributed: cross-checks of many states, sweeps over parameters; docs/campaigns.md."""

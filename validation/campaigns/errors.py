@@ -1,0 +1,34 @@
+"""What keeps a campaign from being done."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class PlanError(ValueError):
+    """A plan can't be carried out; says what was found, the rule, and the remedy."""
+
+    def __init__(self, where: str, found: str, rule: str, remedy: str) -> None:
+        super().__init__(f"{where}\n  found:  {found}\n  rule:   {rule}\n  remedy: {remedy}")
+
+
+class StoreError(OSError):
+    """A folder can't serve: it is another campaign's, or in use; says what was found, the rule, and the remedy."""
+
+    def __init__(self, folder: Path, found: str, rule: str, remedy: str) -> None:
+        super().__init__(f"folder '{folder}'\n  found:  {found}\n  rule:   {rule}\n  remedy: {remedy}")
+
+
+class Unfinished(RuntimeError):
+    """Batches are missing: the session was interrupted, or some could not be done.
+
+    Args:
+        folder: Of the campaign.
+        reasons: Of the batches that could not be done; none: it was interrupted.
+    """
+
+    def __init__(self, folder: Path, reasons: list[str]) -> None:
+        what = f"{len(reasons)} batches could not be done" if reasons else "interrupted; what is finished is kept"
+        lines = [f"not done: {why}" for why in reasons]
+        super().__init__("\n".join([*lines, f"{what}; to go on: python -m validation campaign resume {folder}"]))
+        self.interrupted = not reasons

@@ -1,0 +1,167 @@
+"""Batches over dask.distributed: processes of this machine by default, a cluster's where its scheduler is named.
+
+A worker writes each part as soon as it has it, so that whoever is killed afterwards, what was finished stays; it looks
+for the part first, so that nothing is done twice. The client writes what workers could not, on machines that do not
+see the folder.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+import dask
+import distributed
+
+from validation.campaigns.store import Store
+from validation.campaigns.tasks import Task
+
+# Batches handed out ahead of each worker: enough that none waits, few enough that little is queued.
+AHEAD = 2
+# A batch is given up when so many workers have died under it: one may be killed by chance, or by hand.
+DEATHS = 2
+_PATIENCE = 60.0  # [s] for the first worker of a cluster.
+
+
+@dataclass(frozen=True)
+class Pool:
+    """Who works.
+
+    Attributes:
+        workers: Processes of this machine, if no cluster is named.
+        scheduler: Address of a cluster's scheduler.
+        dashboard: Port of dask's own pages on this machine's loopback; none is opened unless asked for.
+    """
+
+    workers: int = 2
+    scheduler: str = ""
+    dashboard: int | None = None
+
+    @contextmanager
+    def client(self) -> Iterator[distributed.Client]:
+        """A connection; processes that were started for it end with it.
+
+        Raises:
+            OSError: There is no such scheduler.
+            TimeoutError: It has no workers.
+        """
+        if self.scheduler:
+            with distributed.Client(self.scheduler, timeout=_PATIENCE) as client:
+                client.wait_for_workers(1, timeout=_PATIENCE)
+                yield client
+            return
+        page = None if self.dashboard is None else f"127.0.0.1:{self.dashboard}"
+        # One thread each: engines and our own scratch are not asked whether they share a process.
+        with (
+            dask.config.set({"distributed.scheduler.allowed-failures": DEATHS - 1}),
+            distributed.LocalCluster(
+                n_workers=self.workers, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=page,
+                worker_dashboard_address=None, silence_logs=logging.CRITICAL,
+            ) as cluster,
+            distributed.Client(cluster) as client,
+        ):  # fmt: skip
+            client.register_plugin(_Undisturbed())
+            yield client
+
+
+class _Undisturbed(distributed.WorkerPlugin):  # type: ignore[misc]  # dask has no types.
+    """Ctrl-C, which a terminal sends to all, is the client's business; it ends the workers."""
+
+    def setup(self, worker: object) -> None:
+        """In the worker's main thread, before it is given work."""
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def run(store: Store, tasks: Sequence[Task], pool: Pool, done: Callable[[Task], None]) -> dict[int, str]:
+    """Do batches, a few ahead of each worker.
+
+    Args:
+        store: Where parts go.
+        tasks: What is not done yet.
+        pool: Who works.
+        done: Gets each batch whose part is written.
+
+    Returns:
+        Batch -> why it could not be done: it killed its worker each time, or raised what no row can say.
+    """
+    failures: dict[int, str] = {}
+    with pool.client() as client:
+        width = AHEAD * sum(client.nthreads().values())
+        suspects: list[Task] = []
+        for task, error in _outcomes(client, store, tasks, width):
+            if isinstance(error, distributed.KilledWorker):
+                suspects.append(task)
+            elif error is not None:
+                failures[task.number] = reason(task, error)
+            else:
+                done(task)
+        # Whoever waited behind a batch that kills its worker is under suspicion, too; alone, each shows what it is.
+        for suspect in suspects:
+            for task, error in _outcomes(client, store, [suspect], 1):
+                if error is not None:
+                    failures[task.number] = reason(task, error)
+                else:
+                    done(task)
+    return failures
+
+
+def _outcomes(
+    client: distributed.Client, store: Store, tasks: Sequence[Task], width: int
+) -> Iterator[tuple[Task, BaseException | None]]:
+    """Each batch when its part is written, or with what went wrong; `width` at most are handed out at a time."""
+    waiting, by_key = iter(tasks), {f"{store.hash}-{task.number}": task for task in tasks}
+
+    def submit(task: Task) -> distributed.Future:
+        key = f"{store.hash}-{task.number}"
+        return client.submit(execute, task, store.folder.resolve(), store.hash, key=key)
+
+    active = distributed.as_completed([submit(task) for task in islice(waiting, width)])
+    for future in active:
+        task = by_key[future.key]
+        error = None
+        if future.status == "finished":
+            part = future.result()
+            if store.part(task.number) is None:
+                store.write(task.number, part)
+        else:
+            error = future.exception()
+        future.release()  # Else a batch that failed could not be tried again.
+        yield task, error
+        for following in islice(waiting, 1):
+            active.add(submit(following))
+
+
+def execute(task: Task, folder: Path, hash: str) -> bytes:
+    """On a worker: do a batch, unless its part is there already.
+
+    Returns:
+        The part.
+    """
+    store = Store(folder, hash)
+    shared = store.parts.is_dir()
+    known = store.part(task.number) if shared else None
+    if known is not None:
+        return known
+    if shared:
+        store.note(batch=task.number, event="begun", worker=os.getpid())
+    start = time.perf_counter()
+    rows = task.run()
+    part = store.encode(task.number, rows, {"seconds": round(time.perf_counter() - start, 3)})
+    if shared:
+        store.write(task.number, part)
+        store.note(batch=task.number, event="done", worker=os.getpid())
+    return part
+
+
+def reason(task: Task, error: BaseException | None) -> str:
+    """Why a batch has no part, in one line."""
+    if isinstance(error, distributed.KilledWorker):
+        return f"{task.title}: the process that did it died, each time it was tried"
+    return f"{task.title}: {type(error).__name__}: {str(error).partition(chr(10))[0]}"

@@ -1,0 +1,209 @@
+"""A campaign's folder: its plan, a part for each finished batch, at last one Parquet file.
+
+Nothing in it is ever half there: files are written aside and renamed, so a process may be killed at any point.
+
+    plan.json         what is asked for, of which models, with which versions
+    journal.jsonl     a line when a batch is begun and when it is done
+    parts/N.parquet   the rows of batch N; they go when the whole is written
+    results.parquet   all rows in the order of batches, provenance in the metadata
+"""
+
+from __future__ import annotations
+
+import fcntl
+import io
+import json
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as parquet
+
+from symofros.atomic import write_atomically
+from validation.campaigns.errors import StoreError
+
+RESULTS = "results.parquet"
+KEY = b"symofros.campaign"
+
+
+class Store:
+    """The folder of one campaign.
+
+    Args:
+        folder: Where.
+        hash: Of the plan; parts that do not bear it are not ours.
+    """
+
+    def __init__(self, folder: Path, hash: str) -> None:
+        self.folder, self.hash = folder, hash
+        self.parts = folder / "parts"
+
+    @classmethod
+    def create(cls, folder: Path, manifest: dict[str, Any]) -> Store:
+        """A new campaign's, or that of the same campaign begun before.
+
+        Args:
+            folder: Made where it is missing.
+            manifest: With the plan's `hash` and `versions`.
+
+        Raises:
+            StoreError: The folder is another campaign's.
+        """
+        if (folder / "plan.json").is_file():
+            return cls.agreeing(folder, manifest)
+        if folder.exists() and any(folder.iterdir()):
+            raise StoreError(
+                folder, "files, but no plan.json", "a campaign has a folder of its own", "choose a new folder"
+            )
+        (folder / "parts").mkdir(parents=True, exist_ok=True)
+        write_atomically(folder / "plan.json", json.dumps(manifest, indent=1) + "\n")
+        return cls(folder, manifest["hash"])
+
+    @classmethod
+    def agreeing(cls, folder: Path, manifest: dict[str, Any]) -> Store:
+        """The folder's store, if what it was begun with is what is there now.
+
+        Raises:
+            StoreError: Plan, models or versions have changed since, so that old and new rows would not belong together.
+        """
+        before = manifest_of(folder)
+        for what in ("plan", "models", "versions"):
+            if before[what] != manifest[what]:
+                found = f"{what} changed since: {_difference(before[what], manifest[what])}"
+                rule = "all rows of a campaign come from one plan, the same models and the same versions"
+                raise StoreError(folder, found, rule, "give the changed campaign a new folder, or undo the change")
+        (folder / "parts").mkdir(exist_ok=True)
+        return cls(folder, before["hash"])
+
+    @contextmanager
+    def lock(self) -> Iterator[None]:
+        """Keep other clients out; the system takes the lock from one that dies.
+
+        Raises:
+            StoreError: Another has it.
+        """
+        with (self.folder / "lock").open("w") as stream:
+            try:
+                fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                remedy = "let it finish, or end it and resume"
+                raise StoreError(self.folder, "another process runs it", "one at a time", remedy) from None
+            yield
+
+    @property
+    def results(self) -> Path:
+        """The file of all rows."""
+        return self.folder / RESULTS
+
+    def finished(self) -> set[int]:
+        """Numbers of the batches whose parts are whole; what is broken is removed, to be done again."""
+        found = set()
+        for path in self.parts.glob("*.parquet"):
+            if self._sound(path):
+                found.add(int(path.stem))
+            else:
+                path.unlink()
+        return found
+
+    def part(self, number: int) -> bytes | None:
+        """The part of a batch, if it is there and whole."""
+        path = self._path(number)
+        return path.read_bytes() if path.is_file() and self._sound(path) else None
+
+    def write(self, number: int, part: bytes) -> None:
+        """Keep a part."""
+        write_atomically(self._path(number), part)
+
+    def encode(self, number: int, rows: pa.Table, facts: dict[str, Any]) -> bytes:
+        """Rows -> a part, which says whose it is."""
+        return _encoded(rows, {"hash": self.hash, "batch": number, **facts})
+
+    def note(self, **line: Any) -> None:
+        """Add to the journal; a short line at the end of a file is written whole or not at all."""
+        with (self.folder / "journal.jsonl").open("ab", buffering=0) as stream:
+            stream.write(json.dumps(line | {"time": round(time.time(), 3)}).encode() + b"\n")
+
+    def journal(self) -> list[dict[str, Any]]:
+        """Every line so far."""
+        path = self.folder / "journal.jsonl"
+        return [json.loads(line) for line in path.read_text().splitlines()] if path.is_file() else []
+
+    def merge(self, count: int, provenance: dict[str, Any]) -> Path:
+        """Write the one file of all rows; the parts go afterwards.
+
+        Raises:
+            FileNotFoundError: A part is missing.
+        """
+        tables = [parquet.read_table(self._path(number)) for number in range(count)]
+        rows = pa.concat_tables([table.replace_schema_metadata(None) for table in tables])
+        write_atomically(self.results, _encoded(rows, provenance))
+        self.tidy()
+        return self.results
+
+    def tidy(self) -> None:
+        """Remove parts whose rows are in the results."""
+        for path in self.parts.glob("*.parquet"):
+            path.unlink()
+        self.parts.rmdir()
+
+    def _path(self, number: int) -> Path:
+        return self.parts / f"{number:06d}.parquet"
+
+    def _sound(self, path: Path) -> bool:
+        try:
+            facts = provenance_of(path)
+            return bool(facts["hash"] == self.hash and f"{facts['batch']:06d}" == path.stem)
+        except (pa.ArrowException, OSError, KeyError, ValueError, TypeError):
+            return False
+
+
+def manifest_of(folder: Path) -> dict[str, Any]:
+    """What a campaign was begun with.
+
+    Raises:
+        StoreError: The folder holds no campaign.
+    """
+    try:
+        manifest = json.loads((folder / "plan.json").read_text(encoding="utf-8"))
+        return {name: manifest[name] for name in ("hash", "plan", "models", "versions", "begun")}
+    except FileNotFoundError:
+        raise StoreError(folder, "no plan.json", "`campaign run -o` makes the folder", "name that folder") from None
+    except (ValueError, KeyError, TypeError, UnicodeDecodeError) as error:
+        found = f"plan.json: {type(error).__name__}: {error}"
+        raise StoreError(
+            folder, found, "plan.json is as `campaign run` wrote it", "begin anew in a new folder"
+        ) from None
+
+
+def provenance_of(path: Path) -> dict[str, Any]:
+    """What a part or the results say of where they come from.
+
+    Raises:
+        KeyError: It is no file of a campaign.
+        OSError: It can't be read.
+    """
+    found: dict[str, Any] = json.loads(parquet.read_metadata(path).metadata[KEY])
+    return found
+
+
+def _encoded(rows: pa.Table, facts: dict[str, Any]) -> bytes:
+    sink = io.BytesIO()
+    parquet.write_table(rows.replace_schema_metadata({KEY: json.dumps(facts)}), sink, compression="zstd")
+    return sink.getvalue()
+
+
+def _difference(before: Any, now: Any) -> str:
+    """The first few entries that differ."""
+    if not isinstance(before, dict) or not isinstance(now, dict):
+        return f"{before} -> {now}"
+    names = [name for name in {**before, **now} if before.get(name) != now.get(name)]
+    shown = [f"{name}: {_brief(before.get(name))} -> {_brief(now.get(name))}" for name in names[:3]]
+    return "; ".join(shown) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+
+
+def _brief(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:57]}…"
