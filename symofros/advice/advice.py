@@ -29,7 +29,8 @@ class Choice:
         kind: Of the reduction, such as "foreshortening".
         verdict: "taken", "refused" by simulation, or "not tried", because the estimate is far beyond what is allowed.
         estimate: Expected error, in units of what is allowed.
-        error: Error of the simulation with it and all that was taken before, in the same units; None: not simulated.
+        error: Error of the simulation with it, with all that was taken before, and with what was taken in the same
+            go, in the same units; None: not simulated.
         why: In words, with numbers.
         numbers: The estimators' numbers.
     """

@@ -14,11 +14,14 @@ from symofros.advice.loads import BeamLoads, Observed
 from symofros.description.beam import DIRECTIONS, Beam, Direction
 from symofros.description.forces import Spring
 from symofros.description.system import Joint, System
+from symofros.description.values import as_value
 
 Kind = Literal[
     "rigid", "direction", "functions", "foreshortening", "order", "rotary inertia", "rotor", "elastic joint",
     "constants",
 ]  # fmt: skip
+# Deflections below this share of the length are rounding.
+_NOTHING = 1e-12
 _PLANES: tuple[Direction, ...] = ("bend_y", "bend_z")
 
 
@@ -64,12 +67,15 @@ def fewer_functions(loads: BeamLoads, current: Beam) -> Iterator[Reduction]:
             counts = {direction: min(count, getattr(current, direction)) for direction in DIRECTIONS}
             if sum(counts.values()) >= current.modes:
                 continue
-            left = sum(_left_out(loads, direction, n, family) for direction, n in counts.items() if n)
+            modal = family == "clamped_free"
+            left = [loads.deflection(direction, n, modal) for direction, n in counts.items() if n]
+            missed, slope = (sum(column) for column in zip(*left, strict=True))
             shown = ", ".join(f"{direction} {n}" for direction, n in counts.items() if n)
+            whole = sum(loads.deflection(direction).displacement for direction in _bending(current))
             yield Reduction(
-                f"beam '{current.name}'", f"{shown} of {family}", "functions", left * loads.reach,
-                f"they miss {_length(left)} of a static {_length(sum(map(loads.deflection, _bending(current))))}",
-                _beam_change(current.name, family=family, **counts), {"left_out": left},
+                f"beam '{current.name}'", f"{shown} of {family}", "functions", sum(map(loads.share, left)),
+                f"of a static {_length(whole)} at the tip they miss {_length(missed)} and a slope of {slope:.2g} rad",
+                _beam_change(current.name, family=family, **counts), {"displacement": missed, "slope": slope},
             )  # fmt: skip
 
 
@@ -92,13 +98,6 @@ def _bending(beam: Beam) -> list[Direction]:
     return [direction for direction in _PLANES if getattr(beam, direction)]
 
 
-def _left_out(loads: BeamLoads, direction: Direction, count: int, family: str) -> float:
-    if direction == "twist":
-        return 0.0 if count else loads.deflection("twist")
-    heavy = loads.outboard > 0.25 * loads.rhoA * loads.length
-    return loads.deflection(direction) * estimators.left_out(count, family == "clamped_free", heavy)
-
-
 def _of_beam(loads: BeamLoads) -> Iterator[Reduction]:
     beam, what = loads.beam, f"beam '{loads.beam.name}'"
     flexible = [direction for direction in DIRECTIONS if getattr(beam, direction)]
@@ -108,12 +107,12 @@ def _of_beam(loads: BeamLoads) -> Iterator[Reduction]:
     reason = "; ".join(text for _, text, _ in by.values())
     numbers = {f"{key}.{name}": value for key, (_, _, more) in by.items() for name, value in more.items()}
     yield Reduction(
-        what, "rigid", "rigid", total * loads.reach,
+        what, "rigid", "rigid", total,
         f"{reason}; simulated, its tip moves {_length(loads.tip)} across", _beam_change(beam.name, **none), numbers,
     )  # fmt: skip
     if len(flexible) > 1:
         for direction, (moved, text, more) in by.items():
-            yield Reduction(what, f"rigid in {direction}", "direction", moved * loads.reach, text,
+            yield Reduction(what, f"rigid in {direction}", "direction", moved, text,
                             _beam_change(beam.name, **{direction: 0}), more)  # fmt: skip
     bending = _bending(beam)
     if bending and beam.retain != "zeroth_order":
@@ -124,23 +123,26 @@ def _of_beam(loads: BeamLoads) -> Iterator[Reduction]:
 
 
 def _bent(loads: BeamLoads, direction: Direction) -> tuple[float, str, dict[str, float]]:
-    """Displacement at the tip, quasi-static and of the vibration it leaves; in words; in numbers."""
+    """What outputs lose with a direction, deflection and the vibration it leaves; in words; in numbers."""
     static = loads.deflection(direction)
     if direction == "twist":
-        return static, f"twist: static {_length(static)} at a length's distance", {"static": static}
+        return loads.share(static), f"twist: static {static.slope:.2g} rad", {"static": static.slope}
     periods = loads.periods(direction)
-    left = estimators.residual_bound(periods) if math.isfinite(periods) else 0.0
-    text = f"{direction}: static {_length(static)}, load of {periods:.3g} periods leaves {left:.2g} of it vibrating"
-    return static * (1.0 + left), text, {"static": static, "periods": periods, "residual": left}
+    left = estimators.residual_bound(periods)
+    text = f"{direction}: static {_length(static.displacement)} at the tip"
+    if static.displacement > _NOTHING * loads.length:
+        text += f", of which a load of {periods:.3g} periods leaves {100 * left:.2g} % vibrating"
+    numbers = {"static": static.displacement, "periods": periods, "residual": left}
+    return loads.share(static) * (1.0 + left), text, numbers
 
 
 def _of_order(loads: BeamLoads, what: str, bending: list[Direction]) -> Iterator[Reduction]:
     beam = loads.beam
     if beam.retain == "all":
-        slope = max(loads.deflection(direction) for direction in bending) / loads.length
+        slope = max(loads.deflection(direction).displacement for direction in bending) / loads.length
         error = slope**2 * loads.tip
         yield Reduction(
-            what, "first order", "order", error * loads.reach,
+            what, "first order", "order", error * loads.gain,
             f"terms of second order are about {slope**2:.2g} of the deflection, {_length(error)}",
             _beam_change(beam.name, retain="first_order"), {"slope": slope},
         )  # fmt: skip
@@ -149,7 +151,7 @@ def _of_order(loads: BeamLoads, what: str, bending: list[Direction]) -> Iterator
     # A stiffness that is off by twice the shift of the frequency is off by as much in the deflection.
     error = 2.0 * shift * loads.tip
     yield Reduction(
-        what, "no foreshortening", "foreshortening", error * loads.reach,
+        what, "no foreshortening", "foreshortening", error * loads.gain,
         f"spin is {ratio:.3g} of the critical speed; it stiffens the first mode by {100 * shift:.3g} %,"
         f" {_length(error)} of a deflection of {_length(loads.tip)}",
         _beam_change(beam.name, retain="zeroth_order", foreshortening=False),
@@ -169,7 +171,7 @@ def _of_rotary(loads: BeamLoads, what: str, bending: list[Direction]) -> Reducti
     )  # fmt: skip
     error = 2.0 * shift * loads.tip
     return Reduction(
-        what, "no rotary inertia", "rotary inertia", error * loads.reach,
+        what, "no rotary inertia", "rotary inertia", error * loads.gain,
         f"it lowers the first frequency by {100 * shift:.2g} %, {_length(error)} of a deflection of"
         f" {_length(loads.tip)}",
         _beam_change(beam.name, rotary_inertia=False), {"shift": shift},
@@ -187,7 +189,7 @@ def _of_joint(seen: Observed, body: str, joint: Joint) -> Iterator[Reduction]:
     if own and len(own) == len(joint.rotors) and joint.kind != "prismatic":
         least = min(abs(seen.number(rotor.ratio)) for rotor in own)
         travel = float(np.ptp(moved))
-        estimate = travel / least * seen.reach(body, root, None) if least > 0.0 else math.inf
+        estimate = travel / least * seen.reach(body, root, 1.0)[1] if least > 0.0 else math.inf
         yield Reduction(
             f"joint '{joint.name}'", "rotor as armature", "rotor", estimate,
             f"what is lost is one in {least:.3g} of the rotor's moments; the joint travels {travel:.3g}",
@@ -199,7 +201,7 @@ def _of_joint(seen: Observed, body: str, joint: Joint) -> Iterator[Reduction]:
     if springs and free and start == 0.0:
         largest = float(np.abs(moved).max())
         yield Reduction(
-            f"joint '{joint.name}'", "locked", "elastic joint", largest * seen.reach(body, root, None),
+            f"joint '{joint.name}'", "locked", "elastic joint", largest * seen.reach(body, root, 1.0)[1],
             f"its spring gives way by {largest:.2g} at most", _locked(body), {"travel": largest},
         )  # fmt: skip
 
@@ -219,7 +221,7 @@ def _armature(name: str) -> Callable[[System], System]:
         assert body.joint is not None
         terms = [f"({rotor.inertia})*({rotor.ratio})^2" for rotor in body.joint.rotors]
         total = " + ".join([*([str(body.joint.armature)] if body.joint.armature != 0.0 else []), *terms])
-        joint = replace(body.joint, armature=total or body.joint.armature, rotors=())
+        joint = replace(body.joint, armature=as_value(total), rotors=())
         return system.with_bodies(replace(body, joint=joint))
 
     return apply

@@ -1,14 +1,15 @@
 """What a beam's approximations cost, by formulas: deflection, vibration, stiffening, number of functions.
 
 Dimensionless numbers: eta = Omega sqrt(rhoA L^4 / EI) of a spin, gamma = rhoA a L^3 / EI of an acceleration along the
-axis, P L^2 / EI of a force along it. Constants are integrals of the first cantilever mode phi (int phi^2 = 1 over the unit
-length); docs/advise.md derives them.
+axis, P L^2 / EI of a force along it. Constants are integrals of the first cantilever mode phi (int phi^2 = 1 over a
+unit length); docs/advise.md says where they come from.
 """
 
 from __future__ import annotations
 
 import math
 from functools import cache
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -19,6 +20,23 @@ FREQUENCIES = (3.5160152685, 22.0344915647, 61.6972144135, 120.9019160523, 199.8
 # Share of the load's work that goes into stiffness, of the first mode: rotation about the root, a uniform pull, a force
 # at the tip; int (1 - x^2)/2 phi'^2, int (1 - x) phi'^2, int phi'^2.
 BY_SPIN, BY_PULL, BY_FORCE = 1.1933363735732485, 1.5708781896764525, 4.647778312645509
+
+# (cosh b + cos b) / (sinh b + sin b) turned over, of the modes: phi'(1) = b sigma phi(1), int phi = 2 sigma / b.
+_SIGMA = (0.7340955138, 1.0184673188, 0.9992244965, 1.0000335533, 0.9999985501, 1.0000000627)
+
+Load = Literal["uniform", "rising", "force", "moment"]
+# Displacement and slope at the tip under each, EI = L = 1.
+_EXACT: dict[Load, tuple[float, float]] = {
+    "uniform": (1 / 8, 1 / 6), "rising": (11 / 120, 1 / 8), "force": (1 / 3, 1 / 2), "moment": (1 / 2, 1.0),
+}  # fmt: skip
+
+
+class Outboard(NamedTuple):
+    """What a beam's tip carries: mass [kg], its first [kg m] and second moment [kg m^2] about the tip."""
+
+    mass: float = 0.0
+    first: float = 0.0
+    second: float = 0.0
 
 
 def residual(r: float) -> float:
@@ -34,23 +52,38 @@ def residual(r: float) -> float:
 
 def residual_bound(r: float) -> float:
     """The largest residual of a load as long as r periods or longer; what is shorter than two is not told apart."""
-    return math.pi if r < 2.0 else 2.0 / (r * r - 1.0)
+    return math.pi if r < 2.0 else 2.0 / (r * r - 1.0)  # Zero for a load that does not change.
 
 
-def deflection(rhoA: float, EI: float, length: float, outboard: float, across: float, turning: float) -> float:
-    """Quasi-static displacement of a cantilever's tip [m].
+def deflection(
+    rhoA: float, EI: float, length: float, outboard: Outboard, across: float, turning: float,
+    functions: int | None = None, modes: bool = False,
+) -> tuple[float, float]:  # fmt: skip
+    """Quasi-static displacement [m] and slope [rad] of a cantilever's tip.
 
     Args:
         rhoA: [kg/m].
         EI: [N m^2].
         length: [m].
-        outboard: Mass on the tip [kg].
+        outboard: What its tip carries.
         across: Acceleration of the root across the axis, less gravity [m/s^2].
         turning: Angular acceleration [rad/s^2].
+        functions: What some shape functions leave out of it; None: all of it.
+        modes: As in `tip_response`.
     """
-    uniform = rhoA * across * length**4 / (8.0 * EI)
-    rising = 11.0 * rhoA * turning * length**5 / (120.0 * EI)
-    return uniform + rising + outboard * (across + turning * length) * length**3 / (3.0 * EI)
+    at_tip = across + turning * length
+    loads: dict[Load, float] = {
+        "uniform": rhoA * across * length**4 / EI,
+        "rising": rhoA * turning * length**5 / EI,
+        "force": (outboard.mass * at_tip + outboard.first * turning) * length**3 / EI,
+        "moment": (outboard.first * at_tip + outboard.second * turning) * length**2 / EI,
+    }
+    displacement = slope = 0.0
+    for load, size in loads.items():
+        exact, shown = tip_response(load), (0.0, 0.0) if functions is None else tip_response(load, functions, modes)
+        displacement += size * abs(exact[0] - shown[0])
+        slope += size * abs(exact[1] - shown[1]) / length
+    return displacement, slope
 
 
 def first_frequency(rhoA: float, EI: float, length: float, outboard: float) -> float:
@@ -96,23 +129,26 @@ def characteristic_period(load: Array, dt: float) -> float:
 
 
 @cache
-def left_out(functions: int, modes: bool, at_tip: bool) -> float:
-    """Share of the static deflection at the tip that some shape functions can't show.
+def tip_response(load: Load, functions: int | None = None, modes: bool = False) -> tuple[float, float]:
+    """Static displacement and slope of a cantilever's tip under a unit load, EI = L = 1.
 
     Args:
-        functions: How many.
+        load: "uniform", "rising" from the root to one at the tip, a "force" or a "moment" at the tip.
+        functions: As some shape functions show it; None: exactly.
         modes: Cantilever modes; otherwise polynomials x^2, x^3, and so on, as which the other families count.
-        at_tip: Under a force at the tip; otherwise under a load that rises from the root, as by turning.
     """
-    whole = 1.0 / 3.0 if at_tip else 11.0 / 120.0
-    if functions == 0:
-        return 1.0
+    if functions is None:
+        return _EXACT[load]
     if modes:
-        # phi(1) = 2 (-1)^n, int x phi = 2 (-1)^n / w_n, of unit modes.
-        shares = [4.0 / w**2 if at_tip else 4.0 / w**3 for w in FREQUENCIES[:functions]]
-        return abs(1.0 - sum(shares) / whole)
-    degrees = np.arange(2, min(functions, 8) + 2, dtype=float)
-    a, b = np.meshgrid(degrees, degrees)
-    K = a * (a - 1) * b * (b - 1) / (a + b - 3)
-    force = np.ones(len(degrees)) if at_tip else 1.0 / (degrees + 2)
-    return abs(1.0 - float(np.linalg.solve(K, force).sum()) / whole)
+        w, s = np.array(FREQUENCIES[:functions]), np.array(_SIGMA[:functions])
+        beta, sign = np.sqrt(w), -np.resize([-1.0, 1.0], len(w))
+        value, slope = 2.0 * sign, 2.0 * sign * beta * s
+        force = {"uniform": 2.0 * s / beta, "rising": 2.0 / w, "force": value, "moment": slope}[load]
+        amplitudes = force / w**2
+    else:
+        degrees = np.arange(2, min(functions, 8) + 2, dtype=float)
+        a, b = np.meshgrid(degrees, degrees)
+        value, slope = np.ones(len(degrees)), degrees
+        force = {"uniform": 1.0 / (degrees + 1), "rising": 1.0 / (degrees + 2), "force": value, "moment": slope}[load]
+        amplitudes = np.linalg.solve(a * (a - 1) * b * (b - 1) / (a + b - 3), force)
+    return float(value @ amplitudes), float(slope @ amplitudes)

@@ -1,10 +1,11 @@
-"""What each beam and elastic joint meets in a motion: accelerations, spins, the mass it carries, how far outputs are."""
+"""What beams and elastic joints meet in a motion: accelerations, spins, masses they carry, how far outputs are."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,6 +27,13 @@ _EDGE = 2
 _REACTION = 0.1
 
 
+class Bent(NamedTuple):
+    """Displacement [m] and slope [rad] of a tip."""
+
+    displacement: float
+    slope: float
+
+
 @dataclass(frozen=True)
 class BeamLoads:
     """One beam in a motion; largest values over time.
@@ -35,57 +43,70 @@ class BeamLoads:
         length: [m].
         rhoA: Mean [kg/m].
         stiffness: Least EI_z (bend_y), EI_y (bend_z) and GJ (twist) [N m^2]; those of rigid directions are infinite.
-        outboard: Mass carried by the tip [kg].
+        outboard: What the tip carries, as it stands at the start.
         spin: Angular speed across the axis [rad/s].
         across: Acceleration of the root along y and z, less gravity [m/s^2].
         turning: Angular acceleration about z (bends along y), y and x [rad/s^2].
         along: Acceleration of the root along x, less gravity [m/s^2].
-        period: Characteristic period of the load across [s].
+        period: Characteristic periods of the loads along y and z [s].
         moment_of_inertia: Of what is outboard about the beam's axis [kg m^2].
         tip: Largest displacement of the tip across the axis, in the simulation [m].
         reach: Displacement of outputs per displacement of the tip, in units of what is allowed [1/m].
+        lever: The same per slope of the tip [1/rad].
     """
 
     beam: Beam
     length: float
     rhoA: float
     stiffness: dict[Direction, float]
-    outboard: float
+    outboard: estimators.Outboard
     spin: float
     across: tuple[float, float]
     turning: tuple[float, float, float]
     along: float
-    period: float
+    period: tuple[float, float]
     moment_of_inertia: float
     tip: float
     reach: float
+    lever: float
 
     def eta(self, direction: Direction) -> float:
         """Of the spin, for bending in a direction."""
         return self.spin * math.sqrt(self.rhoA * self.length**4 / self.stiffness[direction])
 
-    def deflection(self, direction: Direction) -> float:
-        """Quasi-static displacement of the tip, or of a point one length off the axis for a twist [m]."""
+    @property
+    def gain(self) -> float:
+        """Outputs per displacement of the tip whose slope goes with it, in units of what is allowed [1/m]."""
+        return self.reach + 1.5 * self.lever / self.length
+
+    def deflection(self, direction: Direction, functions: int | None = None, modes: bool = False) -> Bent:
+        """Quasi-static displacement and slope of the tip, or what some shape functions leave out of them."""
         if direction == "twist":
+            # A torque at the tip is met exactly by one function.
             couple = self.moment_of_inertia * self.turning[2] * self.length / self.stiffness["twist"]
-            return couple * self.length
+            return Bent(0.0, 0.0 if functions else couple)
         i = 0 if direction == "bend_y" else 1
-        return estimators.deflection(
-            self.rhoA, self.stiffness[direction], self.length, self.outboard, self.across[i], self.turning[i]
-        )
+        return Bent(*estimators.deflection(
+            self.rhoA, self.stiffness[direction], self.length, self.outboard, self.across[i], self.turning[i],
+            functions, modes,
+        ))  # fmt: skip
+
+    def share(self, bent: Bent) -> float:
+        """What a displacement and a slope of the tip do to outputs, in units of what is allowed."""
+        return bent.displacement * self.reach + bent.slope * self.lever
 
     def frequency(self, direction: Direction) -> float:
         """First one of bending [rad/s]."""
-        return estimators.first_frequency(self.rhoA, self.stiffness[direction], self.length, self.outboard)
+        return estimators.first_frequency(self.rhoA, self.stiffness[direction], self.length, self.outboard.mass)
 
     def periods(self, direction: Direction) -> float:
         """How many periods of the first mode the load takes to come and go."""
-        return self.frequency(direction) * self.period / (2.0 * math.pi)
+        return self.frequency(direction) * self.period[direction == "bend_z"] / (2.0 * math.pi)
 
     def stiffening(self, direction: Direction) -> float:
         """Relative shift of the first frequency by foreshortening."""
         EI = self.stiffness[direction]
-        pull = self.outboard * (self.along + self.spin**2 * self.length)
+        pull = self.outboard.mass * (self.along + self.spin**2 * self.length)
         gamma = self.rhoA * self.along * self.length**3 / EI
         return estimators.stiffening(self.eta(direction), gamma, pull * self.length**2 / EI)
 
@@ -135,28 +156,27 @@ class Observed:
             return length * float(np.mean([self.number(body.rhoA, x * length) for x in _STATIONS]))
         return self.number(body.inertia.mass) if body.inertia is not None else 0.0
 
-    def reach(self, name: str, root: Array, length: float | None) -> float:
-        """What a displacement at a place does to outputs, in units of what is allowed.
+    def reach(self, name: str, places: Array, length: float) -> tuple[float, float]:
+        """What a displacement and a turn at a place do to outputs, in units of what is allowed [1/m, 1/rad].
 
         Args:
             name: The body that is displaced.
-            root: Where, over time (n, 3).
-            length: Of the beam whose tip this is [m], and the answer is per m; None for a joint: per rad.
+            places: Where, over time (n, 3).
+            length: That tells turns of joints from displacements [m].
         """
         carried = {body.name for body in self.outboard_of(name)} | {name}
-        most = 0.0
+        shift = turn = 0.0
         for output in self.scene.outputs:
             bound = output.bound(self.truth.trial.values[output.name])
             if bound == 0.0 or output.kind in ("effort", "speed"):
                 continue
             if output.kind == "coordinate":
-                gain = _REACTION if length is None else _REACTION / length
-            else:
-                distance = float(np.linalg.norm(self.poses[output.of][0] - root, axis=1).max())
-                gain = distance if length is None else 1.0 + 1.5 * distance / length
-                gain *= 1.0 if self.bearer(output.of) in carried else _REACTION
-            most = max(most, gain / bound)
-        return most
+                shift, turn = max(shift, _REACTION / (length * bound)), max(turn, _REACTION / bound)
+                continue
+            share = (1.0 if self.bearer(output.of) in carried else _REACTION) / bound
+            distance = float(np.linalg.norm(self.poses[output.of][0] - places, axis=1).max())
+            shift, turn = max(shift, share), max(turn, share * distance)
+        return shift, turn
 
     def bearer(self, frame: str) -> str:
         """The body of a frame, given by its name or with its body's."""
@@ -179,30 +199,48 @@ class Observed:
         tip_frame = f"{beam.name}.{beam.frames[0].name}"
         tip = np.einsum("nji,nj->ni", R, self.poses[tip_frame][0] - p)
         load = [a[inner, k] + sign * turning[inner, j] * length for k, j, sign in ((1, 2, 1.0), (2, 1, -1.0))]
-        largest = load[0] if np.abs(load[0]).max() >= np.abs(load[1]).max() else load[1]
+        periods = [estimators.characteristic_period(one, self.dt) for one in load]
         size = np.abs(a[inner]).max(axis=0)
         turns = np.abs(turning[inner]).max(axis=0)
         return BeamLoads(
             beam, length, self.mass(beam) / length,
             {"bend_y": self._least(beam, "EI_z", length), "bend_z": self._least(beam, "EI_y", length),
              "twist": self._least(beam, "GJ", length)},
-            sum(map(self.mass, carried)), float(np.linalg.norm(w[:, 1:], axis=1).max()),
+            self._carried(carried, self.poses[tip_frame][0][0]), float(np.linalg.norm(w[:, 1:], axis=1).max()),
             (float(size[1]), float(size[2])), (float(turns[2]), float(turns[1]), float(turns[0])), float(size[0]),
-            estimators.characteristic_period(largest, self.dt), self._about_axis(beam, carried),
+            (periods[0], periods[1]), self._about_axis(beam, carried),
             float(np.linalg.norm(tip[:, 1:], axis=1).max()),
-            self.reach(beam.name, self.poses[tip_frame][0], length),
+            *self.reach(beam.name, self.poses[tip_frame][0], length),
         )  # fmt: skip
 
     def _least(self, beam: Beam, label: str, length: float) -> float:
         least = min(self.number(getattr(beam, label), float(x) * length) for x in _STATIONS)
         return least if least > 0.0 else math.inf
 
+    def _carried(self, bodies: Iterable[Body], tip: Array) -> estimators.Outboard:
+        """Masses and their moments about a tip, each body's at its mass centre."""
+        sums = np.zeros(3)
+        for body in bodies:
+            sums += self.mass(body) * float(np.linalg.norm(self._centre(body) - tip)) ** np.arange(3)
+        return estimators.Outboard(*map(float, sums))
+
+    def _centre(self, body: Body) -> Array:
+        """The mass centre at the start, in the world [m]; a beam's at half its length."""
+        p, R = self.poses[body.name]
+        if isinstance(body, Beam):
+            local = np.array([0.5 * self.number(body.length), 0.0, 0.0])
+        else:
+            stated = body.inertia.center_of_mass if body.inertia is not None else (0.0, 0.0, 0.0)
+            local = np.array([self.number(value) for value in stated])
+        centre: Array = p[0] + R[0] @ local
+        return centre
+
     def _about_axis(self, beam: Beam, carried: Iterable[Body]) -> float:
         """Moment of inertia of masses about the beam's axis, as they stand at the start [kg m^2]."""
         p, R = self.poses[beam.name]
         total = sum(self.number(beam.rhoJ, float(x)) for x in _STATIONS) / len(_STATIONS) * self.number(beam.length) / 2
         for body in carried:
-            away = R[0].T @ (self.poses[body.name][0][0] - p[0])
+            away = R[0].T @ (self._centre(body) - p[0])
             total += self.mass(body) * float(away[1] ** 2 + away[2] ** 2)
         return total
 

@@ -17,4 +17,4 @@ def _refined(beam: Beam) -> Beam:
     more = {"hermite": 2, "user": 0}.get(beam.family, 1)
     counts = {d: getattr(beam, d) + more for d in DIRECTIONS if getattr(beam, d)}
     stated = beam.rhoI_y != 0.0 or beam.rhoI_z != 0.0
-    return replace(beam, rotary_inertia=beam.rotary_inertia or stated, **counts)  # type: ignore[arg-type]
+    return replace(beam, rotary_inertia=beam.rotary_inertia or stated, **counts)

@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from symofros.advice.scene import KINDS, Output, Scene
 from symofros.description.native.yaml_nodes import Node, YamlFault, compose
@@ -16,6 +16,7 @@ from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
 from symofros.simulation.inputs import Signal
 
 MAX_BYTES = 1 << 20
+Made = TypeVar("Made")
 _ENTRIES = ("t_end", "outputs", "inputs", "start", "keep", "fixed_step", "samples")
 _OUTPUT = (*KINDS, "absolute", "relative")
 _SIGNAL = ("t", "values", "kind")
@@ -88,14 +89,14 @@ class _Reader:
                       for key in ("t", "values") if key in entries}  # fmt: skip
             if len(arrays) < 2:
                 raise self.fault(node, f"{what}: samples lack a part", ", ".join(entries), "t and values", "give both")
-            kind = self.one_of(entries["kind"], what, ("linear", "hold")) if "kind" in entries else "linear"
+            kind: Any = self.one_of(entries["kind"], what, ("linear", "hold")) if "kind" in entries else "linear"
             return self.built(node, lambda: Signal(arrays["t"], arrays["values"], kind))
         if isinstance(node.value, str):
             self.built(node, lambda: as_value(node.value, what))
             return node.value
         return self.number(node, what)
 
-    def built(self, node: Node, make: Callable[[], Any]) -> Any:
+    def built(self, node: Node, make: Callable[[], Made]) -> Made:
         """What a constructor makes, its complaint put at a line."""
         try:
             return make()

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from symofros.advice.advice import Advice, Choice, Verdict
-from symofros.advice.bench import Bench, Stepping, Trial, Truth
+from symofros.advice.bench import Bench, Trial, Truth
 from symofros.advice.candidates import Reduction, candidates, constants, fewer_functions
 from symofros.advice.loads import BeamLoads, Observed
 from symofros.advice.richer import richer
@@ -183,8 +183,8 @@ class _Search:
         found = self._attempt(softened)
         off = self.bench.error(found, self.truth.trial)
         end = f"ends: {found.failure}" if found.failure else f"errs by {off:.3g} of the tolerance"
-        return replace(one, reason=f"{one.reason}; a model that keeps the softening by the spin, without the stiffening,"
-                                   f" {end}", numbers={**one.numbers, "softened_error": off})  # fmt: skip
+        reason = f"{one.reason}; a model that keeps the softening by the spin, without the stiffening, {end}"
+        return replace(one, reason=reason, numbers={**one.numbers, "softened_error": off})
 
     def _try(self, some: Sequence[Reduction]) -> float:
         """The error of the current system with some reductions more."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from symofros.advice.bench import Bench, Cost, Stepping, Trial
 from symofros.description.system import System
+from symofros.errors import Problem, SymofrosError
 from symofros.simulation.methods import METHODS
 
 _FIXED = ("rk4", "semi_implicit_euler", "implicit_euler", "generalized_alpha")
@@ -28,25 +29,30 @@ def cheapest(bench: Bench, system: System, truth: Trial, share: float) -> tuple[
         share: Of the tolerance, which the error of stepping may take.
 
     Returns:
-        The stepping, its cost, its error in units of what is allowed, and a line on each method tried. The exact run
-        itself is always among those tried, so there is one.
+        The stepping, its cost, its error in units of what is allowed, and a line on each method tried.
+
+    Raises:
+        SymofrosError: No method will do, as may be where only fixed steps may be taken.
     """
-    _, exact = bench.exact(system)
-    best: tuple[Stepping, Cost, float] = (exact, bench.cost(system, truth, exact.method), 0.0)
-    chosen = False
+    best: tuple[Stepping, Cost, float] | None = None
     lines = []
     for method in _FIXED if bench.scene.fixed_step else (*_ADAPTIVE, *_FIXED):
         if METHODS[method].kind in ("rosenbrock", "alpha") and not _small(bench, system):
             lines.append(f"{method}: not tried, derivatives of more than {LARGEST} operations")
             continue
-        found = _coarsest(bench, system, truth, share, method, best[1].total if chosen else None)
+        found = _coarsest(bench, system, truth, share, method, None if best is None else best[1].total)
         if found is None:
             lines.append(f"{method}: dearer, or never within {share:.2g} of the tolerance")
             continue
         stepping, cost, error = found
         lines.append(f"{stepping}: {cost.total} operations, error {error:.2g} of the tolerance")
-        if not chosen or cost.total < best[1].total:
-            best, chosen = found, True
+        if best is None or cost.total < best[1].total:
+            best = found
+    if best is None:
+        raise SymofrosError(str(Problem(
+            f"advise: no way to step '{system.name}' through the scene", "; ".join(lines),
+            "one method is within its share of the tolerance", "allow adaptive steps, or a larger tolerance",
+        )))  # fmt: skip
     return (*best, lines)
 
 
