@@ -100,6 +100,11 @@ class Bench:
         self._counts: dict[str, dict[str, int]] = {}
         self._exact: dict[str, tuple[Trial, Stepping]] = {}
 
+    @property
+    def given(self) -> Stepping:
+        """For a model without speeds: all motion is given, any step is exact, and adapting it would never end."""
+        return Stepping("rk4", dt=self.scene.t_end / self.scene.samples)
+
     def functions(self, system: System, method: str) -> tuple[str, ...]:
         """What a run by a method calls of a model; poses of the scene's frames come to it."""
         needed = ["forward_dynamics", *NEEDS.get(METHODS[method].kind, {}).values()]
@@ -148,8 +153,8 @@ class Bench:
         try:
             model = self.model(system, stepping.method)
             q, v = self.first(model)
-            if model.nv == 0:  # All motion is given, so any step is exact, and adapting it would never end.
-                stepping = Stepping("rk4", dt=self.scene.t_end / self.scene.samples)
+            if model.nv == 0:
+                stepping = self.given
             run = simulate(
                 model, q, v, self.scene.t_end, u=dict(self.scene.inputs) or None, method=stepping.method,
                 output=self.scene.times, max_steps=most_steps, **stepping.settings,  # type: ignore[arg-type]

@@ -16,7 +16,9 @@ import numpy as np
 from symofros.runtime.kernel import Array
 
 # Roots of cos x cosh x = -1, squared: frequencies of a cantilever in sqrt(EI / rhoA L^4).
-FREQUENCIES = (3.5160152685, 22.0344915647, 61.6972144135, 120.9019160523, 199.8595301168, 298.5555310341)
+FREQUENCIES = (
+    3.51601526850015, 22.03449156466880, 61.69721441354900, 120.90191605230574, 199.85953011680346, 298.55553096773014,
+)  # fmt: skip
 # Share of the load's work that goes into stiffness, of the first mode: rotation about the root, a uniform pull, a force
 # at the tip; int (1 - x^2)/2 phi'^2, int (1 - x) phi'^2, int phi'^2.
 BY_SPIN, BY_PULL, BY_FORCE = 1.1933363735732485, 1.5708781896764525, 4.647778312645509

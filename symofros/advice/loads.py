@@ -247,5 +247,12 @@ class Observed:
 
 def _rates(R: Array, dt: float) -> Array:
     """Angular velocities in the body's axes (n, 3) of rotations (n, 3, 3)."""
-    spin = np.einsum("nji,njk->nik", R, np.gradient(R, dt, axis=0))
-    return np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=-1)
+    turn = np.einsum("nji,njk->nik", R[:-1], R[1:])
+    skew = (turn - np.swapaxes(turn, 1, 2)) / 2.0
+    axis = np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=-1)
+    sine, cosine = np.linalg.norm(axis, axis=1), (np.trace(turn, axis1=1, axis2=2) - 1.0) / 2.0
+    angle = np.arctan2(sine, cosine)
+    w = axis * (angle / np.where(sine > 0.0, sine, 1.0))[:, None] / dt
+    # Between samples; at a sample, the mean of its neighbours.
+    rates: Array = np.concatenate([w[:1], (w[1:] + w[:-1]) / 2.0, w[-1:]])
+    return rates

@@ -34,6 +34,8 @@ def cheapest(bench: Bench, system: System, truth: Trial, share: float) -> tuple[
     Raises:
         SymofrosError: No method will do, as may be where only fixed steps may be taken.
     """
+    if bench.model(system).nv == 0:
+        return bench.given, bench.cost(system, truth, "rk4"), 0.0, ["no speeds are left: nothing is integrated"]
     best: tuple[Stepping, Cost, float] | None = None
     lines = []
     for method in _FIXED if bench.scene.fixed_step else (*_ADAPTIVE, *_FIXED):
