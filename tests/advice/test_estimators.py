@@ -42,7 +42,8 @@ def test_periods_that_let_a_beam_be_rigid(r: float, share: float) -> None:
 def test_when_foreshortening_counts(tolerance: float, eta: float, eta_hub: float, gamma: float, load: float) -> None:
     found = (estimators.stiffening(eta), estimators.stiffening(eta_hub, eta_hub**2),
              estimators.stiffening(0.0, gamma), estimators.stiffening(0.0, 0.0, load))  # fmt: skip
-    assert found == pytest.approx([tolerance] * 4, rel=1e-9)
+    # The benchmark's square of the first frequency is 1.4e-9 off the root of cos x cosh x = -1.
+    assert found == pytest.approx([tolerance] * 4, rel=2e-9)
 
 
 def test_critical_speed_is_the_first_frequency() -> None:
