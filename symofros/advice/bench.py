@@ -102,7 +102,7 @@ class Bench:
 
     @property
     def given(self) -> Stepping:
-        """For a model without speeds: all motion is given, any step is exact, and adapting it would never end."""
+        """For a model without speeds: all motion is given, and any step is exact."""
         return Stepping("rk4", dt=self.scene.t_end / self.scene.samples)
 
     def functions(self, system: System, method: str) -> tuple[str, ...]:
