@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
@@ -33,14 +33,6 @@ _EXACT: dict[Load, tuple[float, float]] = {
 }  # fmt: skip
 
 
-class Outboard(NamedTuple):
-    """What a beam's tip carries: mass [kg], its first [kg m] and second moment [kg m^2] about the tip."""
-
-    mass: float = 0.0
-    first: float = 0.0
-    second: float = 0.0
-
-
 def residual(r: float) -> float:
     """Vibration left by a load A (1 - cos(2 pi t / T)) on a mode, in units of its deflection by a steady A.
 
@@ -58,7 +50,7 @@ def residual_bound(r: float) -> float:
 
 
 def deflection(
-    rhoA: float, EI: float, length: float, outboard: Outboard, across: float, turning: float,
+    rhoA: float, EI: float, length: float, across: float, turning: float, force: float, moment: float,
     functions: int | None = None, modes: bool = False,
 ) -> tuple[float, float]:  # fmt: skip
     """Quasi-static displacement [m] and slope [rad] of a cantilever's tip.
@@ -67,18 +59,18 @@ def deflection(
         rhoA: [kg/m].
         EI: [N m^2].
         length: [m].
-        outboard: What its tip carries.
         across: Acceleration of the root across the axis, less gravity [m/s^2].
         turning: Angular acceleration [rad/s^2].
+        force: Across the axis, at the tip [N].
+        moment: At the tip [N m].
         functions: What some shape functions leave out of it; None: all of it.
         modes: As in `tip_response`.
     """
-    at_tip = across + turning * length
     loads: dict[Load, float] = {
         "uniform": rhoA * across * length**4 / EI,
         "rising": rhoA * turning * length**5 / EI,
-        "force": (outboard.mass * at_tip + outboard.first * turning) * length**3 / EI,
-        "moment": (outboard.first * at_tip + outboard.second * turning) * length**2 / EI,
+        "force": force * length**3 / EI,
+        "moment": moment * length**2 / EI,
     }
     displacement = slope = 0.0
     for load, size in loads.items():

@@ -43,11 +43,13 @@ class BeamLoads:
         length: [m].
         rhoA: Mean [kg/m].
         stiffness: Least EI_z (bend_y), EI_y (bend_z) and GJ (twist) [N m^2]; those of rigid directions are infinite.
-        outboard: What the tip carries, as it stands at the start.
+        outboard: Mass carried by the tip [kg].
         spin: Angular speed across the axis [rad/s].
         across: Acceleration of the root along y and z, less gravity [m/s^2].
         turning: Angular acceleration about z (bends along y), y and x [rad/s^2].
         along: Acceleration of the root along x, less gravity [m/s^2].
+        force: On the tip along y and z, by the motion and the weight of what it carries [N].
+        moment: On the tip about z (bends along y) and y, likewise [N m].
         period: Characteristic periods of the loads along y and z [s].
         moment_of_inertia: Of what is outboard about the beam's axis [kg m^2].
         tip: Largest displacement of the tip across the axis, in the simulation [m].
@@ -59,11 +61,13 @@ class BeamLoads:
     length: float
     rhoA: float
     stiffness: dict[Direction, float]
-    outboard: estimators.Outboard
+    outboard: float
     spin: float
     across: tuple[float, float]
     turning: tuple[float, float, float]
     along: float
+    force: tuple[float, float]
+    moment: tuple[float, float]
     period: tuple[float, float]
     moment_of_inertia: float
     tip: float
@@ -87,8 +91,8 @@ class BeamLoads:
             return Bent(0.0, 0.0 if functions else couple)
         i = 0 if direction == "bend_y" else 1
         return Bent(*estimators.deflection(
-            self.rhoA, self.stiffness[direction], self.length, self.outboard, self.across[i], self.turning[i],
-            functions, modes,
+            self.rhoA, self.stiffness[direction], self.length, self.across[i], self.turning[i], self.force[i],
+            self.moment[i], functions, modes,
         ))  # fmt: skip
 
     def share(self, bent: Bent) -> float:
@@ -97,7 +101,7 @@ class BeamLoads:
 
     def frequency(self, direction: Direction) -> float:
         """First one of bending [rad/s]."""
-        return estimators.first_frequency(self.rhoA, self.stiffness[direction], self.length, self.outboard.mass)
+        return estimators.first_frequency(self.rhoA, self.stiffness[direction], self.length, self.outboard)
 
     def periods(self, direction: Direction) -> float:
         """How many periods of the first mode the load takes to come and go."""
@@ -106,7 +110,7 @@ class BeamLoads:
     def stiffening(self, direction: Direction) -> float:
         """Relative shift of the first frequency by foreshortening."""
         EI = self.stiffness[direction]
-        pull = self.outboard.mass * (self.along + self.spin**2 * self.length)
+        pull = self.outboard * (self.along + self.spin**2 * self.length)
         gamma = self.rhoA * self.along * self.length**3 / EI
         return estimators.stiffening(self.eta(direction), gamma, pull * self.length**2 / EI)
 
@@ -200,14 +204,16 @@ class Observed:
         tip = np.einsum("nji,nj->ni", R, self.poses[tip_frame][0] - p)
         load = [a[inner, k] + sign * turning[inner, j] * length for k, j, sign in ((1, 2, 1.0), (2, 1, -1.0))]
         periods = [estimators.characteristic_period(one, self.dt) for one in load]
+        force, moment = self._on_tip(carried, self.poses[tip_frame][0], R, gravity)
         size = np.abs(a[inner]).max(axis=0)
         turns = np.abs(turning[inner]).max(axis=0)
         return BeamLoads(
             beam, length, self.mass(beam) / length,
             {"bend_y": self._least(beam, "EI_z", length), "bend_z": self._least(beam, "EI_y", length),
              "twist": self._least(beam, "GJ", length)},
-            self._carried(carried, self.poses[tip_frame][0][0]), float(np.linalg.norm(w[:, 1:], axis=1).max()),
+            sum(map(self.mass, carried)), float(np.linalg.norm(w[:, 1:], axis=1).max()),
             (float(size[1]), float(size[2])), (float(turns[2]), float(turns[1]), float(turns[0])), float(size[0]),
+            (float(force[1]), float(force[2])), (float(moment[2]), float(moment[1])),
             (periods[0], periods[1]), self._about_axis(beam, carried),
             float(np.linalg.norm(tip[:, 1:], axis=1).max()),
             *self.reach(beam.name, self.poses[tip_frame][0], length),
@@ -217,22 +223,27 @@ class Observed:
         least = min(self.number(getattr(beam, label), float(x) * length) for x in _STATIONS)
         return least if least > 0.0 else math.inf
 
-    def _carried(self, bodies: Iterable[Body], tip: Array) -> estimators.Outboard:
-        """Masses and their moments about a tip, each body's at its mass centre."""
-        sums = np.zeros(3)
+    def _on_tip(self, bodies: Iterable[Body], tip: Array, R: Array, gravity: Array) -> tuple[Array, Array]:
+        """Largest force (3) and moment (3) about a tip, in the beam's axes, by masses at the bodies' mass centres."""
+        force, moment = np.zeros_like(tip), np.zeros_like(tip)
         for body in bodies:
-            sums += self.mass(body) * float(np.linalg.norm(self._centre(body) - tip)) ** np.arange(3)
-        return estimators.Outboard(*map(float, sums))
+            centre = self._centre(body)
+            accelerated = np.gradient(np.gradient(centre, self.dt, axis=0), self.dt, axis=0) - gravity
+            force += self.mass(body) * accelerated
+            moment += self.mass(body) * np.cross(centre - tip, accelerated)
+        inner = slice(_EDGE, -_EDGE)
+        of_force, of_moment = (np.abs(np.einsum("nji,nj->ni", R, x)[inner]).max(axis=0) for x in (force, moment))
+        return of_force, of_moment
 
     def _centre(self, body: Body) -> Array:
-        """The mass centre at the start, in the world [m]; a beam's at half its length."""
+        """The mass centre over time, in the world (n, 3) [m]; a beam's at half its length."""
         p, R = self.poses[body.name]
         if isinstance(body, Beam):
             local = np.array([0.5 * self.number(body.length), 0.0, 0.0])
         else:
             stated = body.inertia.center_of_mass if body.inertia is not None else (0.0, 0.0, 0.0)
             local = np.array([self.number(value) for value in stated])
-        centre: Array = p[0] + R[0] @ local
+        centre: Array = p + R @ local
         return centre
 
     def _about_axis(self, beam: Beam, carried: Iterable[Body]) -> float:
@@ -240,7 +251,7 @@ class Observed:
         p, R = self.poses[beam.name]
         total = sum(self.number(beam.rhoJ, float(x)) for x in _STATIONS) / len(_STATIONS) * self.number(beam.length) / 2
         for body in carried:
-            away = R[0].T @ (self._centre(body) - p[0])
+            away = R[0].T @ (self._centre(body)[0] - p[0])
             total += self.mass(body) * float(away[1] ** 2 + away[2] ** 2)
         return total
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from symofros.advice import estimators
-from symofros.advice.estimators import Outboard, tip_response
+from symofros.advice.estimators import tip_response
 
 # Derived independently: residual vibration over the quasi-static deflection after a load A (1 - cos(2 pi t/T)),
 # simulated (G2 of the project's benchmarks), by the number of periods r.
@@ -57,11 +57,13 @@ def test_critical_speed_is_the_first_frequency() -> None:
 def test_static_deflections() -> None:
     """G3: 11 rhoA alpha L^5 / 120 EI, rhoA g L^4 / 8 EI, P L^3 / 3 EI."""
     rhoA, EI, L = 0.7, 90.0, 1.3
-    turned, _ = estimators.deflection(rhoA, EI, L, Outboard(), 0.0, 2.0)
-    weighed, slope = estimators.deflection(rhoA, EI, L, Outboard(), 9.81, 0.0)
-    carried, _ = estimators.deflection(0.0, EI, L, Outboard(2.0), 9.81, 0.0)
+    turned, _ = estimators.deflection(rhoA, EI, L, 0.0, 2.0, 0.0, 0.0)
+    weighed, slope = estimators.deflection(rhoA, EI, L, 9.81, 0.0, 0.0, 0.0)
+    carried, _ = estimators.deflection(0.0, EI, L, 0.0, 0.0, 2.0 * 9.81, 0.0)
+    turned_tip, turn = estimators.deflection(0.0, EI, L, 0.0, 0.0, 0.0, 5.0)
     assert turned == pytest.approx(11 * rhoA * 2.0 * L**5 / (120 * EI))
     assert weighed == pytest.approx(rhoA * 9.81 * L**4 / (8 * EI)) and slope == pytest.approx(weighed * 4 / 3 / L)
+    assert turned_tip == pytest.approx(5.0 * L**2 / (2 * EI)) and turn == pytest.approx(5.0 * L / EI)
     assert carried == pytest.approx(2.0 * 9.81 * L**3 / (3 * EI))
 
 
