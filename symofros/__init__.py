@@ -57,6 +57,11 @@ from symofros.expr.expression import evaluate as evaluate
 from symofros.options import Options as Options
 
 if TYPE_CHECKING:
+    from symofros.advice.advice import Advice as Advice
+    from symofros.advice.scene import Output as Output
+    from symofros.advice.scene import Scene as Scene
+    from symofros.advice.scene_file import load_scene as load_scene
+    from symofros.advice.search import advise as advise
     from symofros.compiler import compile_library as compile_library
     from symofros.compiler import compile_system
     from symofros.compiler import program_of as program_of
@@ -95,6 +100,11 @@ _LAZY = {
     "export": ("symofros.exporting", "export"),
     "load": ("symofros.loading", "load"),
     "save": ("symofros.loading", "save"),
+    "advise": ("symofros.advice.search", "advise"),
+    "Advice": ("symofros.advice.advice", "Advice"),
+    "Scene": ("symofros.advice.scene", "Scene"),
+    "Output": ("symofros.advice.scene", "Output"),
+    "load_scene": ("symofros.advice.scene_file", "load_scene"),
     "Model": ("symofros.runtime.model", "Model"),
     "assemble": ("symofros.simulation.assembly", "assemble"),
     "base_parameters": ("symofros.simulation.base_parameters", "base_parameters"),

@@ -1,4 +1,4 @@
-"""Command line: symofros info | compile | simulate | export MODEL."""
+"""Command line: symofros info | compile | simulate | advise | export MODEL."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from rich.table import Table
 from rich.tree import Tree
 
 import symofros as sf
+from symofros.advice.report import table_of
 from symofros.atomic import write_atomically
 from symofros.codegen.names import identifier
 from symofros.codegen.templates import template
@@ -224,6 +225,43 @@ def simulate(
     _tell(run, files, as_json)
     if not run.outcome.ok:
         raise typer.Exit(1)
+
+
+@app.command()
+def advise(
+    model: ModelPath,
+    scene: Annotated[Path, typer.Option(help="The scene, a YAML file (docs/advise.md).", show_default=False)],
+    floating_base: Floating = False,
+    tolerance: Annotated[
+        list[str], typer.Option(help="NUMBER for every output, or OUTPUT=NUMBER; in place of the scene's.")
+    ] = [],  # noqa: B006
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the reduced model: .yaml.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Find the cheapest model that keeps a scene's tolerance, each choice verified by simulation."""
+    system = _load(model, floating_base)
+    try:
+        found = sf.advise(system, sf.load_scene(scene), _tolerances(tolerance))
+        if output:
+            found.write(output)
+    except sf.SymofrosError as error:
+        _err.print(str(error), markup=False, highlight=False, soft_wrap=True)
+        raise typer.Exit(BAD_INPUT) from None
+    if as_json:
+        print(json.dumps(found.to_json(), indent=1))
+    else:
+        _out.print(table_of(found))
+        if output:
+            _out.print(f"wrote {output}", markup=False)
+    if not found.ok:
+        raise typer.Exit(1)
+
+
+def _tolerances(given: list[str]) -> float | dict[str, float] | None:
+    """What --tolerance gives: one number, or some by name."""
+    if len(given) == 1 and "=" not in given[0]:
+        return _number("--tolerance", given[0])
+    return {name: _number(name, text) for name, text in _assignments(given, "--tolerance").items()} or None
 
 
 @app.command("export")

@@ -35,9 +35,14 @@ ALLOWED: dict[str, set[str]] = {
     "exporting": {
         "exports", "compiler", "loading", "codegen", "description", "runtime", "simulation", "errors", "options",
     },
+    # Advice compiles and simulates reduced systems, and counts what they take.
+    "advice": {
+        "compiler", "description", "expr", "passes", "runtime", "simulation", "errors", "options", "atomic",
+    },
     "loading": {"errors", "atomic", "description", "topology"},
     "__init__": {
         "errors", "options", "expr", "description", "compiler", "loading", "exporting", "runtime", "simulation",
+        "advice",
     },
 }  # fmt: skip
 ENGINES = {"pinocchio", "mujoco", "exudyn", "casadi"}

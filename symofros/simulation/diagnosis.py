@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from symofros.errors import SymofrosError
 from symofros.runtime.kernel import Array
 from symofros.simulation import stepper as native
 from symofros.simulation.loops import Recorded
@@ -71,7 +72,10 @@ def _immobile(stepper: Stepper, q: np.ndarray) -> bool:
     model = stepper.model
     if model.nc or not np.all(np.isfinite(q)):
         return False
-    M = model.mass_matrix(q, u=stepper.inputs_now, par=stepper.par)
+    try:
+        M = model.mass_matrix(q, u=stepper.inputs_now, par=stepper.par)
+    except SymofrosError:  # Options.functions left it out; the run has diverged all the same.
+        return False
     scale = np.sqrt(np.diag(M))
     if not np.all(np.isfinite(M)) or not np.all(scale > 0.0):
         return bool(np.all(np.isfinite(M)))

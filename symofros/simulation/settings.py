@@ -105,7 +105,8 @@ class Settings:
         if adaptive and not chosen.adaptive:
             raise _wrong(f"'{method}' does not adapt its steps", "adaptive=True", "it estimates no error",
                          "use dopri5, dop853 or rodas4")  # fmt: skip
-        adapts = chosen.adaptive if adaptive is None else adaptive
+        # Where all motion is given there is no error to adapt to.
+        adapts = model.nv > 0 and (chosen.adaptive if adaptive is None else adaptive)
         step = dt if dt is not None else 0.0 if adapts else 1e-3
         longest = max_step if math.isfinite(max_step) else 0.0
         return cls(

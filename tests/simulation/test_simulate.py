@@ -236,6 +236,18 @@ class TestEnds:
         assert run.outcome.kind == "diverged" and not run.outcome.ok
         assert "smaller dt" in run.outcome.advice and np.all(np.isfinite(run.q))
 
+    def test_divergence_of_a_model_that_was_compiled_for_stepping_alone(self) -> None:
+        arm = sf.RigidBody("arm", sf.Joint("q", "revolute", actuated=True), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+        model = sf.compile(sf.System("alone", (arm,)), sf.Options(("forward_dynamics",)))
+        run = sf.simulate(model, [1.0], [1e200], 1.0, method="euler", u={"q": "1e300*q*q"}, dt=0.1)
+        assert run.outcome.kind == "diverged"
+
+    @pytest.mark.parametrize("method", ["rk4", "dopri5", "dop853", "rodas4"])
+    def test_a_model_without_speeds_comes_to_its_end(self, method: str) -> None:
+        arm = sf.RigidBody("arm", sf.Joint("q", "revolute", prescribed=True), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
+        run = sf.simulate(sf.compile(sf.System("given", (arm,))), t_end=0.1, u={"q": "t"}, method=method, output=0.05)
+        assert run.outcome.ok and run.t[-1] == pytest.approx(0.1) and run["q"][-1] == pytest.approx(0.1)
+
     def test_a_speed_without_mass_is_named_as_such(self) -> None:
         """Massless by a parameter, which compilation can't know; and light, which is no fault."""
         first = sf.RigidBody("first", sf.Joint("a", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, -1.0)),

@@ -1,0 +1,1 @@
+"""No more than a scene needs: the cheapest model that keeps its tolerance (docs/advise.md)."""

@@ -1,0 +1,52 @@
+"""`symofros advise`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import reference_models
+import symofros as sf
+from symofros.__main__ import app
+
+FLEXIBLE = Path(reference_models.__file__).parent / "flexible"
+MODEL, SCENE = str(FLEXIBLE / "spinning_beam.yaml"), str(FLEXIBLE / "scenes" / "spinning_beam.yaml")
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(app, ["advise", *arguments], env={"COLUMNS": "160"})
+
+
+def test_for_programs(tmp_path: Path) -> None:
+    found = run(MODEL, "--scene", SCENE, "-o", str(tmp_path / "small.yaml"), "--json")
+    assert found.exit_code == 0, found.output
+    said = json.loads(found.stdout)
+    assert said["ok"] and said["gain"] >= 3.0 and said["outputs"][0]["error"] <= said["outputs"][0]["allowed"] == 0.02
+    assert {one["verdict"] for one in said["choices"]} == {"taken", "refused", "not tried"}
+    assert said["cost"]["operations"] == said["cost"]["per_evaluation"] * said["cost"]["evaluations"]
+    assert sf.load(tmp_path / "small.yaml").body("beam").modes == 1
+
+
+def test_for_people() -> None:
+    found = run(MODEL, "--scene", SCENE, "--tolerance", "tip=0.05")
+    assert found.exit_code == 0, found.output
+    for words in ("no foreshortening", "refused", "allowed 0.05", "times as many", "measured:"):
+        assert words in found.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--scene", "missing.yaml"], "no such file"),
+        (["--scene", MODEL], "unknown entry 'symofros'"),
+        (["--scene", SCENE, "--tolerance", "tight"], "is not a number"),
+        (["--scene", SCENE, "--tolerance", "top=1"], "did you mean 'tip'"),
+        (["--scene", SCENE, "--tolerance", "-1"], "no tolerance"),
+    ],
+)
+def test_what_does_not_fit(arguments: list[str], words: str) -> None:
+    found = run(MODEL, *arguments)
+    assert found.exit_code == 2 and words in found.output
