@@ -20,6 +20,7 @@ from validation.cases import Case, named, standard_set
 from validation.check import ModelResult, Settings
 from validation.console import output, progress, show
 from validation.junit import to_junit
+from validation.pareto import command as pareto
 from validation.passes import command as passes
 from validation.record import Record, make_record, summary
 from validation.report import write_report
@@ -154,6 +155,7 @@ exports_report.register(app)
 fuzz_report.register(app)
 mutation_report.register(app)
 oracle.register(app)
+pareto.register(app)
 passes.register(app)
 stability.register(app)
 timing.register(app)
