@@ -1,7 +1,7 @@
 """Exudyn through time with any of its solvers, timed: of the processor, and stepping only.
 
-A step that Newton's method does not finish ends the run. Left to itself Exudyn bisects such a step, in silence and up
-to a thousand times: no step of the size asked for, and no time of one.
+A step that Newton's method does not finish ends the run, or may be cut a few times where that is asked for. Left to
+itself Exudyn bisects such a step in silence down to 1e-8 s: no step of the size asked for, and no time of one.
 """
 
 from __future__ import annotations
@@ -14,14 +14,13 @@ from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn import itemInterface as items
-from exudyn.advancedUtilities import CreateSymbolicUserFunction
 
-from validation.adapters.exudyn_ancf import straight_beam
 from validation.geometry import Array
 
 EXPLICIT = ("ExplicitEuler", "ExplicitMidpoint", "RK33", "RK44", "RK67", "ODE23", "DOPRI5", "DVERK6", "VelocityVerlet")
-# Of those, the ones that choose their steps.
+# Of a step that is cut.
+_PARTS = 32.0
+# Of the explicit ones, those that choose their steps.
 ADAPTIVE = ("ODE23", "DOPRI5", "DVERK6")
 
 
@@ -36,6 +35,7 @@ class Solver:
         tolerance: Newton's, of forces [N].
         relative: Newton's; of an adaptive explicit solver, that of its local error.
         sparse: Whether it solves by sparse matrices.
+        bisecting: Whether it may cut a step that is not finished, down to a 32nd.
     """
 
     kind: str = "GeneralizedAlpha"
@@ -44,13 +44,19 @@ class Solver:
     tolerance: float = 1e-6
     relative: float = 1e-8
     sparse: bool = False
+    bisecting: bool = False
 
     @property
     def name(self) -> str:
         """For people."""
         names = {"GeneralizedAlpha": f"generalised alpha {self.radius:g}", "TrapezoidalIndex2": "trapezoidal"}
         newton = "" if self.kind in EXPLICIT else ", full Newton" if self.full else ", modified Newton"
-        return names.get(self.kind, self.kind) + newton + (", sparse" if self.sparse else "")
+        return (
+            names.get(self.kind, self.kind)
+            + newton
+            + (", sparse" if self.sparse else "")
+            + (", bisecting" if self.bisecting else "")
+        )
 
     def settings(self, step: float, end: float, output: float) -> Any:
         """Exudyn's settings for a run."""
@@ -60,8 +66,10 @@ class Solver:
         timed = made.timeIntegration
         timed.numberOfSteps, timed.endTime, timed.verboseMode = round(end / step), end, 0
         timed.solverType = getattr(exudyn.DynamicSolverType, self.kind)
-        timed.adaptiveStep = False
+        timed.adaptiveStep, timed.minimumStepSize = self.bisecting, step / _PARTS
         timed.automaticStepSize = self.kind in ADAPTIVE
+        if self.kind in ADAPTIVE:
+            timed.adaptiveStep, timed.minimumStepSize = True, 1e-10
         timed.relativeTolerance = timed.absoluteTolerance = self.relative
         timed.newton.useModifiedNewton = not self.full
         timed.newton.absoluteTolerance, timed.newton.relativeTolerance = self.tolerance, self.relative
@@ -123,61 +131,3 @@ class Timed:
 
 def _first(error: Exception) -> str:
     return str(error).strip().splitlines()[0].partition("[Python file")[0].strip()[:160]
-
-
-@dataclass(frozen=True)
-class Rod:
-    """A cantilever on the axis of a hub that spins up.
-
-    Attributes:
-        length: [m].
-        EI: [N m^2].
-        EA: [N].
-        rhoA: [kg/m].
-        duration: Of the spin-up [s].
-        rate: At its end [rad/s].
-    """
-
-    length: float
-    EI: float
-    EA: float
-    rhoA: float
-    duration: float
-    rate: float
-
-    def angle(self, t: Array) -> Array:
-        """The hub's at times within the spin-up: its second rate is rate/duration (1 - cos(2 pi t/duration))."""
-        k = 2.0 * np.pi / self.duration
-        return np.asarray(self.rate / self.duration * (t**2 / 2.0 + (np.cos(k * t) - 1.0) / k**2))
-
-
-def spinning(rod: Rod, elements: int) -> Timed:
-    """The rod of ANCFCable2D elements on a driven hub, with the position of its tip as sensor.
-
-    The hub's angle is one of Exudyn's symbolic functions, evaluated in its C++: a Python function in its place makes
-    a run of four elements a fifth slower. Its joints with such offsets have no form of index 2.
-    """
-
-    def build() -> tuple[Any, Any, Sequence[Any]]:
-        container = exudyn.SystemContainer()
-        system = container.AddSystem()
-        nodes = straight_beam(system, rod.length, rod.EI, rod.EA, rod.rhoA, elements)
-        ground = system.AddMarker(items.MarkerBodyRigid(bodyNumber=system.AddObject(items.ObjectGround())))
-        root = system.AddMarker(items.MarkerBodyRigid(bodyNumber=0))  # The first element's, where it begins.
-        joint = system.AddObject(items.GenericJoint(markerNumbers=[ground, root], constrainedAxes=[1, 1, 0, 0, 0, 1]))
-        k, share = 2.0 * math.pi / rod.duration, rod.rate / rod.duration
-        symbolic: Any = exudyn.symbolic
-
-        def offset(mbs: Any, t: Any, itemNumber: Any, offsets: Any) -> list[Any]:  # noqa: N803 - Exudyn's own names.
-            return [0.0, 0.0, 0.0, 0.0, 0.0, share * (t * t * 0.5 + (symbolic.cos(k * t) - 1.0) * (1.0 / k**2))]
-
-        made = CreateSymbolicUserFunction(system, offset, "offsetUserFunction", joint)
-        system.SetObjectParameter(joint, "offsetUserFunction", made)
-        sensor = system.AddSensor(items.SensorNode(
-            nodeNumber=nodes[-1], writeToFile=False, storeInternal=True,
-            outputVariableType=exudyn.OutputVariableType.Position,
-        ))  # fmt: skip
-        system.Assemble()
-        return container, system, [sensor]
-
-    return Timed(build)

@@ -25,9 +25,7 @@ def register(app: typer.Typer) -> None:
 
 def pareto(
     chosen: Annotated[list[str] | None, typer.Option("--scene", help=f"Only this; of {', '.join(SCENES)}.")] = None,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Few contestants; written to the folder's pareto_quick.")
-    ] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="Few contestants; report in pareto_quick.")] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Leave out scenes that pareto.json has.")] = False,
     report: Annotated[Path, typer.Option(help="Folder for pareto.html, .md, .json.")] = Path("reports"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,

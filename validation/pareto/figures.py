@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from string import ascii_lowercase
 
 import numpy as np
@@ -26,9 +27,9 @@ def letters(count: int) -> list[str]:
 def figure(scene: Scene, result: Result, words: str) -> Figure:
     """Everything that ran, by model; and the methods on the model that matters."""
     points = _shown(scene, result)
-    title = "models: every run, and the front"
-    return Figure(words, (_chart(scene, result, points, title, by_model=True),
-                          _chart(scene, result, _finest(points), "methods: each on its best model", by_model=False)))  # fmt: skip
+    every = _chart(scene, result, points, "models: every run, and the front", by_model=True)
+    best = _chart(scene, result, _finest(points), "methods: each on its best model", by_model=False)
+    return Figure(words, (every, best))
 
 
 def _shown(scene: Scene, result: Result) -> list[Point]:
@@ -53,28 +54,25 @@ def _chart(scene: Scene, result: Result, points: list[Point], title: str, by_mod
     for point in points:
         label = f"{point.who}, {point.model}" if by_model else f"{point.who}, {point.method}"
         groups.setdefault(label, []).append(point)
-    curves = [_curve(label, found, n, by_model) for n, (label, found) in enumerate(_ordered(groups))]
-    marks = [Mark("floor of our beam model", result.floor)] if result.floor else []
+    sides = [[item for item in groups.items() if (item[1][0].who == OURS) == ours] for ours in (True, False)]
+    curves = [
+        _curve(label, found, palette[n % len(palette)], by_model)
+        for side, palette in zip(sides, (_OURS, _OTHERS), strict=True) for n, (label, found) in enumerate(side)
+    ]  # fmt: skip
+    marks = [Mark(f"floor of our beams, {name}", value) for name, value in result.floors.items()]
     if result.agreement and min(p.error for p in points) < 10 * result.agreement:
         marks.append(Mark("the references agree to this", result.agreement))
     tags: tuple[Tag, ...] = ()
     if by_model:
         best = front(points)
-        stairs = [(a.seconds, a.error) for a in best]
+        stairs = [(b.seconds, a.error) for a, b in pairwise(best)] + [(p.seconds, p.error) for p in best]
+        stairs.sort(key=lambda at: (at[0], -at[1]))
         curves.append(Curve("front", np.array([x for x, _ in stairs]), np.array([y for _, y in stairs]), _FRONT))
         tags = tuple(Tag(name, p.seconds, p.error) for name, p in zip(letters(len(best)), best, strict=True))
-    return Chart(title, TIME, scene.measure, tuple(curves), tuple(marks), log_x=True, log_y=True, tags=tags)
+    return Chart(title, TIME, scene.axis, tuple(curves), tuple(marks), log_x=True, log_y=True, tags=tags)
 
 
-def _ordered(groups: dict[str, list[Point]]) -> list[tuple[str, list[Point]]]:
-    """Ours first."""
-    return sorted(groups.items(), key=lambda item: not item[0].startswith(OURS))
-
-
-def _curve(label: str, points: list[Point], n: int, by_model: bool) -> Curve:
-    ours = points[0].who == OURS
-    palette = _OURS if ours else _OTHERS
+def _curve(label: str, points: list[Point], color: int, by_model: bool) -> Curve:
     chosen = sorted(points, key=lambda p: p.seconds)
     x, y = np.array([p.seconds for p in chosen]), np.array([p.error for p in chosen])
-    short = label.removeprefix(f"{OURS}, ")
-    return Curve(short, x, y, palette[n % len(palette)], "points" if by_model else "joined")
+    return Curve(label.removeprefix(f"{OURS}, "), x, y, color, "points" if by_model else "joined")

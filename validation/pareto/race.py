@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from validation.pareto.scene import OURS, Contestant, Point, Prepared, Scene
@@ -19,14 +19,14 @@ class Result:
 
     Attributes:
         points: What came of each contestant.
-        agreement, references, floor: As prepared.
+        agreement, references, floors: As prepared.
         seconds: Wall time of it all.
     """
 
     points: tuple[Point, ...]
     agreement: float
     references: str
-    floor: float
+    floors: Mapping[str, float]
     seconds: float
 
 
@@ -40,7 +40,7 @@ def race(scene: Scene, quick: bool, begun: Callable[[int], None] = lambda _: Non
     for contestant in prepared.contestants:
         points.append(_run(contestant, 2 if quick else REPEATS, 0.1 if quick else ENOUGH))
         done()
-    return Result(tuple(points), prepared.agreement, prepared.references, prepared.floor, time.perf_counter() - start)
+    return Result(tuple(points), prepared.agreement, prepared.references, prepared.floors, time.perf_counter() - start)
 
 
 def _run(one: Contestant, repeats: int, enough: float) -> Point:

@@ -1,4 +1,4 @@
-"""Results -> pareto.html (one self-contained page), pareto.md, pareto.json (every run, from which a later one goes on)."""
+"""Results -> pareto.html (one self-contained page), pareto.md, pareto.json (every run; a later one goes on from it)."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def _scene(page: Page, date: str) -> dict[str, Any]:
     return {
         "title": scene.title, "measure": scene.measure, "ok": page.ok, "date": date,
         "agreement": number(result.agreement), "trust": scene.trust, "references": result.references,
-        "floor": number(result.floor), "seconds": round(result.seconds, 1),
+        "floors": dict(result.floors), "seconds": round(result.seconds, 1),
         "targets": [asdict(v.target) | {"found": _bounded(v.found), "ok": v.ok} for v in page.verdicts],
         "words": [*words.compared(scene, result.points), *words.advice(scene, result)],
         "front": [point.name for _, point in page.named],
@@ -143,7 +143,7 @@ def _bounded(found: float) -> float | str | None:
 
 
 def read(folder: Path, quick: bool) -> tuple[dict[str, Result], dict[str, str]]:
-    """What an earlier run left on this machine, in the same way: results and dates by scene; nothing where there is none."""
+    """What an earlier run left on this machine, in the same way: results and dates by scene."""
     path = folder / "pareto.json"
     if not path.is_file():
         return {}, {}
@@ -160,7 +160,7 @@ def _result(scene: dict[str, Any]) -> Result:
         return math.nan if x is None else float(x)
 
     points = tuple(Point(**p | {"error": real(p["error"]), "seconds": real(p["seconds"])}) for p in scene["points"])
-    return Result(points, real(scene["agreement"]), scene["references"], real(scene["floor"]), scene["seconds"])
+    return Result(points, real(scene["agreement"]), scene["references"], scene["floors"], scene["seconds"])
 
 
 def _render(template: str, comparison: Comparison) -> str:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.adapters.exudyn_steps import Rod
+from validation.adapters.exudyn_scenes import Rod
 from validation.geometry import Array
 
 

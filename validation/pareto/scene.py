@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 OURS = "symofros"
 
@@ -95,13 +95,13 @@ class Prepared:
         contestants: Compiled and assembled, so that a run is stepping only.
         agreement: How far two independent references are apart, in the unit of errors.
         references: What they are, in words.
-        floor: What our model leaves, however finely it is stepped; 0 where it has no such error.
+        floors: What our beam models leave, however finely they are stepped, by what they retain.
     """
 
     contestants: tuple[Contestant, ...]
     agreement: float
     references: str
-    floor: float = 0.0
+    floors: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,8 @@ class Scene:
     Attributes:
         title: What moves.
         setting: From where, for how long, at what output interval.
-        measure: What errors are of, with their unit.
+        measure: What errors are of.
+        axis: The same in a few words, with the unit.
         tuned: How each side was tuned.
         prepare: Whether quickly -> what is to run.
         targets: What is asked of us.
@@ -123,6 +124,7 @@ class Scene:
     title: str
     setting: str
     measure: str
+    axis: str
     tuned: str
     prepare: Callable[[bool], Prepared]
     targets: tuple[Target, ...]

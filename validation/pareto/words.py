@@ -74,15 +74,17 @@ def advice(scene: Scene, result: Result) -> list[str]:
 
 def below_the_floor(scene: Scene, result: Result) -> str:
     """Who serves those who want less than our model's own error."""
-    if not result.floor:
+    if not result.floors:
         return ""
-    finer = [p for p in usable(result.points) if p.who != OURS and p.error < result.floor]
-    said = f"Our beam model has a floor of {scene.shown(result.floor)}, which no mode, step or method removes"
+    least = min(result.floors.values())
+    finer = [p for p in usable(result.points) if p.who != OURS and p.error < least]
+    floors = ", ".join(f"{scene.shown(value)} ({name})" for name, value in result.floors.items())
+    said = f"What our beam model leaves, whatever its functions, step and method, is {floors}"
     if not finer:
         return f"{said}; no run here goes below it."
     first = min(finer, key=lambda p: p.seconds)
-    return (f"{said}; below it {first.who} is the tool: {first.model}, {first.method}, {first.setting} reach "
-            f"{scene.shown(first.error)} in {duration(first.seconds)}.")  # fmt: skip
+    return (f"{said}; below {scene.shown(least)} {first.who} is the tool: {first.model}, {first.method}, "
+            f"{first.setting} reach {scene.shown(first.error)} in {duration(first.seconds)}.")  # fmt: skip
 
 
 def methods(scene: Scene, result: Result) -> str:
