@@ -21,6 +21,8 @@ from validation.assembly import BASE, assemble
 from validation.closed import anchor_name
 from validation.geometry import Array
 
+# What its stubs state wrongly, or not at all.
+_ENGINE: Any = exudyn
 # The ground is object 0.
 _FIRST_BAR = 1
 
@@ -66,7 +68,7 @@ def spinning(rod: Rod, elements: int) -> Timed:
         root = system.AddMarker(items.MarkerBodyRigid(bodyNumber=0))  # The first element's, where it begins.
         joint = system.AddObject(items.GenericJoint(markerNumbers=[ground, root], constrainedAxes=[1, 1, 0, 0, 0, 1]))
         k, share = 2.0 * math.pi / rod.duration, rod.rate / rod.duration
-        symbolic: Any = exudyn.symbolic
+        symbolic = _ENGINE.symbolic
 
         def offset(mbs: Any, t: Any, itemNumber: Any, offsets: Any) -> list[Any]:  # noqa: N803 - Exudyn's own names.
             return [0.0, 0.0, 0.0, 0.0, 0.0, share * (t * t * 0.5 + (symbolic.cos(k * t) - 1.0) * (1.0 / k**2))]
@@ -120,8 +122,8 @@ def pendulum(gravity: float) -> Timed:
         ))  # fmt: skip
         made.AddObject(items.ObjectKinematicTree(
             nodeNumber=node, jointTypes=[exudyn.JointType.RevoluteY], linkParents=[-1],
-            jointTransformations=exudyn.Matrix3DList([np.eye(3)]), jointOffsets=exudyn.Vector3DList([[0, 0, 0]]),
-            linkInertiasCOM=exudyn.Matrix3DList([np.zeros((3, 3))]), linkCOMs=exudyn.Vector3DList([[1, 0, 0]]),
+            jointTransformations=_ENGINE.Matrix3DList([np.eye(3)]), jointOffsets=_ENGINE.Vector3DList([[0, 0, 0]]),
+            linkInertiasCOM=_ENGINE.Matrix3DList([np.zeros((3, 3))]), linkCOMs=_ENGINE.Vector3DList([[1, 0, 0]]),
             linkMasses=[1.0], baseOffset=[0, 0, 0], gravity=[0, 0, -gravity],
         ))  # fmt: skip
         sensor = made.AddSensor(items.SensorNode(
@@ -159,6 +161,7 @@ def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Tim
     """
     assembly = assemble(system)
     numbers = system.parameter_values()
+    closures = [constraint for constraint in system.constraints if isinstance(constraint, sf.Closure)]
 
     def build() -> tuple[Any, Any, Sequence[Any]]:
         container = exudyn.SystemContainer()
@@ -173,7 +176,7 @@ def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Tim
             at = carriers[site.mover].moved(site.X_BF.p[:2])
             return made.AddMarker(items.MarkerBodyPosition(bodyNumber=at.body, localPosition=at.place()))
 
-        for closure in system.constraints:
+        for closure in closures:
             made.AddObject(items.RevoluteJoint2D(markerNumbers=[marker(closure.first), marker(closure.second)]))
         for spring in system.connections:
             made.AddObject(items.SpringDamper(

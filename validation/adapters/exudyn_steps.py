@@ -17,11 +17,11 @@ import numpy as np
 
 from validation.geometry import Array
 
-EXPLICIT = ("ExplicitEuler", "ExplicitMidpoint", "RK33", "RK44", "RK67", "ODE23", "DOPRI5", "DVERK6", "VelocityVerlet")
+EXPLICIT = ("ExplicitEuler", "ExplicitMidpoint", "RK33", "RK44", "RK67", "ODE23", "DOPRI5", "VelocityVerlet")
 # Of a step that is cut.
 _PARTS = 32.0
 # Of the explicit ones, those that choose their steps.
-ADAPTIVE = ("ODE23", "DOPRI5", "DVERK6")
+ADAPTIVE = ("ODE23", "DOPRI5")
 
 
 @dataclass(frozen=True)

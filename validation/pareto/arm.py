@@ -19,7 +19,7 @@ from validation.studies.simulation import DAMPING, STIFFNESS, TARGET
 from validation.timing.models import panda7
 
 END, OUTPUT = 10.0, 0.1
-TIMES = np.arange(round(END / OUTPUT) + 1) * OUTPUT
+TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT
 MODEL = "7 joints"
 
 
@@ -42,7 +42,7 @@ def possible(made: E | Unsupported) -> E:
         ValueError: It can't hold it.
     """
     if isinstance(made, Unsupported):
-        raise ValueError(f"{made.engine}: {made.reason}")
+        raise ValueError(made.reason)
     return made
 
 
@@ -101,6 +101,7 @@ def ours_all(quick: bool) -> list[Contestant]:
 def in_mujoco() -> InMujoco:
     """MuJoCo's side."""
     made = possible(mujoco.build(subject()))
+    assert isinstance(made, mujoco.MujocoEngine)
     m = mujoco_steps.held(made, np.full(7, TARGET), STIFFNESS, DAMPING)
     q0 = made.chart.coordinates(start()[None])[0]
     # Coordinates of hinges are those of the speeds: the chart's transform reorders both.

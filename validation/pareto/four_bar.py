@@ -21,7 +21,7 @@ from validation.stability import four_bars
 from validation.stability.soft_closures import DEFAULT, SOLIMP
 
 END, OUTPUT = 10.0, 0.1
-TIMES = np.arange(round(END / OUTPUT) + 1) * OUTPUT
+TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT
 HINGES = ((0, 1.0, 2, 0.0), (2, 1.0, 1, 1.0))
 CLOSED = {"multipliers": "multipliers", "null_space": "partitioned"}
 

@@ -168,5 +168,6 @@ def _render(template: str, comparison: Comparison) -> str:
         name: figure(page.scene, page.result, words.see(page.scene, page.result))
         for name, page in comparison.pages.items()
     }
+    overall = words.overall({name: (page.scene, page.result) for name, page in comparison.pages.items()})
     return render(template, {"svg": charts.svg, "duration": words.duration}, comparison=comparison, drawn=drawn,
-                  words=words, flags=FLAGS, versions=versions(*ENGINES))  # fmt: skip
+                  words=words, overall=overall, flags=FLAGS, versions=versions(*ENGINES))  # fmt: skip

@@ -20,7 +20,7 @@ from validation.pareto.theirs_exudyn import Theirs
 from validation.timing.equal_accuracy import EA
 
 END, OUTPUT = 2.0, 0.02
-TIMES = np.arange(round(END / OUTPUT) + 1) * OUTPUT
+TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT
 # Joint -> angle at the start, angle asked for [rad], stiffness [N m/rad] and damping [N m s/rad] of the control.
 CONTROL = {"q1": (0.0, 0.3, 10.0, 4.0), "q2": (0.8, 0.5, 4.0, 1.0), "q3": (-0.5, -0.2, 0.5, 0.1)}
 START = {name: row[0] for name, row in CONTROL.items()}
@@ -38,7 +38,8 @@ def system(count: int, **changed: Any) -> sf.System:
 
 def _body(body: sf.Body, count: int, changed: dict[str, Any]) -> sf.Body:
     if isinstance(body, sf.Beam):
-        return replace(body, **{"bend_y": count, "family": "spline"} | changed)
+        given: dict[str, Any] = {"bend_y": count, "family": "spline"} | changed
+        return replace(body, **given)
     if body.joint is None or body.joint.name not in CONTROL:
         return body
     _, rest, stiffness, damping = CONTROL[body.joint.name]

@@ -20,7 +20,7 @@ from validation.pareto.theirs_exudyn import Theirs
 ROD = Rod(length=10.0, EI=1.4e4, EA=2.8e7, rhoA=1.2, duration=15.0, rate=6.0)
 RHO_I = 6e-4  # Moment of inertia of sections per length [kg m].
 END, OUTPUT = 15.0, 0.1
-TIMES = np.arange(round(END / OUTPUT) + 1) * OUTPUT
+TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT
 # Forces of EA 2.8e7 N round off near 1e-7 N; below that Newton's method has nothing to find.
 TOLERANCE = 3e-6
 FINE, FINE_STEP = 32, 2.5e-3
@@ -35,7 +35,7 @@ DRIVE = {
 def model(modes: int, **changed: Any) -> sf.Model:
     """The beam with so many functions."""
     hub = sf.Joint("hub", "revolute", prescribed=True)
-    given = {"family": "clamped_free", "EI_z": ROD.EI, "rhoI_z": RHO_I} | changed
+    given: dict[str, Any] = {"family": "clamped_free", "EI_z": ROD.EI, "rhoI_z": RHO_I} | changed
     beam = sf.Beam("b", hub, ROD.length, ROD.rhoA, bend_y=modes, **given)
     return sf.compile(sf.System("spin_up", (beam,), gravity=(0, 0, 0)))
 

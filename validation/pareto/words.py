@@ -53,7 +53,7 @@ def _sentence(scene: Scene, verdict: Verdict) -> str:
     if verdict.found == 0.0:
         return f"At {at} {engine} wins: no model of ours keeps it, and {engine} takes {duration(verdict.theirs)}."
     if math.isinf(verdict.found):
-        return f"At {at} symofros takes {duration(verdict.ours)}; no run of {engine} keeps it."
+        return f"At {at} symofros wins with {duration(verdict.ours)}: no run of {engine} keeps it."
     times = f"{duration(verdict.ours)} against {duration(verdict.theirs)}"
     if verdict.found >= 1.0:
         return f"At {at} symofros wins by {verdict.found:.3g}: {times} of {engine}'s best."
@@ -102,6 +102,27 @@ def methods(scene: Scene, result: Result) -> str:
         second = f", then {rest[0][1]} ({duration(rest[0][0])})" if rest else ""
         parts.append(f"at {scene.shown(error)} {first[1]} ({duration(first[0])}){second}")
     return "Of our methods the fastest are " + "; ".join(parts) + "."
+
+
+def overall(results: dict[str, tuple[Scene, Result]]) -> str:
+    """What holds across scenes: whose the front is, and our first method at the smallest error asked for."""
+    firsts: dict[str, list[str]] = {}
+    for scene, result in results.values():
+        if not scene.targets:
+            continue
+        error = min(target.error for target in scene.targets)
+        mine = [p for p in usable(result.points) if p.who == OURS]
+        by = {p.method: seconds_at((o for o in mine if o.method == p.method), error) for p in mine}
+        if by and math.isfinite(min(by.values())):
+            firsts.setdefault(min(by, key=lambda m: by[m]), []).append(scene.title)
+    said = [f"{method} on {', '.join(where)}" for method, where in firsts.items()]
+    floors = [scene.title for scene, result in results.values() if result.floors]
+    beams = (
+        f" Below the floors of our beams, on {', '.join(floors)}, the tool is a nonlinear finite element: Exudyn."
+        if floors
+        else ""
+    )
+    return f"At the smallest error asked for, the first of our methods is {'; '.join(said) or 'none'}.{beams}"
 
 
 def see(scene: Scene, result: Result) -> str:
