@@ -15,7 +15,7 @@ from validation.pareto.scene import OURS, Point, Scene
 
 TIME = "time of the processor  [s]"
 # Colours of ours and of the others, in the order in which models appear.
-_OURS, _OTHERS = (0, 2, 6, 4), (1, 3, 7)
+_OURS, _OTHERS = (0, 2, 6, 8, 10, 4), (1, 11, 7, 9, 3)
 _FRONT = 5
 
 
@@ -50,16 +50,13 @@ def _finest(points: list[Point]) -> list[Point]:
 
 
 def _chart(scene: Scene, result: Result, points: list[Point], title: str, by_model: bool) -> Chart:
-    groups: dict[str, list[Point]] = {}
-    for point in points:
-        label = f"{point.who}, {point.model}" if by_model else f"{point.who}, {point.method}"
-        groups.setdefault(label, []).append(point)
+    groups = _by_model(points) if by_model else _by_method(points)
     sides = [[item for item in groups.items() if (item[1][0].who == OURS) == ours] for ours in (True, False)]
     curves = [
         _curve(label, found, palette[n % len(palette)], by_model)
         for side, palette in zip(sides, (_OURS, _OTHERS), strict=True) for n, (label, found) in enumerate(side)
     ]  # fmt: skip
-    marks = [Mark(f"floor of our beams, {name}", value) for name, value in result.floors.items()]
+    marks = _floors(result)
     if result.agreement and min(p.error for p in points) < 10 * result.agreement:
         marks.append(Mark("the references agree to this", result.agreement))
     tags: tuple[Tag, ...] = ()
@@ -70,6 +67,39 @@ def _chart(scene: Scene, result: Result, points: list[Point], title: str, by_mod
         curves.append(Curve("front", np.array([x for x, _ in stairs]), np.array([y for _, y in stairs]), _FRONT))
         tags = tuple(Tag(name, p.seconds, p.error) for name, p in zip(letters(len(best)), best, strict=True))
     return Chart(title, TIME, scene.axis, tuple(curves), tuple(marks), log_x=True, log_y=True, tags=tags)
+
+
+def _floors(result: Result) -> list[Mark]:
+    """What our beams leave; under the lowest, who goes on."""
+    least = min(result.floors.values(), default=0.0)
+    below = dict.fromkeys(p.who for p in usable(result.points) if p.who != OURS and p.error < least)
+    tool = f"; below it use {' or '.join(below)}" if below else ""
+    return [
+        Mark(f"floor of our beams, {name}{tool if value == least else ''}", value)
+        for name, value in result.floors.items()
+    ]
+
+
+def _by_method(points: list[Point]) -> dict[str, list[Point]]:
+    groups: dict[str, list[Point]] = {}
+    for point in points:
+        groups.setdefault(f"{point.who}, {point.method}", []).append(point)
+    return groups
+
+
+def _by_model(points: list[Point]) -> dict[str, list[Point]]:
+    """By side and model; those for which there is no colour are together."""
+    labels = dict.fromkeys((p.who, p.model) for p in points)
+    sides = [[label for label in labels if (label[0] == OURS) == ours] for ours in (True, False)]
+    named = {
+        label for side, palette in zip(sides, (_OURS, _OTHERS), strict=True)
+        for label in (side if len(side) <= len(palette) else side[: len(palette) - 1])
+    }  # fmt: skip
+    groups: dict[str, list[Point]] = {}
+    for point in points:
+        known = (point.who, point.model) in named
+        groups.setdefault(f"{point.who}, {point.model if known else 'other models'}", []).append(point)
+    return groups
 
 
 def _curve(label: str, points: list[Point], color: int, by_model: bool) -> Curve:

@@ -134,4 +134,6 @@ class Scene:
 
     def shown(self, error: float) -> str:
         """An error for people."""
-        return f"{100 * error:.2g} %" if self.percent else f"{error:.1e}".replace("e-0", "e-")
+        return (
+            f"{100 * error:.{3 if error >= 0.995 else 2}g} %" if self.percent else f"{error:.1e}".replace("e-0", "e-")
+        )

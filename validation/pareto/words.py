@@ -79,7 +79,7 @@ def below_the_floor(scene: Scene, result: Result) -> str:
     least = min(result.floors.values())
     finer = [p for p in usable(result.points) if p.who != OURS and p.error < least]
     floors = ", ".join(f"{scene.shown(value)} ({name})" for name, value in result.floors.items())
-    said = f"What our beam model leaves, whatever its functions, step and method, is {floors}"
+    said = f"Our beam model leaves {floors}, whatever its functions and method (a step's error may hide some of it)"
     if not finer:
         return f"{said}; no run here goes below it."
     first = min(finer, key=lambda p: p.seconds)
@@ -117,10 +117,9 @@ def overall(results: dict[str, tuple[Scene, Result]]) -> str:
             firsts.setdefault(min(by, key=lambda m: by[m]), []).append(scene.title)
     said = [f"{method} on {', '.join(where)}" for method, where in firsts.items()]
     floors = [scene.title for scene, result in results.values() if result.floors]
+    where = ", ".join(floors)
     beams = (
-        f" Below the floors of our beams, on {', '.join(floors)}, the tool is a nonlinear finite element: Exudyn."
-        if floors
-        else ""
+        f" Below the floors of our beams, on {where}, the tool is a nonlinear finite element: Exudyn." if where else ""
     )
     return f"At the smallest error asked for, the first of our methods is {'; '.join(said) or 'none'}.{beams}"
 
@@ -130,9 +129,9 @@ def see(scene: Scene, result: Result) -> str:
     others = " and ".join(engines(result.points)) or "nobody else"
     mine = sum(p.who == OURS for p in front(result.points))
     total = len(front(result.points))
-    return (f"Down is more accurate, left is faster. {mine} of the {total} runs on the green front are ours, blue and "
-            f"grey; {others} in orange and red. Letters name the runs of the front in the table below. At the right, "
-            "each method on the model with which it comes closest.")  # fmt: skip
+    return (f"Down is more accurate, left is faster. {mine} of the {total} runs on the green front are ours. Cold "
+            f"colours are ours, warm ones those of {others}. Letters name the runs of the front in the table "
+            "below. At the right, each method on the model with which it comes closest.")  # fmt: skip
 
 
 def refused(result: Result) -> list[str]:

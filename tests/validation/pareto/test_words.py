@@ -60,7 +60,7 @@ def test_the_front_is_tagged_and_the_floor_drawn() -> None:
     drawn = figure(SCENE, found, "see")
     every, methods = drawn.charts
     assert [tag.label for tag in every.tags] == letters(2) and every.log_x and every.log_y
-    assert "floor of our beams, first order" in svg(every) and 'class="tag"' in svg(every)
+    assert "floor of our beams, first order; below it use Exudyn" in svg(every) and 'class="tag"' in svg(every)
     assert all("[s]" in chart.x and "[1]" in chart.y for chart in (every, methods))
     assert letters(28)[25:] == ["z", "a1", "b1"]
 
