@@ -23,6 +23,11 @@ from validation.geometry import Array
 
 # What its stubs state wrongly, or not at all.
 _ENGINE: Any = exudyn
+_HINGES = {
+    (1.0, 0.0, 0.0): exudyn.JointType.RevoluteX,
+    (0.0, 1.0, 0.0): exudyn.JointType.RevoluteY,
+    (0.0, 0.0, 1.0): exudyn.JointType.RevoluteZ,
+}
 # The ground is object 0.
 _FIRST_BAR = 1
 
@@ -205,3 +210,45 @@ def joint_angles(system: sf.System, angles: Mapping[str, float], values: Array) 
     base = np.zeros((len(values), 1))
     parents = np.hstack([turned, base])[:, [mover.parent if mover.parent != BASE else -1 for mover in movers]]
     return np.asarray(start + turned - parents)
+
+
+def held(system: sf.System, start: Array, targets: Array, stiffness: float, damping: float) -> Timed:
+    """A tree of hinges as Exudyn's kinematic tree, which has no constraints; its joints' angles as sensor.
+
+    Args:
+        system: Hinges about x, y or z of their frames.
+        start: Angles at the start, at rest (n) [rad].
+        targets: Where the tree's own springs on the joints rest (n) [rad].
+        stiffness: Of each [N m/rad].
+        damping: Of each [N m s/rad].
+    """
+    assembly = assemble(system)
+    n = len(assembly.movers)
+    masses = [mover.merged() for mover in assembly.movers]
+    axes = [_HINGES[tuple(np.round(mover.axis, 12).tolist())] for mover in assembly.movers]
+
+    def build() -> tuple[Any, Any, Sequence[Any]]:
+        container = exudyn.SystemContainer()
+        made = container.AddSystem()
+        node = made.AddNode(items.NodeGenericODE2(
+            referenceCoordinates=[0.0] * n, initialCoordinates=start.tolist(), initialCoordinates_t=[0.0] * n,
+            numberOfODE2Coordinates=n,
+        ))  # fmt: skip
+        made.AddObject(items.ObjectKinematicTree(
+            nodeNumber=node, jointTypes=axes, linkParents=[mover.parent for mover in assembly.movers],
+            jointTransformations=_ENGINE.Matrix3DList([mover.X_AP.R for mover in assembly.movers]),
+            jointOffsets=_ENGINE.Vector3DList([mover.X_AP.p for mover in assembly.movers]),
+            linkInertiasCOM=_ENGINE.Matrix3DList([mass.J_BC for mass in masses]),
+            linkCOMs=_ENGINE.Vector3DList([mass.p_BC for mass in masses]), linkMasses=[m.mass for m in masses],
+            baseOffset=[0, 0, 0], gravity=assembly.gravity.tolist(), jointPControlVector=[stiffness] * n,
+            jointDControlVector=[damping] * n, jointPositionOffsetVector=targets.tolist(),
+            jointVelocityOffsetVector=[0.0] * n,
+        ))  # fmt: skip
+        sensor = made.AddSensor(items.SensorNode(
+            nodeNumber=node, writeToFile=False, storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Coordinates,
+        ))  # fmt: skip
+        made.Assemble()
+        return container, made, [sensor]
+
+    return Timed(build)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,12 @@ class Held:
                 y = y + h / 6 * (k1 + 2 * k2 + 2 * k3 + self.rate(0.0, y + h * k3))
             found.append(y[: len(q0)])
         return np.array(found), time.thread_time() - began
+
+    def motion(self, rtol: float, q0: Array, end: float) -> Callable[[Array], Array]:
+        """SciPy's DOP853 from rest to an end, as times (n) -> positions (n, nq)."""
+        y0 = np.concatenate([q0, np.zeros_like(q0)])
+        run = solve_ivp(self.rate, (0.0, end), y0, "DOP853", rtol=rtol, atol=1e-2 * rtol, dense_output=True)
+        return lambda times: np.asarray(run.sol(times)[: len(q0)].T)
 
     def solved(self, method: str, rtol: float, q0: Array, times: Array) -> tuple[Array, float]:
         """One of SciPy's methods from rest: positions (n, nq) at times, seconds of the processor."""

@@ -1,7 +1,8 @@
-"""A rigid arm under control: every method of ours, MuJoCo's four integrators, Pinocchio in SciPy's and in RK4."""
+"""A rigid arm under control: every method of ours, MuJoCo's integrators, Exudyn's, Pinocchio in SciPy's and in RK4."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from typing import TypeVar
@@ -10,10 +11,13 @@ import numpy as np
 
 import symofros as sf
 from validation.adapters import mujoco, mujoco_steps, pinocchio, pinocchio_steps
+from validation.adapters.exudyn_scenes import held as exudyn_held
+from validation.adapters.exudyn_steps import Solver
 from validation.geometry import Array
 from validation.interface import Subject, Unsupported
 from validation.pareto.ours import Ours, milliseconds
 from validation.pareto.scene import Contestant, Measured, Prepared, Scene, Target
+from validation.pareto.theirs_exudyn import Theirs
 from validation.pareto.theirs_mujoco import InMujoco
 from validation.studies.simulation import DAMPING, STIFFNESS, TARGET
 from validation.timing.models import panda7
@@ -59,9 +63,15 @@ def held() -> pinocchio_steps.Held:
 
 
 @cache
+def motion() -> Callable[[Array], Array]:
+    """Times (n) -> joints (n, 7), by Pinocchio and SciPy's DOP853."""
+    return held().motion(1e-12, start(), END)
+
+
+@cache
 def reference() -> Array:
-    """Joints (n, 7) by Pinocchio and SciPy's DOP853."""
-    return held().solved("DOP853", 1e-12, start(), TIMES)[0]
+    """Joints (n, 7) at the times of all records."""
+    return motion()(TIMES)
 
 
 @cache
@@ -144,13 +154,26 @@ def pinocchio_all(quick: bool) -> list[Contestant]:
     return [*(rk4(h) for h in (5e-3, 2e-3)), *(scipy(m, r) for m in ("RK45", "DOP853", "LSODA") for r in rtols)]
 
 
+def exudyn_all(quick: bool) -> list[Contestant]:
+    """A kinematic tree, which has no constraints, by explicit and implicit solvers."""
+    made = exudyn_held(system(), start(), np.full(7, TARGET), STIFFNESS, DAMPING)
+    one = Theirs(MODEL, made, END, OUTPUT, lambda r: float(np.abs(r.values - motion()(np.minimum(r.t, END))).max()))
+    if quick:
+        return one.by(Solver("RK67"), (5e-3,))
+    found = one.by(Solver("RK44"), (1e-2, 5e-3, 2e-3, 1e-3)) + one.by(Solver("RK67"), (1e-2, 5e-3, 4e-3, 2e-3, 1e-3))
+    found += one.by(Solver("DOPRI5"), (1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10))
+    for solver in (Solver(), Solver(full=False), Solver("TrapezoidalIndex2"), Solver(radius=1.0)):
+        found += one.by(solver, (5e-3, 1e-3))
+    return found
+
+
 def prepare(quick: bool) -> Prepared:
     """References first."""
     h = 2.5e-4 if quick else 1e-4
     (tiny,) = in_mujoco().by("RK4", (h,))
     agreement = tiny.run().error
     words = f"Pinocchio's articulated bodies in SciPy's DOP853 at 1e-12; and MuJoCo's RK4 with steps of {1e3 * h:g} ms"
-    return Prepared((*ours_all(quick), *mujoco_all(quick), *pinocchio_all(quick)), agreement, words)
+    return Prepared((*ours_all(quick), *mujoco_all(quick), *exudyn_all(quick), *pinocchio_all(quick)), agreement, words)
 
 
 SCENE = Scene(
@@ -160,10 +183,11 @@ SCENE = Scene(
     "joint angles, largest over the run [rad]",
     "error of the joints  [rad]",
     "MuJoCo: contacts off, the law as springs and dampers of its joints, in its C and known to its implicit "
-    "integrators, all of its integrators at steps from 0.25 to 10 ms, mj_step called once between records. Pinocchio "
-    "has no integrator: its aba from Python in RK4 and in SciPy's, whose time is mostly Python's.",
+    "integrators, all of its integrators at steps from 0.2 to 10 ms, mj_step called once between records. Exudyn: its "
+    "kinematic tree with the law inside; RK44, RK67, DOPRI5, generalised alpha, trapezoidal rule. Pinocchio has no "
+    "integrator: its aba from Python in RK4 and in SciPy's, whose time is mostly Python's.",
     prepare,
-    (Target("MuJoCo", 1e-6, 5.0),),
+    (Target("MuJoCo", 1e-6, 5.0), Target("Exudyn", 1e-6, 1.0)),
     1e-7,
     ("Franka Emika Panda, example-robot-data",),
 )

@@ -84,7 +84,7 @@ def mujoco_all(quick: bool) -> list[Contestant]:
 def exudyn_all(quick: bool) -> list[Contestant]:
     """Bodies in absolute coordinates."""
     made = bars(four_bars.links(1), HINGES, (0, 1))
-    one = Theirs("absolute coordinates", made, END, OUTPUT, lambda values: far(np.arctan2(values[:, 1], values[:, 0])))
+    one = Theirs("absolute coordinates", made, END, OUTPUT, lambda r: far(np.arctan2(r.values[:, 1], r.values[:, 0])))
     steps = (5e-3,) if quick else (1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)
     found = one.by(Solver(tolerance=1e-8, bisecting=True), steps)
     if not quick:

@@ -50,7 +50,7 @@ def exudyn(elements: int) -> Theirs:
     """Exudyn's model, whose strips stretch as steel does."""
     cables = {name: Cable(elements, stiffness) for name, stiffness in EA.items()}
     label = f"{elements} element{'s' * (elements > 1)} a strip"
-    return Theirs(label, planar(system(3), START, cables, TOOL), END, OUTPUT, lambda values: far(values[:, :2]))
+    return Theirs(label, planar(system(3), START, cables, TOOL), END, OUTPUT, lambda r: far(r.values[:, :2]))
 
 
 def path(m: sf.Model, **settings: Any) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 
 import symofros as sf
 from validation.adapters.exudyn_scenes import Rod, spinning
-from validation.adapters.exudyn_steps import Solver
+from validation.adapters.exudyn_steps import Recorded, Solver
 from validation.geometry import Array
 from validation.pareto import rod
 from validation.pareto.ours import Ours
@@ -122,9 +122,9 @@ def theirs_all(quick: bool) -> list[Contestant]:
     return found + four.by(Solver("RK44"), (1e-3,))
 
 
-def judged(values: Array) -> float:
+def judged(recorded: Recorded) -> float:
     """Of Exudyn's sensor."""
-    return far(seen_from_hub(values), reference())
+    return far(seen_from_hub(recorded.values), reference())
 
 
 def prepare(quick: bool) -> Prepared:

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.adapters.exudyn_steps import ADAPTIVE, Recorded, Solver, Timed
-from validation.geometry import Array
 from validation.pareto.ours import milliseconds
 from validation.pareto.scene import Contestant, Measured
 
@@ -23,14 +22,15 @@ class Theirs:
         system: Built afresh for each run, which is not timed.
         end: Duration [s].
         output: Interval of what is recorded [s].
-        judge: Values of the sensors (n, k) -> error.
+        judge: What was recorded -> error. Solvers that choose their steps record at the first step after each time due,
+            so that the times count.
     """
 
     label: str
     system: Timed
     end: float
     output: float
-    judge: Callable[[Array], float]
+    judge: Callable[[Recorded], float]
 
     def by(self, solver: Solver, steps: Sequence[float]) -> list[Contestant]:
         """A contestant for each step [s]; of solvers that choose their steps, for each tolerance."""
@@ -53,4 +53,4 @@ class Theirs:
         if len(recorded.values) != round(self.end / self.output) + 1:
             return Measured(math.nan, recorded.seconds, f"{len(recorded.values)} records at other times")
         with np.errstate(over="ignore", invalid="ignore"):
-            return Measured(self.judge(recorded.values), recorded.seconds)
+            return Measured(self.judge(recorded), recorded.seconds)
