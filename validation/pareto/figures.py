@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from itertools import pairwise
 from string import ascii_lowercase
 
 import numpy as np
 
 from validation.findings import Chart, Curve, Figure, Mark, Tag
-from validation.pareto.front import front, usable
+from validation.pareto.front import charted, front, usable
 from validation.pareto.race import Result
 from validation.pareto.scene import OURS, Point, Scene
 
@@ -26,16 +25,10 @@ def letters(count: int) -> list[str]:
 
 def figure(scene: Scene, result: Result, words: str) -> Figure:
     """Everything that ran, by model; and the methods on the model that matters."""
-    points = _shown(scene, result)
+    points = charted(scene, result.points)
     every = _chart(scene, result, points, "models: every run, and the front", by_model=True)
     best = _chart(scene, result, _finest(points), "methods: each on its best model", by_model=False)
     return Figure(words, (every, best))
-
-
-def _shown(scene: Scene, result: Result) -> list[Point]:
-    """Points of use: an error of ten times the coarsest target, or of all of the motion, is none."""
-    worst = max((target.error for target in scene.targets), default=math.inf)
-    return [p for p in usable(result.points) if p.error <= max(1e2 * worst, 1e-2)]
 
 
 def _finest(points: list[Point]) -> list[Point]:
@@ -57,7 +50,8 @@ def _chart(scene: Scene, result: Result, points: list[Point], title: str, by_mod
         for side, palette in zip(sides, (_OURS, _OTHERS), strict=True) for n, (label, found) in enumerate(side)
     ]  # fmt: skip
     marks = _floors(result)
-    if result.agreement and min(p.error for p in points) < 10 * result.agreement:
+    apart = all(not 0.7 < value / result.agreement < 1.4 for value in result.floors.values() if result.agreement)
+    if result.agreement and apart and min(p.error for p in points) < 10 * result.agreement:
         marks.append(Mark("the references agree to this", result.agreement))
     tags: tuple[Tag, ...] = ()
     if by_model:

@@ -6,12 +6,18 @@ import math
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
-from validation.pareto.scene import Point
+from validation.pareto.scene import Point, Scene
 
 
 def usable(points: Iterable[Point]) -> list[Point]:
     """Those that came to their end, with an error and a time that logarithms take."""
     return [p for p in points if not p.ended and 0.0 < p.error < math.inf and 0.0 < p.seconds < math.inf]
+
+
+def charted(scene: Scene, points: Iterable[Point]) -> list[Point]:
+    """Those worth a chart: errors far beyond what is asked for, or beyond all of a motion, are no accuracy."""
+    worst = max((target.error for target in scene.targets), default=math.inf)
+    return [p for p in usable(points) if p.error <= max(1e2 * worst, 1e-2)]
 
 
 def front(points: Iterable[Point]) -> list[Point]:

@@ -15,7 +15,7 @@ from validation.page import compact, number, render, run_data, versions, write_p
 from validation.pareto import words
 from validation.pareto.catalogue import SCENES
 from validation.pareto.figures import figure, letters
-from validation.pareto.front import front
+from validation.pareto.front import charted, front
 from validation.pareto.race import Result
 from validation.pareto.scene import Point, Scene
 from validation.record import machine
@@ -49,7 +49,7 @@ class Page:
     @property
     def named(self) -> list[tuple[str, Point]]:
         """The runs of the front, with the letters of the figure."""
-        best = front(self.result.points)
+        best = front(charted(self.scene, self.result.points))
         return list(zip(letters(len(best)), best, strict=True))
 
 

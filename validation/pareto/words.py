@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from itertools import groupby
 
-from validation.pareto.front import front, ratio, seconds_at, usable
+from validation.pareto.front import charted, front, ratio, seconds_at, usable
 from validation.pareto.race import Result, engines
 from validation.pareto.scene import OURS, Point, Scene, Target
 
@@ -62,7 +62,7 @@ def _sentence(scene: Scene, verdict: Verdict) -> str:
 
 def advice(scene: Scene, result: Result) -> list[str]:
     """Which to use when: the front from the fastest to the most accurate, a line for each side, model and method."""
-    best = front(result.points)
+    best = front(charted(scene, result.points))
     lines = []
     for (who, model, method), group in groupby(best, key=lambda p: p.series):
         run = list(group)
@@ -93,7 +93,8 @@ def methods(scene: Scene, result: Result) -> str:
     if not mine:
         return "No run of ours came to its end."
     parts = []
-    least = min(p.error for p in mine)
+    # References can't tell what is below their disagreement.
+    least = max(min(p.error for p in mine), result.agreement)
     for error in sorted({target.error for target in scene.targets if target.error >= least} | {least}, reverse=True):
         by: dict[str, float] = {}
         for p in mine:
@@ -127,8 +128,8 @@ def overall(results: dict[str, tuple[Scene, Result]]) -> str:
 def see(scene: Scene, result: Result) -> str:
     """The sentence under a figure."""
     others = " and ".join(engines(result.points)) or "nobody else"
-    mine = sum(p.who == OURS for p in front(result.points))
-    total = len(front(result.points))
+    best = front(charted(scene, result.points))
+    mine, total = sum(p.who == OURS for p in best), len(best)
     return (f"Down is more accurate, left is faster. {mine} of the {total} runs on the green front are ours. Cold "
             f"colours are ours, warm ones those of {others}. Letters name the runs of the front in the table "
             "below. At the right, each method on the model with which it comes closest.")  # fmt: skip

@@ -12,6 +12,7 @@ from validation.pareto import words
 from validation.pareto.catalogue import SCENES
 from validation.pareto.figures import figure, letters
 from validation.pareto.race import Result
+from validation.pareto.report import Page
 from validation.pareto.scene import OURS, Point, Scene, Target
 
 SCENE = replace(SCENES["spin_up"], targets=(Target("Exudyn", 1e-2, 200.0),))
@@ -57,7 +58,10 @@ def test_advice_goes_along_the_front() -> None:
 
 def test_the_front_is_tagged_and_the_floor_drawn() -> None:
     found = result(1e-4, 1e-1)
-    drawn = figure(SCENE, found, "see")
+    far_off = Point(OURS, "none", "euler", "1 s", 1e3, 1e-9)
+    drawn = figure(SCENE, replace(found, points=(far_off, *found.points)), "see")
+    named = Page(SCENE, replace(found, points=(far_off, *found.points))).named
+    assert [(t.label, t.y) for t in drawn.charts[0].tags] == [(letter, p.error) for letter, p in named]
     every, methods = drawn.charts
     assert [tag.label for tag in every.tags] == letters(2) and every.log_x and every.log_y
     assert "floor of our beams, first order; below it use Exudyn" in svg(every) and 'class="tag"' in svg(every)
