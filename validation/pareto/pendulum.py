@@ -64,7 +64,7 @@ def prepare(quick: bool) -> Prepared:
 
 SCENE = Scene(
     "Long conservative motion",
-    "A pendulum of 1 m swings from the horizontal for 1000 s, 423 times. Every side records its angle each second.",
+    "A pendulum of 1 m swings from the horizontal for 1000 s, 422 times. Every side records its angle each second.",
     "angle, largest over the run [rad]",
     "error of the angle  [rad]",
     "MuJoCo: all of its integrators, steps from 1 to 50 ms, mj_step called once between records. Exudyn: a kinematic "
