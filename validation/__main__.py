@@ -22,6 +22,7 @@ from validation.console import output, progress, show
 from validation.crew import run
 from validation.dashboard import command as dashboard
 from validation.junit import to_junit
+from validation.pareto import command as pareto
 from validation.passes import command as passes
 from validation.provenance import build
 from validation.record import Record, make_record, summary
@@ -159,6 +160,7 @@ exports_report.register(app)
 fuzz_report.register(app)
 mutation_report.register(app)
 oracle.register(app)
+pareto.register(app)
 passes.register(app)
 stability.register(app)
 timing.register(app)

@@ -71,6 +71,7 @@ def svg(chart: Chart) -> str:
     parts += [line("axis", x.start, x.end, y.start, y.start), line("axis", x.start, x.start, y.start, y.end)]
     parts += [_curve(curve, chart, x, y) for curve in chart.curves]
     parts += [_mark(mark, x, y) for mark in chart.marks]
+    parts += [text(x.at(tag.x) - 5, y.at(tag.y) + 14, escape(tag.label), "end", "tag") for tag in chart.tags]
     parts.append(text((x.start + x.end) / 2, HEIGHT - 10, escape(chart.x), "middle", "name"))
     middle = (y.start + y.end) / 2
     turned = f'transform="rotate(-90 15 {middle:.0f})"'

@@ -49,6 +49,15 @@ class Mark:
 
 
 @dataclass(frozen=True)
+class Tag:
+    """A short name beside a point."""
+
+    label: str
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
 class Chart:
     """Curves over one pair of axes.
 
@@ -59,6 +68,7 @@ class Chart:
         marks: Limits and thresholds.
         log_x, log_y: Whether an axis is logarithmic.
         range_y: Part of the ordinate that is shown; None for all.
+        tags: Names of points, in the figure's words.
     """
 
     title: str
@@ -69,6 +79,7 @@ class Chart:
     log_x: bool = False
     log_y: bool = False
     range_y: tuple[float, float] | None = None
+    tags: tuple[Tag, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -97,24 +97,25 @@ def simulate(
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
     settings.apply(stepper, t0, t_end, float(realtime))
     check_start(model, settings, t0, q, v, stepper.inputs_at(t0, q, v), np.asarray(values))
-    began = time.perf_counter()
+    began, worked = time.perf_counter(), time.thread_time()
     with bar(progress, t0, t_end) as show:
         drive = run_cvode if settings.method.kind == "cvode" else run_own
         recorded = drive(stepper, q, v, settings, max_steps, show)
-    seconds = time.perf_counter() - began
+    seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()
     outcome = diagnose(stepper, recorded, states, settings)
     met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
-    statistics = _statistics(stepper, seconds)
+    statistics = _statistics(stepper, seconds, worked)
     t, q_all, v_all, u_all = states
     return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics)
 
 
-def _statistics(stepper: Stepper, seconds: float) -> Statistics:
+def _statistics(stepper: Stepper, seconds: float, worked: float) -> Statistics:
     run = stepper.run
     paced = max(1, int(run.paced_steps))
     ranks = (int(run.rank_min), int(run.rank_max)) if stepper.model.nc else (-1, -1)
     return Statistics(
         stepper.method.name, int(run.steps), int(run.rejected), int(run.evaluations), int(run.jacobians), seconds,
         int(run.late_steps), float(run.late_max), float(run.late_sum) / paced, *ranks,
+        worked,
     )  # fmt: skip

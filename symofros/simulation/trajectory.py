@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -42,6 +43,7 @@ class Statistics:
         late_steps: With a pace: steps that began after their time; `late_max` and `late_mean` [s] are how late the
             clock was, sleeping included.
         rank_min: Lowest rank of the constraints' Jacobian met, `rank_max` the highest; -1 without constraints.
+        worked: Of the processor in that loop, by this thread; NaN of a batch, which has several [s].
     """
 
     method: str
@@ -55,6 +57,7 @@ class Statistics:
     late_mean: float = 0.0
     rank_min: int = -1
     rank_max: int = -1
+    worked: float = math.nan
 
 
 class Frames(Mapping[str, tuple[Array, Array]]):

@@ -280,6 +280,8 @@ class TestEnds:
     def test_pace(self, pendulum: sf.Model) -> None:
         run = sf.simulate(pendulum, [0.1], t_end=0.2, dt=0.01, realtime=True)
         assert run.statistics.seconds > 0.18
+        # It sleeps between steps.
+        assert 0.0 < run.statistics.worked < 0.5 * run.statistics.seconds
         assert run.statistics.late_steps <= 20
 
     @pytest.mark.parametrize(

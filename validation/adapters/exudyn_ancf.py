@@ -111,7 +111,7 @@ def static_tip(length: float, EI: float, EA: float, force: tuple[float, float], 
     """
     container = exudyn.SystemContainer()
     system = container.AddSystem()
-    nodes = _planar(system, length, EI, EA, 1.0, elements)
+    nodes = straight_beam(system, length, EI, EA, 1.0, elements)
     _hold(system, nodes[0], (0, 1, 3))  # Not the slope along x: it stretches.
     marker = system.AddMarker(items.MarkerNodePosition(nodeNumber=nodes[-1]))
     system.AddLoad(items.Force(markerNumber=marker, loadVector=[*force, 0.0]))
@@ -185,7 +185,7 @@ def spin_up(elements: int = 16, step: float = 2.5e-3, end: float = 20.0, stretch
     EA = stretch * hub.EI / hub.length**2
     container = exudyn.SystemContainer()
     system = container.AddSystem()
-    nodes = _planar(system, hub.length, hub.EI, EA, hub.rhoA, elements)
+    nodes = straight_beam(system, hub.length, hub.EI, EA, hub.rhoA, elements)
     ground = system.AddMarker(items.MarkerBodyRigid(bodyNumber=system.AddObject(items.ObjectGround())))
     root = system.AddMarker(items.MarkerBodyRigid(bodyNumber=0))  # The first element's, where it begins.
     system.AddObject(items.GenericJoint(
@@ -247,8 +247,8 @@ def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None
     return _position(system, nodes[-1]) - (strip.length, 0.0, 0.0), turn
 
 
-def _planar(system: Any, length: float, EI: float, EA: float, rhoA: float, elements: int) -> list[Any]:
-    """Adds a straight beam of equal elements along x; its nodes."""
+def straight_beam(system: Any, length: float, EI: float, EA: float, rhoA: float, elements: int) -> list[Any]:
+    """Add a straight beam of equal elements along x, made of ANCFCable2D, to an Exudyn system; its nodes."""
     h = length / elements
     nodes = [system.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[h * k, 0, 1, 0]))
              for k in range(elements + 1)]  # fmt: skip

@@ -31,6 +31,30 @@ def bars(
     Returns:
         (n, 2) [m], or None where the solver gave up.
     """
+    container, system, marked = linkage(links, hinges, grounded)
+    settings: Any = exudyn.SimulationSettings()
+    settings.solution.file.write, settings.solution.file.name = False, ""
+    settings.timeIntegration.numberOfSteps = round(t_end / h)
+    settings.timeIntegration.endTime = t_end
+    settings.timeIntegration.verboseMode = 0
+    settings.timeIntegration.generalizedAlpha.spectralRadius = spectral_radius
+    # On positions: on speeds alone the row of four-bars drifts off, and takes up to 300 times longer.
+    settings.timeIntegration.generalizedAlpha.useIndex2Constraints = False
+    try:
+        solved = system.SolveDynamic(settings)
+    except ValueError:  # How its solver reports that Newton's method or the factorisation failed.
+        return None
+    del container  # Owns the system, and must outlive it.
+    if solved is False:
+        return None
+    ends = [system.GetMarkerOutput(marked[i, 1.0], exudyn.OutputVariableType.Position) for i in range(len(links))]
+    return np.array(ends)[:, :2]
+
+
+def linkage(
+    links: Sequence[Link], hinges: Sequence[tuple[int, float, int, float]], grounded: Sequence[int]
+) -> tuple[Any, Any, dict[tuple[int, float], Any]]:
+    """The bars of `bars`, assembled: container, system, and the markers of their ends by (bar, station)."""
     container: Any = exudyn.SystemContainer()
     system: Any = container.AddSystem()
     ground = system.AddObject(items.ObjectGround())
@@ -56,22 +80,7 @@ def bars(
     for one, at, other, there in hinges:
         system.AddObject(items.RevoluteJoint2D(markerNumbers=[marked[one, at], marked[other, there]]))
     system.Assemble()
-    settings: Any = exudyn.SimulationSettings()
-    settings.solution.file.write, settings.solution.file.name = False, ""
-    settings.timeIntegration.numberOfSteps = round(t_end / h)
-    settings.timeIntegration.endTime = t_end
-    settings.timeIntegration.verboseMode = 0
-    settings.timeIntegration.generalizedAlpha.spectralRadius = spectral_radius
-    # On positions: on speeds alone the row of four-bars drifts off, and takes up to 300 times longer.
-    settings.timeIntegration.generalizedAlpha.useIndex2Constraints = False
-    try:
-        solved = system.SolveDynamic(settings)
-    except ValueError:  # How its solver reports that Newton's method or the factorisation failed.
-        return None
-    if solved is False:
-        return None
-    ends = [system.GetMarkerOutput(marked[i, 1.0], exudyn.OutputVariableType.Position) for i in range(len(links))]
-    return np.array(ends)[:, :2]
+    return container, system, marked
 
 
 def _velocity(at: tuple[float, float], half: Array, angle: float, speed: float, links: Sequence[Link]) -> Array:

@@ -45,7 +45,7 @@ class Cable(NamedTuple):
     EA: float
 
 
-class _Frame(NamedTuple):
+class Carrier(NamedTuple):
     """A frame on one of Exudyn's bodies.
 
     Attributes:
@@ -62,7 +62,7 @@ class _Frame(NamedTuple):
     local: Array
     node: Any = None
 
-    def moved(self, offset: Array, angle: float = 0.0) -> _Frame:
+    def moved(self, offset: Array, angle: float = 0.0) -> Carrier:
         """Another frame on the same body, at an offset in this one and turned."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         p = self.p + np.array([[c, -s], [s, c]]) @ offset
@@ -117,11 +117,21 @@ def planar_tree(system: sf.System, angles: Mapping[str, float], cables: Mapping[
     """
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
+    populate(mbs, system, angles, cables)
+    evaluated = assembled(container, mbs)
+    return PlanarTree(evaluated, int(evaluated.solver.GetODE2size()), int(evaluated.solver.GetAEsize()))
+
+
+def populate(mbs: Any, system: sf.System, angles: Mapping[str, float], cables: Mapping[str, Cable]) -> list[Carrier]:
+    """Put a planar tree into an Exudyn system that is not assembled yet; arguments and errors of `planar_tree`.
+
+    Returns:
+        The body that carries each mover of the description, in its order.
+    """
     builder = _Builder(mbs, system)
     for mover in assemble(system).movers:
         builder.add(mover, angles.get(mover.joint.name, 0.0), cables)
-    evaluated = assembled(container, mbs)
-    return PlanarTree(evaluated, int(evaluated.solver.GetODE2size()), int(evaluated.solver.GetAEsize()))
+    return builder.frames
 
 
 def smallest() -> ExudynSystem:
@@ -137,8 +147,8 @@ class _Builder:
     def __init__(self, mbs: Any, system: sf.System) -> None:
         self.mbs, self.system = mbs, system
         self.parameters = system.parameter_values()
-        self.ground = _Frame(np.zeros(2), 0.0, mbs.AddObject(items.ObjectGround()), np.zeros(2))
-        self.frames: list[_Frame] = []
+        self.ground = Carrier(np.zeros(2), 0.0, mbs.AddObject(items.ObjectGround()), np.zeros(2))
+        self.frames: list[Carrier] = []
 
     def number(self, value: Any) -> float:
         return float(sf.evaluate(value, self.parameters))
@@ -156,19 +166,19 @@ class _Builder:
             self.frames.append(self._rigid(mover.merged(), at))
             markers = [self._point(frame) for frame in (at, self.frames[-1])]
             self.mbs.AddObject(items.RevoluteJoint2D(markerNumbers=markers))
-            self._elements(mover.joint, parent, self.frames[-1])
+            self._elements(mover.joint, parent, self.frames[-1], angle)
             self._rotors(mover.joint, parent, self.frames[-1])
         else:
             raise ValueError(f"joint '{mover.name}': not a hinge about z")
 
-    def _rigid(self, mass: Mass, at: _Frame) -> _Frame:
+    def _rigid(self, mass: Mass, at: Carrier) -> Carrier:
         """A rigid body; its frame coincides with the one given."""
         center = at.moved(mass.p_BC[:2])
         node = self.mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*center.p, at.angle]))
         body = self.mbs.AddObject(items.ObjectRigidBody2D(mass=mass.mass, inertia=mass.J_BC[2, 2], nodeNumber=node))
-        return _Frame(at.p, at.angle, body, -mass.p_BC[:2], node)
+        return Carrier(at.p, at.angle, body, -mass.p_BC[:2], node)
 
-    def _cable(self, mover: Mover, at: _Frame, cable: Cable) -> _Frame:
+    def _cable(self, mover: Mover, at: Carrier, cable: Cable) -> Carrier:
         """A beam clamped to a frame; the frame at its tip."""
         beam = self.system.body(mover.body)
         assert isinstance(beam, sf.Beam)
@@ -186,32 +196,35 @@ class _Builder:
             ))
             for ends in zip(nodes, nodes[1:], strict=False)
         ]  # fmt: skip
-        self._clamp(at, _Frame(at.p, at.angle, bodies[0], np.zeros(2)))
-        return _Frame(at.p + mover.length * x, at.angle, bodies[-1], np.array([h, 0.0]))
+        self._clamp(at, Carrier(at.p, at.angle, bodies[0], np.zeros(2)))
+        return Carrier(at.p + mover.length * x, at.angle, bodies[-1], np.array([h, 0.0]))
 
-    def _clamp(self, one: _Frame, other: _Frame) -> None:
+    def _clamp(self, one: Carrier, other: Carrier) -> None:
         markers = [
             self.mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=f.body, localPosition=f.place())) for f in (one, other)
         ]
         self.mbs.AddObject(items.GenericJoint(markerNumbers=markers, constrainedAxes=[1, 1, 0, 0, 0, 1]))
 
-    def _point(self, frame: _Frame) -> Any:
+    def _point(self, frame: Carrier) -> Any:
         return self.mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=frame.body, localPosition=frame.place()))
 
-    def _angle(self, frame: _Frame) -> Any:
+    def _angle(self, frame: Carrier) -> Any:
         node = self.mbs.AddNode(items.NodePointGround()) if frame.node is None else frame.node
         coordinate = 0 if frame.node is None else _ANGLE
         return self.mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
 
-    def _elements(self, joint: sf.Joint, parent: _Frame, child: _Frame) -> None:
-        springs = sum(self.number(e.stiffness) for e in joint.elements if isinstance(e, sf.Spring))
+    def _elements(self, joint: sf.Joint, parent: Carrier, child: Carrier, angle: float) -> None:
+        stated = [e for e in joint.elements if isinstance(e, sf.Spring)]
+        springs = sum(self.number(e.stiffness) for e in stated)
+        moment = sum(self.number(e.stiffness) * (self.number(e.rest) - angle) for e in stated)
         dampers = sum(self.number(e.coefficient) for e in joint.elements if isinstance(e, sf.Damper))
         if springs or dampers:
             self.mbs.AddObject(items.CoordinateSpringDamper(
                 markerNumbers=[self._angle(parent), self._angle(child)], stiffness=springs, damping=dampers,
+                offset=moment / springs if springs else 0.0,  # Exudyn counts from the reference configuration.
             ))  # fmt: skip
 
-    def _rotors(self, joint: sf.Joint, parent: _Frame, child: _Frame) -> None:
+    def _rotors(self, joint: sf.Joint, parent: Carrier, child: Carrier) -> None:
         """J (w_A + n (w_B - w_A))^2 / 2, less the part J w_A^2 / 2 that the parent's inertia has."""
         for rotor in joint.rotors:
             J, n = self.number(rotor.inertia), self.number(rotor.ratio)

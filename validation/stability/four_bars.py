@@ -21,6 +21,11 @@ AXIS = (0, -1, 0)
 
 @cache
 def linkage(loops: int, spacing: float = 1.0) -> sf.Model:
+    """The row of `system`, compiled."""
+    return sf.compile(system(loops, spacing))
+
+
+def system(loops: int, spacing: float = 1.0) -> sf.System:
     """Cranks 0 to N on pivots, coupler i from crank i - 1 to the end of crank i, closed there.
 
     Args:
@@ -33,7 +38,7 @@ def linkage(loops: int, spacing: float = 1.0) -> sf.Model:
         bodies += [sf.RigidBody(f"coupler{i}", hinge, BAR, END_OF_BAR), crank(i, spacing)]
         pair = (f"crank{i}", "end"), (f"coupler{i}", "end")
         closures.append(sf.Closure(f"loop{i}", *pair, ("x", "z")))
-    return sf.compile(sf.System(f"four_bars_{loops}", tuple(bodies), constraints=tuple(closures)))
+    return sf.System(f"four_bars_{loops}", tuple(bodies), constraints=tuple(closures))
 
 
 def crank(i: int, spacing: float = 1.0) -> sf.RigidBody:

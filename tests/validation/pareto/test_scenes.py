@@ -1,0 +1,128 @@
+"""Scenes at their quick settings: references agree, errors are of the motion, reports are whole and go on."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.special import ellipk
+from typer.testing import CliRunner
+
+from validation.__main__ import app
+from validation.adapters.exudyn_scenes import Rod, pendulum
+from validation.adapters.exudyn_steps import Solver
+from validation.pareto import andrews, arm, closed_forms, four_bar, rod, spin_up
+from validation.pareto import pendulum as swing
+from validation.pareto.catalogue import SCENES
+from validation.pareto.front import usable
+from validation.pareto.race import race
+
+
+@pytest.mark.parametrize("name", ["arm", "four_bar", "andrews"])
+def test_references_agree_and_sides_move_alike(name: str) -> None:
+    scene = SCENES[name]
+    found = race(scene, quick=True)
+    assert found.agreement <= scene.trust
+    by: dict[str, float] = {}
+    for p in usable(found.points):
+        by[p.who] = min(by.get(p.who, math.inf), p.error)
+    # Every side comes near the reference: they are models of one motion.
+    assert by["symofros"] < 1e-4 and all(error < 2e-2 for error in by.values()), by
+    assert all(p.seconds > 0 for p in usable(found.points))
+
+
+def test_closed_forms_are_periodic_and_start_right() -> None:
+    period = 4.0 * ellipk(np.sin(0.5) ** 2)
+    t = np.array([0.0, period / 4, period / 2, period])
+    np.testing.assert_allclose(closed_forms.swinging(1.0, 1.0, t), [1.0, 0.0, -1.0, 1.0], atol=1e-12)
+    t = np.linspace(0.0, 1e-4, 3)
+    psi = closed_forms.turning(0.3, 2.0, t)
+    assert psi[0] == pytest.approx(np.pi) and (psi[2] - psi[0]) / 1e-4 == pytest.approx(0.3, rel=1e-6)
+
+
+def test_closed_form_of_the_four_bar_against_its_equation() -> None:
+    solved = four_bar.four_bars.exact(1, tuple(four_bar.TIMES.tolist()))[0]
+    assert four_bar.far(solved) < 1e-9 and four_bar.far(solved + 1e-3) == pytest.approx(1e-3, rel=1e-6)
+
+
+def test_the_chain_of_links_converges_with_the_square_of_their_length() -> None:
+    soft = Rod(1.0, 1.0, 1e6, 1.0, 2.0, 2.0)
+    t = np.linspace(0.0, 2.0, 21)
+    fine = rod.linked(soft, t, 24)
+    errors = [float(np.abs(rod.linked(soft, t, n) - fine).max()) for n in (3, 6)]
+    assert 3.0 < errors[0] / errors[1] < 6.0
+    assert float(np.abs(rod.tip(soft, t, 6) - fine).max()) < errors[1] / 3.0
+
+
+def test_the_spin_up_is_one_motion() -> None:
+    mine = spin_up.ours("3 modes", spin_up.model(3)).measured(method="rk4", dt=0.02)
+    assert 5e-4 < mine.error < 2e-3 and mine.seconds < 0.05
+    lost = spin_up.ours("x", spin_up.model(3, foreshortening=False, retain="all")).measured(method="rk4", dt=0.02)
+    assert lost.ended or not lost.error < 1.0, "without foreshortening it runs away"
+
+
+def test_what_is_refused_says_why() -> None:
+    refused = spin_up.ours("1 mode", spin_up.model(1)).measured(method="variational", dt=0.1)
+    assert "variational" in refused.ended and math.isnan(refused.error)
+    explicit = [one for one in spin_up.theirs_all(quick=False) if one.method == "RK44"]
+    assert "constraints" in explicit[0].run().ended
+
+
+def test_exudyn_and_the_closed_form_of_the_pendulum() -> None:
+    recorded = pendulum(swing.GRAVITY).run(Solver("RK67"), 0.02, 5.0, 1.0)
+    exact = np.pi / 2 + closed_forms.swinging(-np.pi / 2, swing.GRAVITY, np.arange(6.0))
+    np.testing.assert_allclose(recorded.values[:, 0], exact, atol=1e-8)
+    assert recorded.seconds > 0 and recorded.t.tolist() == pytest.approx(list(range(6)))
+
+
+def test_a_solver_that_chooses_its_steps_is_judged_at_its_own_times() -> None:
+    """It records at its first step after each time due: read as of that time, any tolerance would err alike."""
+    recorded = pendulum(swing.GRAVITY).run(Solver("DOPRI5", relative=1e-8), 1.0, 5.0, 1.0)
+    due = np.arange(6.0)
+    assert len(recorded.t) == 6 and np.abs(recorded.t - due).max() > 1e-4
+    assert swing.far(recorded.values[:, 0], recorded.t) < 1e-6 < 1e-3 < swing.far(recorded.values[:, 0], due)
+
+
+def test_errors_are_of_the_motion() -> None:
+    names = tuple(andrews.known()["end"])
+    end = np.array(list(andrews.known()["end"].values()))
+    assert andrews.far(end, names) == 0.0 and andrews.far(end + 1e-3, names) == pytest.approx(1e-3)
+    assert arm.far(arm.reference()) == 0.0
+
+
+def test_report_end_to_end(tmp_path: Path) -> None:
+    first = CliRunner().invoke(app, ["pareto", "--quick", "--scene", "andrews", "--json", "--report", str(tmp_path)])
+    data = json.loads(first.stdout)
+    assert first.exit_code in (0, 1) and not data["failures"] and list(data["scenes"]) == ["andrews"]
+    folder = tmp_path / "pareto_quick"
+    page, summary = ((folder / f"pareto.{kind}").read_text() for kind in ("html", "md"))
+    assert page.count("<svg") == 2 and "symofros wins" in page and "symofros wins" in summary
+    assert "single precision" in page and not re.search(r'(src|href)="(?!#)', page)
+    # Another scene goes on from what is there; a scene that is there is left out if asked.
+    then = CliRunner().invoke(
+        app,
+        [
+            "pareto",
+            "--quick",
+            "--scene",
+            "andrews",
+            "--scene",
+            "four_bar",
+            "--resume",
+            "--json",
+            "--report",
+            str(tmp_path),
+        ],
+    )
+    again = json.loads(then.stdout)
+    assert list(again["scenes"]) == ["four_bar", "andrews"]
+    assert again["scenes"]["andrews"]["points"] == data["scenes"]["andrews"]["points"]
+
+
+def test_an_unknown_scene_is_bad_input() -> None:
+    found = CliRunner().invoke(app, ["pareto", "--scene", "spinup"])
+    assert found.exit_code == 2 and "spin_up" in found.output

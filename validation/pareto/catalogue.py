@@ -1,0 +1,15 @@
+"""The scenes, in the order of the report."""
+
+from __future__ import annotations
+
+from validation.pareto import andrews, arm, four_bar, pendulum, robot, spin_up
+from validation.pareto.scene import Scene
+
+SCENES: dict[str, Scene] = {
+    "spin_up": spin_up.SCENE,
+    "robot": robot.SCENE,
+    "arm": arm.SCENE,
+    "four_bar": four_bar.SCENE,
+    "andrews": andrews.SCENE,
+    "pendulum": pendulum.SCENE,
+}

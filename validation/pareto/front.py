@@ -1,0 +1,72 @@
+"""Points of (error, seconds): the front that nobody beats, and the time that an error takes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+
+from validation.pareto.scene import Point, Scene
+
+
+def usable(points: Iterable[Point]) -> list[Point]:
+    """Those that came to their end, with an error and a time that logarithms take."""
+    return [p for p in points if not p.ended and 0.0 < p.error < math.inf and 0.0 < p.seconds < math.inf]
+
+
+def charted(scene: Scene, points: Iterable[Point]) -> list[Point]:
+    """Those worth a chart: errors far beyond what is asked for, or beyond all of a motion, are no accuracy."""
+    worst = max((target.error for target in scene.targets), default=math.inf)
+    return [p for p in usable(points) if p.error <= max(1e2 * worst, 1e-2)]
+
+
+def front(points: Iterable[Point]) -> list[Point]:
+    """The points than which no other is both as fast and as accurate, from the fastest to the most accurate."""
+    best: list[Point] = []
+    for point in sorted(usable(points), key=lambda p: (p.seconds, p.error)):
+        if not best or point.error < best[-1].error:
+            best.append(point)
+    return best
+
+
+def seconds_at(points: Iterable[Point], error: float) -> float:
+    """Least time that keeps an error.
+
+    Within a series, whose step may take any value, between two neighbouring points of its own front by straight lines
+    of logarithms; a series that is better throughout counts by its fastest point. Between series nothing is drawn:
+    half of one model and half of another is no model.
+
+    Args:
+        points: Of one side.
+        error: To keep.
+
+    Returns:
+        [s]; infinity where no point keeps it.
+    """
+    series: dict[tuple[str, str, str], list[Point]] = {}
+    for point in usable(points):
+        series.setdefault(point.series, []).append(point)
+    return min((_within(front(found), error) for found in series.values()), default=math.inf)
+
+
+def _within(best: Sequence[Point], error: float) -> float:
+    if best[-1].error > error:
+        return math.inf
+    if best[0].error <= error:
+        return best[0].seconds
+    coarse, fine = next((a, b) for a, b in pairwise(best) if b.error <= error)
+    share = math.log(coarse.error / error) / math.log(coarse.error / fine.error)
+    return float(coarse.seconds * (fine.seconds / coarse.seconds) ** share)
+
+
+def ratio(points: Sequence[Point], ours: str, theirs: str, error: float) -> float:
+    """Their least time over ours at an error.
+
+    Returns:
+        Infinity where only we keep it, 0 where we don't, NaN where nobody does.
+    """
+    mine = seconds_at((p for p in points if p.who == ours), error)
+    other = seconds_at((p for p in points if p.who == theirs), error)
+    if math.isinf(mine):
+        return math.nan if math.isinf(other) else 0.0
+    return other / mine

@@ -1,0 +1,66 @@
+"""Our side of every scene: a compiled model, stepped by each of our methods."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import symofros as sf
+from symofros.simulation.methods import METHODS
+from validation.pareto.scene import OURS, Contestant, Measured
+
+Judge = Callable[[sf.Trajectory], float]
+# How many digits of a step or tolerance are written.
+_DIGITS = 3
+
+
+@dataclass(frozen=True)
+class Ours:
+    """A model of ours, ready to run.
+
+    Attributes:
+        label: What is particular about the model.
+        model: Compiled.
+        given: What `sf.simulate` takes besides method, step and tolerance: state, span, inputs, output.
+        judge: Trajectory -> error.
+    """
+
+    label: str
+    model: sf.Model
+    given: Mapping[str, Any]
+    judge: Judge
+
+    def by(self, method: str, steps: Sequence[float], **more: Any) -> list[Contestant]:
+        """A contestant for each step of a method [s], or each relative tolerance of one that adapts its steps."""
+        return [self._contestant(method, step, more) for step in steps]
+
+    def _contestant(self, method: str, step: float, more: Mapping[str, Any]) -> Contestant:
+        adapts = METHODS[method].adaptive
+        chosen = {"rtol": step, "atol": step * 1e-2} if adapts else {"dt": step}
+        setting = f"rtol {step:.0e}".replace("e-0", "e-") if adapts else milliseconds(step)
+
+        def run() -> Measured:
+            return self.measured(method=method, **chosen, **more)
+
+        return Contestant(OURS, self.label, method, setting, run)
+
+    def measured(self, **settings: Any) -> Measured:
+        """One run; what is refused, or does not come to its end, says why."""
+        try:
+            run = sf.simulate(self.model, **self.given, **settings)
+        except sf.SymofrosError as error:
+            return Measured(math.nan, math.nan, str(error).splitlines()[0])
+        if not run.outcome.ok:
+            return Measured(math.nan, run.statistics.worked, f"{run.outcome.kind}: {run.outcome.reason}")
+        # States that grew without bound, but not to infinity, overflow in the judge.
+        with np.errstate(over="ignore", invalid="ignore"):
+            return Measured(float(self.judge(run)), run.statistics.worked)
+
+
+def milliseconds(step: float) -> str:
+    """A step for people."""
+    return f"{1e3 * step:.{_DIGITS}g} ms"

@@ -1,0 +1,61 @@
+"""Runs the contestants of a scene, each several times."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from validation.pareto.scene import OURS, Contestant, Point, Prepared, Scene
+
+# A run is repeated until it was done so often, or has taken so much time in all; always twice where it is short.
+REPEATS, ENOUGH = 9, 0.4
+
+
+@dataclass(frozen=True)
+class Result:
+    """A scene that was run.
+
+    Attributes:
+        points: What came of each contestant.
+        agreement, references, floors: As prepared.
+        seconds: Wall time of it all.
+    """
+
+    points: tuple[Point, ...]
+    agreement: float
+    references: str
+    floors: Mapping[str, float]
+    seconds: float
+
+
+def race(scene: Scene, quick: bool, begun: Callable[[int], None] = lambda _: None,
+         done: Callable[[], None] = lambda: None) -> Result:  # fmt: skip
+    """Prepare a scene and run it; `begun` hears how many contestants there are, `done` is called after each."""
+    start = time.perf_counter()
+    prepared: Prepared = scene.prepare(quick)
+    begun(len(prepared.contestants))
+    points = []
+    for contestant in prepared.contestants:
+        points.append(_run(contestant, 2 if quick else REPEATS, 0.1 if quick else ENOUGH))
+        done()
+    return Result(tuple(points), prepared.agreement, prepared.references, prepared.floors, time.perf_counter() - start)
+
+
+def _run(one: Contestant, repeats: int, enough: float) -> Point:
+    began = time.perf_counter()
+    found = [one.run()]
+    while not found[0].ended and len(found) < repeats and time.perf_counter() - began < enough:
+        found.append(one.run())
+    seconds = min(run.seconds for run in found)
+    error = found[0].error
+    ended = found[0].ended
+    if not ended and not math.isfinite(error):
+        ended = "its numbers grew beyond all bounds"
+    return Point(one.who, one.model, one.method, one.setting, math.nan if ended else error, seconds, ended)
+
+
+def engines(points: tuple[Point, ...]) -> tuple[str, ...]:
+    """Who else ran, in order."""
+    return tuple(dict.fromkeys(p.who for p in points if p.who != OURS))

@@ -1,0 +1,139 @@
+"""What a scene of the comparison is: who may run, what errors are of, what is known before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+OURS = "symofros"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One run.
+
+    Attributes:
+        error: Against the scene's reference, in its unit; NaN if the run did not come to its end.
+        seconds: Of the processor, stepping only.
+        ended: Why it did not come to its end; "" if it did.
+    """
+
+    error: float
+    seconds: float
+    ended: str = ""
+
+
+@dataclass(frozen=True)
+class Contestant:
+    """One way through a scene: a model, a method, a step or tolerance.
+
+    Attributes:
+        who: OURS, or the engine.
+        model: Modes, elements, how loops are closed: what is approximated in space. One colour of a chart.
+        method: The integrator.
+        setting: Its step or tolerance.
+        run: Does it once.
+    """
+
+    who: str
+    model: str
+    method: str
+    setting: str
+    run: Callable[[], Measured]
+
+
+@dataclass(frozen=True)
+class Point:
+    """A contestant that was run.
+
+    Attributes:
+        who, model, method, setting: Of the contestant.
+        error: As measured.
+        seconds: Of the processor, least of the repeats.
+        ended: As measured.
+    """
+
+    who: str
+    model: str
+    method: str
+    setting: str
+    error: float
+    seconds: float
+    ended: str = ""
+
+    @property
+    def series(self) -> tuple[str, str, str]:
+        """What stays the same while the step varies."""
+        return self.who, self.model, self.method
+
+    @property
+    def name(self) -> str:
+        """For people."""
+        return f"{self.who}, {self.model}, {self.method}, {self.setting}"
+
+
+@dataclass(frozen=True)
+class Target:
+    """So much faster than an engine's best at the same error.
+
+    Attributes:
+        engine: Whose best is compared with.
+        error: The error, in the scene's unit.
+        ratio: Its seconds over ours, at least.
+    """
+
+    engine: str
+    error: float
+    ratio: float
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A scene whose references and models are ready.
+
+    Attributes:
+        contestants: Compiled and assembled, so that a run is stepping only.
+        agreement: How far two independent references are apart, in the unit of errors.
+        references: What they are, in words.
+        floors: What our beam models leave, however finely they are stepped, by what they retain.
+    """
+
+    contestants: tuple[Contestant, ...]
+    agreement: float
+    references: str
+    floors: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One page.
+
+    Attributes:
+        title: What moves.
+        setting: From where, for how long, at what output interval.
+        measure: What errors are of.
+        axis: The same in a few words, with the unit.
+        tuned: How each side was tuned.
+        prepare: Whether quickly -> what is to run.
+        targets: What is asked of us.
+        trust: Errors above this must be above the references' disagreement.
+        sources: Of parameters and references.
+        percent: Whether errors are shares, and read best as such.
+    """
+
+    title: str
+    setting: str
+    measure: str
+    axis: str
+    tuned: str
+    prepare: Callable[[bool], Prepared]
+    targets: tuple[Target, ...]
+    trust: float
+    sources: tuple[str, ...]
+    percent: bool = False
+
+    def shown(self, error: float) -> str:
+        """An error for people."""
+        return (
+            f"{100 * error:.{3 if error >= 0.995 else 2}g} %" if self.percent else f"{error:.1e}".replace("e-0", "e-")
+        )

@@ -1,0 +1,56 @@
+"""Exudyn's side of a scene: a system, stepped by each of its solvers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.adapters.exudyn_steps import ADAPTIVE, Recorded, Solver, Timed
+from validation.pareto.ours import milliseconds
+from validation.pareto.scene import Contestant, Measured
+
+
+@dataclass(frozen=True)
+class Theirs:
+    """A system of Exudyn's, ready to run.
+
+    Attributes:
+        label: What is particular about the model.
+        system: Built afresh for each run, which is not timed.
+        end: Duration [s].
+        output: Interval of what is recorded [s].
+        judge: What was recorded -> error. Solvers that choose their steps record at the first step after each time due,
+            so that the times count.
+    """
+
+    label: str
+    system: Timed
+    end: float
+    output: float
+    judge: Callable[[Recorded], float]
+
+    def by(self, solver: Solver, steps: Sequence[float]) -> list[Contestant]:
+        """A contestant for each step [s]; of solvers that choose their steps, for each tolerance."""
+        return [self._contestant(solver, step) for step in steps]
+
+    def _contestant(self, solver: Solver, step: float) -> Contestant:
+        adapts = solver.kind in ADAPTIVE
+        chosen = Solver(solver.kind, relative=step) if adapts else solver
+        setting = f"rtol {step:.0e}".replace("e-0", "e-") if adapts else milliseconds(step)
+
+        def run() -> Measured:
+            return self.measured(self.system.run(chosen, self.output if adapts else step, self.end, self.output))
+
+        return Contestant("Exudyn", self.label, solver.name, setting, run)
+
+    def measured(self, recorded: Recorded) -> Measured:
+        """A run that is judged; one that is cut short has no error."""
+        if recorded.ended:
+            return Measured(math.nan, recorded.seconds, recorded.ended)
+        if len(recorded.values) != round(self.end / self.output) + 1:
+            return Measured(math.nan, recorded.seconds, f"{len(recorded.values)} records at other times")
+        with np.errstate(over="ignore", invalid="ignore"):
+            return Measured(self.judge(recorded), recorded.seconds)

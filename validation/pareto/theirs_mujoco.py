@@ -1,0 +1,53 @@
+"""MuJoCo's side of a scene: a model, stepped by each of its integrators."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from validation.adapters.mujoco_steps import stepped
+from validation.geometry import Array
+from validation.pareto.ours import milliseconds
+from validation.pareto.scene import Contestant, Measured
+
+
+@dataclass(frozen=True)
+class InMujoco:
+    """A model of MuJoCo's, ready to run.
+
+    Attributes:
+        label: What is particular about the model.
+        model: Step [s] -> MuJoCo's model; most do not depend on the step, soft closures do.
+        q0: Its positions at the start (nq).
+        v0: Its speeds (nv).
+        times: How many records, the start not counted.
+        output: Their interval [s].
+        judge: Positions at the records (times + 1, nq) -> error.
+    """
+
+    label: str
+    model: Callable[[float], Any]
+    q0: Array
+    v0: Array
+    times: int
+    output: float
+    judge: Callable[[Array], float]
+
+    def by(self, integrator: str, steps: Sequence[float]) -> list[Contestant]:
+        """A contestant for each step [s]."""
+        return [self._contestant(integrator, h) for h in steps]
+
+    def _contestant(self, integrator: str, h: float) -> Contestant:
+        made = self.model(h)
+
+        def run() -> Measured:
+            q, seconds = stepped(made, integrator, h, self.q0, self.v0, self.times, round(self.output / h))
+            with np.errstate(over="ignore", invalid="ignore"):
+                error = self.judge(q)
+            return Measured(error, seconds, "" if math.isfinite(error) else "diverged")
+
+        return Contestant("MuJoCo", self.label, integrator, milliseconds(h), run)
