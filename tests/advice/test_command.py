@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from unittest import mock
 
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner
 
 import reference_models
@@ -17,7 +19,9 @@ MODEL, SCENE = str(FLEXIBLE / "spinning_beam.yaml"), str(FLEXIBLE / "scenes" / "
 
 
 def run(*arguments: str):
-    return CliRunner().invoke(app, ["advise", *arguments], env={"COLUMNS": "160"})
+    # A console keeps the width that it found when it was made.
+    with mock.patch("symofros.__main__._out", Console(width=160)):
+        return CliRunner().invoke(app, ["advise", *arguments])
 
 
 def test_for_programs(tmp_path: Path) -> None:
