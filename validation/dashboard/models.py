@@ -82,24 +82,29 @@ def passes(data: Data) -> Card:
 
 
 def pareto(data: Data) -> Card:
-    """Accuracy against price; another tool's layout, of which only what it shares with the others is relied on."""
-    headline = data.get("headline") or data.get("verdict") or "Accuracy against time: see the page."
-    checks = data.get("checks", [])
-    facts = (Fact(str(len(checks)), f"claims, {bounded(checks)[0]}", bounded(checks)[1]),) if checks else ()
-    ok = data.get("ok")
-    return Card(str(headline), None if ok is None else bool(ok), facts, tuple(_charts(data))[:2])
+    """Accuracy against price."""
+    scenes = list(data["scenes"].values())
+    targets = [target for scene in scenes for target in scene["targets"]]
+    met = sum(target["ok"] for target in targets)
+    runs = sum(len(scene["points"]) for scene in scenes)
+    most = max((target["found"] or 0.0 for target in targets), default=0.0)
+    facts = (Fact(str(len(scenes)), "scenes"), Fact(str(runs), "runs"),
+             Fact(times(most), "an engine's best time over ours, at equal error, where it is most"))  # fmt: skip
+    said = f"{met} of {counted(len(targets), 'target')} met, in {counted(len(scenes), 'scene')}{_short_way(data)}."
+    return Card(said, bool(data["ok"]), facts, tuple(map(_prices, scenes[:1])))
 
 
-def _charts(data: Any) -> Iterator[Chart]:
-    """Whatever charts the report keeps, wherever."""
-    if isinstance(data, Mapping):
-        if {"title", "x", "y", "curves"} <= set(data):
-            yield chart_of(data)
-            return
-        data = list(data.values())
-    if isinstance(data, list):
-        for item in data:
-            yield from _charts(item)
+def _prices(scene: Data) -> Chart:
+    """Every run of a scene, by whose it is."""
+    found: dict[str, list[tuple[float, float]]] = {}
+    for point in scene["points"]:
+        if point["error"] is not None:
+            found.setdefault(point["who"], []).append((point["seconds"], point["error"]))
+    curves = [
+        Curve(who, np.array([x for x, _ in runs]), np.array([y for _, y in runs]), k, "points")
+        for k, (who, runs) in enumerate(found.items())
+    ]
+    return Chart(scene["title"], "time of the processor [s]", "error [1]", tuple(curves), log_x=True, log_y=True)
 
 
 def _short_way(data: Data) -> str:

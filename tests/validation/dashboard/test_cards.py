@@ -87,24 +87,16 @@ def test_a_race_counts_against_the_fastest_build_of_a_peer() -> None:
     assert TOPICS["timing"].read(TIMING | {"failed": [1]}).ok is False
 
 
-@pytest.mark.parametrize(
-    ("data", "ok", "charts"),
-    [
-        ({"headline": "Three on the front.", "ok": True, "checks": [{"ok": True}]}, True, 0),
-        (
-            {
-                "scenes": [
-                    {"charts": [{"title": "t", "x": "x", "y": "y", "curves": [{"label": "a", "x": [1], "y": [2]}]}]}
-                ]
-            },
-            None,
-            1,
-        ),
-    ],
-)
-def test_a_front_is_read_whatever_its_layout(data: dict[str, Any], ok: bool | None, charts: int) -> None:
-    card = TOPICS["pareto"].read(data)
-    assert card.ok is ok and len(card.charts) == charts
+def test_speed_against_accuracy_counts_its_targets() -> None:
+    point = {"who": "symofros", "seconds": 1e-3, "error": 1e-2}
+    lost = {"who": "Exudyn", "seconds": 1e-3, "error": None}
+    met, missed = {"found": 400.0, "ok": True}, {"found": None, "ok": False}
+    scene = {"title": "t", "targets": [met, missed], "points": [point, point, lost]}
+    card = TOPICS["pareto"].read({"ok": False, "scenes": {"a": scene}})
+    assert card.ok is False
+    assert card.headline == "1 of 2 targets met, in 1 scene."
+    assert [curve.label for curve in card.charts[0].curves] == ["symofros"]
+    assert len(card.charts[0].curves[0].x) == 2
 
 
 def test_a_chart_of_an_older_layout_gets_the_axes_that_suit_it() -> None:
