@@ -105,7 +105,8 @@ class _Reader:
             where = f"{self.file}:{node.line}"
             raise DescriptionError(Problem(one.what, one.found, one.rule, one.remedy, where)) from None
         except ShapeError as error:
-            raise DescriptionError(Problem(f"{self.file}:{node.line}: {error}")) from None
+            raise self.fault(node, f"{error}", node.plain(), "numbers come as many as are asked for",
+                             "state as many entries as that") from None  # fmt: skip
 
     def mapping(self, node: Node, what: str, known: Collection[str] = ()) -> dict[str, Node]:
         if not isinstance(node.value, dict):

@@ -43,7 +43,11 @@ def resume(folder: Path) -> subprocess.Popen[bytes]:
 
 def launched(command: list[str]) -> subprocess.Popen[bytes]:
     words = [sys.executable, "-m", "validation", "campaign", *command]
-    return subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+    return subprocess.Popen(
+        words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+        # A shell's background jobs start with it ignored, and so do their children.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )  # fmt: skip
 
 
 def journal(folder: Path) -> list[dict[str, object]]:
