@@ -163,7 +163,7 @@ class CompiledKernel:
 
         def part(first: int, end: int) -> None:
             if self._scratch.work is None:
-                self._scratch.work = ffi.new("double[]", max(1, self._function.work))
+                self._scratch.work = self._work()
             self._function.batch(
                 end - first, ffi.new("double *[]", [x + first * by for x, by in zip(rows_in, strides, strict=True)]),
                 stride, ffi.new("double *[]", [y + first * by for y, by in zip(rows_out, steps, strict=True)]),
@@ -174,25 +174,19 @@ class CompiledKernel:
         return outputs
 
     def bind(self, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
-        """The function on fixed memory, for one state."""
-        ffi = self._unit.ffi
-        read = [ffi.from_buffer("double[]", array) for array in (pre, *inputs)]
-        written = [ffi.from_buffer("double[]", array) for array in outputs]
-        return partial(
-            self._function.eval, ffi.new("double *[]", read), ffi.new("double *[]", written),
-            ffi.new("double[]", max(1, self._function.work)),
-        )  # fmt: skip
+        """The function on fixed memory, for one state. The caller keeps the arrays."""
+        return partial(self._function.eval, self._pointers(pre, *inputs), self._pointers(*outputs), self._work())
 
     def bind_batch(self, n: int, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
-        """The function on fixed memory, for n states, one after the other."""
+        """The same for n states, one after the other."""
+        stride = self._unit.ffi.new("size_t[]", [0 if len(array) == 1 else array.shape[1] for array in (pre, *inputs)])
+        read, written = self._pointers(pre, *inputs), self._pointers(*outputs)
+        return partial(self._function.batch, n, read, stride, written, self._work())
+
+    def _pointers(self, *arrays: Array) -> Any:
+        """To arrays, which it does not keep."""
         ffi = self._unit.ffi
-        read = [ffi.from_buffer("double[]", array) for array in (pre, *inputs)]
-        written = [ffi.from_buffer("double[]", array) for array in outputs]
-        strides = [0 if len(array) == 1 else array.shape[1] for array in (pre, *inputs)]
-        stated = ffi.new("double *[]", read), ffi.new("size_t[]", strides), ffi.new("double *[]", written)
-        work, batch, kept = ffi.new("double[]", max(1, self._function.work)), self._function.batch, (read, written)
+        return ffi.new("double *[]", [ffi.from_buffer("double[]", array) for array in arrays])
 
-        def call(_kept: object = kept) -> None:  # Arrays of pointers do not keep what they point to.
-            batch(n, *stated, work)
-
-        return call
+    def _work(self) -> Any:
+        return self._unit.ffi.new("double[]", max(1, self._function.work))
