@@ -65,6 +65,9 @@ if TYPE_CHECKING:
     from symofros.compiler import compile_library as compile_library
     from symofros.compiler import compile_system
     from symofros.compiler import program_of as program_of
+    from symofros.diagrams.diagram import Diagram as Diagram
+    from symofros.diagrams.result import DiagramRun as DiagramRun
+    from symofros.diagrams.simulation import Simulation as Simulation
     from symofros.exporting import export as export
     from symofros.loading import load as load
     from symofros.loading import save as save
@@ -98,6 +101,9 @@ _LAZY = {
     "compile_library": ("symofros.compiler", "compile_library"),
     "program_of": ("symofros.compiler", "program_of"),
     "export": ("symofros.exporting", "export"),
+    "Diagram": ("symofros.diagrams.diagram", "Diagram"),
+    "DiagramRun": ("symofros.diagrams.result", "DiagramRun"),
+    "Simulation": ("symofros.diagrams.simulation", "Simulation"),
     "load": ("symofros.loading", "load"),
     "save": ("symofros.loading", "save"),
     "advise": ("symofros.advice.search", "advise"),

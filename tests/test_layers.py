@@ -39,10 +39,16 @@ ALLOWED: dict[str, set[str]] = {
     "advice": {
         "compiler", "description", "expr", "passes", "runtime", "simulation", "errors", "options", "atomic",
     },
+    # A diagram is one more program over the graph: its blocks are written beside the models' equations.
+    "diagrams": {
+        "compiler", "description", "topology", "kinematics", "dynamics", "expr", "passes", "codegen", "runtime",
+        "simulation", "errors", "options",
+    },
+    "blocks": {"diagrams", "runtime", "simulation", "expr", "errors"},
     "loading": {"errors", "atomic", "description", "topology"},
     "__init__": {
         "errors", "options", "expr", "description", "compiler", "loading", "exporting", "runtime", "simulation",
-        "advice",
+        "advice", "diagrams",
     },
 }  # fmt: skip
 ENGINES = {"pinocchio", "mujoco", "exudyn", "casadi"}

@@ -100,6 +100,10 @@ def _mul(x: Any, y: Any) -> Any:
         return np.multiply(x, y)
 
 
+def _step(x: Any) -> Any:
+    return np.where(np.isnan(x), x, np.greater_equal(x, 0.0).astype(np.float64))
+
+
 ADD, MUL, DIV, HELD = "add", "mul", "div", "held"
 
 # Derivative rules: (graph, operand edges, edge of the result, i) -> partial derivative by operand i. Edges are ints;
@@ -169,6 +173,9 @@ OPS: dict[str, Op] = {
         Op("sign", 1, np.sign, "sym_sign({0})", lambda g, x, y, i: 0, "add", parity="odd"),
         Op("min", 2, np.fmin, "fmin({0}, {1})", _d_choice(1), "add"),
         Op("max", 2, np.fmax, "fmax({0}, {1})", _d_choice(-1), "add"),
+        Op("floor", 1, np.floor, "floor({0})", lambda g, x, y, i: 0, "add", is_function=False),
+        # 1 from zero on, else 0.
+        Op("step", 1, _step, "sym_step({0})", lambda g, x, y, i: 0, "add", is_function=False),
         # Its operand, as a constant for derivatives.
         Op(HELD, 1, np.positive, "{0}", lambda g, x, y, i: 0, "none", parity="odd", is_function=False),
     )

@@ -106,6 +106,8 @@ static inline size_t sym_work(const sym_model *model) {
 }
 
 static inline double sym_sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : x; }
+/* 1 from zero on, else 0; NaN stays. */
+static inline double sym_step(double x) { return x >= 0.0 ? 1.0 : x < 0.0 ? 0.0 : x; }
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,131 @@
+"""Dynamics: the mechanism that is simulated, and the efforts that a motion takes (sections 6.2 and 8 of the paper)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from symofros.blocks.quantities import joint_units
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Terms, Values
+from symofros.diagrams.tensor import Tensor, joined
+from symofros.diagrams.variants import FRICTION
+from symofros.errors import DescriptionError, Problem
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForwardDynamics(Block):
+    """A mechanism in motion: efforts in, states, accelerations, friction and constraint forces out.
+
+    Attributes:
+        model: What moves; its first state is that of the model.
+        perturbed: Frames that external wrenches act on: each adds an input "wrench_FRAME" (force; moment), at the
+            frame's origin in world axes [N, N m].
+        engaged: Whether an input "engaged" says which constraints hold now: 1 or 0, one a constraint, held between
+            samples. A constraint that engages takes the state onto itself as a plastic impact does.
+    """
+
+    model: str
+    perturbed: tuple[str, ...] = ()
+    engaged: bool = False
+
+    def mechanism(self) -> str:
+        """The model."""
+        return self.model
+
+    def ports(self, known: Known) -> Ports:
+        """Efforts and prescribed motions u (nu); q, v, a, friction (nv), under constraints lam (nc)."""
+        record = known.model(self.model)
+        q, v, a, effort = joint_units(record)
+        nv = len(record.v_names)
+        inputs = [Port("u", (len(record.u_names),), effort, record.u_default)]
+        inputs += [Port(f"wrench_{known.frame(self.model, name)}", (6,), "", 0.0) for name in self.perturbed]
+        names = _constraints(record.constraint_names)
+        if self.engaged:
+            if not names:
+                raise DescriptionError(Problem(f"block '{self.name}': nothing to engage", f"model '{self.model}'",
+                                               "engaged belongs to a model with constraints",
+                                               "leave it out, or add a closure"))  # fmt: skip
+            inputs.append(Port("engaged", (len(dict.fromkeys(names)),)))
+        outputs = [Port("q", (len(record.q_names),), q), Port("v", (nv,), v), Port("a", (nv,), a),
+                   Port("friction", (nv,), effort)]  # fmt: skip
+        return Ports(tuple(inputs), (*outputs, Port("lam", (record.nc,))) if record.nc else tuple(outputs))
+
+    def motion(self, at: At) -> Terms:
+        """M v' = r + G^T lam."""
+        record, u = at.known.model(self.model), at.inputs["u"]
+        given = {"q": at.q, "v": at.v, "u": u, "t": at.t}
+        if not record.nc and not self.perturbed:
+            return Terms(a=at.call(self.model, "forward_dynamics", **given)["a"])
+        push = self._push(at)
+        if not record.nc:
+            found = at.call(self.model, "dynamics", **given)
+            return Terms(a=at.solved(found["M"], found["Q"] - found["h"] + push))
+        found = at.call(self.model, "forward_dynamics", gains=at.gains, **given)
+        phi = at.call(self.model, "constraint", q=at.q, u=u, t=at.t)["phi"]
+        rate = at.call(self.model, "constraint_rate", q=at.q, v=at.v, u=u, t=at.t)["phi_rate"]
+        G, c = found["G"], found["c"]
+        if self.engaged:
+            holds = self._holds(at)
+            G, c, phi, rate = G * holds.reshape(-1, 1), c * holds, phi * holds, rate * holds
+        return Terms(M=found["M"], r=found["r"] + push, G=G, c=c, phi=phi, rate=rate)
+
+    def _push(self, at: At) -> Tensor:
+        """Generalized forces of the external wrenches (nv)."""
+        total = at.numbers([0.0] * len(at.v))
+        for name in self.perturbed:
+            frame = at.known.frame(self.model, name)
+            J = at.call(self.model, "frame_jacobian", frame, q=at.q, u=at.inputs["u"])["J"]
+            total = total + J.T @ at.inputs[f"wrench_{frame}"]
+        return total
+
+    def _holds(self, at: At) -> Tensor:
+        """1 for each condition that holds now (nc)."""
+        names = _constraints(at.known.model(self.model).constraint_names)
+        order = list(dict.fromkeys(names))
+        return joined([at.inputs["engaged"][order.index(name)] for name in names])
+
+    def compute(self, at: At) -> Values:
+        """States, accelerations and forces."""
+        record = at.known.model(self.model)
+        found = {"q": at.q, "v": at.v, "a": at.a, "friction": friction(at, self.model, at.q, at.v)}
+        return found | ({"lam": at.lam} if record.nc else {})
+
+
+@dataclass(frozen=True, kw_only=True)
+class InverseDynamics(Block):
+    """The efforts that a motion takes, tau = M a + h - Q(q, v, 0), for a tree of joints that all have one.
+
+    Attributes:
+        model: Of the mechanism; a rigid one makes a controller of the paper's kind.
+        with_friction: Whether the effort against friction counts; a block of its own compensates it otherwise.
+    """
+
+    model: str
+    with_friction: bool = True
+
+    def ports(self, known: Known) -> Ports:
+        """Motion in: q (nq), v and a (nv). Efforts out: tau (nv)."""
+        record = known.model(self.model)
+        q, v, a, effort = joint_units(record)
+        nv = len(record.v_names)
+        return Ports((Port("q", (len(record.q_names),), q), Port("v", (nv,), v), Port("a", (nv,), a)),
+                     (Port("tau", (nv,), effort),))  # fmt: skip
+
+    def compute(self, at: At) -> Values:
+        """By the model's own inverse dynamics."""
+        q, v, a = (at.inputs[name] for name in ("q", "v", "a"))
+        tau = at.call(self.model, "inverse_dynamics", q=q, v=v, a=a, t=at.t)["tau"]
+        return {"tau": tau if self.with_friction else tau + friction(at, self.model, q, v)}
+
+
+def friction(at: At, model: str, q: Tensor, v: Tensor) -> Tensor:
+    """The friction forces on a model's joints (nv), as generalized forces: against the motion."""
+    rubbing = at.known.rubbing(model)
+    if not any(rubbing):
+        return at.numbers([0.0] * len(rubbing))
+    found = at.call(model + FRICTION, "generalized_force", q=q, v=v, t=at.t)["Q"]
+    return found * [float(rubs) for rubs in rubbing]
+
+
+def _constraints(names: tuple[str, ...]) -> list[str]:
+    """The constraint of each condition."""
+    return [name.split(".")[0] for name in names]

@@ -1,0 +1,1 @@
+"""Diagrams: blocks, what joins them, and the C program or the interpreter that runs them."""

@@ -1,0 +1,256 @@
+"""What a block is: ports, states and memory, and formulas for them written once, over edges.
+
+From the same formulas come the compiled program and the interpreted run. Which input an output depends on at once is
+read off the formulas; nobody declares it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar, Literal, Protocol
+
+import numpy as np
+
+from symofros.description.system import System
+from symofros.diagrams.tensor import Tensor
+from symofros.expr.graph import Graph
+from symofros.runtime.kernel import Array
+from symofros.runtime.record import ModelRecord
+from symofros.simulation.inputs import Signal
+
+Shape = tuple[int, ...]
+Values = Mapping[str, Tensor]
+
+
+@dataclass(frozen=True)
+class Port:
+    """Where a signal enters or leaves.
+
+    Attributes:
+        name: Its name.
+        shape: Of the signal; None as long as nothing that is connected tells.
+        unit: Such as "rad/s"; "" where any will do.
+        default: What an input is where nothing is connected, a number for all entries; None: something must be.
+    """
+
+    name: str
+    shape: Shape | None = ()
+    unit: str = ""
+    default: Any = None
+
+
+@dataclass(frozen=True)
+class Ports:
+    """All ports of a block, in order."""
+
+    inputs: tuple[Port, ...] = ()
+    outputs: tuple[Port, ...] = ()
+
+
+class Known(Protocol):
+    """What is known of a block's surroundings while its ports are found."""
+
+    @property
+    def inputs(self) -> Mapping[str, Shape]:
+        """Shapes of the signals at its inputs, as far as they are known."""
+        ...
+
+    def model(self, name: str) -> ModelRecord:
+        """Sizes and names of a model of the diagram.
+
+        Raises:
+            DescriptionError: The diagram has no such model.
+        """
+        ...
+
+    def start(self, name: str) -> tuple[Array, Array]:
+        """The first q (nq) and v (nv) of a model."""
+        ...
+
+    def frame(self, model: str, frame: str) -> str:
+        """The public name of a model's frame.
+
+        Raises:
+            DescriptionError: The model has no such frame.
+        """
+        ...
+
+    def rubbing(self, model: str) -> list[bool]:
+        """Which speeds (nv) of a model have friction."""
+        ...
+
+
+@dataclass(frozen=True)
+class Terms:
+    """How a mechanism moves.
+
+    Attributes:
+        a: V' (nv), of a mechanism without constraints.
+        M: Else M a = r + G^T lam, G a = c: (nv, nv).
+        r: (nv).
+        G: (nc, nv).
+        c: (nc), Baumgarte's terms with the gains of `At.gains` included.
+        phi: Residual of each condition (nc), zero for those on speeds only.
+        rate: G v - b (nc).
+    """
+
+    a: Tensor | None = None
+    M: Tensor | None = None
+    r: Tensor | None = None
+    G: Tensor | None = None
+    c: Tensor | None = None
+    phi: Tensor | None = None
+    rate: Tensor | None = None
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A value whose zeros are located in time.
+
+    Attributes:
+        value: A scalar.
+        direction: Which crossings count.
+    """
+
+    value: Tensor
+    direction: Literal["both", "rising", "falling"] = "both"
+
+
+@dataclass(frozen=True)
+class At:
+    """The point at which a block's formulas are written.
+
+    Attributes:
+        g: The graph.
+        t: Time, a scalar.
+        inputs: Input port -> its signal.
+        states: Name -> continuous state.
+        memory: Name -> what is kept from sample to sample.
+        parameters: Field -> its value, which may change between runs.
+        q: Configuration of the block's mechanism.
+        v: Its speeds.
+        gains: Baumgarte's (2 nc).
+        call: (model, function, frame, groups) -> outputs of a model's function.
+        solved: (M, r) -> M^-1 r for a mass matrix.
+        a: V' of its mechanism; under constraints known at samples and afterwards only.
+        lam: Multipliers of its mechanism's constraints (nc), likewise.
+        known: Models and starts.
+    """
+
+    g: Graph
+    t: Tensor
+    inputs: Values
+    states: Values
+    memory: Values
+    parameters: Values
+    q: Tensor
+    v: Tensor
+    gains: Tensor
+    call: Callable[..., dict[str, Tensor]]
+    solved: Callable[[Tensor, Tensor], Tensor]
+    a: Tensor
+    lam: Tensor
+    known: Known
+
+    def numbers(self, values: Any) -> Tensor:
+        """An array of numbers."""
+        return Tensor.numbers(self.g, values)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Block:
+    """One block of a diagram; its fields are what its form asks for.
+
+    Attributes:
+        name: Unique in its diagram: letters, digits and underscores.
+        period: Seconds between samples; None: continuous.
+        offset: When the first sample is taken [s].
+    """
+
+    name: str
+    period: float | None = None
+    offset: float = 0.0
+
+    # Fields that become run-time parameters: tuned without compiling again.
+    tunable: ClassVar[tuple[str, ...]] = ()
+    # Whether the block is a function of Python's, called from the loop at its samples.
+    is_opaque: ClassVar[bool] = False
+
+    def ports(self, known: Known) -> Ports:
+        """Its ports; asked again while shapes of inputs become known."""
+        return Ports()
+
+    def mechanism(self) -> str:
+        """Name of the model that this block moves; "" for none."""
+        return ""
+
+    def states(self, known: Known) -> Mapping[str, Any]:
+        """Continuous states -> their first values."""
+        return {}
+
+    def memory(self, known: Known) -> Mapping[str, Any]:
+        """What is kept from sample to sample -> its first values."""
+        return {}
+
+    def samples(self) -> Mapping[str, Signal]:
+        """Outputs that are given by samples over time, one signal (n) or (n, size) each."""
+        return {}
+
+    def compute(self, at: At) -> Values:
+        """Output port -> its signal; those of `samples` left out."""
+        return {}
+
+    def rates(self, at: At) -> Values:
+        """Continuous state -> its rate of change."""
+        return {}
+
+    def update(self, at: At) -> Values:
+        """Memory -> what it is after a sample."""
+        return {}
+
+    def motion(self, at: At) -> Terms:
+        """How its mechanism moves."""
+        return Terms()
+
+    def crossings(self, at: At) -> Mapping[str, Crossing]:
+        """Values whose zeros are located."""
+        return {}
+
+    def crossed(self, at: At, which: str) -> Values:
+        """Memory and continuous states, "q" and "v" of its mechanism included, that a crossing changes."""
+        return {}
+
+    def begin(self) -> None:
+        """Before a run, for opaque blocks: open what is needed."""
+
+    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
+        """The outputs of an opaque block at a sample."""
+        raise NotImplementedError
+
+    def end(self) -> None:
+        """After a run, however it ended."""
+
+    def parameters(self) -> dict[str, Array]:
+        """Run-time parameter -> value."""
+        return {name: np.asarray(getattr(self, name), dtype=np.float64) for name in self.tunable}
+
+    @classmethod
+    def form(cls) -> tuple[str, ...]:
+        """The fields that a file may state besides name, period and offset."""
+        return tuple(item.name for item in fields(cls) if item.name not in ("name", "period", "offset"))
+
+
+@dataclass(frozen=True)
+class ModelSetup:
+    """A model of a diagram: the paper's initialisation.
+
+    Attributes:
+        system: Its description.
+        start: Coordinate, or d and a speed's name -> first value; zero for the others.
+        parameters: Run-time parameter -> value, where not the description's own.
+    """
+
+    system: System
+    start: Mapping[str, float] = field(default_factory=dict)
+    parameters: Mapping[str, float] = field(default_factory=dict)

@@ -1,0 +1,192 @@
+"""Diagram -> C: a model for each part, functions for instants, both in the hands of one loop."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from symofros.codegen.interpreted import InterpretedUnit
+from symofros.codegen.model import model_source
+from symofros.codegen.names import identifier
+from symofros.codegen.templates import template
+from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.fuse import Fuser
+from symofros.diagrams.layout import Layout, Part, lay_out
+from symofros.diagrams.order import groups_in_motion, order_of
+from symofros.diagrams.pieces import Piece, piece_of
+from symofros.diagrams.rates import Schedule, schedule
+from symofros.diagrams.wiring import Source, Wired, wire
+from symofros.errors import CompileError
+from symofros.expr.program import Program
+from symofros.options import Options
+from symofros.passes import run_passes
+from symofros.runtime.build import build_library
+from symofros.runtime.kernel import Kernel, Unit
+from symofros.runtime.library import CompiledUnit
+from symofros.runtime.model import Model
+from symofros.runtime.record import ModelRecord
+from symofros.runtime.toolchain import Toolchain, find_toolchain
+
+GENERATOR = "symofros diagram"
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """A diagram read as a whole, before any code is made of it.
+
+    Attributes:
+        wired: Its blocks and wires.
+        pieces: Its blocks, written out.
+        order: All outputs, each after what it depends on.
+        layout: Where things lie.
+        schedule: What is due when.
+    """
+
+    wired: Wired
+    pieces: Mapping[str, Piece]
+    order: Sequence[Source]
+    layout: Layout
+    schedule: Schedule
+
+    def rates(self) -> list[tuple[str, float, float]]:
+        """(block, period, offset) of what is sampled."""
+        return [
+            (name, piece.block.period, piece.block.offset)
+            for name, piece in self.pieces.items()
+            if piece.block.period is not None
+        ]
+
+
+def resolve(diagram: Diagram) -> Resolved:
+    """Check a diagram, write its blocks out, order them, and place their states.
+
+    Raises:
+        DescriptionError: With what is wrong: names, shapes, units, sample times, algebraic loops.
+    """
+    wired = wire(diagram)
+    pieces = {name: piece_of(wired, name) for name in wired.blocks}
+    order = order_of(wired, pieces)
+    layout = lay_out(wired, pieces, groups_in_motion(wired, pieces))
+    found = Resolved(wired, pieces, order, layout, Schedule.empty())
+    return Resolved(wired, pieces, order, layout, schedule(found.rates(), wired.name))
+
+
+@dataclass
+class CompiledDiagram:
+    """A diagram as C functions.
+
+    Attributes:
+        resolved: What it was made of.
+        parts: A model for each part.
+        instants: Functions "due_i", "crossed_i", "heard_i_j".
+        sources: C texts, for people.
+        toolchain: What compiles; None: the functions are interpreted.
+    """
+
+    resolved: Resolved
+    parts: tuple[Model, ...]
+    instants: Unit
+    toolchain: Toolchain | None
+    sources: tuple[str, ...] = ()
+    _signals: dict[tuple[Source, ...], Kernel] = field(default_factory=dict)
+
+    def signals(self, sources: Sequence[Source]) -> Kernel:
+        """A function of q, v, u, t, a, lam that gives some outputs."""
+        key = tuple(sources)
+        if key not in self._signals:
+            program = run_passes(fuser(self.resolved).signals(key))
+            self._signals[key] = _unit(program, _record(self.resolved, None), self.toolchain)[0].kernels["signals", ""]
+        return self._signals[key]
+
+
+def fuser(resolved: Resolved) -> Fuser:
+    """What writes a diagram's functions."""
+    return Fuser(resolved.wired, resolved.pieces, resolved.layout, resolved.order)
+
+
+def compile_diagram(resolved: Resolved, options: Options | None = None) -> CompiledDiagram:
+    """Turn a diagram into C functions, and compile them.
+
+    Args:
+        resolved: Of `resolve`.
+        options: Of these, `compiler` and `flags` count, and backend "interpreter" for tests without a compiler.
+
+    Raises:
+        DescriptionError: A part needs what is known at instants only.
+        CompileError: There is no compiler, or it failed.
+    """
+    options = options or Options()
+    toolchain = None if options.backend == "interpreter" else find_toolchain(options.compiler)
+    if toolchain is None and options.backend != "interpreter":
+        raise CompileError("a compiled diagram needs a C compiler\n"
+                           "  remedy: install gcc or clang, or `pip install ziglang`, or run it interpreted")  # fmt: skip
+    write = fuser(resolved)
+    parts, texts = [], []
+    for part in resolved.layout.parts:
+        model, text = _model(resolved, write, part, toolchain, options)
+        parts.append(model)
+        texts.append(text)
+    program = run_passes(write.samples(resolved.schedule.sets))
+    instants, text = _unit(program, _record(resolved, None), toolchain, options)
+    return CompiledDiagram(resolved, tuple(parts), instants, toolchain, (*texts, text))
+
+
+def _model(
+    resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain | None, options: Options
+) -> tuple[Model, str]:
+    record = _record(resolved, part)
+    unit, text = _unit(run_passes(write.motion(part)), record, toolchain, options)
+    crossings = write.crossings(part)
+    watched = _unit(run_passes(crossings), record, toolchain, options)[0] if crossings else None
+
+    def formulas(_: tuple[object, ...], __: bool) -> Unit:
+        assert watched is not None
+        return watched
+
+    return Model(record, None, (unit,), np.array(record.par_default), formulas), text
+
+
+def _unit(
+    program: Program, record: ModelRecord, toolchain: Toolchain | None, options: Options | None = None
+) -> tuple[Unit, str]:
+    if toolchain is None:
+        return InterpretedUnit(program), ""
+    header = template("symofros_model.h")
+    text = model_source(program, record, GENERATOR, packs=options.packs if options else False)
+    path = build_library(text, header, toolchain, options.flags if options else None)
+    return CompiledUnit(path, f"{identifier(record.name)}_model", header, record.hash), text
+
+
+def _record(resolved: Resolved, part: Part | None) -> ModelRecord:
+    """Sizes and names of a part, or of the whole."""
+    layout = resolved.layout
+    q = part.q if part else slice(0, len(layout.q0))
+    v = part.v if part else slice(0, len(layout.v0))
+    conditions = part.conditions if part else slice(0, len(layout.condition_names))
+    nq = q.stop - q.start
+    segments = tuple(
+        segment._replace(q=segment.q - q.start, v=segment.v - v.start)
+        for segment in layout.segments
+        if q.start <= segment.q < q.stop
+    )
+    names = tuple(layout.condition_names[conditions])
+    stated = repr((resolved.wired.name, layout.q_names, layout.v_names, layout.u_names, layout.par_names))
+    return ModelRecord(
+        name=resolved.wired.name, hash=hashlib.sha256(stated.encode()).hexdigest()[:16],
+        q_names=tuple(layout.q_names[q]), v_names=tuple(layout.v_names[v]), u_names=tuple(layout.u_names),
+        par_names=tuple(layout.par_names), frame_names=(), frame_aliases={}, u_default=tuple(layout.u0),
+        par_default=tuple(layout.par), q_neutral=tuple(layout.q0[q]), q_lower=(-np.inf,) * nq, q_upper=(np.inf,) * nq,
+        segments=segments, periodic=(False,) * nq, constraint_names=names,
+        speed_conditions=tuple(name for name in names if name in layout.speed_conditions),
+    )  # fmt: skip
+
+
+def bare_record(name: str) -> ModelRecord:
+    """Of functions that belong to no mechanism."""
+    return ModelRecord(
+        name=name, hash="", q_names=(), v_names=(), u_names=(), par_names=(), frame_names=(), frame_aliases={},
+        u_default=(), par_default=(), q_neutral=(), q_lower=(), q_upper=(), segments=(), periodic=(),
+    )  # fmt: skip

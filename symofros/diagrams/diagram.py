@@ -1,0 +1,140 @@
+"""A diagram as its author states it: models, blocks, and what joins them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from symofros.description.system import System
+from symofros.diagrams.block import Block, ModelSetup
+from symofros.diagrams.variants import with_functions
+from symofros.errors import DescriptionError, Problem, did_you_mean
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
+INSIDE = "/"
+
+
+@dataclass
+class Diagram:
+    """Blocks and wires; a system of equations once `sf.compile_diagram` has read it.
+
+    Attributes:
+        name: Its name.
+        models: Name -> model, which blocks refer to; exchanging one exchanges it for all of them.
+        blocks: Name -> block, in the order of addition.
+        wires: (block, input port) -> source, as "block.port" or "block" where that has one output.
+        inlets: Where it is part of another: name -> input ports "block.port" that it feeds.
+        outlets: Alike: name -> "block.port" that it is read from.
+    """
+
+    name: str
+    models: dict[str, ModelSetup] = field(default_factory=dict)
+    blocks: dict[str, Block] = field(default_factory=dict)
+    wires: dict[tuple[str, str], str] = field(default_factory=dict)
+    inlets: dict[str, Sequence[str]] = field(default_factory=dict)
+    outlets: dict[str, str] = field(default_factory=dict)
+
+    def add_model(
+        self, name: str, system: System, start: Mapping[str, float] | None = None,
+        parameters: Mapping[str, float] | None = None, functions: int | None = None,
+    ) -> None:  # fmt: skip
+        """State a model.
+
+        Args:
+            name: What blocks call it.
+            system: The description.
+            start: Coordinate, or d and a speed's name -> first value.
+            parameters: Run-time parameters that differ from the description's.
+            functions: Shape functions in each direction that beams have any in; 0: the equivalent rigid mechanism.
+        """
+        self._refuse_name("model", name, self.models)
+        stated = system if functions is None else with_functions(system, functions)
+        self.models[name] = ModelSetup(stated, dict(start or {}), dict(parameters or {}))
+
+    def add(self, block: Block, **inputs: str) -> Block:
+        """Add a block, its inputs fed by `port="block.port"`.
+
+        Raises:
+            DescriptionError: The name is taken or no name.
+        """
+        self._refuse_name("block", block.name, self.blocks)
+        self.blocks[block.name] = block
+        for port, source in inputs.items():
+            self.connect(source, f"{block.name}.{port}")
+        return block
+
+    def connect(self, source: str, target: str) -> None:
+        """Join an output, "block.port", to an input, "block.port".
+
+        Raises:
+            DescriptionError: The input is fed already, or is written wrong.
+        """
+        block, _, port = target.rpartition(".")
+        if not block or not port:
+            raise DescriptionError(Problem(f"diagram '{self.name}': no input '{target}'", "no block and port",
+                                           "an input is written block.port", "for example pd.desired"))  # fmt: skip
+        if (block, port) in self.wires:
+            raise DescriptionError(Problem(
+                f"diagram '{self.name}': input '{target}' is fed twice", f"by {self.wires[block, port]} and {source}",
+                "an input has one source", "add the signals in a block of their own",
+            ))  # fmt: skip
+        self.wires[block, port] = source
+
+    def include(self, name: str, part: Diagram, models: Mapping[str, str] | None = None, **inputs: str) -> None:
+        """Put a diagram into this one: its blocks become "name/block", its outlets "name.outlet".
+
+        Args:
+            name: Of the part.
+            part: A diagram with inlets and outlets.
+            models: The part's name of a model -> this diagram's; models that are left out come along as "name/model".
+            inputs: Inlet -> source.
+
+        Raises:
+            DescriptionError: An inlet is unknown, or a name is taken.
+        """
+        self._refuse_name("part", name, {block.split(INSIDE)[0] for block in self.blocks})
+        known = dict(models or {})
+        for inner, setup in part.models.items():
+            if inner not in known:
+                known[inner] = f"{name}{INSIDE}{inner}"
+                self.models[known[inner]] = setup
+        for block in part.blocks.values():
+            self.blocks[f"{name}{INSIDE}{block.name}"] = _renamed(block, name, known)
+        for (block_name, port), source in part.wires.items():
+            self.wires[f"{name}{INSIDE}{block_name}", port] = f"{name}{INSIDE}{source}"
+        for inlet, source in inputs.items():
+            if inlet not in part.inlets:
+                raise DescriptionError(Problem(
+                    f"diagram '{self.name}': part '{name}' has no inlet '{inlet}'", f"'{inlet}'",
+                    f"inlets: {', '.join(part.inlets) or 'none'}", did_you_mean(inlet, part.inlets),
+                ))  # fmt: skip
+            for target in part.inlets[inlet]:
+                self.connect(source, f"{name}{INSIDE}{target}")
+        for outlet, source in part.outlets.items():
+            self.outlets[f"{name}.{outlet}"] = f"{name}{INSIDE}{source}"
+
+    def with_model(self, name: str, setup: ModelSetup) -> Diagram:
+        """The same diagram about another model: rigid in place of flexible, say."""
+        if name not in self.models:
+            raise DescriptionError(Problem(f"diagram '{self.name}': no model '{name}'", f"'{name}'",
+                                           f"models: {', '.join(self.models) or 'none'}",
+                                           did_you_mean(name, self.models)))  # fmt: skip
+        return replace(self, models={**self.models, name: setup})
+
+    def _refuse_name(self, what: str, name: str, taken: Any) -> None:
+        if not _NAME.match(name):
+            raise DescriptionError(Problem(f"diagram '{self.name}': {what} '{name:.60}'", "not a name",
+                                           "letters, digits and underscores, a letter first", "rename it"))  # fmt: skip
+        if name in taken:
+            raise DescriptionError(Problem(f"diagram '{self.name}': two {what}s named '{name}'", f"'{name}'",
+                                           "names are unique", "rename one"))  # fmt: skip
+
+
+def _renamed(block: Block, part: str, models: Mapping[str, str]) -> Block:
+    changes: dict[str, Any] = {"name": f"{part}{INSIDE}{block.name}"}
+    model = getattr(block, "model", None)
+    if isinstance(model, str) and model in models:
+        changes["model"] = models[model]
+    return replace(block, **changes)

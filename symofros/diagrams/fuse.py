@@ -1,0 +1,333 @@
+"""All blocks in one graph: the functions that the compiled diagram consists of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from symofros.diagrams.layout import Layout, Part, Place
+from symofros.diagrams.pieces import INPUT, MEMORY, PARAMETER, STATE, Piece
+from symofros.diagrams.surroundings import parameter_group
+from symofros.diagrams.tensor import Tensor
+from symofros.diagrams.wiring import Source, Wired
+from symofros.errors import DescriptionError, Problem
+from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.program import Function, Output, Program, Solver
+from symofros.expr.substitute import transplant
+
+AT = ("q", "v", "u", "t")
+# What is known once the accelerations of an instant are.
+AFTER = (*AT, "a", "lam")
+
+
+class Point:
+    """Signals at one instant, written into a graph.
+
+    Args:
+        wired: The diagram.
+        pieces: Its blocks, written out.
+        layout: Where things lie.
+        order: All outputs, each after what it depends on.
+        g: Where to write.
+        due: Sampled blocks whose new outputs count; those of the others are held.
+        part: Whose vectors q, v and lam are read; None: those of the whole diagram.
+        after: Whether accelerations and multipliers of constrained mechanisms are known.
+    """
+
+    def __init__(
+        self, wired: Wired, pieces: Mapping[str, Piece], layout: Layout, order: Sequence[Source], g: Graph,
+        due: frozenset[str] = frozenset(), part: Part | None = None, after: bool = False,
+    ) -> None:  # fmt: skip
+        self.g = g
+        self._wired, self._pieces, self._layout = wired, pieces, layout
+        self._rank = {source: i for i, source in enumerate(order)}
+        self._due, self._after = due, after
+        whole = slice(0, None)
+        self._q = (part.q if part else whole).start
+        self._v = (part.v if part else whole).start
+        self._lam = (part.conditions if part else whole).start
+        conditions = part.conditions if part else slice(0, len(layout.condition_names))
+        self._nc = conditions.stop - conditions.start
+        self._models = {parameter_group(model): model for model in wired.models.names}
+        self._values: dict[Source, Tensor] = {}
+
+    def input(self, group: str, place: Place, shift: int = 0) -> Tensor:
+        """Entries of an input vector."""
+        return Tensor.inputs(self.g, group, place.shape, place.start - shift)
+
+    def signal(self, source: Source) -> Tensor:
+        """The value of an output."""
+        wanted, stack = set[Source](), [source]
+        while stack:
+            one = stack.pop()
+            if one in self._values or one in wanted:
+                continue
+            wanted.add(one)
+            if self._place(one) is None:
+                stack += self._behind(one)
+        for one in sorted(wanted, key=self._rank.__getitem__):
+            place = self._place(one)
+            piece = self._pieces[one[0]]
+            self._values[one] = self.write(piece, piece.outputs[one[1]]) if place is None else self.input("u", place)
+        return self._values[source]
+
+    def _place(self, source: Source) -> Place | None:
+        """Where an output is read from; None for one that is computed."""
+        layout, block = self._layout, self._pieces[source[0]].block
+        if source in layout.samples:
+            return layout.samples[source]
+        return layout.held.get(source) if block.is_opaque or source[0] not in self._due else None
+
+    def _behind(self, source: Source) -> list[Source]:
+        name, port = source
+        needs = self._pieces[name].needs[port]
+        return [self._wired.sources[name, into] for into in needs if (name, into) in self._wired.sources]
+
+    def write(self, piece: Piece, value: Tensor) -> Tensor:
+        """A value of a block's own graph, at this point."""
+        return Tensor.of(self.g, self.edges(piece, value.flat), value.shape)
+
+    def edges(self, piece: Piece, edges: Sequence[Edge]) -> list[Edge]:
+        """The same for edges."""
+        groups = piece.groups(edges)
+        for port in sorted(group.removeprefix(INPUT) for group in groups if group.startswith(INPUT)):
+            self.signal(self._wired.sources[piece.name, port])
+        known = {group: self._group(piece, group) for group in groups}
+        replacement = {
+            node: known[slot.group][slot.index] for node, slot in piece.g.slot.items() if slot.group in known
+        }
+        return transplant(piece.g, edges, replacement, self.g)
+
+    def _group(self, piece: Piece, group: str) -> list[Edge]:
+        """What stands for an input group of a block."""
+        name, layout = piece.name, self._layout
+        if group == "t":
+            return [self.g.input("t", 0)]
+        if group == "q":
+            return self.input("q", layout.q[name], self._q).flat
+        if group == "v":
+            return self.input("v", layout.v[name], self._v).flat
+        if group == "gains":
+            first = layout.lam[name].start - self._lam
+            rows = [first + i for i in range(piece.nc)]
+            return [self.g.input("gains", i) for i in (*rows, *(self._nc + i for i in rows))]
+        if group in ("a", "lam"):
+            if not self._after:
+                raise DescriptionError(Problem(
+                    f"block '{name}': accelerations or constraint forces are needed between samples", f"'{group}'",
+                    "under constraints they are known once the equations of the instant are solved",
+                    "take them through a sampled block (a hold with a period)",
+                ))  # fmt: skip
+            place = layout.v[name] if group == "a" else layout.lam[name]
+            return self.input(group, place, self._v if group == "a" else self._lam).flat
+        if group.startswith(INPUT):
+            return self._values[self._wired.sources[name, group.removeprefix(INPUT)]].flat
+        if group.startswith(STATE):
+            return self.input("v", layout.states[name, group.removeprefix(STATE)], self._v).flat
+        if group.startswith(MEMORY):
+            return self.input("u", layout.memory[name, group.removeprefix(MEMORY)]).flat
+        if group.startswith(PARAMETER):
+            return self.input("par", layout.parameters[name, group.removeprefix(PARAMETER)]).flat
+        return self.input("par", layout.parameters["", self._models[group]]).flat
+
+
+class Fuser:
+    """Writes a diagram's functions.
+
+    Args:
+        wired: The diagram.
+        pieces: Its blocks, written out.
+        layout: Where things lie.
+        order: All outputs, each after what it depends on.
+    """
+
+    def __init__(
+        self, wired: Wired, pieces: Mapping[str, Piece], layout: Layout, order: Sequence[Source]
+    ) -> None:  # fmt: skip
+        self._wired, self._pieces, self._layout, self._order = wired, pieces, layout, order
+
+    def _at(self, g: Graph, due: Iterable[str] = (), part: Part | None = None, after: bool = False) -> Point:
+        return Point(self._wired, self._pieces, self._layout, self._order, g, frozenset(due), part, after)
+
+    def _program(self, name: str, g: Graph, functions: Iterable[Function], part: Part | None = None) -> Program:
+        layout = self._layout
+        nq = part.q.stop - part.q.start if part else len(layout.q0)
+        nv = part.v.stop - part.v.start if part else len(layout.v0)
+        nc = part.conditions.stop - part.conditions.start if part else len(layout.condition_names)
+        sizes = {"q": nq, "v": nv, "u": len(layout.u0), "t": 1, "par": len(layout.par), "a": nv, "lam": nc,
+                 "gains": 2 * nc, "step": nv}  # fmt: skip
+        return Program(name, g, sizes, tuple(functions))
+
+    # Motion of a part.
+
+    def motion(self, part: Part) -> Program:
+        """forward_dynamics of a part, and project where it has constraints."""
+        g = Graph()
+        at = self._at(g, part=part)
+        nc = part.conditions.stop - part.conditions.start
+        if not nc:
+            a = [edge for name in part.blocks for edge in self._rates(at, name)]
+            a += [edge for name in part.blocks for edge in self._state_rates(at, name)]
+            outputs = (Output("a", (len(a),), tuple(a)),)
+            return self._program(self._wired.name, g, [Function("forward_dynamics", "", AT, outputs)], part)
+        return self._program(self._wired.name, g, self._constrained(at, part, nc), part)
+
+    def _rates(self, at: Point, name: str) -> list[Edge]:
+        piece = self._pieces[name]
+        return at.edges(piece, piece.terms.a.flat) if piece.terms.a is not None else []
+
+    def _state_rates(self, at: Point, name: str) -> list[Edge]:
+        piece = self._pieces[name]
+        return [edge for key in piece.states for edge in at.edges(piece, piece.rates[key].flat)]
+
+    def _constrained(self, at: Point, part: Part, nc: int) -> list[Function]:
+        """M a = r + G^T lam, G a = c for the part as a whole: blocks on the diagonal, rows side by side."""
+        nv = part.v.stop - part.v.start
+        M = [[ZERO] * nv for _ in range(nv)]
+        G = [[ZERO] * nv for _ in range(nc)]
+        r, c, phi, rate = [ZERO] * nv, [ZERO] * nc, [ZERO] * nc, [ZERO] * nc
+        layout, pieces = self._layout, self._pieces
+        for name in part.blocks:
+            piece, terms = pieces[name], pieces[name].terms
+            if name in layout.v:
+                first, n = layout.v[name].start - part.v.start, layout.v[name].size
+                row = layout.lam[name].start - part.conditions.start
+                if terms.a is not None:
+                    own, right = _identity(n), at.edges(piece, terms.a.flat)
+                else:
+                    assert None not in (terms.M, terms.r, terms.G, terms.c, terms.phi, terms.rate)
+                    own, right = self._rows(at, piece, terms.M), at.edges(piece, terms.r.flat)  # type: ignore[union-attr]
+                    for i, values in enumerate(self._rows(at, piece, terms.G)):
+                        G[row + i][first : first + n] = values
+                    for into, of in ((c, terms.c), (phi, terms.phi), (rate, terms.rate)):
+                        into[row : row + piece.nc] = at.edges(piece, of.flat)  # type: ignore[union-attr]
+                r[first : first + n] = right
+                for i, values in enumerate(own):
+                    M[first + i][first : first + n] = values
+            for key in piece.states:
+                place = layout.states[name, key]
+                for i, edge in enumerate(at.edges(piece, piece.rates[key].flat)):
+                    k = place.start - part.v.start + i
+                    M[k][k], r[k] = ONE, edge
+        binds = [ZERO if edge == ZERO else ONE for edge in phi]
+        terms_of = (_matrix("M", M, nv), _vector("r", r), _matrix("G", G, nv), _vector("c", c))
+        solved = (("a", (nv,)), ("lam", (nc,)), ("rank", ()))
+        forward = Function("forward_dynamics", "", ("q", "v", "u", "gains", "t"), terms_of,
+                           Solver("constrained", solved))  # fmt: skip
+        q_moved = self._moved(at, part)
+        move = Function("move", "", ("q", "step"), (_vector("q_moved", q_moved),))
+        nq = part.q.stop - part.q.start
+        projected = (("q_on", (nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()))
+        outputs = (terms_of[0], terms_of[2], _vector("binds", binds), _vector("phi", phi), _vector("rate", rate))
+        return [forward, Function("project", "", AT, outputs, Solver("project", projected, (move,)))]
+
+    def _rows(self, at: Point, piece: Piece, matrix: Tensor | None) -> list[list[Edge]]:
+        assert matrix is not None
+        edges, columns = at.edges(piece, matrix.flat), matrix.shape[1]
+        return [edges[i : i + columns] for i in range(0, len(edges), columns)] if columns else []
+
+    def _moved(self, at: Point, part: Part) -> list[Edge]:
+        """The configuration that a step along the manifold leads to."""
+        layout, found = self._layout, [ZERO] * (part.q.stop - part.q.start)
+        for name in part.blocks:
+            if name in layout.q:
+                q, v = layout.q[name], layout.v[name]
+                model = self._pieces[name].block.mechanism()
+                values = self._wired.models.moved(
+                    at.g, model, at.input("q", q, part.q.start), at.input("step", v, part.v.start)
+                )
+                found[q.start - part.q.start : q.start - part.q.start + q.size] = values.flat
+        for segment in layout.segments:
+            for i in range(segment.size if segment.kind == "linear" else 0):
+                q_at, v_at = segment.q + i - part.q.start, segment.v + i - part.v.start
+                if 0 <= q_at < len(found) and found[q_at] == ZERO:
+                    found[q_at] = at.g.add(at.g.input("q", q_at), at.g.input("step", v_at))
+        return found
+
+    def crossings(self, part: Part) -> Program | None:
+        """The values whose zeros are located, as the function "formulas"; None where there are none."""
+        g = Graph()
+        at = self._at(g, part=part)
+        values = [edge for name, which in self.watched() for edge in
+                  at.edges(self._pieces[name], self._pieces[name].crossings[which].value.flat)]  # fmt: skip
+        if not values:
+            return None
+        return self._program(self._wired.name, g, [Function("formulas", "", AT, (_vector("value", values),))], part)
+
+    def watched(self) -> list[tuple[str, str]]:
+        """(block, crossing), in order."""
+        return [(name, which) for name, piece in self._pieces.items() for which in piece.crossings]
+
+    # Samples.
+
+    def opaque(self, due: frozenset[str]) -> list[str]:
+        """Blocks of Python's that are due, in the order in which they are called."""
+        found = dict.fromkeys(name for name, _ in self._order if name in due)
+        rest = dict.fromkeys(name for name in self._pieces if name in due)
+        return [name for name in (found | rest) if self._pieces[name].block.is_opaque]
+
+    def samples(self, sets: Sequence[frozenset[str]]) -> Program:
+        """What happens at instants: functions "due_i" for each set and "crossed_i" for each crossing.
+
+        "heard_i_j" gives what the j-th block of Python's of set i hears: its inputs, one after the other.
+        """
+        g = Graph()
+        functions = [self._due(g, f"due_{i}", due) for i, due in enumerate(sets)]
+        functions += [self._crossed(g, f"crossed_{i}", *which) for i, which in enumerate(self.watched())]
+        for i, due in enumerate(sets):
+            functions += [self._heard(g, f"heard_{i}_{j}", name, due) for j, name in enumerate(self.opaque(due))]
+        return self._program(self._wired.name, g, functions)
+
+    def _due(self, g: Graph, name: str, due: frozenset[str]) -> Function:
+        at = self._at(g, due, after=True)
+        u = [g.input("u", i) for i in range(len(self._layout.u0))]
+        for block in due:
+            piece = self._pieces[block]
+            for port in piece.outputs:
+                place = self._layout.held[block, port]
+                u[place.slice] = at.signal((block, port)).flat
+            for key, value in piece.updates.items():
+                u[self._layout.memory[block, key].slice] = at.write(piece, value).flat
+        return Function(name, "", AFTER, (_vector("u_next", u),))
+
+    def _crossed(self, g: Graph, name: str, block: str, which: str) -> Function:
+        at, layout, piece = self._at(g, after=True), self._layout, self._pieces[block]
+        u = [g.input("u", i) for i in range(len(layout.u0))]
+        q = [g.input("q", i) for i in range(len(layout.q0))]
+        v = [g.input("v", i) for i in range(len(layout.v0))]
+        for key, value in piece.jumps[which].items():
+            new = at.write(piece, value).flat
+            if key in piece.memory:
+                u[layout.memory[block, key].slice] = new
+            elif key in piece.states:
+                v[layout.states[block, key].slice] = new
+            else:
+                (q if key == "q" else v)[(layout.q if key == "q" else layout.v)[block].slice] = new
+        return Function(name, "", AFTER, (_vector("u_next", u), _vector("q_next", q), _vector("v_next", v)))
+
+    def _heard(self, g: Graph, name: str, block: str, due: frozenset[str]) -> Function:
+        at = self._at(g, due, after=True)
+        sources = [self._wired.sources.get((block, port.name)) for port in self._wired.ports[block].inputs]
+        edges = [edge for source in sources if source is not None for edge in at.signal(source).flat]
+        return Function(name, "", AFTER, (_vector("heard", edges),))
+
+    def signals(self, sources: Sequence[Source]) -> Program:
+        """The function "signals": some outputs, from what was recorded."""
+        g = Graph()
+        at = self._at(g, after=True)
+        outputs = []
+        for i, source in enumerate(sources):
+            value = at.signal(source)
+            outputs.append(Output(f"s{i}", value.shape, tuple(value.flat)))
+        return self._program(self._wired.name, g, [Function("signals", "", AFTER, tuple(outputs))])
+
+
+def _identity(n: int) -> list[list[Edge]]:
+    return [[ONE if i == j else ZERO for j in range(n)] for i in range(n)]
+
+
+def _vector(name: str, edges: Sequence[Edge]) -> Output:
+    return Output(name, (len(edges),), tuple(edges))
+
+
+def _matrix(name: str, rows: Sequence[Sequence[Edge]], columns: int) -> Output:
+    return Output(name, (len(rows), columns), tuple(edge for row in rows for edge in row))

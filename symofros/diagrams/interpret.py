@@ -1,0 +1,317 @@
+"""The interpreted run: Python calls the blocks one by one; slow, simple, and what the compiled run is held against."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from symofros.codegen.interpreted import InterpretedUnit
+from symofros.codegen.model import model_source
+from symofros.codegen.names import identifier
+from symofros.codegen.templates import template
+from symofros.diagrams.block import Terms
+from symofros.diagrams.charts import chart_rate, retract
+from symofros.diagrams.compiled import GENERATOR, Resolved, bare_record
+from symofros.diagrams.layout import Part
+from symofros.diagrams.pieces import INPUT, MEMORY, PARAMETER, STATE, Piece
+from symofros.diagrams.surroundings import parameter_group
+from symofros.diagrams.wiring import Source
+from symofros.expr.program import Function, Output, Program
+from symofros.passes import run_passes
+from symofros.runtime.build import build_library
+from symofros.runtime.constrained import constrained, project
+from symofros.runtime.kernel import Array, Unit
+from symofros.runtime.library import CompiledUnit
+from symofros.runtime.toolchain import Toolchain
+from symofros.simulation.tableaus import Tableau
+
+Call = Callable[[], None]
+_TERMS = ("a", "M", "r", "G", "c", "phi", "rate")
+
+
+class Blocks:
+    """Every block of a diagram as functions on memory of its own.
+
+    Args:
+        resolved: The diagram.
+        par: Its run-time parameters.
+        gains: Baumgarte's, one pair for all conditions.
+        toolchain: Compiles each block by itself; None: NumPy interprets it.
+    """
+
+    def __init__(self, resolved: Resolved, par: Array, gains: tuple[float, float], toolchain: Toolchain | None) -> None:
+        self.resolved = resolved
+        self._par, self._gains, self._toolchain = par, gains, toolchain
+        layout = resolved.layout
+        self.t = np.zeros(1)
+        self.q, self.v = np.array(layout.q0, dtype=np.float64), np.array(layout.v0, dtype=np.float64)
+        self.a, self.lam = np.zeros(len(self.v)), np.zeros(len(layout.condition_names))
+        self.memory = {key: resolved.pieces[key[0]].memory[key[1]].copy() for key in layout.memory}
+        self.out = {source: np.zeros(resolved.wired.shape(source)) for source in resolved.order}
+        self.calls: dict[tuple[str, str], tuple[Call, dict[str, Array]]] = {}
+        for piece in resolved.pieces.values():
+            self._make(piece)
+
+    def _make(self, piece: Piece) -> None:
+        """The functions of one block: each output, rates, updates, the terms of its motion."""
+        name = piece.name
+        stated: dict[str, dict[str, Any]] = {f"out_{port}": {"y": value} for port, value in piece.outputs.items()}
+        stated["rates"] = {f"d_{key}": value for key, value in piece.rates.items()}
+        stated["updates"] = {f"n_{key}": value for key, value in piece.updates.items()}
+        stated["motion"] = {f"t_{key}": value for key, value in _present(piece.terms)}
+        functions, sizes = [], {"par": 0}
+        for which, outputs in stated.items():
+            if outputs:
+                edges = [edge for value in outputs.values() for edge in value.flat]
+                groups = sorted(piece.groups(edges))
+                sizes |= {group: self._memory_of(piece, group).size for group in groups}
+                made = tuple(Output(key, value.shape, tuple(value.flat)) for key, value in outputs.items())
+                functions.append(Function(which, "", tuple(groups), made))
+        if not functions:
+            return
+        unit = self._unit(name, run_passes(Program(name, piece.g, sizes, tuple(functions))))
+        for function in functions:
+            kernel = unit.kernels[function.name, ""]
+            inputs = [self._memory_of(piece, group) for group in function.inputs]
+            port = function.name.removeprefix("out_")
+            found = {key: self.out[name, port] if key == "y" else np.zeros(shape) for key, shape in function.returns}
+            pre = kernel.prepare(np.zeros((1, 0)))
+            self.calls[name, function.name] = kernel.bind(pre, inputs, list(found.values())), found
+
+    def _unit(self, name: str, program: Program) -> Unit:
+        if self._toolchain is None:
+            return InterpretedUnit(program)
+        header, record = template("symofros_model.h"), bare_record(name)
+        text = model_source(program, record, GENERATOR)
+        symbol = f"{identifier(name)}_model"
+        return CompiledUnit(build_library(text, header, self._toolchain), symbol, header, record.hash)
+
+    def _memory_of(self, piece: Piece, group: str) -> Array:
+        """The array that an input group of a block is read from, flat."""
+        name, layout, wired = piece.name, self.resolved.layout, self.resolved.wired
+        if group == "t":
+            return self.t
+        if group in ("q", "v", "a"):
+            places = layout.q if group == "q" else layout.v
+            array: Array = getattr(self, group)[places[name].slice]
+            return array
+        if group == "lam":
+            return self.lam[layout.lam[name].slice]
+        if group == "gains":
+            return np.repeat(np.array(self._gains), piece.nc)
+        if group.startswith(INPUT):
+            return self.out[wired.sources[name, group.removeprefix(INPUT)]].reshape(-1)
+        if group.startswith(STATE):
+            return self.v[layout.states[name, group.removeprefix(STATE)].slice]
+        if group.startswith(MEMORY):
+            return self.memory[name, group.removeprefix(MEMORY)].reshape(-1)
+        if group.startswith(PARAMETER):
+            return self._par[layout.parameters[name, group.removeprefix(PARAMETER)].slice]
+        model = next(model for model in wired.models.names if parameter_group(model) == group)
+        return self._par[layout.parameters["", model].slice]
+
+    def signals(self, due: frozenset[str] | None = None) -> None:
+        """Continuous outputs at the present point, in order; those of sampled blocks that are due, too."""
+        for source in self.resolved.order:
+            name, port = source
+            piece = self.resolved.pieces[name]
+            block = piece.block
+            if port in block.samples():
+                self._sample(source)
+            elif not piece.is_discrete or (due is not None and name in due):
+                if block.is_opaque:
+                    self._call_python(piece)
+                else:
+                    self.calls[name, f"out_{port}"][0]()
+
+    def _sample(self, source: Source) -> None:
+        signal = self.resolved.pieces[source[0]].block.samples()[source[1]]
+        columns = signal.values.reshape(len(signal.t), -1).T
+        t = float(self.t[0])
+        if signal.kind == "linear":
+            found = [np.interp(t, signal.t, column) for column in columns]
+        else:
+            found = [column[max(0, int(np.searchsorted(signal.t, t, side="right")) - 1)] for column in columns]
+        self.out[source].reshape(-1)[:] = found
+
+    def _call_python(self, piece: Piece) -> None:
+        wired, name = self.resolved.wired, piece.name
+        inputs = {}
+        for port in wired.ports[name].inputs:
+            source = wired.sources.get((name, port.name))
+            given = self.out[source].copy() if source else np.asarray(port.default, dtype=np.float64)
+            inputs[port.name] = np.broadcast_to(given, port.shape or ())
+        for key, value in piece.block.call(float(self.t[0]), inputs).items():
+            self.out[name, key][...] = value
+
+    def update(self, due: frozenset[str]) -> None:
+        """Memory of the sampled blocks that are due."""
+        new = []
+        for name in due:
+            if (name, "updates") in self.calls:
+                call, found = self.calls[name, "updates"]
+                call()
+                new += [((name, key.removeprefix("n_")), value.copy()) for key, value in found.items()]
+        for key, value in new:
+            self.memory[key][...] = value
+
+    def accelerate(self) -> None:
+        """The accelerations a and multipliers of all mechanisms, and rates of states, at the present point."""
+        layout = self.resolved.layout
+        for name in layout.v:
+            call, found = self.calls[name, "motion"]
+            call()
+            if "t_a" in found:
+                self.a[layout.v[name].slice] = found["t_a"]
+            else:
+                a, lam, _ = constrained(*(found[f"t_{key}"][np.newaxis] for key in ("M", "r", "G", "c")))
+                self.a[layout.v[name].slice], self.lam[layout.lam[name].slice] = a[0], lam[0]
+        for (name, key), place in layout.states.items():
+            if place.size:
+                call, found = self.calls[name, "rates"]
+                call()
+                self.a[place.slice] = found[f"d_{key}"].reshape(-1)
+
+
+def _present(terms: Terms) -> Iterator[tuple[str, Any]]:
+    for key in _TERMS:
+        value = getattr(terms, key)
+        if value is not None:
+            yield key, value
+
+
+@dataclass
+class InterpretedRun:
+    """Signals of an interpreted run, `run["block.port"]` (n, *shape).
+
+    Attributes:
+        resolved: What ran.
+        t: Times (n) [s].
+        values: (block, output) -> its signal.
+    """
+
+    resolved: Resolved
+    t: Array
+    values: dict[Source, Array]
+
+    def __getitem__(self, name: str) -> Array:
+        """A signal over time."""
+        return self.values[self.resolved.wired.output(name)]
+
+
+def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
+    """One step of an explicit Runge-Kutta method, all parts together."""
+    segments, nv = blocks.resolved.layout.segments, len(blocks.v)
+    t, q, v = float(blocks.t[0]), blocks.q.copy(), blocks.v.copy()
+    k: list[Array] = []
+
+    def moved(weights: Array) -> tuple[Array, Array]:
+        total = np.zeros(2 * nv)
+        for weight, slope in zip(weights, k, strict=False):
+            if weight != 0.0:
+                total += weight * slope
+        return h * total[:nv], h * total[nv:] + v
+
+    for i in range(tableau.stages):
+        theta, speeds = moved(tableau.a[i])
+        blocks.t[0] = t + tableau.c[i] * h
+        blocks.q[:], blocks.v[:] = retract(segments, q, theta), speeds
+        blocks.signals()
+        blocks.accelerate()
+        k.append(np.concatenate([chart_rate(segments, theta, speeds), blocks.a]))
+    theta, speeds = moved(tableau.b)
+    blocks.t[0] = t + h
+    blocks.q[:], blocks.v[:] = retract(segments, q, theta), speeds
+    if projects:
+        for part in blocks.resolved.layout.parts:
+            if part.conditions.stop > part.conditions.start:
+                _project(blocks, part)
+
+
+def _project(blocks: Blocks, part: Part) -> None:
+    """The state of a part back onto its constraints, as C does it."""
+    layout, pieces = blocks.resolved.layout, blocks.resolved.pieces
+    nv, nc = part.v.stop - part.v.start, part.conditions.stop - part.conditions.start
+
+    def terms(q: Array, v: Array) -> list[Array]:
+        blocks.q[part.q], blocks.v[part.v] = q, v
+        blocks.signals()
+        M, G, phi, rate, binds = np.eye(nv), np.zeros((nc, nv)), np.zeros(nc), np.zeros(nc), np.zeros(nc)
+        for name in part.blocks:
+            if name not in layout.v or pieces[name].terms.M is None:
+                continue
+            call, found = blocks.calls[name, "motion"]
+            call()
+            i, n = layout.v[name].start - part.v.start, layout.v[name].size
+            c = layout.lam[name].start - part.conditions.start
+            M[i : i + n, i : i + n] = found["t_M"]
+            rows = slice(c, c + pieces[name].nc)
+            G[rows, i : i + n], phi[rows], rate[rows] = found["t_G"], found["t_phi"], found["t_rate"]
+            edges = pieces[name].terms.phi
+            assert edges is not None
+            binds[rows] = [float(edge != 0) for edge in edges.flat]
+        return [M, G, binds, phi, rate]
+
+    def move(q: Array, theta: Array) -> Array:
+        whole, along = blocks.q.copy(), np.zeros(len(blocks.v))
+        whole[part.q], along[part.v] = q, theta
+        return retract(layout.segments, whole, along)[part.q]
+
+    q_on, v_on, *_ = project(terms, move, blocks.q[part.q].copy(), blocks.v[part.v].copy())
+    blocks.q[part.q], blocks.v[part.v] = q_on, v_on
+
+
+def run_interpreted(
+    blocks: Blocks, instants: Sequence[tuple[float, frozenset[str], bool]], t_end: float, dt: float, tableau: Tableau,
+    projects: bool, show: Callable[[float], None],
+) -> InterpretedRun:  # fmt: skip
+    """Run from the first state.
+
+    Args:
+        blocks: The diagram's.
+        instants: (time, what is due, whether to record), in order; the first is the start.
+        t_end: Where to end [s].
+        dt: Step [s]; steps also end at instants.
+        tableau: Of the method.
+        projects: Whether constraints are met again after each step.
+        show: Told the time.
+    """
+    times: list[float] = []
+    kept: dict[Source, list[Array]] = {source: [] for source in blocks.out}
+    looks_back = bool(len(blocks.lam))
+
+    def record() -> None:
+        times.append(float(blocks.t[0]))
+        for source, array in blocks.out.items():
+            kept[source].append(array.copy())
+
+    for i, (t, due, recorded) in enumerate(instants):
+        blocks.t[0] = t
+        if due:
+            blocks.signals()
+            if looks_back:
+                blocks.accelerate()
+            blocks.signals(due)
+            blocks.update(due)
+        if recorded:
+            blocks.signals()
+            if looks_back:
+                blocks.accelerate()
+                blocks.signals()
+            record()
+        show(t)
+        until = min(instants[i + 1][0] if i + 1 < len(instants) else t_end, t_end)
+        while blocks.t[0] < until:
+            now = float(blocks.t[0])
+            last = now + dt >= until - 1e-9 * dt
+            step(blocks, tableau, (until if last else now + dt) - now, projects)
+            if last:
+                blocks.t[0] = until
+    if not times or times[-1] < t_end:
+        blocks.t[0] = t_end
+        blocks.signals()
+        record()
+    return InterpretedRun(blocks.resolved, np.array(times), {source: np.array(rows) for source, rows in kept.items()})

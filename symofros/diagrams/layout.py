@@ -1,0 +1,184 @@
+"""Where everything of a diagram lies in its vectors q, v, u and par.
+
+A diagram moves as one mechanism does: each continuous state s is a speed whose rate is s', beside an idle coordinate;
+what is held between samples, and what samples over time give, are inputs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import prod
+from typing import NamedTuple
+
+import numpy as np
+
+from symofros.diagrams.block import Shape
+from symofros.diagrams.pieces import Piece
+from symofros.diagrams.wiring import Source, Wired
+from symofros.runtime.kernel import Array
+from symofros.runtime.record import Segment
+from symofros.simulation.inputs import Signal
+
+
+class Place(NamedTuple):
+    """A run of entries."""
+
+    start: int
+    shape: Shape
+
+    @property
+    def size(self) -> int:
+        """Number of entries."""
+        return prod(self.shape)
+
+    @property
+    def slice(self) -> slice:
+        """The entries."""
+        return slice(self.start, self.start + self.size)
+
+
+@dataclass(frozen=True)
+class Part:
+    """What moves together between samples.
+
+    Attributes:
+        blocks: With continuous states.
+        q: Its entries of the diagram's q.
+        v: Of v.
+        conditions: Of lam.
+    """
+
+    blocks: tuple[str, ...]
+    q: slice
+    v: slice
+    conditions: slice
+
+
+@dataclass
+class Layout:
+    """Places of everything.
+
+    Attributes:
+        parts: In the order of q.
+        q: Block -> its mechanism's configuration.
+        v: Block -> its mechanism's speeds.
+        lam: Block -> multipliers of its constraints.
+        states: (block, state) -> the speeds that it is.
+        held: (block, output) of sampled blocks -> inputs.
+        memory: (block, memory) -> inputs.
+        samples: (block, output) given over time -> inputs.
+        parameters: (block, field), and ("", model) -> parameters.
+        par: Their values.
+        q0: First q, v and u.
+        v0: First v.
+        u0: First u.
+        q_names: Names of q, v, u, par.
+        v_names: See q_names.
+        u_names: See q_names.
+        par_names: See q_names.
+        segments: Of the configuration manifold.
+        signals: (index in u, times, values, whether linear).
+        condition_names: Of the constraints.
+        speed_conditions: Those of them on speeds only.
+    """
+
+    parts: list[Part] = field(default_factory=list)
+    q: dict[str, Place] = field(default_factory=dict)
+    v: dict[str, Place] = field(default_factory=dict)
+    lam: dict[str, Place] = field(default_factory=dict)
+    states: dict[tuple[str, str], Place] = field(default_factory=dict)
+    held: dict[Source, Place] = field(default_factory=dict)
+    memory: dict[tuple[str, str], Place] = field(default_factory=dict)
+    samples: dict[Source, Place] = field(default_factory=dict)
+    parameters: dict[tuple[str, str], Place] = field(default_factory=dict)
+    par: list[float] = field(default_factory=list)
+    q0: list[float] = field(default_factory=list)
+    v0: list[float] = field(default_factory=list)
+    u0: list[float] = field(default_factory=list)
+    q_names: list[str] = field(default_factory=list)
+    v_names: list[str] = field(default_factory=list)
+    u_names: list[str] = field(default_factory=list)
+    par_names: list[str] = field(default_factory=list)
+    segments: list[Segment] = field(default_factory=list)
+    signals: list[tuple[int, Array, Array, bool]] = field(default_factory=list)
+    condition_names: list[str] = field(default_factory=list)
+    speed_conditions: list[str] = field(default_factory=list)
+
+
+def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence[str]]) -> Layout:
+    """Place the states of each group together, then inputs and parameters."""
+    layout = Layout()
+    for names in groups:
+        q, v, c = len(layout.q0), len(layout.v0), len(layout.condition_names)
+        for name in names:
+            _mechanism(layout, wired, pieces[name])
+        for name in names:
+            _states(layout, pieces[name])
+        conditions = slice(c, len(layout.condition_names))
+        layout.parts.append(Part(tuple(names), slice(q, len(layout.q0)), slice(v, len(layout.v0)), conditions))
+    for name, piece in pieces.items():
+        _inputs(layout, wired, name, piece)
+        for key, values in piece.parameters.items():
+            layout.parameters[name, key] = _placed(layout.par, layout.par_names, f"{name}.{key}", values)
+    for model in wired.models.names:
+        names = wired.models.record(model).par_names
+        layout.parameters["", model] = Place(len(layout.par), (len(names),))
+        layout.par += wired.models.parameters(model).tolist()
+        layout.par_names += [f"{model}.{name}" for name in names]
+    return layout
+
+
+def _mechanism(layout: Layout, wired: Wired, piece: Piece) -> None:
+    if not piece.block.mechanism():
+        return
+    name, record = piece.name, wired.models.record(piece.block.mechanism())
+    q, v = len(layout.q0), len(layout.v0)
+    layout.q[name], layout.v[name] = Place(q, (len(piece.q),)), Place(v, (len(piece.v),))
+    layout.lam[name] = Place(len(layout.condition_names), (piece.nc,))
+    layout.segments += [Segment(s.kind, s.q + q, s.v + v, s.size) for s in record.segments]
+    layout.q0 += piece.q.tolist()
+    layout.v0 += piece.v.tolist()
+    layout.q_names += [f"{name}.{item}" for item in record.q_names]
+    layout.v_names += [f"{name}.{item}" for item in record.v_names]
+    layout.condition_names += [f"{name}.{item}" for item in record.constraint_names]
+    layout.speed_conditions += [f"{name}.{item}" for item in record.speed_conditions]
+
+
+def _states(layout: Layout, piece: Piece) -> None:
+    for key, values in piece.states.items():
+        q = len(layout.q0)
+        layout.states[piece.name, key] = _placed(layout.v0, layout.v_names, f"{piece.name}.{key}", values)
+        if values.size:
+            layout.segments.append(Segment("linear", q, layout.states[piece.name, key].start, values.size))
+        layout.q0 += [0.0] * values.size
+        layout.q_names += [f"{item}.integral" for item in layout.v_names[layout.states[piece.name, key].slice]]
+
+
+def _inputs(layout: Layout, wired: Wired, name: str, piece: Piece) -> None:
+    sampled = piece.block.samples()
+    for port in wired.ports[name].outputs:
+        shape, label = port.shape or (), f"{name}.{port.name}"
+        if port.name in sampled:
+            place = _placed(layout.u0, layout.u_names, label, np.zeros(shape))
+            layout.samples[name, port.name] = place
+            layout.signals += _columns(sampled[port.name], place)
+        elif piece.is_discrete:
+            layout.held[name, port.name] = _placed(layout.u0, layout.u_names, label, np.zeros(shape))
+    for key, values in piece.memory.items():
+        layout.memory[name, key] = _placed(layout.u0, layout.u_names, f"{name}.{key}", values)
+
+
+def _columns(signal: Signal, place: Place) -> list[tuple[int, Array, Array, bool]]:
+    values = signal.values.reshape(len(signal.t), -1)
+    return [
+        (place.start + i, signal.t, np.ascontiguousarray(values[:, i]), signal.kind == "linear")
+        for i in range(place.size)
+    ]
+
+
+def _placed(into: list[float], names: list[str], label: str, values: Array) -> Place:
+    place = Place(len(into), tuple(values.shape))
+    into += values.reshape(-1).tolist()
+    names += [label] if not values.shape else [f"{label}[{i}]" for i in range(values.size)]
+    return place

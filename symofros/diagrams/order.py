@@ -1,0 +1,101 @@
+"""In which order signals become known; loops in which a signal needs itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from symofros.diagrams.pieces import Piece
+from symofros.diagrams.wiring import Source, Wired
+from symofros.errors import DescriptionError, Problem
+
+
+def order_of(wired: Wired, pieces: Mapping[str, Piece]) -> list[Source]:
+    """All outputs, each after those that it depends on at once, as if every sampled block were due.
+
+    Raises:
+        DescriptionError: Signals that need themselves, with their path.
+    """
+    before = {
+        (name, port): [wired.sources[name, into] for into in needs if (name, into) in wired.sources]
+        for name, piece in pieces.items()
+        for port, needs in piece.needs.items()
+    }
+    done: list[Source] = []
+    state: dict[Source, int] = {}  # 1: on the path, 2: done.
+    for first in before:
+        stack = [(first, iter(before[first]))] if first not in state else []
+        if stack:
+            state[first] = 1
+        while stack:
+            node, rest = stack[-1]
+            nxt = next(rest, None)
+            if nxt is None:
+                state[node] = 2
+                done.append(node)
+                stack.pop()
+            elif state.get(nxt) == 1:
+                path = [item for item, _ in stack]
+                raise _loop(wired, path[path.index(nxt) :])
+            elif nxt not in state:
+                state[nxt] = 1
+                stack.append((nxt, iter(before[nxt])))
+    return done
+
+
+def _loop(wired: Wired, path: Sequence[Source]) -> DescriptionError:
+    """The stack runs against the flow of signals."""
+    forward = [*reversed(path), path[-1]]
+    text = " -> ".join(".".join(source) for source in forward)
+    return DescriptionError(Problem(
+        f"diagram '{wired.name}': an algebraic loop", text,
+        "a signal does not depend on itself at the same instant",
+        "break the loop by a delay, an integrator or a filter, or sample one of its blocks before the other",
+    ))  # fmt: skip
+
+
+def groups_in_motion(wired: Wired, pieces: Mapping[str, Piece]) -> list[list[str]]:
+    """Blocks with continuous states, those together whose motions depend on each other between samples.
+
+    What only meets at samples can move apart, each with steps of its own, on a thread of its own.
+    """
+    moving = [name for name, piece in pieces.items() if piece.states or piece.block.mechanism()]
+    parent = {name: name for name in moving}
+
+    def root(name: str) -> str:
+        while parent[name] != name:
+            name = parent[name]
+        return name
+
+    watched = [name for name, piece in pieces.items() if piece.crossings]
+    for name in moving:
+        piece = pieces[name]
+        edges = [*piece.motion_edges(), *(edge for value in piece.rates.values() for edge in value.flat)]
+        for other in reached(wired, pieces, name, piece.inputs_of(edges)):
+            parent[root(other)] = root(name)
+        if watched and moving:  # A crossing stops all motion: it may change what any part depends on.
+            parent[root(name)] = root(moving[0])
+    found: dict[str, list[str]] = {}
+    for name in moving:
+        found.setdefault(root(name), []).append(name)
+    return list(found.values())
+
+
+def reached(wired: Wired, pieces: Mapping[str, Piece], name: str, inputs: frozenset[str]) -> set[str]:
+    """Blocks whose continuous states are behind some inputs of a block, through continuous signals only."""
+    found: set[str] = set()
+    seen: set[Source] = set()
+    stack = [wired.sources[name, port] for port in inputs if (name, port) in wired.sources]
+    while stack:
+        source = stack.pop()
+        if source in seen:
+            continue
+        seen.add(source)
+        block, port = source
+        piece = pieces[block]
+        if piece.is_discrete or port in piece.block.samples():
+            continue
+        groups = piece.groups(piece.outputs[port].flat)
+        if any(group in ("q", "v") or group.startswith("x_") for group in groups):
+            found.add(block)
+        stack += [wired.sources[block, into] for into in piece.needs[port] if (block, into) in wired.sources]
+    return found

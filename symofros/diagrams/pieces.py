@@ -1,0 +1,171 @@
+"""One block, its formulas written out by itself: what its outputs, rates and memory are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from symofros.diagrams.block import At, Block, Crossing, Port, Terms, Values
+from symofros.diagrams.tensor import Tensor
+from symofros.diagrams.wiring import Wired, surroundings
+from symofros.errors import DescriptionError, Problem
+from symofros.expr.evaluate import needed_nodes
+from symofros.expr.graph import Edge, Graph
+from symofros.runtime.kernel import Array
+
+# Groups of inputs of a piece that belong to one port, state, memory or parameter begin with these.
+INPUT, STATE, MEMORY, PARAMETER = "in_", "x_", "z_", "p_"
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A block's formulas.
+
+    Attributes:
+        block: The block.
+        g: Their graph, in which every signal and state is an input.
+        outputs: Output port -> value.
+        rates: Continuous state -> rate.
+        updates: Memory -> next value.
+        terms: How its mechanism moves.
+        crossings: Name -> what is watched.
+        jumps: Name of a crossing -> what it changes.
+        states: Continuous state -> first value.
+        memory: Memory -> first value.
+        parameters: Run-time parameter -> value.
+        q: First configuration of its mechanism.
+        v: First speeds.
+        needs: Output port -> inputs that it depends on at once.
+    """
+
+    block: Block
+    g: Graph
+    outputs: dict[str, Tensor]
+    rates: dict[str, Tensor]
+    updates: dict[str, Tensor]
+    terms: Terms
+    crossings: dict[str, Crossing]
+    jumps: dict[str, dict[str, Tensor]]
+    states: dict[str, Array]
+    memory: dict[str, Array]
+    parameters: dict[str, Array]
+    q: Array
+    v: Array
+    needs: dict[str, frozenset[str]] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """Of the block."""
+        return self.block.name
+
+    @property
+    def is_discrete(self) -> bool:
+        """Whether its outputs change at samples only."""
+        return self.block.period is not None
+
+    @property
+    def nc(self) -> int:
+        """Conditions on its mechanism."""
+        return 0 if self.terms.G is None else self.terms.G.shape[0]
+
+    def motion_edges(self) -> list[Edge]:
+        """All that its mechanism's terms are."""
+        parts = (self.terms.a, self.terms.M, self.terms.r, self.terms.G, self.terms.c, self.terms.phi, self.terms.rate)
+        return [edge for part in parts if part is not None for edge in part.flat]
+
+    def groups(self, edges: Iterable[Edge]) -> frozenset[str]:
+        """Groups of inputs that some edges depend on."""
+        wanted = list(edges)
+        nodes = {abs(arg) for node in needed_nodes(self.g, wanted) for arg in self.g.args[node]} | set(map(abs, wanted))
+        return frozenset(self.g.slot[node].group for node in nodes if node in self.g.slot)
+
+    def inputs_of(self, edges: Iterable[Edge]) -> frozenset[str]:
+        """Input ports that some edges depend on."""
+        return frozenset(group.removeprefix(INPUT) for group in self.groups(edges) if group.startswith(INPUT))
+
+
+def piece_of(wired: Wired, name: str) -> Piece:
+    """Write out one block.
+
+    Raises:
+        DescriptionError: Its formulas don't fit its ports.
+    """
+    block, known = wired.blocks[name], surroundings(wired, name)
+    g = Graph()
+    states, memory = _arrays(block.states(known)), _arrays(block.memory(known))
+    parameters = block.parameters()
+    mechanism = block.mechanism()
+    nq = nv = 0
+    q0, v0 = np.zeros(0), np.zeros(0)
+    nc = 0
+    if mechanism:
+        record = wired.models.record(mechanism)
+        nq, nv, nc = len(record.q_names), len(record.v_names), record.nc
+        q0, v0 = known.start(mechanism)
+    at = At(
+        g, Tensor.inputs(g, "t", ()),
+        {port.name: _given(g, wired, name, port) for port in wired.ports[name].inputs},
+        {key: Tensor.inputs(g, STATE + key, value.shape) for key, value in states.items()},
+        {key: Tensor.inputs(g, MEMORY + key, value.shape) for key, value in memory.items()},
+        {key: Tensor.inputs(g, PARAMETER + key, value.shape) for key, value in parameters.items()},
+        Tensor.inputs(g, "q", (nq,)), Tensor.inputs(g, "v", (nv,)), Tensor.inputs(g, "gains", (2 * nc,)),
+        lambda model, function, frame="", **groups: wired.models.call(g, model, function, frame, **groups),
+        wired.models.solved, Tensor.inputs(g, "a", (nv,)), Tensor.inputs(g, "lam", (nc,)), known,
+    )  # fmt: skip
+    terms = block.motion(at)
+    if terms.a is not None:  # Else they are known after the constraints' equations are solved.
+        at = replace(at, a=terms.a)
+    outputs = {} if block.is_opaque else dict(block.compute(at))
+    crossings = dict(block.crossings(at))
+    piece = Piece(
+        block, g, outputs, dict(block.rates(at)), dict(block.update(at)), terms, crossings,
+        {which: dict(block.crossed(at, which)) for which in crossings}, states, memory, parameters, q0, v0,
+    )  # fmt: skip
+    _fit(wired, piece)
+    if block.is_opaque:
+        needs = {port.name: frozenset(p.name for p in wired.ports[name].inputs) for port in wired.ports[name].outputs}
+    else:
+        needs = {port: piece.inputs_of(value.flat) for port, value in outputs.items()}
+    return replace(piece, needs=needs | {port: frozenset() for port in block.samples()})
+
+
+def _arrays(values: Mapping[str, object]) -> dict[str, Array]:
+    return {key: np.asarray(value, dtype=np.float64) for key, value in values.items()}
+
+
+def _given(g: Graph, wired: Wired, name: str, port: Port) -> Tensor:
+    if (name, port.name) in wired.sources:
+        return Tensor.inputs(g, INPUT + port.name, port.shape or ())
+    return Tensor.numbers(g, np.broadcast_to(np.asarray(port.default, dtype=np.float64), port.shape or ()))
+
+
+def _fit(wired: Wired, piece: Piece) -> None:
+    """Formulas have the shapes of what they give; a block sticks to the kind that its sample time makes it."""
+    name, block = piece.name, piece.block
+    shapes = {port.name: port.shape for port in wired.ports[name].outputs}
+    given = set() if block.is_opaque else shapes.keys() - block.samples().keys()
+    _same(name, "outputs", piece.outputs, {key: shapes[key] for key in given})
+    _same(name, "rates", piece.rates, {key: value.shape for key, value in piece.states.items()})
+    _same(name, "memory", piece.updates, {key: value.shape for key, value in piece.memory.items()})
+    moving = bool(piece.states or block.mechanism() or piece.crossings)
+    if piece.is_discrete and moving:
+        raise DescriptionError(Problem(f"block '{name}' is sampled and moves between samples",
+                                       f"period {block.period}", "continuous states belong to continuous blocks",
+                                       "leave the period out"))  # fmt: skip
+    watched = {key for jump in piece.jumps.values() for key in jump}
+    if not piece.is_discrete and piece.memory.keys() - watched:
+        raise DescriptionError(Problem(f"block '{name}' has memory and no sample time", ", ".join(piece.memory),
+                                       "memory changes at samples or at crossings", "give a period"))  # fmt: skip
+    if block.is_opaque and not piece.is_discrete:
+        raise DescriptionError(Problem(f"block '{name}' calls Python and has no sample time", "period None",
+                                       "Python is called at samples", "give a period"))  # fmt: skip
+
+
+def _same(name: str, what: str, found: Values, shapes: Mapping[str, object]) -> None:
+    for key in found.keys() | shapes.keys():
+        shape = found[key].shape if key in found else "nothing"
+        if key not in shapes or shape != shapes[key]:
+            raise DescriptionError(Problem(f"block '{name}': {what} '{key}'", f"{shape}",
+                                           f"{shapes.get(key, 'not stated')}", "mend the block"))  # fmt: skip

@@ -1,0 +1,107 @@
+"""sf.Simulation: a diagram made ready once, then run, compiled or interpreted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from symofros.diagrams.compiled import CompiledDiagram, Resolved, compile_diagram, resolve
+from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.interpret import Blocks, InterpretedRun, run_interpreted
+from symofros.diagrams.loop import RECORD
+from symofros.diagrams.rates import Schedule, schedule
+from symofros.diagrams.result import DiagramRun
+from symofros.diagrams.simulate import parameter_values, record_interval, run_compiled
+from symofros.errors import Problem, SymofrosError
+from symofros.options import Options
+from symofros.runtime.toolchain import find_toolchain
+from symofros.simulation.methods import METHODS
+from symofros.simulation.progress import bar
+
+
+class Simulation:
+    """A diagram, checked at once, compiled when it is first run.
+
+    Args:
+        diagram: What its author stated.
+        options: Of the compiler.
+
+    Raises:
+        DescriptionError: With what is wrong with the diagram.
+    """
+
+    def __init__(self, diagram: Diagram, options: Options | None = None) -> None:
+        self.diagram = diagram
+        self.options = options or Options()
+        self.resolved: Resolved = resolve(diagram)
+
+    @cached_property
+    def compiled(self) -> CompiledDiagram:
+        """The diagram as C functions."""
+        return compile_diagram(self.resolved, self.options)
+
+    def run(self, t_end: float, **settings: Any) -> DiagramRun:
+        """Run it in C; the settings are those of `run_compiled`."""
+        return run_compiled(self.compiled, t_end, **settings)
+
+    def interpret(
+        self, t_end: float, *, t0: float = 0.0, method: str = "rk4", dt: float = 1e-3, record: float | None = None,
+        parameters: Mapping[str, Any] | None = None, gains: tuple[float, float] | None = None, compiled: bool = True,
+        progress: bool = False,
+    ) -> InterpretedRun:  # fmt: skip
+        """Run it block by block from Python: the reference of `run`, and some hundred times slower.
+
+        Args:
+            t_end: Where to end [s].
+            t0: Where to begin [s].
+            method: rk4 or euler.
+            dt: Step [s].
+            record: Interval of recording [s].
+            parameters: Run-time parameters by name.
+            gains: Baumgarte's (alpha, beta) [1/s]; None keeps constraints by projection.
+            compiled: Whether each block is compiled by itself; else NumPy interprets its formulas.
+            progress: Show a progress bar.
+
+        Raises:
+            SymofrosError: The method is implicit or adaptive, or the diagram has crossings.
+        """
+        resolved = self.resolved
+        if METHODS[method].kind != "explicit" or METHODS[method].adaptive:
+            raise SymofrosError(str(Problem(f"diagram: method '{method}' interpreted", "not of fixed explicit steps",
+                                            "an interpreted run steps by rk4 or euler", "use run")))  # fmt: skip
+        if any(piece.crossings for piece in resolved.pieces.values()):
+            raise SymofrosError(str(Problem(f"diagram '{resolved.wired.name}': crossings", "an interpreted run",
+                                            "it does not locate crossings", "use run")))  # fmt: skip
+        par = parameter_values(resolved, parameters or {})
+        toolchain = find_toolchain(self.options.compiler) if compiled else None
+        blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
+        interval = record_interval(record, t0, t_end, dt)
+        plan = schedule([*resolved.rates(), (RECORD, interval, 0.0)], resolved.wired.name)
+        opened = []
+        try:
+            for block in resolved.wired.blocks.values():
+                block.begin()
+                opened.append(block)
+            with bar(progress, t0, t_end) as show:
+                instants = list(_instants(plan, t0, t_end))
+                return run_interpreted(blocks, instants, t_end, dt, METHODS[method].tableau, gains is None, show)
+        finally:
+            for block in opened:
+                block.end()
+
+
+def _instants(plan: Schedule, t0: float, t_end: float) -> Iterator[tuple[float, frozenset[str], bool]]:
+    """(time, what is due, whether to record) up to the end."""
+    base_n, base_d = float(plan.base.numerator), float(plan.base.denominator)
+    slack, turn = 1e-9 * base_n / base_d, 0
+    while True:
+        for k, which in plan.instants:
+            t = float(np.float64(t0) + np.float64(turn * plan.cycle + k) * base_n / base_d)
+            if t > t_end + slack:
+                return
+            due = plan.sets[which]
+            yield min(t, t_end), due - {RECORD}, RECORD in due
+        turn += 1

@@ -1,0 +1,191 @@
+"""The models of a diagram as blocks see them: sizes, first states, and functions written into a block's graph."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from symofros.compiler import describe, plan
+from symofros.description.forces import Friction
+from symofros.description.system import System
+from symofros.diagrams.block import ModelSetup
+from symofros.diagrams.tensor import Tensor
+from symofros.diagrams.variants import FRICTION, friction_only
+from symofros.dynamics.constraints import moved
+from symofros.dynamics.forward import Factors
+from symofros.dynamics.functions import Request, write_program
+from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
+from symofros.expr.graph import Edge, Graph
+from symofros.expr.program import Program
+from symofros.expr.substitute import transplant
+from symofros.kinematics.links import set_in_motion
+from symofros.options import FRAME_FUNCTIONS, Options
+from symofros.runtime.kernel import Array
+from symofros.runtime.record import ModelRecord
+from symofros.topology.tree import SpanningTree
+
+
+def parameter_group(model: str) -> str:
+    """The input group of a model's run-time parameters in a block's graph; a name that C takes."""
+    return "m_" + model.removesuffix(FRICTION).replace("/", "__")
+
+
+class Models:
+    """The models of one diagram.
+
+    Args:
+        diagram: Its name, for messages.
+        setups: Name -> model.
+    """
+
+    def __init__(self, diagram: str, setups: Mapping[str, ModelSetup]) -> None:
+        self._diagram = diagram
+        self._setups = setups
+        self._trees: dict[str, SpanningTree] = {}
+        self._records: dict[str, ModelRecord] = {}
+        self._programs: dict[tuple[str, str, str], Program] = {}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All of them."""
+        return tuple(self._setups)
+
+    def setup(self, name: str) -> ModelSetup:
+        """What was stated of a model.
+
+        Raises:
+            DescriptionError: There is none of that name.
+        """
+        if name.endswith(FRICTION):
+            stated = self.setup(name.removesuffix(FRICTION))
+            return replace(stated, system=friction_only(stated.system))
+        if name not in self._setups:
+            raise DescriptionError(Problem(
+                f"diagram '{self._diagram}': no model '{name}'", f"'{name}'",
+                f"models: {', '.join(self._setups) or 'none'}", did_you_mean(name, self._setups) or "add the model",
+            ))  # fmt: skip
+        return self._setups[name]
+
+    def system(self, name: str) -> System:
+        """The description of a model."""
+        return self.setup(name).system
+
+    def tree(self, name: str) -> SpanningTree:
+        """A model's description, checked and numbered."""
+        if name not in self._trees:
+            self._trees[name] = plan(self.system(name))
+        return self._trees[name]
+
+    def record(self, name: str) -> ModelRecord:
+        """Sizes and names of a model."""
+        if name not in self._records:
+            self._records[name] = describe(self.tree(name), Options())
+        return self._records[name]
+
+    def parameters(self, name: str) -> Array:
+        """The run-time parameters of a model (npar)."""
+        record = self.record(name)
+        values = np.array(record.par_default, dtype=np.float64)
+        for key, value in self.setup(name).parameters.items():
+            values[self._index(name, "run-time parameter", key, record.par_names)] = float(value)
+        return values
+
+    def start(self, name: str) -> tuple[Array, Array]:
+        """The first q (nq) and v (nv) of a model."""
+        record = self.record(name)
+        q, v = np.array(record.q_neutral, dtype=np.float64), np.zeros(len(record.v_names))
+        for key, value in self.setup(name).start.items():
+            if key in record.q_names:
+                q[record.q_names.index(key)] = value
+            else:
+                speed = key.removeprefix("d") if key not in record.v_names else key
+                v[self._index(name, "coordinate or speed", speed, record.v_names)] = value
+        return q, v
+
+    def _index(self, model: str, what: str, name: str, known: tuple[str, ...]) -> int:
+        if name not in known:
+            raise DescriptionError(Problem(
+                f"diagram '{self._diagram}': model '{model}' has no {what} '{name}'", f"'{name}'",
+                f"known: {', '.join(known[:12]) or 'none'}", did_you_mean(name, known) or "see model.names",
+            ))  # fmt: skip
+        return known.index(name)
+
+    def frame(self, model: str, frame: str) -> str:
+        """The public name of a frame.
+
+        Raises:
+            DescriptionError: The model has no such frame.
+        """
+        record = self.record(model)
+        public = record.frame_aliases.get(frame, frame)
+        self._index(model, "frame", public, record.frame_names)
+        return public
+
+    def call(self, g: Graph, model: str, function: str, frame: str = "", **groups: Tensor) -> dict[str, Tensor]:
+        """A model's function at a point of a graph; its parameters are the group `parameter_group`.
+
+        Args:
+            g: The graph.
+            model: Which.
+            function: As of the methods of sf.Model.
+            frame: Of frame functions.
+            groups: q, v, a, u, t, gains, as the function takes them; t and u have defaults.
+
+        Returns:
+            Output -> values; under constraints, "forward_dynamics" gives the terms M, r, G, c.
+        """
+        if function in FRAME_FUNCTIONS:
+            frame = self.frame(model, frame)
+        key = model, function, frame
+        if key not in self._programs:
+            self._programs[key] = write_program(self.tree(model), [Request(function, frame)])
+        program = self._programs[key]
+        stated = program.functions[0]
+        replacement = self._bound(g, model, program, stated.inputs, groups)
+        edges = transplant(program.graph, stated.edges()[: sum(len(o.edges) for o in stated.outputs)], replacement, g)
+        found, at = {}, 0
+        for output in stated.outputs:
+            found[output.name] = Tensor.of(g, edges[at : at + len(output.edges)], output.shape)
+            at += len(output.edges)
+        return found
+
+    def solved(self, M: Tensor, r: Tensor) -> Tensor:
+        """The x of M x = r for a mass matrix (nv, nv), whose zeros between branches are kept."""
+        rows = [list(row) for row in M.edges]
+        return Tensor.of(M.g, Factors(M.g, rows).solve(r.flat), r.shape)
+
+    def rubbing(self, model: str) -> list[bool]:
+        """Which speeds (nv) have friction."""
+        tree, found = self.tree(model), [False] * len(self.record(model).v_names)
+        for link in tree.links:
+            for element in link.joint.elements:
+                if isinstance(element, Friction):
+                    found[link.v[0] + element.coordinate] = True
+        return found
+
+    def moved(self, g: Graph, model: str, q: Tensor, step: Tensor) -> Tensor:
+        """The configuration that a step (nv) along the manifold leads to."""
+        motion = set_in_motion(Graph(), self.tree(model))
+        edges = moved(motion)
+        groups = {"q": q, "step": step}
+        replacement = {motion.g.input(group, i): edge for group, values in groups.items()
+                       for i, edge in enumerate(values.flat)}  # fmt: skip
+        return Tensor.of(g, transplant(motion.g, edges, replacement, g), (len(edges),))
+
+    def _bound(
+        self, g: Graph, model: str, program: Program, inputs: tuple[str, ...], groups: Mapping[str, Tensor]
+    ) -> dict[Edge, Edge]:
+        record = self.record(model)
+        given = {"u": Tensor.numbers(g, record.u_default), **groups}
+        replacement: dict[Edge, Edge] = {}
+        for name in inputs:
+            size = program.sizes[name]
+            if name not in given or given[name].size != size:
+                shape = given[name].shape if name in given else "nothing"
+                raise ShapeError(str(Problem(f"model '{model}': {name} of {program.functions[0].name}", f"{shape}",
+                                             f"({size})", "give it that shape")))  # fmt: skip
+            replacement |= {program.graph.input(name, i): edge for i, edge in enumerate(given[name].flat)}
+        own = {program.graph.input("par", i): g.input(parameter_group(model), i) for i in range(program.sizes["par"])}
+        return replacement | own

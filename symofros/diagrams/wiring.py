@@ -1,0 +1,256 @@
+"""Diagram -> Wired: every name found, every port fed, every shape known, every unit fitting; or all faults at once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from symofros.diagrams.block import Block, Port, Ports, Shape
+from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.surroundings import Models
+from symofros.diagrams.units import agree, parse
+from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.runtime.kernel import Array
+from symofros.runtime.record import ModelRecord
+
+Source = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Wired:
+    """A diagram that holds together.
+
+    Attributes:
+        name: Its name.
+        blocks: Name -> block.
+        ports: Name -> its ports, all shapes known.
+        sources: (block, input) -> (block, output); inputs on their defaults are left out.
+        models: What blocks refer to.
+        outlets: Name -> (block, output), of included parts and of the diagram's own.
+    """
+
+    name: str
+    blocks: Mapping[str, Block]
+    ports: Mapping[str, Ports]
+    sources: Mapping[Source, Source]
+    models: Models
+    outlets: Mapping[str, Source]
+
+    def output(self, text: str) -> Source:
+        """The (block, output) of "block.port", of "block" where it has one output, or of an outlet.
+
+        Raises:
+            DescriptionError: There is none.
+        """
+        return _output(self.name, text, self.blocks, self.ports, self.outlets)
+
+    def shape(self, source: Source) -> Shape:
+        """Of an output."""
+        return next(port.shape or () for port in self.ports[source[0]].outputs if port.name == source[1])
+
+    def unit(self, source: Source) -> str:
+        """Of an output."""
+        return next(port.unit for port in self.ports[source[0]].outputs if port.name == source[1])
+
+
+class _Surroundings:
+    """What a block is told while its ports are found."""
+
+    def __init__(self, models: Models, inputs: Mapping[str, Shape]) -> None:
+        self._models, self._inputs = models, inputs
+
+    @property
+    def inputs(self) -> Mapping[str, Shape]:
+        return self._inputs
+
+    def model(self, name: str) -> ModelRecord:
+        return self._models.record(name)
+
+    def start(self, name: str) -> tuple[Array, Array]:
+        return self._models.start(name)
+
+    def frame(self, model: str, frame: str) -> str:
+        return self._models.frame(model, frame)
+
+    def rubbing(self, model: str) -> list[bool]:
+        return self._models.rubbing(model)
+
+
+def surroundings(wired: Wired, block: str) -> _Surroundings:
+    """What a block of a wired diagram knows."""
+    shapes = {port.name: port.shape or () for port in wired.ports[block].inputs}
+    return _Surroundings(wired.models, shapes)
+
+
+def wire(diagram: Diagram) -> Wired:
+    """Check a diagram.
+
+    Raises:
+        DescriptionError: With every fault found.
+    """
+    models = Models(diagram.name, diagram.models)
+    problems: list[Problem] = []
+    for block in diagram.blocks.values():
+        problems += _sampling(diagram.name, block)
+    ports = _first_ports(diagram, models, problems)
+    if problems:
+        raise DescriptionError(problems)
+    outlets: dict[str, Source] = {}
+    for name, text in diagram.outlets.items():
+        outlets[name] = _collected(problems, diagram.name, text, diagram.blocks, ports, outlets) or ("", "")
+    sources = _sources(diagram, ports, outlets, problems)
+    if problems:
+        raise DescriptionError(problems)
+    ports = _settle(diagram, models, ports, sources, problems)
+    _check(diagram, ports, sources, problems)
+    if problems:
+        raise DescriptionError(problems)
+    return Wired(diagram.name, dict(diagram.blocks), ports, sources, models, outlets)
+
+
+def _sampling(name: str, block: Block) -> list[Problem]:
+    period, offset = block.period, block.offset
+    good = period is None or (math.isfinite(period) and period > 0.0)
+    if not good or not 0.0 <= offset < (period or 1e-300):
+        return [Problem(f"diagram '{name}': block '{block.name}' has no sample time",
+                        f"period {period}, offset {offset}",
+                        "a period above zero, an offset from zero to less than the period",
+                        "leave both out for a continuous block")]  # fmt: skip
+    return []
+
+
+def _first_ports(diagram: Diagram, models: Models, problems: list[Problem]) -> dict[str, Ports]:
+    found = {}
+    for name, block in diagram.blocks.items():
+        try:
+            found[name] = block.ports(_Surroundings(models, {}))
+        except DescriptionError as error:
+            problems += error.problems
+    return found
+
+
+def _sources(
+    diagram: Diagram, ports: Mapping[str, Ports], outlets: Mapping[str, Source], problems: list[Problem]
+) -> dict[Source, Source]:
+    sources = {}
+    for (block, port), text in diagram.wires.items():
+        if block not in diagram.blocks:
+            problems.append(Problem(f"diagram '{diagram.name}': no block '{block}'", f"'{block}.{port}' is fed",
+                                    "wires end at blocks of the diagram",
+                                    did_you_mean(block, diagram.blocks) or "add the block"))  # fmt: skip
+            continue
+        known = [item.name for item in ports[block].inputs]
+        if port not in known:
+            problems.append(Problem(f"diagram '{diagram.name}': block '{block}' has no input '{port}'", f"'{port}'",
+                                    f"inputs: {', '.join(known) or 'none'}",
+                                    did_you_mean(port, known) or "feed one of them"))  # fmt: skip
+            continue
+        source = _collected(problems, diagram.name, text, diagram.blocks, ports, outlets)
+        if source is not None:
+            sources[block, port] = source
+    for block, found in ports.items():
+        for item in found.inputs:
+            if item.default is None and (block, item.name) not in diagram.wires:
+                problems.append(Problem(
+                    f"diagram '{diagram.name}': input '{block}.{item.name}' is not connected", "nothing",
+                    "an input without a default has a source", f"connect a signal{_in_unit(item)} to it",
+                ))  # fmt: skip
+    return sources
+
+
+def _in_unit(port: Port) -> str:
+    shape = f" of shape {port.shape}" if port.shape is not None else ""
+    return f"{shape} in {port.unit}" if port.unit else shape
+
+
+def _collected(problems: list[Problem], *arguments: object) -> Source | None:
+    try:
+        return _output(*arguments)  # type: ignore[arg-type]
+    except DescriptionError as error:
+        problems += error.problems
+        return None
+
+
+def _output(
+    name: str, text: str, blocks: Mapping[str, Block], ports: Mapping[str, Ports], outlets: Mapping[str, Source]
+) -> Source:
+    if text in outlets:
+        return outlets[text]
+    block, _, port = text.rpartition(".") if "." in text else (text, "", "")
+    if block not in blocks:
+        known = [*blocks, *outlets]
+        raise DescriptionError(Problem(f"diagram '{name}': no block '{block:.80}'", f"source '{text:.80}'",
+                                       "a source is written block.port",
+                                       did_you_mean(block, known) or "add the block"))  # fmt: skip
+    there = [item.name for item in ports[block].outputs]
+    if not port and len(there) == 1:
+        return block, there[0]
+    if port not in there:
+        raise DescriptionError(Problem(
+            f"diagram '{name}': block '{block}' has no output '{port}'", f"source '{text}'",
+            f"outputs: {', '.join(there) or 'none'}", did_you_mean(port, there) or "name one of them",
+        ))  # fmt: skip
+    return block, port
+
+
+def _settle(
+    diagram: Diagram, models: Models, ports: dict[str, Ports], sources: Mapping[Source, Source],
+    problems: list[Problem],
+) -> dict[str, Ports]:  # fmt: skip
+    """Carry shapes along the wires until nothing changes."""
+    for _ in range(len(ports) + 1):
+        shapes = {(block, item.name): item.shape for block, found in ports.items() for item in found.outputs}
+        now = {}
+        for name, block in diagram.blocks.items():
+            inputs = {}
+            for item in ports[name].inputs:
+                source = sources.get((name, item.name))
+                shape = shapes.get(source) if source else np.shape(item.default) or item.shape
+                if shape is not None:
+                    inputs[item.name] = shape
+            try:
+                found = block.ports(_Surroundings(models, inputs))
+            except DescriptionError as error:
+                problems += error.problems
+                return ports
+            arrived = [replace(item, shape=inputs.get(item.name)) if item.shape is None else item
+                       for item in found.inputs]  # fmt: skip
+            now[name] = Ports(tuple(arrived), found.outputs)
+        if now == ports:
+            break
+        ports = now
+    return ports
+
+
+def _check(
+    diagram: Diagram, ports: Mapping[str, Ports], sources: Mapping[Source, Source], problems: list[Problem]
+) -> None:
+    outputs = {(block, item.name): item for block, found in ports.items() for item in found.outputs}
+    for block, found in ports.items():
+        for item in (*found.inputs, *found.outputs):
+            try:
+                parse(item.unit)
+            except DescriptionError as error:
+                one = error.problems[0]
+                problems.append(replace(one, what=f"diagram '{diagram.name}': '{block}.{item.name}': {one.what}"))
+        unknown = [item.name for item in found.outputs if item.shape is None]
+        if unknown:
+            problems.append(Problem(
+                f"diagram '{diagram.name}': the shape of '{block}.{unknown[0]}' is unknown", "a loop of open shapes",
+                "the shape of a signal follows from one of its sources", "give a block of the loop a first value",
+            ))  # fmt: skip
+    if problems:
+        return
+    for (block, port), source in sources.items():
+        item = next(item for item in ports[block].inputs if item.name == port)
+        given = outputs[source]
+        wire = f"diagram '{diagram.name}': {'.'.join(source)} -> {block}.{port}"
+        if item.shape != given.shape:
+            problems.append(Problem(f"{wire}: shapes differ", f"{given.shape}", f"the input takes {item.shape}",
+                                    "pick or join entries in a block between"))  # fmt: skip
+        if not agree(given.unit, item.unit):
+            problems.append(Problem(f"{wire}: units differ", f"{given.unit}", f"the input takes {item.unit}",
+                                    "convert by a gain with units"))  # fmt: skip
