@@ -122,7 +122,7 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
     toolchain = None if options.backend == "interpreter" else find_toolchain(options.compiler)
     if toolchain is None and options.backend != "interpreter":
         raise CompileError("a compiled diagram needs a C compiler\n"
-                           "  remedy: install gcc or clang, or `pip install ziglang`, or run it interpreted")  # fmt: skip
+                           "  remedy: install gcc or clang, or `pip install ziglang`, or interpret it")  # fmt: skip
     write = fuser(resolved)
     parts, texts = [], []
     for part in resolved.layout.parts:
