@@ -99,6 +99,8 @@ class Loop:
         self._join(layout, parts)
         d.looks_back = int(looks_back)
         self._sample(layout)
+        d.n_engaging, d.engaging = len(layout.engaging), self._own("int32_t[]", layout.engaging)
+        d.engaged = self._numbers(u0[layout.engaging])[0]
         self._plan(schedule, stages, par)
         d.n_crossings, d.crossings = len(crossings), self._stages(crossings, par)
         self._make_room()

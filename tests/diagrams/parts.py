@@ -41,6 +41,19 @@ class Wave(Block):
 
 
 @dataclass(frozen=True, kw_only=True)
+class After(Block):
+    """1 from a time on, one entry."""
+
+    time: float
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((), (Port("y", (1,)),))
+
+    def compute(self, at: At) -> Values:
+        return {"y": (at.t - self.time).apply("step").reshape(1)}
+
+
+@dataclass(frozen=True, kw_only=True)
 class Lag(Block):
     """A first-order lag: rate s' = (x - s) / tau."""
 

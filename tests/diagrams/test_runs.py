@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ import pytest
 import symofros as sf
 from symofros import blocks
 from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
-from tests.diagrams.parts import Ball, Counter, Hold, Lag, Number, Spoken, Twice, Wave, arm, table
+from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Twice, Wave, arm, table
 
 MODELS = Path(__file__).parents[2] / "reference_models"
 PENDULUM = sf.load(MODELS / "rigid" / "double_pendulum.yaml")
@@ -300,3 +300,43 @@ def test_two_inputs_of_a_block_are_told_apart() -> None:
     diagram.add(Twice(name="alone"), a="two")
     run = sf.Simulation(diagram).run(0.1, record=0.05)
     assert run["sum"][-1] == 3.0 and run["alone"][-1] == 2.0
+
+
+def test_a_constraint_that_engages_is_a_plastic_impact() -> None:
+    """Open, the loop is the tree; as it closes, the energy lost is that of the speeds lost: a projection by M."""
+    system = sf.load(MODELS / "closed" / "four_bar.yaml")
+    model, tree = sf.compile(system), sf.compile(replace(system, constraints=()))
+    rng = np.random.default_rng(3)
+    closed = sf.assemble(model, model.neutral() + np.array([0.9, 0.4, -0.5]), rng.normal(size=3))
+    stated = dict(zip(model.names.q, closed.q, strict=True))
+    stated |= {f"d{name}": x for name, x in zip(model.names.v, closed.v, strict=True)}
+    when = 0.004
+    diagram = sf.Diagram("grasp")
+    diagram.add_model("plant", system, start=stated)
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged=True), engaged="after")
+    diagram.add(After(name="after", time=when, period=0.001))
+    run = agree(diagram, 0.05, ["plant.q", "plant.v"], 1e4, dt=1e-3)
+    simulation = sf.Simulation(diagram)
+    run = simulation.run(0.05, dt=1e-3, record=1e-3)
+    free = sf.simulate(tree, closed.q, closed.v, 0.003, dt=1e-3)
+    assert np.abs(run["plant.q"][3] - free.q[-1]).max() < 1e-13
+    open_gap, closed_gap = (np.abs(model.constraint(run["plant.q"][k])).max() for k in (3, 5))
+    assert open_gap > 1e-5 and closed_gap < 1e-11
+    q, v = run.motion("plant")
+    before = sf.simulate(tree, q[3], v[3], 0.001, dt=1e-3)
+    lost = v[4] - before.v[-1]
+    M = model.mass_matrix(q[4])
+    loss = 0.5 * before.v[-1] @ M @ before.v[-1] - 0.5 * v[4] @ M @ v[4]
+    assert loss > 0.0
+    assert loss == pytest.approx(0.5 * lost @ M @ lost, rel=1e-3)
+    assert np.abs(model.constraint_rate(q[4], v[4])).max() < 1e-12
+
+
+def test_constraints_engage_at_samples_only() -> None:
+    system = sf.load(MODELS / "closed" / "four_bar.yaml")
+    diagram = sf.Diagram("grasp")
+    diagram.add_model("plant", system)
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged=True), engaged="after")
+    diagram.add(After(name="after", time=0.1))
+    with pytest.raises(sf.DescriptionError, match="put a hold with a period"):
+        sf.Simulation(diagram)
