@@ -150,6 +150,7 @@ static int32_t sym_crossing(sym_diagram *d, sym_run *stopped) {
     sym_diagram_record(d);
     d->found_t[d->n_found] = stopped->t;
     d->found_which[d->n_found++] = stopped->stopped_by;
+    stopped->n_found = 0;
     if (d->looks_back && (status = sym_look_back(d)) != 0) return status;
     status = sym_stage_all(d, &d->crossings[stopped->stopped_by], 1);
     if (status != 0) return status;
