@@ -1,0 +1,119 @@
+"""What the fields of blocks must be; what is wrong is said in four parts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.runtime.kernel import Array
+
+
+def refuse(name: str, what: str, found: object, rule: str, remedy: str) -> DescriptionError:
+    """An error about a block; texts of any length are cut."""
+    return DescriptionError(Problem(f"block '{name}': {what}", f"{found!s:.120}", rule, remedy))
+
+
+def numbers(name: str, field: str, values: Any, shape: Sequence[int | None] | None = None) -> Array:
+    """The finite numbers of a field.
+
+    Args:
+        name: Of the block.
+        field: Of the block.
+        values: What was given.
+        shape: What it must have; None for any length, or for any shape.
+
+    Raises:
+        DescriptionError: They are none, or too few or too many.
+    """
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise refuse(name, f"{field} is not numbers", repr(values), "an array of finite numbers",
+                     "write numbers, rows of equal length") from None  # fmt: skip
+    if not np.all(np.isfinite(array)):
+        raise refuse(name, f"{field} is not finite", array, "an array of finite numbers", "replace inf and nan")
+    if shape is not None:
+        fits = array.ndim == len(shape) and all(n in (None, m) for n, m in zip(shape, array.shape, strict=True))
+        if not fits:
+            stated = ", ".join("any" if n is None else str(n) for n in shape)
+            raise refuse(name, f"{field} has the wrong shape", array.shape, f"shape ({stated})", "give it that shape")
+    return array
+
+
+def number(
+    name: str, field: str, value: Any, low: float = -math.inf, high: float = math.inf, exclusive: bool = False
+) -> float:
+    """A number of a field within bounds.
+
+    Args:
+        name: Of the block.
+        field: Of the block.
+        value: What was given.
+        low: Lower bound.
+        high: Upper bound.
+        exclusive: Whether the lower bound itself is refused.
+
+    Raises:
+        DescriptionError: It is none, or out of bounds.
+    """
+    found = float(numbers(name, field, value, ()))
+    if not low <= found <= high or (exclusive and found == low):
+        above = "" if low == -math.inf else f"above {low:g}" if exclusive else f"at least {low:g}"
+        below = "" if high == math.inf else f"at most {high:g}"
+        rule = " and ".join(filter(None, (above, below)))
+        raise refuse(name, f"{field} is out of bounds", found, f"{field} is {rule}", "choose a number within")
+    return found
+
+
+def whole(name: str, field: str, value: Any, low: int, high: int) -> int:
+    """A whole number of a field within bounds.
+
+    Raises:
+        DescriptionError: It is none, or out of bounds.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
+        raise refuse(name, f"{field} is out of bounds", repr(value), f"a whole number from {low} to {high}",
+                     "choose one")  # fmt: skip
+    return int(value)
+
+
+def increasing(name: str, field: str, values: Any, least: int = 2) -> Array:
+    """Increasing numbers (n) of a field.
+
+    Raises:
+        DescriptionError: They are none, too few, or don't increase.
+    """
+    array = numbers(name, field, values, (None,))
+    if len(array) < least or not np.all(np.diff(array) > 0.0):
+        raise refuse(name, f"{field} does not increase", array, f"{least} numbers or more, each above the one before",
+                     "sort them and drop what is repeated")  # fmt: skip
+    return array
+
+
+def choice(name: str, field: str, value: Any, known: Iterable[str]) -> str:
+    """One of some words.
+
+    Raises:
+        DescriptionError: It is another.
+    """
+    words = list(known)
+    if value not in words:
+        raise refuse(name, f"unknown {field}", repr(value), f"{field} is one of {', '.join(words)}",
+                     did_you_mean(str(value), words))  # fmt: skip
+    return str(value)
+
+
+def known_name(name: str, what: str, value: object, known: Collection[str]) -> str:
+    """A name that exists.
+
+    Raises:
+        DescriptionError: It does not.
+    """
+    if value not in known:
+        raise refuse(name, f"no {what} '{value!s:.60}'", repr(value), f"known: {', '.join(list(known)[:12]) or 'none'}",
+                     did_you_mean(str(value), known) or "see model.names")  # fmt: skip
+    return str(value)

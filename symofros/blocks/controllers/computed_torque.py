@@ -1,0 +1,57 @@
+"""Computed torque: a model's inverse dynamics closes the loop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from symofros.blocks.checks import numbers
+from symofros.blocks.manifold import difference
+from symofros.blocks.quantities import joint_units
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+
+
+@dataclass(frozen=True, kw_only=True)
+class ComputedTorque(Block):
+    """tau = M(q) (a_d + kd (v_d - v) + kp (q_d - q)) + h(q, v) - Q(q, v, 0): errors decay as e'' + kd e' + kp e = 0.
+
+    The difference of configurations is along their manifold: of ball and free joints, a rotation vector in body axes.
+    Efforts of passive joints are those that the same motion would take of them; pick the others.
+
+    Attributes:
+        model: The model, a rigid one say.
+        kp: One number or one a speed (nv) [1/s^2].
+        kd: Likewise [1/s].
+    """
+
+    model: str
+    kp: Any
+    kd: Any
+    tunable: ClassVar[tuple[str, ...]] = ("kp", "kd")
+
+    def __post_init__(self) -> None:
+        """Gains are numbers."""
+        numbers(self.name, "kp", self.kp)
+        numbers(self.name, "kd", self.kd)
+
+    def ports(self, known: Known) -> Ports:
+        """Desired q, v, a and actual q, v in; tau (nv) and the error (nv) out."""
+        record = known.model(self.model)
+        q, v, a, effort = joint_units(record)
+        nq, nv = len(record.q_names), len(record.v_names)
+        for field in ("kp", "kd"):
+            if np.ndim(getattr(self, field)):
+                numbers(self.name, field, getattr(self, field), (nv,))
+        inputs = (Port("q_desired", (nq,), q), Port("v_desired", (nv,), v, 0.0), Port("a_desired", (nv,), a, 0.0),
+                  Port("q", (nq,), q), Port("v", (nv,), v))  # fmt: skip
+        return Ports(inputs, (Port("tau", (nv,), effort), Port("error", (nv,), q)))
+
+    def compute(self, at: At) -> Values:
+        """Inverse dynamics at the acceleration that the errors ask for."""
+        q, v = at.inputs["q"], at.inputs["v"]
+        error = difference(at.known.model(self.model), q, at.inputs["q_desired"])
+        rate = at.inputs["v_desired"] - v
+        a = at.inputs["a_desired"] + at.parameters["kp"] * error + at.parameters["kd"] * rate
+        return {"tau": at.call(self.model, "inverse_dynamics", q=q, v=v, a=a, t=at.t)["tau"], "error": error}

@@ -1,0 +1,80 @@
+"""Between samples and continuous time: delays and holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from symofros.blocks.checks import numbers, refuse
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnitDelay(Block):
+    """y[k] = u[k - 1], y[0] = start; it breaks algebraic loops.
+
+    Attributes:
+        start: First output; a number for all entries, or all of them, which also tells the shape inside loops.
+        unit: Of both.
+    """
+
+    start: Any = 0.0
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        """A start, and a sample time."""
+        numbers(self.name, "start", self.start)
+        needs_period(self)
+
+    def ports(self, known: Known) -> Ports:
+        """Input u, output y."""
+        shape = np.shape(self.start) or known.inputs.get("u")
+        return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
+
+    def memory(self, known: Known) -> dict[str, Any]:
+        """The input of the sample before."""
+        return {"before": np.broadcast_to(np.asarray(self.start, dtype=np.float64), known.inputs["u"])}
+
+    def compute(self, at: At) -> Values:
+        """What was kept."""
+        return {"y": at.memory["before"]}
+
+    def update(self, at: At) -> Values:
+        """Keep the input."""
+        return {"before": at.inputs["u"]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hold(Block):
+    """The input at the last sample: y(t) = u(t_k) for t_k <= t < t_k+1.
+
+    Attributes:
+        unit: Of both.
+    """
+
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        """It has a sample time."""
+        needs_period(self)
+
+    def ports(self, known: Known) -> Ports:
+        """Input u, output y."""
+        shape = known.inputs.get("u")
+        return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
+
+    def compute(self, at: At) -> Values:
+        """The input."""
+        return {"y": at.inputs["u"]}
+
+
+def needs_period(block: Block) -> None:
+    """Refuse a block that works at samples and has none.
+
+    Raises:
+        DescriptionError: Its period is None.
+    """
+    if block.period is None:
+        raise refuse(block.name, "no sample time", "period None", "this block works at samples", "give a period [s]")

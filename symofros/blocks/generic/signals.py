@@ -1,0 +1,249 @@
+"""Signals put together and taken apart: constants, gains, sums, products, entries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from symofros.blocks.checks import known_name, numbers, refuse, whole
+from symofros.blocks.quantities import actuated_names, common_shape
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.tensor import joined
+from symofros.diagrams.units import parse
+
+# Inputs that a block with a free number of them may have.
+MOST_INPUTS = 64
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constant(Block):
+    """Always the same numbers: y = value.
+
+    Attributes:
+        value: Of any shape.
+        unit: Theirs.
+    """
+
+    value: Any
+    unit: str = ""
+    tunable: ClassVar[tuple[str, ...]] = ("value",)
+
+    def __post_init__(self) -> None:
+        """Values are finite numbers."""
+        numbers(self.name, "value", self.value)
+
+    def ports(self, known: Known) -> Ports:
+        """Output y."""
+        return Ports((), (Port("y", np.shape(self.value), self.unit),))
+
+    def compute(self, at: At) -> Values:
+        """The value, a run-time parameter."""
+        return {"y": at.parameters["value"]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gain(Block):
+    """y = gain u, where a matrix multiplies a vector and anything else goes entry by entry.
+
+    Where the two units measure the same quantity, as deg and rad do, the conversion comes on top of the gain; where
+    they don't, the gain is in units of the output per unit of the input.
+
+    Attributes:
+        gain: A number, one a component (n), or a matrix (m, n).
+        unit_in: Of the input; "" takes any.
+        unit_out: Of the output.
+    """
+
+    gain: Any = 1.0
+    unit_in: str = ""
+    unit_out: str = ""
+    tunable: ClassVar[tuple[str, ...]] = ("gain",)
+
+    def __post_init__(self) -> None:
+        """Gains are numbers, vectors or matrices."""
+        if numbers(self.name, "gain", self.gain).ndim > 2:
+            raise refuse(self.name, "gain has the wrong shape", np.shape(self.gain), "a number, (n) or (m, n)",
+                         "give a matrix at most")  # fmt: skip
+
+    @property
+    def conversion(self) -> float:
+        """What the units contribute."""
+        if not self.unit_in or not self.unit_out:
+            return 1.0
+        a, b = parse(self.unit_in), parse(self.unit_out)
+        return a.scale / b.scale if a.powers == b.powers else 1.0
+
+    def ports(self, known: Known) -> Ports:
+        """Input u, output y."""
+        gain, into = np.shape(self.gain), known.inputs.get("u")
+        if len(gain) == 2:
+            into = (gain[1],)
+        out = (gain[0],) if len(gain) == 2 else into
+        if len(gain) == 1:
+            into, out = (() if into == () else gain), gain
+        return Ports((Port("u", into, self.unit_in),), (Port("y", out, self.unit_out),))
+
+    def compute(self, at: At) -> Values:
+        """The product."""
+        gain, u = at.parameters["gain"], at.inputs["u"]
+        product = gain @ u if len(gain.shape) == 2 else gain * u
+        return {"y": product * self.conversion}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sum(Block):
+    """y = +-u1 +-u2 ..., entry by entry.
+
+    Attributes:
+        signs: One sign an input, such as "+-".
+        unit: Of all.
+    """
+
+    signs: str = "++"
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        """Signs are plus and minus."""
+        if not self.signs or set(self.signs) - {"+", "-"} or len(self.signs) > MOST_INPUTS:
+            raise refuse(self.name, "signs", repr(self.signs), f"1 to {MOST_INPUTS} signs + or -, one an input",
+                         'write for example "+-"')  # fmt: skip
+
+    def ports(self, known: Known) -> Ports:
+        """Inputs u1, u2, ..., output y, all of one shape."""
+        names = [f"u{i + 1}" for i in range(len(self.signs))]
+        shape = common_shape(known, names)
+        return Ports(tuple(Port(name, shape, self.unit) for name in names), (Port("y", shape, self.unit),))
+
+    def compute(self, at: At) -> Values:
+        """The sum, left to right."""
+        total = at.numbers(np.zeros(at.inputs["u1"].shape))
+        for i, sign in enumerate(self.signs):
+            value = at.inputs[f"u{i + 1}"]
+            total = total + value if sign == "+" else total - value
+        return {"y": total}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Product(Block):
+    """y = u1 u2 / u3 ..., entry by entry.
+
+    Attributes:
+        operations: "*" or "/" for each input.
+    """
+
+    operations: str = "**"
+
+    def __post_init__(self) -> None:
+        """Operations multiply or divide."""
+        if not self.operations or set(self.operations) - {"*", "/"} or len(self.operations) > MOST_INPUTS:
+            raise refuse(self.name, "operations", repr(self.operations),
+                         f"1 to {MOST_INPUTS} operations * or /, one an input", 'write for example "*/"')  # fmt: skip
+
+    def ports(self, known: Known) -> Ports:
+        """Inputs u1, u2, ..., output y, all of one shape."""
+        names = [f"u{i + 1}" for i in range(len(self.operations))]
+        shape = common_shape(known, names)
+        return Ports(tuple(Port(name, shape) for name in names), (Port("y", shape),))
+
+    def compute(self, at: At) -> Values:
+        """The product, left to right."""
+        total = at.numbers(np.ones(at.inputs["u1"].shape))
+        for i, operation in enumerate(self.operations):
+            value = at.inputs[f"u{i + 1}"]
+            total = total * value if operation == "*" else total / value
+        return {"y": total}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pick(Block):
+    """Some entries of a vector, by number or by the names of a model.
+
+    Attributes:
+        entries: Numbers from 0 on, or names; "actuated" stands for a model's actuated joints, in the order of its
+            inputs.
+        model: Whose names they are; "" where entries are numbers.
+        of: Which vector of the model's the input is: q, v (also a, tau) or u.
+        unit: Of the entries.
+    """
+
+    entries: Any
+    model: str = ""
+    of: str = "v"
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        """Entries are numbers, or names of a model."""
+        entries = [self.entries] if isinstance(self.entries, str) else self.entries
+        named = not isinstance(entries, (list, tuple)) or any(isinstance(item, str) for item in entries)
+        if not isinstance(entries, (list, tuple)) or not entries or (named and not self.model):
+            raise refuse(self.name, "entries", repr(self.entries),
+                         "numbers from 0 on, or names or 'actuated' with the model whose they are",
+                         "name the model, or give numbers")  # fmt: skip
+        if self.of not in ("q", "v", "u"):
+            raise refuse(self.name, "unknown vector", repr(self.of), "of is q, v or u", "name one of them")
+
+    def _indices(self, known: Known) -> tuple[list[int], int | None]:
+        """Which entries, of how many."""
+        if not self.model:
+            return [whole(self.name, "an entry", item, 0, 10**6) for item in self.entries], None
+        record = known.model(self.model)
+        names = {"q": record.q_names, "v": record.v_names, "u": record.u_names}[self.of]
+        if self.entries == "actuated":
+            wanted: Any = actuated_names(record)
+            if not wanted:
+                raise refuse(self.name, "no actuated joints", f"inputs {', '.join(record.u_names) or 'none'}",
+                             f"joints of model '{self.model}' that are actuated have inputs of their names",
+                             "name the entries")  # fmt: skip
+        else:
+            wanted = [self.entries] if isinstance(self.entries, str) else self.entries
+        found = []
+        for item in wanted:
+            named = isinstance(item, str)
+            found.append(names.index(known_name(self.name, f"entry of {self.of}", item, names)) if named
+                         else whole(self.name, "an entry", item, 0, len(names) - 1))  # fmt: skip
+        return found, len(names)
+
+    def ports(self, known: Known) -> Ports:
+        """Input u, a vector; output y (number of entries)."""
+        indices, size = self._indices(known)
+        into = (size,) if size is not None else known.inputs.get("u")
+        if into is not None and (len(into) != 1 or max(indices) >= into[0]):
+            raise refuse(self.name, "no such entry", f"entry {max(indices)} of a signal {into}",
+                         "entries count from 0 along a vector", "choose smaller numbers")  # fmt: skip
+        return Ports((Port("u", into, self.unit),), (Port("y", (len(indices),), self.unit),))
+
+    def compute(self, at: At) -> Values:
+        """The entries."""
+        return {"y": at.inputs["u"][self._indices(at.known)[0]]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Join(Block):
+    """Scalars and vectors, one after the other, as one vector.
+
+    Attributes:
+        count: Number of inputs.
+        unit: Of all.
+    """
+
+    count: int = 2
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        """A number of inputs."""
+        whole(self.name, "count", self.count, 1, MOST_INPUTS)
+
+    def ports(self, known: Known) -> Ports:
+        """Inputs u1, u2, ..., output y."""
+        names = [f"u{i + 1}" for i in range(self.count)]
+        shapes = [known.inputs.get(name) for name in names]
+        sizes = [int(np.prod(shape)) for shape in shapes if shape is not None]
+        out = (sum(sizes),) if len(sizes) == self.count else None
+        inputs = (Port(name, shape, self.unit) for name, shape in zip(names, shapes, strict=True))
+        return Ports(tuple(inputs), (Port("y", out, self.unit),))
+
+    def compute(self, at: At) -> Values:
+        """All entries, row by row."""
+        return {"y": joined([at.inputs[f"u{i + 1}"] for i in range(self.count)])}

@@ -1,0 +1,133 @@
+"""Inverse kinematics: the joints' motion that a frame's takes (sections 6.1 and 8 of the paper)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from symofros.blocks.checks import number, whole
+from symofros.blocks.kinematics.tasks import Chosen, Task, damped, resolved, rows_of
+from symofros.blocks.quantities import joint_units
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.tensor import Tensor
+
+
+@dataclass(frozen=True, kw_only=True)
+class InverseKinematics(Block):
+    """Joint motion q, v, a of a frame's desired motion, by resolved rates with damped least squares.
+
+    Sampled, each sample starts from the q of the one before and takes Newton steps q += J^+ e, so that nothing drifts;
+    then v = J^+ v_d and a = J^+ (a_d - J' v). Continuous, q is a state with q' = v = J^+ (v_d + K e), and
+    a = J^+ (a_d + K (v_d - J v) - J' v). J^+ is exact away from singular postures and damped near them. Closures of
+    the model are rows of the task with nothing desired. Joints that don't follow stay where the model has them first,
+    at rest: passive and elastic ones of a control model, and free bases.
+
+    Attributes:
+        model: The model.
+        frame: Its frame.
+        rows: What to follow: some of x, y, z (world axes) and rx, ry, rz (rotation about them), in this order. One
+            rotation is followed by an angle, several by a matrix R.
+        joints: Names of coordinates that move; none: the actuated ones, or, of a model with closures or without named
+            actuators, all that have one coordinate.
+        steps: Newton steps at a sample.
+        gain: K, of the continuous form [1/s].
+        damping: Of the rates near singular postures [m/rad, or 1].
+        near: Smallest pivot of J J^T, as a root, below which a posture is nearly singular [m/rad, or 1].
+        stride: Most that a joint moves in a Newton step, in proportion with the others [rad or m].
+    """
+
+    model: str
+    frame: str
+    rows: Any = ("x", "y", "z")
+    joints: Any = ()
+    steps: int = 3
+    gain: float = 20.0
+    damping: float = 0.02
+    near: float = 0.02
+    stride: float = 0.2
+
+    def __post_init__(self) -> None:
+        """Known rows, and numbers within bounds."""
+        rows_of(self.name, self.rows)
+        whole(self.name, "steps", self.steps, 1, 20)
+        number(self.name, "gain", self.gain, 0.0)
+        for field in ("damping", "near", "stride"):
+            number(self.name, field, getattr(self, field), 0.0, exclusive=True)
+
+    def _task(self, known: Known) -> Task:
+        chosen = Chosen.of(known, self.name, self.model, self.joints)
+        return Task(self.model, known.frame(self.model, self.frame), rows_of(self.name, self.rows), chosen)
+
+    def ports(self, known: Known) -> Ports:
+        """Desired p, angle or R as the rows ask, v and a of the rows; out q (nq), v, a (nv), error of the rows."""
+        task, record = self._task(known), known.model(self.model)
+        linear, turns, m = sum(row < 3 for row in task.rows), len(task.turns), len(task.rows)
+        inputs = [Port("p", (linear,), "m")] if linear else []
+        inputs += [Port("angle", (), "rad")] if turns == 1 else [Port("R", (3, 3))] if turns else []
+        v, a = ("m/s", "m/s^2") if not turns else ("", "")
+        inputs += [Port("v", (m,), v, 0.0), Port("a", (m,), a, 0.0)]
+        units, nv = joint_units(record), len(record.v_names)
+        return Ports(tuple(inputs), (Port("q", (len(record.q_names),), units[0]), Port("v", (nv,), units[1]),
+                                     Port("a", (nv,), units[2]), Port("error", (m,))))  # fmt: skip
+
+    def _first(self, known: Known) -> dict[str, Any]:
+        chosen = self._task(known).chosen
+        return {"joints": chosen.start[list(chosen.q)]}
+
+    def states(self, known: Known) -> dict[str, Any]:
+        """Continuous: the joints."""
+        return self._first(known) if self.period is None else {}
+
+    def memory(self, known: Known) -> dict[str, Any]:
+        """Sampled: the joints at the sample before."""
+        return {} if self.period is None else self._first(known)
+
+    def _error(self, at: At, task: Task, joints: Tensor) -> Tensor:
+        orientation = at.inputs.get("R", at.inputs.get("angle"))
+        return task.error(at, task.chosen.configuration(at, joints), at.inputs.get("p"), orientation)
+
+    def _placed(self, at: At, task: Task) -> Tensor:
+        """Joints at which the frame is where it should be."""
+        if self.period is None:
+            return at.states["joints"]
+        joints = at.memory["joints"]
+        for _ in range(self.steps):
+            J = task.jacobian(at, task.chosen.configuration(at, joints))
+            step = resolved(damped(J, self.damping, self.near), self._error(at, task, joints))
+            largest = step[0].apply("abs")
+            for i in range(1, len(step)):
+                largest = largest.apply("max", step[i].apply("abs"))
+            joints = joints + step * (self.stride / largest.apply("max", self.stride))
+        return joints
+
+    def _moved(self, at: At, task: Task, joints: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Rates and accelerations of the joints, and what is missing."""
+        q = task.chosen.configuration(at, joints)
+        J = task.jacobian(at, q)
+        system, error = damped(J, self.damping, self.near), self._error(at, task, joints)
+        rates, accelerations = task.desired(at, at.inputs["v"]), task.desired(at, at.inputs["a"])
+        gain = self.gain if self.period is None else 0.0
+        v = resolved(system, rates + gain * error)
+        drift = task.drift(at, q, task.chosen.speeds_of(at, v))
+        a = resolved(system, accelerations + gain * (rates - J @ v) - drift)
+        return v, a, error[: len(task.rows)]
+
+    def compute(self, at: At) -> Values:
+        """Position first, then rates there."""
+        task = self._task(at.known)
+        joints = self._placed(at, task)
+        v, a, error = self._moved(at, task, joints)
+        chosen = task.chosen
+        whole_q = chosen.configuration(at, joints)
+        return {"q": whole_q, "v": chosen.speeds_of(at, v), "a": chosen.speeds_of(at, a), "error": error}
+
+    def rates(self, at: At) -> Values:
+        """Of the state."""
+        if self.period is not None:
+            return {}
+        task = self._task(at.known)
+        return {"joints": self._moved(at, task, at.states["joints"])[0]}
+
+    def update(self, at: At) -> Values:
+        """Where the next sample starts."""
+        return {} if self.period is None else {"joints": self._placed(at, self._task(at.known))}
