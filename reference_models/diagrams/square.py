@@ -51,5 +51,7 @@ def square(
                 q_desired="q_desired", v_desired="v_desired", q="q", v="v")  # fmt: skip
     diagram.add(blocks.Sum(name="effort", signs="+++", period=period), u1="pd.effort", u2="tau", u3="against")
     diagram.add(blocks.ForwardDynamics(name="plant", model="plant"), u="effort")
-    diagram.add(blocks.ForwardKinematics(name="tip", model="plant", frame="tool"), q="plant.q", v="plant.v", a="plant.a")
+    diagram.add(
+        blocks.ForwardKinematics(name="tip", model="plant", frame="tool"), q="plant.q", v="plant.v", a="plant.a"
+    )
     return diagram
