@@ -39,6 +39,7 @@ TOPICS: dict[str, Topic] = {
     "fuzz": Topic("Correctness", "Is every hostile file read, or refused in words?", ("fuzz",), correctness.fuzz),
     "campaign": Topic("Correctness", "And over a hundred thousand states?", CAMPAIGN, correctness.campaign, False),
     "accuracy": Topic("Accuracy", "How accurate are beams?", ("accuracy",), models.accuracy),
+    "diagrams": Topic("Diagrams", "How does the paper's robot trace its square?", ("diagrams",), models.accuracy),
     "stability": Topic("Stability", "Where do simulations fail?", ("stability",), models.stability),
     "timing": Topic("Speed", "How fast is the C against engines and other generators?", ("timing",), speed.timing),
     "simulation": Topic("Speed", "How fast are motions at equal accuracy?", ("simulation",), speed.simulation),

@@ -14,13 +14,13 @@ from validation.passes.measure import ALL
 Data = Mapping[str, Any]
 
 # Study -> which of its charts; those that answer the questions asked most.
-_TELLING = {"spinning": (0, 0), "convergence": (0, 0)}
+_TELLING = {"spinning": (0, 0), "convergence": (0, 0), "square": (0, 0), "two_arms": (0, 1)}
 # Of the methods in the scene of energies.
 _METHODS = ("semi_implicit_euler", "rk4", "dop853", "variational")
 
 
 def accuracy(data: Data) -> Card:
-    """Beams."""
+    """A report of questions: on beams, on diagrams."""
     studies = data["studies"]
     checks = [check for study in studies.values() for check in study["checks"]]
     verdict, _ = bounded(checks)

@@ -44,7 +44,8 @@ class Answers:
         missed = sum(not check.ok for check in checks)
         verdict = "all are within their bounds" if not missed else f"{missed} miss their bounds"
         failed = f"; {len(self.failures)} studies could not be done" if self.failures else ""
-        return f"{len(checks)} numbers of {len(self.studies)} studies: {verdict}{failed}."
+        studies = "study" if len(self.studies) == 1 else "studies"
+        return f"{len(checks)} numbers of {len(self.studies)} {studies}: {verdict}{failed}."
 
 
 def write_report(run: Answers, folder: Path) -> Path:
