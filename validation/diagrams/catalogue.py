@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from validation.diagrams import square, two_arms
+from validation.diagrams import square, threads, two_arms
 from validation.findings import Asked
 from validation.questions.topic import Topic
 
-STUDIES: dict[str, Asked] = {"square": square.study, "two_arms": two_arms.study}
+STUDIES: dict[str, Asked] = {"square": square.study, "two_arms": two_arms.study, "threads": threads.study}
 
 TOPIC = Topic(
     "diagrams", "Diagrams: a controlled flexible robot", "Run the paper's simulations from their block diagrams.",
