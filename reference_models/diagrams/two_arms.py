@@ -1,7 +1,8 @@
 """The paper's motivating task in a simplified form: one arm takes a stabilisation point, the other moves a payload.
 
 The left arm goes to the point, takes hold of it, which closes a loop while the simulation runs, and stiffens; then the
-right arm moves its payload. The controller knows a rigid, open mechanism: PD on the joints and inverse dynamics of that.
+right arm moves its payload. The controller knows a rigid, open mechanism: PD on the joints, and inverse dynamics of
+that.
 """
 
 from __future__ import annotations
