@@ -12,6 +12,7 @@ from pathlib import Path
 import symofros as sf
 from reference_models.closed import spatial
 from reference_models.closed.four_bars import n_four_bar
+from reference_models.closed.two_arms import two_arms
 from reference_models.flexible.arm import flexible_arm
 from reference_models.flexible.station import flexible_mss
 from reference_models.rigid.chain import chain
@@ -34,6 +35,7 @@ _BUILT: dict[str, Callable[[], sf.System]] = {
     "delta_rods": lambda: spatial.delta(rod_mass=0.08),
     "two_four_bars": lambda: n_four_bar(2),
     "grasp": spatial.grasp,
+    "two_arms": two_arms,
     "random_tree1": lambda: random_tree(1, 12),
     "random_tree4": lambda: random_tree(4, 12, ("revolute", "revolute", "prismatic", "fixed")),
     "random_tree70": lambda: random_tree(70, 12, (*KINDS, *SERIES_KINDS)),

@@ -13,8 +13,11 @@ from symofros.codegen.interpreted import InterpretedUnit
 from symofros.codegen.names import identifier
 from symofros.compiler import GENERATOR, compile_system, describe, generate, plan, requested
 from symofros.description.system import System
+from symofros.diagrams.compiled import resolve
+from symofros.diagrams.diagram import Diagram
 from symofros.errors import AssemblyError, ExportError, Problem, UnknownNameError, did_you_mean
 from symofros.exports.c_package import write_c_package
+from symofros.exports.diagram import write_diagram
 from symofros.exports.fmu import write_fmu2, write_fmu3
 from symofros.exports.folder import Exported as Exported
 from symofros.exports.folder import check_folder
@@ -54,7 +57,7 @@ _KINEMATICS = ("frame_pose", "frame_velocity", "frame_acceleration", "frame_jaco
 
 
 def export(
-    model: System | str | os.PathLike[str],
+    model: System | Diagram | str | os.PathLike[str],
     target: Target,
     folder: str | os.PathLike[str],
     *,
@@ -70,14 +73,15 @@ def export(
     """Write a model for another environment; all targets wrap the same C, whose interface is symofros_model.h.
 
     Args:
-        model: A system, or the path of its description.
+        model: A system, or the path of its description; or a diagram, which becomes a program of its own ("c").
         target: "c" (a package that builds by CMake, tests itself and simulates in real time), "mex" (Matlab, Octave),
             "sfunction" (Simulink), "fmu2", "fmu3" (FMI, Model Exchange and Co-Simulation), "urdf" or "mjcf" (what
             these can hold; the notes say what they can't).
         folder: A new one, an empty one, or one of an earlier export.
         name: Of files and functions; made of the system's name by default.
         frames: Frames to generate kinematics for; all by default.
-        outputs: Of those, frames whose positions are outputs of FMUs; the last one by default.
+        outputs: Of those, frames whose positions are outputs of FMUs; the last one by default. Of a diagram, the
+            signals that its program tells; by default what moves.
         start: Names of coordinates, and d + names of speeds -> first values; the neutral state at rest by default.
             A model with constraints starts at the nearest state that meets them.
         method: How it steps by itself, as in `simulate`; not CVODE.
@@ -95,6 +99,8 @@ def export(
         AssemblyError: No state near the start meets the constraints.
         CompileError: An FMU's binary does not compile.
     """
+    if isinstance(model, Diagram):
+        return _export_diagram(model, target, Path(folder), outputs, method, dt)
     system = model if isinstance(model, System) else load(model)
     if target not in TARGETS:
         raise UnknownNameError(str(Problem(f"export: no target '{target}'", str(target), ", ".join(TARGETS),
@@ -107,6 +113,20 @@ def export(
     stepping = _stepping(method, dt, rtol, atol)
     material = _material(system, name, frames, outputs, start or {}, stepping, target in _DIFFERENTIATED)
     return _COMPILED[target](material, place)
+
+
+def _export_diagram(
+    diagram: Diagram, target: str, folder: Path, outputs: Sequence[str] | None, method: str, dt: float
+) -> Exported:
+    """A diagram as a C program."""
+    if target != "c":
+        raise ExportError(str(Problem(f"diagram '{diagram.name}': no target '{target}'", target,
+                                      "a diagram becomes a C program", "use target 'c'")))  # fmt: skip
+    check_folder(folder)
+    resolved = resolve(diagram)
+    told = outputs or [f"{name}.{port.name}" for name, block in resolved.wired.blocks.items() if block.mechanism()
+                       for port in resolved.wired.ports[name].outputs if port.name in ("q", "v")]  # fmt: skip
+    return write_diagram(resolved, folder, told, method, dt, GENERATOR)
 
 
 def _stepping(method: str, dt: float, rtol: float, atol: float) -> Stepping:

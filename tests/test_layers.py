@@ -31,9 +31,14 @@ ALLOWED: dict[str, set[str]] = {
     "simulation": {"runtime", "errors", "atomic", "codegen"},
     # Packages carry the stepping loop and its methods; who compiles the model is the front door, exporting.py.
     # URDF and MJCF hold numbers, which topology's Numbers makes of formulas.
-    "exports": {"codegen", "runtime", "description", "topology", "expr", "simulation", "errors", "options", "atomic"},
+    # A diagram's package is made of its parts' C, written as the diagram is resolved.
+    "exports": {
+        "codegen", "runtime", "description", "topology", "expr", "simulation", "errors", "options", "atomic",
+        "diagrams", "passes",
+    },
     "exporting": {
         "exports", "compiler", "loading", "codegen", "description", "runtime", "simulation", "errors", "options",
+        "diagrams",
     },
     # Advice compiles and simulates reduced systems, and counts what they take.
     "advice": {

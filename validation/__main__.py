@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from symofros.atomic import write_atomically
-from validation.accuracy import command as accuracy
+from validation.accuracy.catalogue import TOPIC as ACCURACY
 from validation.adapters import ROUTES
 from validation.campaigns import command as campaign
 from validation.cases import Case, named, standard_set
@@ -21,10 +21,12 @@ from validation.check import ModelResult, Settings
 from validation.console import output, progress, show
 from validation.crew import run
 from validation.dashboard import command as dashboard
+from validation.diagrams.catalogue import TOPIC as DIAGRAMS
 from validation.junit import to_junit
 from validation.pareto import command as pareto
 from validation.passes import command as passes
 from validation.provenance import build
+from validation.questions import command as questions
 from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
@@ -153,7 +155,8 @@ def verdict(record: Record) -> Exit:
     return Exit.AGREE if record.ok else Exit.BAD_INPUT
 
 
-accuracy.register(app)
+questions.register(app, ACCURACY)
+questions.register(app, DIAGRAMS)
 campaign.register(app)
 dashboard.register(app)
 exports_report.register(app)

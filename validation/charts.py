@@ -60,6 +60,8 @@ def svg(chart: Chart) -> str:
     top = _TOP + _ROW * len(rows)
     x = _axis([_seen(curve, chart)[0] for curve in chart.curves], chart, "x", _LEFT, WIDTH - _RIGHT)
     y = _axis([_seen(curve, chart)[1] for curve in chart.curves], chart, "y", HEIGHT - _BOTTOM, top)
+    if chart.equal:
+        x, y = _alike(x, y)
     parts = [text((_LEFT + WIDTH - _RIGHT) / 2, 16, escape(chart.title), "middle", "row")]
     parts += [_legend(row, 16 + _ROW * (k + 1)) for k, row in enumerate(rows)]
     for value in x.ticks():
@@ -105,6 +107,16 @@ def _axis(values: list[np.ndarray], chart: Chart, name: str, start: float, end: 
     if high - low < 1e-12:
         low, high = low - 1.0, high + 1.0
     return Axis(low, high, start, end, log)
+
+
+def _alike(x: Axis, y: Axis) -> tuple[Axis, Axis]:
+    """Both axes with as many pixels a unit: the one that has more shows more."""
+    scales = [abs(axis.end - axis.start) / (axis.high - axis.low) for axis in (x, y)]
+    found = []
+    for axis, scale in zip((x, y), scales, strict=True):
+        room = 0.5 * (scale / min(scales) - 1.0) * (axis.high - axis.low)
+        found.append(axis._replace(low=axis.low - room, high=axis.high + room))
+    return found[0], found[1]
 
 
 def _widened(low: float, high: float) -> tuple[float, float]:

@@ -69,6 +69,7 @@ class Chart:
         log_x, log_y: Whether an axis is logarithmic.
         range_y: Part of the ordinate that is shown; None for all.
         tags: Names of points, in the figure's words.
+        equal: Whether a unit is as long on both axes, as on a map.
     """
 
     title: str
@@ -80,6 +81,7 @@ class Chart:
     log_y: bool = False
     range_y: tuple[float, float] | None = None
     tags: tuple[Tag, ...] = ()
+    equal: bool = False
 
 
 @dataclass(frozen=True)

@@ -64,7 +64,9 @@ def run_data(run: Run, *distributions: str) -> dict[str, Any]:
             "versions": versions(*distributions), **stamp()}  # fmt: skip
 
 
-def write_pages(folder: Path, name: str, data: str, rendered: Callable[[str], str]) -> Path:
+def write_pages(
+    folder: Path, name: str, data: str, rendered: Callable[[str], str], template: str | None = None
+) -> Path:
     """Write a report's three files: NAME.json (everything), NAME.md (a summary), NAME.html (one self-contained page).
 
     Args:
@@ -72,6 +74,7 @@ def write_pages(folder: Path, name: str, data: str, rendered: Callable[[str], st
         name: Of the report.
         data: Its JSON.
         rendered: Template -> text.
+        template: Name of the templates; the report's own by default.
 
     Returns:
         The page.
@@ -82,7 +85,7 @@ def write_pages(folder: Path, name: str, data: str, rendered: Callable[[str], st
     folder.mkdir(parents=True, exist_ok=True)
     write_atomically(folder / f"{name}.json", data)
     for kind in ("md", "html"):
-        write_atomically(folder / f"{name}.{kind}", rendered(f"{name}.{kind}.j2"))
+        write_atomically(folder / f"{name}.{kind}", rendered(f"{template or name}.{kind}.j2"))
     return folder / f"{name}.html"
 
 

@@ -19,8 +19,8 @@ class ForwardDynamics(Block):
         model: What moves; its first state is that of the model.
         perturbed: Frames that external wrenches act on: each adds an input "wrench_FRAME" (force; moment), at the
             frame's origin in world axes [N, N m].
-        engaged: Whether an input "engaged" says which constraints hold now: 1 or 0, one a constraint, held between
-            samples. A constraint that engages takes the state onto itself as a plastic impact does.
+        engaged: Whether an input "engaged" says which constraints hold now: 1 or 0, one a constraint, from a sampled
+            block. A constraint that engages takes the state onto itself as a plastic impact does.
     """
 
     model: str
@@ -30,6 +30,10 @@ class ForwardDynamics(Block):
     def mechanism(self) -> str:
         """The model."""
         return self.model
+
+    def engaging(self) -> tuple[str, ...]:
+        """The input that says which constraints hold."""
+        return ("engaged",) if self.engaged else ()
 
     def ports(self, known: Known) -> Ports:
         """Efforts and prescribed motions u (nu); q, v, a, friction (nv), under constraints lam (nc)."""

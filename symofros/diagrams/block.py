@@ -190,6 +190,10 @@ class Block:
         """Name of the model that this block moves; "" for none."""
         return ""
 
+    def engaging(self) -> tuple[str, ...]:
+        """Inputs, held between samples, whose change takes its mechanism onto its constraints at once."""
+        return ()
+
     def states(self, known: Known) -> Mapping[str, Any]:
         """Continuous states -> their first values."""
         return {}

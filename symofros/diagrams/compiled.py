@@ -98,7 +98,9 @@ class CompiledDiagram:
         key = tuple(sources)
         if key not in self._signals:
             program = run_passes(fuser(self.resolved).signals(key))
-            self._signals[key] = _unit(program, _record(self.resolved, None), self.toolchain)[0].kernels["signals", ""]
+            self._signals[key] = _unit(program, record_of(self.resolved, None), self.toolchain)[0].kernels[
+                "signals", ""
+            ]
         return self._signals[key]
 
 
@@ -130,21 +132,19 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
         parts.append(model)
         texts.append(text)
     program = run_passes(write.samples(resolved.schedule.sets))
-    instants, text = _unit(program, _record(resolved, None), toolchain, options)
+    instants, text = _unit(program, record_of(resolved, None), toolchain, options)
     return CompiledDiagram(resolved, tuple(parts), instants, toolchain, (*texts, text))
 
 
 def _model(
     resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain | None, options: Options
 ) -> tuple[Model, str]:
-    record = _record(resolved, part)
+    record = record_of(resolved, part)
     unit, text = _unit(run_passes(write.motion(part)), record, toolchain, options)
-    crossings = write.crossings(part)
-    watched = _unit(run_passes(crossings), record, toolchain, options)[0] if crossings else None
 
     def formulas(_: tuple[object, ...], __: bool) -> Unit:
-        assert watched is not None
-        return watched
+        """What the stepper looks for zeros of."""
+        return unit
 
     return Model(record, None, (unit,), np.array(record.par_default), formulas), text
 
@@ -160,7 +160,7 @@ def _unit(
     return CompiledUnit(path, f"{identifier(record.name)}_model", header, record.hash), text
 
 
-def _record(resolved: Resolved, part: Part | None) -> ModelRecord:
+def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
     """Sizes and names of a part, or of the whole."""
     layout = resolved.layout
     q = part.q if part else slice(0, len(layout.q0))

@@ -160,24 +160,31 @@ class Fuser:
     # Motion of a part.
 
     def motion(self, part: Part) -> Program:
-        """forward_dynamics of a part, and project where it has constraints."""
+        """A part's forward_dynamics, project where it has constraints, and "formulas" where zeros are located."""
         g = Graph()
         at = self._at(g, part=part)
         nc = part.conditions.stop - part.conditions.start
-        if not nc:
-            a = [edge for name in part.blocks for edge in self._rates(at, name)]
-            a += [edge for name in part.blocks for edge in self._state_rates(at, name)]
-            outputs = (Output("a", (len(a),), tuple(a)),)
-            return self._program(self._wired.name, g, [Function("forward_dynamics", "", AT, outputs)], part)
-        return self._program(self._wired.name, g, self._constrained(at, part, nc), part)
+        functions = self._constrained(at, part, nc) if nc else [self._free(at, part)]
+        values = [edge for name, which in self.watched() for edge in
+                  at.edges(self._pieces[name], self._pieces[name].crossings[which].value.flat)]  # fmt: skip
+        if values:
+            functions.append(Function("formulas", "", AT, (_vector("value", values),)))
+        return self._program(self._wired.name, g, functions, part)
 
-    def _rates(self, at: Point, name: str) -> list[Edge]:
-        piece = self._pieces[name]
-        return at.edges(piece, piece.terms.a.flat) if piece.terms.a is not None else []
-
-    def _state_rates(self, at: Point, name: str) -> list[Edge]:
-        piece = self._pieces[name]
-        return [edge for key in piece.states for edge in at.edges(piece, piece.rates[key].flat)]
+    def _free(self, at: Point, part: Part) -> Function:
+        """Without constraints: accelerations of mechanisms, rates of states."""
+        layout = self._layout
+        a = [ZERO] * (part.v.stop - part.v.start)
+        for name in part.blocks:
+            piece = self._pieces[name]
+            if piece.terms.a is not None:
+                at_v = layout.v[name].start - part.v.start
+                a[at_v : at_v + layout.v[name].size] = at.edges(piece, piece.terms.a.flat)
+            for key in piece.states:
+                place = layout.states[name, key]
+                at_v = place.start - part.v.start
+                a[at_v : at_v + place.size] = at.edges(piece, piece.rates[key].flat)
+        return Function("forward_dynamics", "", AT, (_vector("a", a),))
 
     def _constrained(self, at: Point, part: Part, nc: int) -> list[Function]:
         """M a = r + G^T lam, G a = c for the part as a whole: blocks on the diagonal, rows side by side."""
@@ -243,16 +250,6 @@ class Fuser:
                     found[q_at] = at.g.add(at.g.input("q", q_at), at.g.input("step", v_at))
         return found
 
-    def crossings(self, part: Part) -> Program | None:
-        """The values whose zeros are located, as the function "formulas"; None where there are none."""
-        g = Graph()
-        at = self._at(g, part=part)
-        values = [edge for name, which in self.watched() for edge in
-                  at.edges(self._pieces[name], self._pieces[name].crossings[which].value.flat)]  # fmt: skip
-        if not values:
-            return None
-        return self._program(self._wired.name, g, [Function("formulas", "", AT, (_vector("value", values),))], part)
-
     def watched(self) -> list[tuple[str, str]]:
         """(block, crossing), in order."""
         return [(name, which) for name, piece in self._pieces.items() for which in piece.crossings]
@@ -265,7 +262,7 @@ class Fuser:
         rest = dict.fromkeys(name for name in self._pieces if name in due)
         return [name for name in (found | rest) if self._pieces[name].block.is_opaque]
 
-    def samples(self, sets: Sequence[frozenset[str]]) -> Program:
+    def samples(self, sets: Sequence[frozenset[str]], listened: Sequence[Source] = ()) -> Program:
         """What happens at instants: functions "due_i" for each set and "crossed_i" for each crossing.
 
         "heard_i_j" gives what the j-th block of Python's of set i hears: its inputs, one after the other.
@@ -275,6 +272,8 @@ class Fuser:
         functions += [self._crossed(g, f"crossed_{i}", *which) for i, which in enumerate(self.watched())]
         for i, due in enumerate(sets):
             functions += [self._heard(g, f"heard_{i}_{j}", name, due) for j, name in enumerate(self.opaque(due))]
+        if listened:
+            functions.append(self._signals(g, listened))
         return self._program(self._wired.name, g, functions)
 
     def _due(self, g: Graph, name: str, due: frozenset[str]) -> Function:
@@ -311,14 +310,15 @@ class Fuser:
         return Function(name, "", AFTER, (_vector("heard", edges),))
 
     def signals(self, sources: Sequence[Source]) -> Program:
-        """The function "signals": some outputs, from what was recorded."""
+        """The function "signals": some outputs, from what was recorded, one after the other."""
         g = Graph()
+        return self._program(self._wired.name, g, [self._signals(g, sources)])
+
+    def _signals(self, g: Graph, sources: Sequence[Source]) -> Function:
         at = self._at(g, after=True)
-        outputs = []
-        for i, source in enumerate(sources):
-            value = at.signal(source)
-            outputs.append(Output(f"s{i}", value.shape, tuple(value.flat)))
-        return self._program(self._wired.name, g, [Function("signals", "", AFTER, tuple(outputs))])
+        return Function(
+            "signals", "", AFTER, (_vector("y", [edge for one in sources for edge in at.signal(one).flat]),)
+        )
 
 
 def _identity(n: int) -> list[list[Edge]]:

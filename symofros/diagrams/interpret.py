@@ -147,6 +147,12 @@ class Blocks:
         for key, value in piece.block.call(float(self.t[0]), inputs).items():
             self.out[name, key][...] = value
 
+    def engaged(self) -> Array:
+        """What says which constraints hold."""
+        wired = self.resolved.wired
+        ports = [(name, port) for name, piece in self.resolved.pieces.items() for port in piece.block.engaging()]
+        return np.concatenate([np.zeros(0), *(self.out[wired.sources[port]].reshape(-1) for port in ports)])
+
     def update(self, due: frozenset[str]) -> None:
         """Memory of the sampled blocks that are due."""
         new = []
@@ -226,9 +232,14 @@ def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
     blocks.t[0] = t + h
     blocks.q[:], blocks.v[:] = retract(segments, q, theta), speeds
     if projects:
-        for part in blocks.resolved.layout.parts:
-            if part.conditions.stop > part.conditions.start:
-                _project(blocks, part)
+        project_all(blocks)
+
+
+def project_all(blocks: Blocks) -> None:
+    """The parts back onto their constraints."""
+    for part in blocks.resolved.layout.parts:
+        if part.conditions.stop > part.conditions.start:
+            _project(blocks, part)
 
 
 def _project(blocks: Blocks, part: Part) -> None:
@@ -294,8 +305,11 @@ def run_interpreted(
             blocks.signals()
             if looks_back:
                 blocks.accelerate()
+            before = blocks.engaged()
             blocks.signals(due)
             blocks.update(due)
+            if projects and not np.array_equal(before, blocks.engaged()):
+                project_all(blocks)
         if recorded:
             blocks.signals()
             if looks_back:

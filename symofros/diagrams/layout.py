@@ -16,6 +16,7 @@ import numpy as np
 from symofros.diagrams.block import Shape
 from symofros.diagrams.pieces import Piece
 from symofros.diagrams.wiring import Source, Wired
+from symofros.errors import DescriptionError, Problem
 from symofros.runtime.kernel import Array
 from symofros.runtime.record import Segment
 from symofros.simulation.inputs import Signal
@@ -79,6 +80,7 @@ class Layout:
         par_names: See q_names.
         segments: Of the configuration manifold.
         signals: (index in u, times, values, whether linear).
+        engaging: Entries of u whose change takes mechanisms onto their constraints.
         condition_names: Of the constraints.
         speed_conditions: Those of them on speeds only.
     """
@@ -102,6 +104,7 @@ class Layout:
     par_names: list[str] = field(default_factory=list)
     segments: list[Segment] = field(default_factory=list)
     signals: list[tuple[int, Array, Array, bool]] = field(default_factory=list)
+    engaging: list[int] = field(default_factory=list)
     condition_names: list[str] = field(default_factory=list)
     speed_conditions: list[str] = field(default_factory=list)
 
@@ -121,6 +124,14 @@ def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence
         _inputs(layout, wired, name, piece)
         for key, values in piece.parameters.items():
             layout.parameters[name, key] = _placed(layout.par, layout.par_names, f"{name}.{key}", values)
+    for name, piece in pieces.items():
+        for port in piece.block.engaging():
+            place = layout.held.get(wired.sources.get((name, port), ("", "")))
+            if place is None:
+                raise DescriptionError(Problem(f"block '{name}': input '{port}' is not held between samples",
+                                               "a continuous signal", "constraints engage at samples",
+                                               "put a hold with a period before it"))  # fmt: skip
+            layout.engaging += range(place.start, place.start + place.size)
     for model in wired.models.names:
         names = wired.models.record(model).par_names
         layout.parameters["", model] = Place(len(layout.par), (len(names),))

@@ -23,12 +23,24 @@ from symofros.simulation.stepper import Stepper, native_headers, native_source
 
 # What a schedule calls the recording of an instant.
 RECORD = "(record)"
-_HEADER = "symofros_diagram.h"
+_HEADER, _PROGRAM_HEADER = "symofros_diagram.h", "symofros_program.h"
+_PARTS, _PROGRAM_PARTS = ("gang_api.c", "diagram.c", "gang.c"), ("diagram.c", "program.c")
 _PORTION = 4096
 
 
 def _native(name: str) -> str:
     return (files("symofros.diagrams") / "native" / name).read_text(encoding="utf-8")
+
+
+def loop_headers() -> dict[str, str]:
+    """File name -> text of the headers of loop and programs, besides those of the stepper."""
+    return {name: _native(name) for name in (_HEADER, _PROGRAM_HEADER)}
+
+
+def program_source() -> str:
+    """Stepper, loop and programs as one C file, without threads: C99, and POSIX or Windows for the clock."""
+    own = (f'#include "{_PROGRAM_HEADER}"', "#include <stdio.h>", _native("alone.c"), *map(_native, _PROGRAM_PARTS))
+    return "\n".join([native_source(), *own])
 
 
 @cache
@@ -48,8 +60,7 @@ def library() -> tuple[Any, Any]:
         match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", text, re.DOTALL)
         assert match is not None
         ffi.cdef(match.group(1))
-    parts = [native_source(), f'#include "{_HEADER}"', _native("gang_api.c"), _native("diagram.c"), _native("gang.c")]
-    source = "\n".join(parts)
+    source = "\n".join([native_source(), f'#include "{_HEADER}"', *map(_native, _PARTS)])
     for name, text in reversed(headers.items()):
         source = source.replace(f'#include "{name}"', text)
     return ffi, ffi.dlopen(str(build_library(source, header, toolchain, (*DEFAULT_FLAGS, "-O3", "-pthread"))))
@@ -99,6 +110,8 @@ class Loop:
         self._join(layout, parts)
         d.looks_back = int(looks_back)
         self._sample(layout)
+        d.n_engaging, d.engaging = len(layout.engaging), self._own("int32_t[]", layout.engaging)
+        d.engaged = self._numbers(u0[layout.engaging])[0]
         self._plan(schedule, stages, par)
         d.n_crossings, d.crossings = len(crossings), self._stages(crossings, par)
         self._make_room()

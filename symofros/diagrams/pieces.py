@@ -148,7 +148,12 @@ def _fit(wired: Wired, piece: Piece) -> None:
     given = set() if block.is_opaque else shapes.keys() - block.samples().keys()
     _same(name, "outputs", piece.outputs, {key: shapes[key] for key in given})
     _same(name, "rates", piece.rates, {key: value.shape for key, value in piece.states.items()})
-    _same(name, "memory", piece.updates, {key: value.shape for key, value in piece.memory.items()})
+    kept = {key: value.shape for key, value in piece.memory.items()}
+    _same(name, "memory", piece.updates, {key: kept.get(key, "not stated") for key in piece.updates})
+    places = {"q": piece.q.shape, "v": piece.v.shape} if block.mechanism() else {}
+    changed = kept | {key: value.shape for key, value in piece.states.items()} | places
+    for which, jump in piece.jumps.items():
+        _same(name, f"crossing '{which}' changes", jump, {key: changed.get(key, "not stated") for key in jump})
     moving = bool(piece.states or block.mechanism() or piece.crossings)
     if piece.is_discrete and moving:
         raise DescriptionError(Problem(f"block '{name}' is sampled and moves between samples",

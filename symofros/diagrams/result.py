@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -83,7 +84,7 @@ class DiagramRun(Mapping[str, Array]):
             self.compute([source])
         return self._known[source]
 
-    def __iter__(self):  # type: ignore[no-untyped-def]
+    def __iter__(self) -> Iterator[str]:
         """Names of all outputs."""
         wired = self.compiled.resolved.wired
         return (f"{block}.{port.name}" for block in wired.ports for port in wired.ports[block].outputs)
@@ -112,8 +113,12 @@ class DiagramRun(Mapping[str, Array]):
         known = {"q": self.q, "v": self.v, "u": self.u, "t": self.t[:, np.newaxis]}
         arrays = [known[group] if group in known else self._after[AFTER.index(group) - 4] for group in AFTER]
         n = len(self.t)
-        for source, values in zip(wanted, kernel.run(n, pre, [np.ascontiguousarray(a) for a in arrays]), strict=True):
-            self._known[source] = values
+        (values,) = kernel.run(n, pre, [np.ascontiguousarray(a) for a in arrays])
+        at, wired = 0, self.compiled.resolved.wired
+        for source in wanted:
+            size = math.prod(wired.shape(source))
+            self._known[source] = values[:, at : at + size].reshape(n, *wired.shape(source))
+            at += size
 
     @property
     def _after(self) -> tuple[Array, Array]:

@@ -104,7 +104,7 @@ def run_compiled(
                 )  # fmt: skip
             )
         watched = resolved_events(compiled) if part.blocks else []
-        stepper = Stepper(model, settings.method, InputPlan(u0.copy()), watched, par)
+        stepper = Stepper(model, settings.method, InputPlan(u0.copy(), list(layout.signals)), watched, par)
         settings.apply(stepper, t0, t_end, 0.0)
         stepper.run.every = 0
         q, v = np.array(layout.q0[part.q]), np.array(layout.v0[part.v])

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 from symofros.codegen.names import c_string
 from symofros.exports.c_text import comment, doubles, integers, strings
-from symofros.exports.material import Material
+from symofros.exports.material import Material, Stepping
+from symofros.runtime.record import ModelRecord
 from symofros.simulation.methods import KIND_CODES
 from symofros.simulation.tableaus import Tableau
 
@@ -34,7 +36,46 @@ def header_text(material: Material) -> str:
     return "\n".join(lines)
 
 
-def plant_text(material: Material) -> str:
+class Moving(Protocol):
+    """What a plant is written of: a Material, or a part of a diagram."""
+
+    @property
+    def c_name(self) -> str:
+        """What symbols are called."""
+        ...
+
+    @property
+    def record(self) -> ModelRecord:
+        """Names, sizes, defaults."""
+        ...
+
+    @property
+    def stepping(self) -> Stepping:
+        """How it steps."""
+        ...
+
+    @property
+    def frames(self) -> tuple[str, ...]:
+        """Frames that functions were generated for."""
+        ...
+
+    @property
+    def q_start(self) -> tuple[float, ...]:
+        """First configuration (nq)."""
+        ...
+
+    @property
+    def v_start(self) -> tuple[float, ...]:
+        """First speeds (nv)."""
+        ...
+
+    @property
+    def generator(self) -> str:
+        """Name and version of what wrote it."""
+        ...
+
+
+def plant_text(material: Moving) -> str:
     """NAME_plant.c."""
     name, record, step = material.c_name, material.record, material.stepping
     segments = ", ".join(f"{{{_SEGMENTS[s.kind]}, {s.q}, {s.v}, {s.size}}}" for s in record.segments)

@@ -14,9 +14,10 @@ from typer.testing import CliRunner
 from validation import charts
 from validation.__main__ import app
 from validation.accuracy import catalogue
+from validation.accuracy.catalogue import TOPIC
 from validation.accuracy.elastica import exact
-from validation.accuracy.report import Accuracy, write_report
 from validation.findings import Chart, Check, Curve, Mark, Study, exponent, near
+from validation.questions.report import Answers, write_report
 
 
 @pytest.fixture(scope="module")
@@ -120,7 +121,7 @@ def test_bounds(found: float, ok: bool) -> None:
 
 
 def test_nothing_asked_is_not_a_success(tmp_path: Path) -> None:
-    run = Accuracy({}, {}, True, 0.0)
+    run = Answers(TOPIC, {}, {}, True, 0.0)
     assert not run.ok and write_report(run, tmp_path).is_file()
 
 

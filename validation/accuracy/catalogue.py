@@ -17,6 +17,7 @@ from validation.accuracy import (
     spinup,
 )
 from validation.findings import Asked
+from validation.questions.topic import Topic
 
 STUDIES: dict[str, Asked] = {
     "spinning": spinning.study,
@@ -32,3 +33,8 @@ STUDIES: dict[str, Asked] = {
     "damping": damping.study,
     "conditioning": conditioning.study,
 }
+
+TOPIC = Topic(
+    "accuracy", "Accuracy of beams", "Measure beams against closed forms, tables and exact rods.",
+    "docs/theory/beams.md", STUDIES,
+)  # fmt: skip

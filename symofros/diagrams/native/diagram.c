@@ -84,6 +84,32 @@ static void sym_diagram_pace(sym_diagram *d, double t) {
     if (d->n_late < d->late_capacity) d->late[d->n_late++] = sym_clock() - due;
 }
 
+/* Whether constraints have engaged or let go since it was asked last. */
+static int32_t sym_engages(sym_diagram *d) {
+    int32_t i, changed = 0;
+    for (i = 0; i < d->n_engaging; ++i) {
+        const double now = d->u[d->engaging[i]];
+        if (now != d->engaged[i]) changed = 1;
+        d->engaged[i] = now;
+    }
+    return changed;
+}
+
+/* The parts onto their constraints, at once: a plastic impact. Returns a status. */
+static int32_t sym_impact(sym_diagram *d, double t) {
+    int32_t i, status;
+    for (i = 0; i < d->n_parts; ++i) {
+        if (!d->parts[i]->project) continue;
+        status = sym_return(d->parts[i]);
+        if (status != 0) {
+            d->failed = i;
+            return status;
+        }
+    }
+    sym_gather(d, t);
+    return 0;
+}
+
 /* The instant that is next, at time t. Returns a status. */
 static int32_t sym_instant_now(sym_diagram *d, double t) {
     const sym_instant *now = &d->sets[d->set[d->at]];
@@ -93,6 +119,7 @@ static int32_t sym_instant_now(sym_diagram *d, double t) {
     if (now->n > 0) {
         if (d->looks_back && (status = sym_look_back(d)) != 0) return status;
         status = sym_stage_all(d, now->stages, now->n);
+        if (status == 0 && sym_engages(d)) status = sym_impact(d, t);
         if (status != 0) return status;
         for (i = 0; i < d->n_parts; ++i) d->parts[i]->fresh = 0;
     }
@@ -123,6 +150,7 @@ static int32_t sym_crossing(sym_diagram *d, sym_run *stopped) {
     sym_diagram_record(d);
     d->found_t[d->n_found] = stopped->t;
     d->found_which[d->n_found++] = stopped->stopped_by;
+    stopped->n_found = 0;
     if (d->looks_back && (status = sym_look_back(d)) != 0) return status;
     status = sym_stage_all(d, &d->crossings[stopped->stopped_by], 1);
     if (status != 0) return status;

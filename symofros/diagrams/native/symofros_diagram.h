@@ -23,6 +23,9 @@ typedef struct sym_diagram {
     sym_run **parts;
     const int32_t *q_at, *v_at, *c_at;  /* where each part's q, v, lam lie */
     const sym_signal *signals;
+    int32_t n_engaging;
+    const int32_t *engaging;  /* entries of u whose change takes the parts onto their constraints */
+    double *engaged;          /* (n_engaging) what they were */
     /* The point at which stages are evaluated, and what they leave. */
     double *q, *v, *u, *t, *a, *lam;
     /* Instants: multiples k of base_n / base_d seconds after t0, alike in each cycle. */

@@ -1,4 +1,4 @@
-"""Studies -> accuracy.html (one self-contained page), accuracy.md (the numbers), accuracy.json (everything)."""
+"""Studies -> NAME.html (one self-contained page), NAME.md (the numbers), NAME.json (everything)."""
 
 from __future__ import annotations
 
@@ -11,19 +11,22 @@ from markupsafe import Markup
 from validation.charts import svg
 from validation.findings import Chart, Study
 from validation.page import check_data, compact, figure_data, render, run_data, versions, write_pages
+from validation.questions.topic import Topic
 
 
 @dataclass(frozen=True)
-class Accuracy:
+class Answers:
     """One run.
 
     Attributes:
+        topic: What was asked.
         studies: Short name -> what it found.
         failures: Short name -> why it could not be done.
         quick: Whether the short way was taken.
         seconds: Wall time.
     """
 
+    topic: Topic
     studies: dict[str, Study]
     failures: dict[str, str]
     quick: bool
@@ -44,7 +47,7 @@ class Accuracy:
         return f"{len(checks)} numbers of {len(self.studies)} studies: {verdict}{failed}."
 
 
-def write_report(run: Accuracy, folder: Path) -> Path:
+def write_report(run: Answers, folder: Path) -> Path:
     """Write the three files.
 
     Returns:
@@ -53,10 +56,11 @@ def write_report(run: Accuracy, folder: Path) -> Path:
     Raises:
         OSError: The folder can't be written to.
     """
-    return write_pages(folder, "accuracy", compact(as_data(run)), lambda template: _render(template, run))
+    name = run.topic.name
+    return write_pages(folder, name, compact(as_data(run)), lambda template: _render(template, run), "questions")
 
 
-def as_data(run: Accuracy) -> dict[str, Any]:
+def as_data(run: Answers) -> dict[str, Any]:
     """Everything, as plain data; None where there is no number."""
     return run_data(run) | {"studies": {name: _study(study) for name, study in run.studies.items()}}
 
@@ -67,7 +71,7 @@ def _study(study: Study) -> dict[str, Any]:
             "figures": [figure_data(figure) for figure in study.figures]}  # fmt: skip
 
 
-def _render(template: str, run: Accuracy) -> str:
+def _render(template: str, run: Answers) -> str:
     return render(template, {"svg": _svg}, run=run, versions=versions())
 
 

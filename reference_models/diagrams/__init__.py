@@ -1,0 +1,1 @@
+"""Diagrams to try blocks on, and the paper's example."""

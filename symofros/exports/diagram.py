@@ -1,0 +1,184 @@
+"""A diagram as one C program: its parts, its instants, the loop, and a main that runs them in real time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from string import Template
+
+import numpy as np
+
+from symofros.codegen.model import model_source
+from symofros.codegen.names import c_string, identifier
+from symofros.codegen.templates import template
+from symofros.diagrams.compiled import Resolved, compile_diagram, fuser, record_of
+from symofros.diagrams.loop import loop_headers, program_source
+from symofros.diagrams.simulate import run_compiled
+from symofros.diagrams.wiring import Source
+from symofros.errors import ExportError, Problem
+from symofros.exports.c_text import comment, doubles, hand_written, integers, strings
+from symofros.exports.folder import Exported, write_folder
+from symofros.exports.material import Stepping
+from symofros.exports.plant import plant_text
+from symofros.passes import run_passes
+from symofros.runtime.record import ModelRecord
+from symofros.simulation.methods import METHODS
+from symofros.simulation.stepper import native_headers
+
+_DIRECTIONS = {"rising": 1, "falling": -1, "both": 0}
+# Instants and steps of the self-test: its signals are those of the same run from Python.
+_CHECKED = 20
+_TOLERANCE = "1e-9"
+
+
+@dataclass(frozen=True)
+class PartMaterial:
+    """A part, ready to be wrapped as a plant; see exports.plant.Moving."""
+
+    c_name: str
+    record: ModelRecord
+    stepping: Stepping
+    frames: tuple[str, ...]
+    q_start: tuple[float, ...]
+    v_start: tuple[float, ...]
+    generator: str
+
+
+def write_diagram(
+    resolved: Resolved, folder: Path, outputs: Sequence[str], method: str, dt: float, generator: str
+) -> Exported:
+    """Write the C package of a diagram.
+
+    Args:
+        resolved: The diagram.
+        folder: Ours, or new.
+        outputs: Signals that the program tells.
+        method: How parts step: explicit.
+        dt: Step [s].
+        generator: Name and version.
+
+    Raises:
+        ExportError: The diagram calls Python, or the folder is not ours.
+    """
+    wired, layout = resolved.wired, resolved.layout
+    opaque = [name for name, block in wired.blocks.items() if block.is_opaque]
+    if opaque:
+        raise ExportError(str(Problem(f"diagram '{wired.name}': no C program", f"block '{opaque[0]}' calls Python",
+                                      "a program of its own has no Python in it", "leave the block out")))  # fmt: skip
+    if METHODS[method].kind not in ("explicit", "semi_implicit"):
+        raise ExportError(str(Problem(f"diagram '{wired.name}': method '{method}'", "an implicit method",
+                                      "diagrams step by explicit methods", "use rk4 or dopri5")))  # fmt: skip
+    name = identifier(wired.name)
+    sources = [wired.output(text) for text in outputs]
+    write, stepping = fuser(resolved), Stepping(METHODS[method], dt, 1e-6, 1e-9)
+    files: dict[str, str] = {f"{name}.h": _header(name, wired.name, generator)}
+    for i, part in enumerate(layout.parts):
+        record, c_name = record_of(resolved, part), f"{name}_part{i}"
+        text = model_source(run_passes(write.motion(part)), record, generator, c_name=c_name)
+        material = PartMaterial(c_name, record, stepping, (), tuple(layout.q0[part.q]), tuple(layout.v0[part.v]),
+                                generator)  # fmt: skip
+        files |= {f"{c_name}.c": text, f"{c_name}.h": _part_header(c_name), f"{c_name}_plant.c": plant_text(material)}
+    instants = run_passes(write.samples(resolved.schedule.sets, sources))
+    files[f"{name}_instants.c"] = model_source(
+        instants, record_of(resolved, None), generator, c_name=f"{name}_instants"
+    )
+    files[f"{name}_program.c"] = _program(resolved, name, sources, generator)
+    until, values = _reference(resolved, outputs, method, dt)
+    words = {
+        "name": name, "generator": generator, "version": generator.rpartition(" ")[2], "until": repr(until),
+        "reference": doubles(values), "tolerance": _TOLERANCE, "step": repr(dt),
+        "sources": " ".join(file for file in files if file.endswith(".c")),
+    }  # fmt: skip
+    files["main.c"] = Template(hand_written("diagram_main.c.in")).substitute(words)
+    files["CMakeLists.txt"] = Template(hand_written("diagram_CMakeLists.txt.in")).substitute(words)
+    files |= {"symofros_model.h": template("symofros_model.h"), **native_headers(), **loop_headers()}
+    files["symofros_loop.c"] = program_source()
+    notes = () if layout.condition_names else ("no constraints: accelerations are in closed form",)
+    return write_folder(folder, "c", name, files, generator, notes)
+
+
+def _reference(resolved: Resolved, outputs: Sequence[str], method: str, dt: float) -> tuple[float, list[float]]:
+    """A time, and the signals then of a run from Python."""
+    base = float(resolved.schedule.base) if resolved.schedule.instants else dt
+    until = _CHECKED * max(base, dt)
+    run = run_compiled(compile_diagram(resolved), until, method=method, dt=dt, record=until)
+    return float(run.t[-1]), [float(x) for name in outputs for x in np.ravel(run[name][-1])]
+
+
+def _header(name: str, title: str, generator: str) -> str:
+    guard = f"SYMOFROS_PROGRAM_{name.upper()}_H"
+    return "\n".join([
+        f"/* {comment(title)}: a diagram as a program; generated by {generator}. */",
+        f"#ifndef {guard}", f"#define {guard}", "", '#include "symofros_program.h"', "",
+        "#ifdef __cplusplus", 'extern "C" {', "#endif",
+        f"const sym_program *{name}_program(void);",
+        "#ifdef __cplusplus", "}", "#endif", "#endif", "",
+    ])  # fmt: skip
+
+
+def _part_header(c_name: str) -> str:
+    guard = f"SYMOFROS_PART_{c_name.upper()}_H"
+    return "\n".join([
+        f"#ifndef {guard}", f"#define {guard}", '#include "symofros_instance.h"',
+        f"const sym_model *{c_name}_model(void);", f"const sym_plant *{c_name}_plant(void);", "#endif", "",
+    ])  # fmt: skip
+
+
+def _program(resolved: Resolved, name: str, sources: Sequence[Source], generator: str) -> str:
+    """NAME_program.c: the constants of symofros_program.h."""
+    wired, layout, plan = resolved.wired, resolved.layout, resolved.schedule
+    parts = layout.parts
+    directions = [_DIRECTIONS[crossing.direction] for piece in resolved.pieces.values()
+                  for crossing in piece.crossings.values()]  # fmt: skip
+    lines = [
+        f"/* {comment(wired.name)} as a program. Generated by {generator}. */",
+        "#include <math.h>", f'#include "{name}.h"', *(f'#include "{name}_part{i}.h"' for i in range(len(parts))), "",
+        f"const sym_model *{name}_instants_model(void);",
+        _array("const sym_plant *(*const", "parts)(void)", ", ".join(f"{name}_part{i}_plant" for i in range(len(parts)))
+               or "NULL"),
+        *(_array("const int32_t", f"{key}_at", integers(places)) for key, places in (
+            ("q", [part.q.start for part in parts]), ("v", [part.v.start for part in parts]),
+            ("c", [part.conditions.start for part in parts]), ("u", layout.engaging))),
+        _array("const double", "u_start", doubles(layout.u0)),
+        *_signals(layout.signals),
+        _array("const int32_t", "directions", integers(directions)),
+        _array("const int32_t", "all_end", integers([1] * len(directions))),
+        _array("const int64_t", "instant", integers(k for k, _ in plan.instants)),
+        _array("const int32_t", "set", integers(which for _, which in plan.instants)),
+        _array("const char *const", "due", strings(f"due_{i}" for i in range(len(plan.sets)))),
+        _array("const char *const", "output_names", strings(_entries(resolved, sources))),
+        f"static const sym_program {name}_program_struct = {{",
+        f"    {c_string(wired.name)}, {name}_instants_model, {len(parts)}, parts, q_at, v_at, c_at, u_start,",
+        f"    {len(layout.signals)}, {len(layout.engaging)}, {len(directions)}, {int(bool(layout.condition_names))},",
+        "    signals, u_at, directions, all_end,",
+        f"    {float(plan.base.numerator)!r}, {float(plan.base.denominator)!r}, {plan.cycle}, {len(plan.instants)},",
+        f"    instant, set, {len(plan.sets)}, {len(list(_entries(resolved, sources)))}, due, output_names",
+        "};", "",
+        f"const sym_program *{name}_program(void) {{ return &{name}_program_struct; }}", "",
+    ]  # fmt: skip
+    return "\n".join(lines)
+
+
+def _array(kind: str, name: str, values: str) -> str:
+    label = name.replace(")(void)", "[])(void)") if ")(void)" in name else f"{name}[]"
+    return f"static {kind} {label} = {{{values}}};"
+
+
+def _signals(signals: Sequence[tuple[int, np.ndarray, np.ndarray, bool]]) -> list[str]:
+    lines, rows = [], []
+    for i, (at, t, values, linear) in enumerate(signals):
+        lines.append(_array("const double", f"signal_t{i}", doubles(t.tolist())))
+        lines.append(_array("const double", f"signal_y{i}", doubles(values.tolist())))
+        rows.append(f"{{{at}, {int(linear)}, {len(t)}, signal_t{i}, signal_y{i}}}")
+    return [*lines, _array("const sym_signal", "signals", ", ".join(rows) or "{0, 0, 0, NULL, NULL}")]
+
+
+def _entries(resolved: Resolved, sources: Sequence[Source]) -> list[str]:
+    """The name of each entry of the outputs."""
+    found = []
+    for source in sources:
+        shape, label = resolved.wired.shape(source), ".".join(source)
+        found += [label + "".join(f"[{i}]" for i in at) for at in product(*map(range, shape))]
+    return found

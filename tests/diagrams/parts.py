@@ -1,0 +1,171 @@
+"""Small blocks and diagrams that the tests of diagrams are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+import symofros as sf
+from symofros import blocks
+from symofros.diagrams.block import At, Block, Crossing, Known, Port, Ports, Values
+from symofros.simulation.inputs import Signal
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number(Block):
+    """A constant."""
+
+    value: Any
+    unit: str = ""
+    tunable: ClassVar[tuple[str, ...]] = ("value",)
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((), (Port("y", np.shape(self.value), self.unit),))
+
+    def compute(self, at: At) -> Values:
+        return {"y": at.parameters["value"]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wave(Block):
+    """The sine of time."""
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((), (Port("y"),))
+
+    def compute(self, at: At) -> Values:
+        return {"y": (at.t * 7.0).apply("sin")}
+
+
+@dataclass(frozen=True, kw_only=True)
+class After(Block):
+    """1 from a time on, one entry."""
+
+    time: float
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((), (Port("y", (1,)),))
+
+    def compute(self, at: At) -> Values:
+        return {"y": (at.t - self.time).apply("step").reshape(1)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lag(Block):
+    """A first-order lag: rate s' = (x - s) / tau."""
+
+    tau: float = 0.1
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((Port("x"),), (Port("y"),))
+
+    def states(self, known: Known) -> Mapping[str, Any]:
+        return {"s": 0.0}
+
+    def compute(self, at: At) -> Values:
+        return {"y": at.states["s"]}
+
+    def rates(self, at: At) -> Values:
+        return {"s": (at.inputs["x"] - at.states["s"]) / self.tau}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hold(Block):
+    """Its input at the last sample."""
+
+    def ports(self, known: Known) -> Ports:
+        shape = known.inputs.get("x")
+        return Ports((Port("x", shape),), (Port("y", shape),))
+
+    def compute(self, at: At) -> Values:
+        return {"y": at.inputs["x"]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Counter(Block):
+    """How many samples there have been."""
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((), (Port("n"),))
+
+    def memory(self, known: Known) -> Mapping[str, Any]:
+        return {"n": 0.0}
+
+    def compute(self, at: At) -> Values:
+        return {"n": at.memory["n"]}
+
+    def update(self, at: At) -> Values:
+        return {"n": at.memory["n"] + 1.0}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Twice(Block):
+    """Two inputs' sum: it passes its inputs on at once."""
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((Port("a", (), "m"), Port("b", (), "m", 0.0)), (Port("y", (), "m"),))
+
+    def compute(self, at: At) -> Values:
+        return {"y": at.inputs["a"] + at.inputs["b"]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spoken(Block):
+    """A function of Python's."""
+
+    is_opaque: ClassVar[bool] = True
+    heard: list[float]
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((Port("x", known.inputs.get("x")),), (Port("y", known.inputs.get("x")),))
+
+    def call(self, t: float, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
+        self.heard.append(t)
+        return {"y": 2.0 * inputs["x"]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ball(Block):
+    """A ball above a floor: it bounces where its height crosses zero."""
+
+    restitution: float = 0.5
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((), (Port("height"), Port("bounces")))
+
+    def states(self, known: Known) -> Mapping[str, Any]:
+        return {"h": 1.0, "w": 0.0}
+
+    def memory(self, known: Known) -> Mapping[str, Any]:
+        return {"n": 0.0}
+
+    def compute(self, at: At) -> Values:
+        return {"height": at.states["h"], "bounces": at.memory["n"]}
+
+    def rates(self, at: At) -> Values:
+        return {"h": at.states["w"], "w": at.numbers(-9.81)}
+
+    def crossings(self, at: At) -> Mapping[str, Crossing]:
+        return {"floor": Crossing(at.states["h"], "falling")}
+
+    def crossed(self, at: At, which: str) -> Values:
+        return {"w": -self.restitution * at.states["w"], "h": at.numbers(0.0), "n": at.memory["n"] + 1.0}
+
+
+def arm(model: sf.System, period: float | None = 1e-3, **start: float) -> sf.Diagram:
+    """A mechanism under joint PD."""
+    diagram = sf.Diagram("arm")
+    diagram.add_model("plant", model, start=start)
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"), u="pd.effort")
+    diagram.add(Number(name="goal", value=[0.5, -0.2]))
+    diagram.add(blocks.JointPD(name="pd", kp=[50.0, 30.0], kd=[5.0, 3.0], period=period),
+                q="plant.q", v="plant.v", q_desired="goal")  # fmt: skip
+    return diagram
+
+
+def table() -> Signal:
+    """Samples of two signals."""
+    return Signal([0.0, 0.5, 1.0], [[0.0, 1.0], [1.0, 0.0], [0.5, 0.5]])

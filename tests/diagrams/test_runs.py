@@ -1,0 +1,342 @@
+"""Compiled runs, interpreted runs and what is known of their results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros import blocks
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Twice, Wave, arm, table
+
+MODELS = Path(__file__).parents[2] / "reference_models"
+PENDULUM = sf.load(MODELS / "rigid" / "double_pendulum.yaml")
+
+
+def agree(diagram: sf.Diagram, t_end: float, names: list[str], scale: float = 1.0, **settings: Any) -> sf.DiagramRun:
+    """Both ways of running give the same signals to rounding, grown by the motion's own sensitivity `scale`."""
+    simulation = sf.Simulation(diagram)
+    run = simulation.run(t_end, record=t_end / 50, **settings)
+    assert run.outcome.ok, run.outcome
+    for compiled in (True, False):
+        other = simulation.interpret(t_end, record=t_end / 50, compiled=compiled, **settings)
+        assert np.array_equal(run.t, other.t)
+        for name in names:
+            size = max(1.0, float(np.abs(run[name]).max()))
+            assert np.abs(run[name] - other[name]).max() < 1e-13 * size * scale, (name, compiled)
+    return run
+
+
+@pytest.mark.parametrize("period", [None, 1e-3, 2.5e-3])
+def test_a_controlled_arm_is_the_same_compiled_and_interpreted(period: float | None) -> None:
+    agree(arm(PENDULUM, period, q1=0.3), 0.2, ["plant.q", "plant.v", "pd.effort", "plant.a"], 100.0)
+
+
+def test_a_continuous_controller_is_that_of_simulate() -> None:
+    """The same law as formulas of `simulate`'s, by the same method and steps: another path to the same motion."""
+    model = sf.compile(PENDULUM)
+    names = model.names
+    q1, q2 = names.q
+    law = {names.u[0]: f"50*(0.5 - {q1}) - 5*d{q1}", names.u[1]: f"30*(-0.2 - {q2}) - 3*d{q2}"}
+    want = sf.simulate(model, [0.3, 0.0], t_end=1.0, u=law, dt=1e-3)
+    run = sf.Simulation(arm(PENDULUM, None, **{q1: 0.3})).run(1.0, dt=1e-3, record=1e-3)
+    assert np.abs(run["plant.q"] - want.q).max() < 1e-13
+
+
+def test_a_sampled_controller_is_that_of_a_loop_around_simulate() -> None:
+    model = sf.compile(PENDULUM)
+    q, v, t = np.array([0.3, 0.0]), np.zeros(2), 0.0
+    for k in range(100):
+        u = np.array([50.0, 30.0]) * (np.array([0.5, -0.2]) - q) - np.array([5.0, 3.0]) * v
+        spell = sf.simulate(model, q, v, t_end=(k + 1) * 0.01, t0=t, u=u, dt=1e-3)
+        t, q, v = (k + 1) * 0.01, spell.q[-1], spell.v[-1]
+    run = sf.Simulation(arm(PENDULUM, 0.01, **{model.names.q[0]: 0.3})).run(1.0, dt=1e-3, record=0.01)
+    assert np.abs(run["plant.q"][-1] - q).max() < 1e-13
+
+
+@pytest.mark.parametrize("name", ["rigid/torque_free_body", "rigid/gyroscope", "closed/slider_crank",
+                                  "flexible/flexible_pendulum"])  # fmt: skip
+def test_mechanisms_of_every_kind_move_alike(name: str) -> None:
+    """Quaternions, loops and beams; the plain simulation is the third witness."""
+    system = sf.load(MODELS / f"{name}.yaml")
+    model = sf.compile(system)
+    q, v = model.neutral(), np.full(model.nv, 0.3)
+    if model.nc:
+        closed = sf.assemble(model, q, v)
+        q, v = closed.q, closed.v
+    diagram = sf.Diagram("free")
+    stated = dict(zip(model.names.q, q, strict=True)) | {f"d{n}": x for n, x in zip(model.names.v, v, strict=True)}
+    diagram.add_model("plant", system, start=stated)
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"))
+    run = agree(diagram, 0.05, ["plant.q", "plant.v"], 1000.0)
+    want = sf.simulate(model, q, v, t_end=0.05, dt=1e-3)
+    assert np.abs(run["plant.q"][-1] - want.q[-1]).max() < 1e-12
+    assert np.abs(run["plant.a"][-1] - want.a[-1]).max() < 1e-9 * max(1.0, np.abs(want.a[-1]).max())
+
+
+def test_multipliers_are_those_of_the_model() -> None:
+    system = sf.load(MODELS / "closed" / "slider_crank.yaml")
+    model = sf.compile(system)
+    closed = sf.assemble(model, model.neutral(), np.full(model.nv, 0.5))
+    diagram = sf.Diagram("crank")
+    stated = dict(zip(model.names.q, closed.q, strict=True))
+    diagram.add_model(
+        "plant", system, start=stated | {f"d{n}": x for n, x in zip(model.names.v, closed.v, strict=True)}
+    )
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"))
+    diagram.add(Hold(name="felt", period=0.01), x="plant.lam")
+    run = agree(diagram, 0.1, ["plant.lam", "felt"], 1e4)
+    q, v = run.motion("plant")
+    _, lam = model.forward_dynamics(q, v, np.zeros((len(q), model.nu)), multipliers=True)
+    assert np.abs(run["plant.lam"] - lam).max() < 1e-9 * max(1.0, np.abs(lam).max())
+
+
+def test_a_lag_follows_its_closed_form_and_the_order_of_the_method_shows() -> None:
+    """s(t) of a lag driven by a sine; errors of rk4 fall by 16 where the step is halved."""
+    diagram = sf.Diagram("lag")
+    diagram.add(Wave(name="wave"))
+    diagram.add(Lag(name="lag", tau=0.1), x="wave")
+    simulation = sf.Simulation(diagram)
+    w, tau, t = 7.0, 0.1, 1.0
+    b = w * tau
+    want = (np.sin(w * t) - b * np.cos(w * t) + b * np.exp(-t / tau)) / (1.0 + b * b)
+    errors = [abs(simulation.run(t, dt=dt, record=0.5)["lag"][-1] - want) for dt in (0.01, 0.005, 0.0025)]
+    assert 15.0 < errors[0] / errors[1] < 18.0
+    assert 15.0 < errors[1] / errors[2] < 18.0
+    fine = simulation.run(t, method="dop853", rtol=1e-12, atol=1e-14, record=0.5)
+    assert abs(fine["lag"][-1] - want) < 1e-12
+
+
+def test_samples_of_several_rates() -> None:
+    """A counter at 0.1 s and holds at 0.2 s, 0.3 s and 0.2 s with an offset of 0.1 s."""
+    diagram = sf.Diagram("rates")
+    diagram.add(Counter(name="fast", period=0.1))
+    for name, period, offset in (("slow", 0.2, 0.0), ("slower", 0.3, 0.0), ("late", 0.2, 0.1)):
+        diagram.add(Hold(name=name, period=period, offset=offset), x="fast.n")
+    diagram.add(Wave(name="wave"))
+    diagram.add(Lag(name="lag"), x="wave")
+    run = agree(diagram, 1.25, ["fast", "slow", "slower", "late", "lag"], 10.0)
+    k = np.floor(run.t / 0.1 + 1e-9)
+    assert np.array_equal(run["fast"], k)
+    assert np.array_equal(run["slow"], 2 * np.floor(run.t / 0.2 + 1e-9))
+    assert np.array_equal(run["slower"], 3 * np.floor(run.t / 0.3 + 1e-9))
+    late = np.floor((run.t - 0.1) / 0.2 + 1e-9)
+    assert np.array_equal(run["late"], np.where(late < 0, 0, 2 * late + 1))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given(Block):
+    """Two signals by samples."""
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((), (Port("y", (2,)),))
+
+    def samples(self) -> Mapping[str, Any]:
+        return {"y": table()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class First(Block):
+    """The first entry."""
+
+    def ports(self, known: Known) -> Ports:
+        return Ports((Port("x", (2,)),), (Port("y"),))
+
+    def compute(self, at: At) -> Values:
+        return {"y": at.inputs["x"][0]}
+
+
+def test_tables_are_read_between_their_samples() -> None:
+    diagram = sf.Diagram("table")
+    diagram.add(Given(name="given"))
+    diagram.add(First(name="first"), x="given")
+    diagram.add(Lag(name="lag"), x="first")
+    diagram.add(Hold(name="held", period=0.25), x="given")
+    run = agree(diagram, 1.0, ["given", "lag", "held"], 10.0)
+    times = table().t
+    want = np.stack([np.interp(run.t, times, column) for column in table().values.T], axis=-1)
+    assert np.abs(run["given"] - want).max() < 1e-15
+
+
+def test_blocks_of_pythons_are_called_at_their_samples() -> None:
+    heard: list[float] = []
+    diagram = arm(PENDULUM, 1e-3, q1=0.3)
+    diagram.add(Spoken(name="spoken", period=0.01, heard=heard), x="pd.effort")
+    diagram.add(Spoken(name="again", period=0.01, heard=[]), x="spoken")
+    diagram.add(Hold(name="after", period=0.01), x="again")
+    simulation = sf.Simulation(diagram)
+    run = simulation.run(0.1, record=0.01)
+    assert np.allclose(heard, np.arange(11) * 0.01)
+    assert np.array_equal(run["after"], 4.0 * run["pd.effort"])
+    other = simulation.interpret(0.1, record=0.01)
+    assert np.abs(run["after"] - other["after"]).max() < 1e-10
+
+
+def test_what_a_block_of_pythons_raises_ends_the_run() -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class Failing(Spoken):
+        def call(self, t: float, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
+            if t > 0.045:
+                raise RuntimeError("the cable is out")
+            return super().call(t, inputs)
+
+    diagram = arm(PENDULUM, 1e-3, q1=0.3)
+    diagram.add(Failing(name="spoken", period=0.01, heard=[]), x="pd.effort")
+    run = sf.Simulation(diagram).run(0.1, record=0.01)
+    assert run.outcome.kind == "input failed"
+    assert "the cable is out" in run.outcome.reason
+    assert run.t[-1] == pytest.approx(0.04)
+
+
+def test_a_ball_bounces_where_it_must() -> None:
+    """Bounce n is at t1 (1 + 2 e + ... + 2 e^(n-1)), t1 = sqrt(2 h / g)."""
+    diagram = sf.Diagram("ball")
+    diagram.add(Ball(name="ball"))
+    diagram.add(Counter(name="ticks", period=0.1))
+    run = sf.Simulation(diagram).run(1.1, method="dopri5", rtol=1e-10, atol=1e-12, record=0.01)
+    first = np.sqrt(2.0 / 9.81)
+    want = [first, first * 2.0, first * 2.5]
+    met = [crossing.t for crossing in run.crossings]
+    assert len(met) == 3 or want[-1] > 1.1
+    assert np.allclose(met, [t for t in want if t < 1.1], atol=1e-9)
+    assert run["ball.bounces"][-1] == len(met)
+    assert run["ball.height"].min() > -1e-9
+
+
+def test_parts_that_meet_at_samples_move_apart_and_on_any_number_of_threads() -> None:
+    diagram = sf.Diagram("two")
+    for side in ("left", "right"):
+        diagram.add_model(side, PENDULUM, start={"q1": 0.3 if side == "left" else -0.4})
+        diagram.add(blocks.ForwardDynamics(name=side, model=side), u=f"pd_{side}.effort")
+        other = "right" if side == "left" else "left"
+        diagram.add(blocks.JointPD(name=f"pd_{side}", kp=[50.0, 30.0], kd=[5.0, 3.0], period=0.002),
+                    q=f"{side}.q", v=f"{side}.v", q_desired=f"{other}.q")  # fmt: skip
+    simulation = sf.Simulation(diagram)
+    assert len(simulation.resolved.layout.parts) == 2
+    alone = simulation.run(0.5, record=0.01)
+    together = simulation.run(0.5, record=0.01, threads=2)
+    assert np.array_equal(alone.q, together.q) and np.array_equal(alone.v, together.v)
+    joined = sf.Diagram("one", dict(diagram.models))
+    for block in diagram.blocks.values():
+        joined.add(block)
+    for (name, port), source in diagram.wires.items():
+        joined.connect(source, f"{name}.{port}")
+    joined.blocks["pd_left"] = blocks.JointPD(name="pd_left", kp=[50.0, 30.0], kd=[5.0, 3.0])
+    assert len(sf.Simulation(joined).resolved.layout.parts) == 1
+
+
+def test_a_perturbation_is_a_load_of_the_model() -> None:
+    """A force at a frame, against the model's own Jacobian."""
+    model = sf.compile(PENDULUM)
+    frame = model.names.frames[-1]
+    diagram = sf.Diagram("pushed")
+    diagram.add_model("plant", PENDULUM)
+    wrench = [1.0, -2.0, 0.5, 0.0, 0.3, 0.1]
+    diagram.add(Number(name="wrench", value=wrench))
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant", perturbed=(frame,)),
+                **{f"wrench_{frame}": "wrench"})  # fmt: skip
+    run = agree(diagram, 0.1, ["plant.q"], 100.0)
+    q, v = run.motion("plant")
+    a = run["plant.a"]
+    J = model.frame_jacobian(frame, q)
+    tau = model.inverse_dynamics(q, v, a)
+    assert np.abs(tau - np.swapaxes(J, -1, -2) @ np.array(wrench)).max() < 1e-10
+
+
+def test_parameters_change_without_compiling() -> None:
+    simulation = sf.Simulation(arm(PENDULUM, 1e-3))
+    soft = simulation.run(0.5, record=0.01, parameters={"pd.kp": 5.0})
+    stiff = simulation.run(0.5, record=0.01, parameters={"pd.kp": [200.0, 200.0], "goal.value": [0.1, 0.1]})
+    again = sf.Simulation(arm(PENDULUM, 1e-3)).run(0.5, record=0.01)
+    assert np.abs(soft["plant.q"] - again["plant.q"]).max() > 0.01
+    pd = 5.0 * (soft["goal"] - soft["plant.q"]) - np.array([5.0, 3.0]) * soft["plant.v"]
+    assert np.abs(soft["pd.effort"] - pd).max() < 1e-12
+    assert np.array_equal(stiff["goal"][-1], [0.1, 0.1])
+    with pytest.raises(sf.UnknownNameError, match="pd.kq"):
+        simulation.run(0.1, parameters={"pd.kq": 1.0})
+    with pytest.raises(sf.SymofrosError, match="does not fit"):
+        simulation.run(0.1, parameters={"pd.kp": [1.0, 2.0, 3.0]})
+
+
+def test_friction_is_what_the_model_says() -> None:
+    system = sf.load(MODELS / "flexible" / "planar_robot.yaml")
+    model = sf.compile(system)
+    diagram = sf.Diagram("rubbing")
+    diagram.add_model("plant", system, start={"dq1": 0.5, "dq3": -0.2})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"))
+    run = sf.Simulation(diagram).run(0.01, record=0.01)
+    i, j = model.names.v.index("q1"), model.names.v.index("q3")
+    friction = run["plant.friction"][0]
+    assert -0.49 <= friction[i] <= -0.42 and 0.08 <= friction[j] <= 0.10
+    assert friction[model.names.v.index("e1")] == 0.0
+
+
+def test_a_diagram_serves_another_model() -> None:
+    """The same diagram, rigid: by changing the initialisation."""
+    system = sf.load(MODELS / "flexible" / "flexible_pendulum.yaml")
+    diagram = sf.Diagram("swap")
+    diagram.add_model("plant", system)
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"))
+    other = sf.Diagram("rigid", dict(diagram.models), dict(diagram.blocks))
+    other.models["plant"] = sf.Diagram("x").models.get("plant") or diagram.models["plant"]
+    rigid = sf.Diagram("rigid")
+    rigid.add_model("plant", system, functions=0)
+    swapped = diagram.with_model("plant", rigid.models["plant"])
+    flexible, stiff = (sf.Simulation(item).resolved.layout for item in (diagram, swapped))
+    assert len(flexible.v0) > len(stiff.v0) > 0
+
+
+def test_two_inputs_of_a_block_are_told_apart() -> None:
+    diagram = sf.Diagram("sum")
+    diagram.add(Number(name="one", value=1.0, unit="m"))
+    diagram.add(Number(name="two", value=2.0, unit="m"))
+    diagram.add(Twice(name="sum"), a="one", b="two")
+    diagram.add(Twice(name="alone"), a="two")
+    run = sf.Simulation(diagram).run(0.1, record=0.05)
+    assert run["sum"][-1] == 3.0 and run["alone"][-1] == 2.0
+
+
+def test_a_constraint_that_engages_is_a_plastic_impact() -> None:
+    """Open, the loop is the tree; as it closes, the energy lost is that of the speeds lost: a projection by M."""
+    system = sf.load(MODELS / "closed" / "four_bar.yaml")
+    model, tree = sf.compile(system), sf.compile(replace(system, constraints=()))
+    rng = np.random.default_rng(3)
+    closed = sf.assemble(model, model.neutral() + np.array([0.9, 0.4, -0.5]), rng.normal(size=3))
+    stated = dict(zip(model.names.q, closed.q, strict=True))
+    stated |= {f"d{name}": x for name, x in zip(model.names.v, closed.v, strict=True)}
+    when = 0.004
+    diagram = sf.Diagram("grasp")
+    diagram.add_model("plant", system, start=stated)
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged=True), engaged="after")
+    diagram.add(After(name="after", time=when, period=0.001))
+    run = agree(diagram, 0.05, ["plant.q", "plant.v"], 1e4, dt=1e-3)
+    simulation = sf.Simulation(diagram)
+    run = simulation.run(0.05, dt=1e-3, record=1e-3)
+    free = sf.simulate(tree, closed.q, closed.v, 0.003, dt=1e-3)
+    assert np.abs(run["plant.q"][3] - free.q[-1]).max() < 1e-13
+    open_gap, closed_gap = (np.abs(model.constraint(run["plant.q"][k])).max() for k in (3, 5))
+    assert open_gap > 1e-5 and closed_gap < 1e-11
+    q, v = run.motion("plant")
+    before = sf.simulate(tree, q[3], v[3], 0.001, dt=1e-3)
+    lost = v[4] - before.v[-1]
+    M = model.mass_matrix(q[4])
+    loss = 0.5 * before.v[-1] @ M @ before.v[-1] - 0.5 * v[4] @ M @ v[4]
+    assert loss > 0.0
+    assert loss == pytest.approx(0.5 * lost @ M @ lost, rel=1e-3)
+    assert np.abs(model.constraint_rate(q[4], v[4])).max() < 1e-12
+
+
+def test_constraints_engage_at_samples_only() -> None:
+    system = sf.load(MODELS / "closed" / "four_bar.yaml")
+    diagram = sf.Diagram("grasp")
+    diagram.add_model("plant", system)
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged=True), engaged="after")
+    diagram.add(After(name="after", time=0.1))
+    with pytest.raises(sf.DescriptionError, match="put a hold with a period"):
+        sf.Simulation(diagram)

@@ -1,0 +1,146 @@
+"""A diagram as a C program: it compiles without a warning, and tells what the same run from Python tells."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros import blocks
+from symofros.runtime.toolchain import find_toolchain
+from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Wave, arm
+from tests.diagrams.test_runs import First, Given
+
+MODELS = Path(__file__).parents[2] / "reference_models"
+STRICT = ("-std=c99", "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+
+
+def pendulum() -> sf.Diagram:
+    return arm(sf.load(MODELS / "rigid" / "double_pendulum.yaml"), 2e-3, q1=0.3)
+
+
+def crank() -> sf.Diagram:
+    """Constraints, multipliers at samples, and a constraint that engages."""
+    system = sf.load(MODELS / "closed" / "slider_crank.yaml")
+    model = sf.compile(system)
+    closed = sf.assemble(model, model.neutral(), np.full(model.nv, 0.5))
+    diagram = sf.Diagram("crank")
+    stated = dict(zip(model.names.q, closed.q, strict=True))
+    diagram.add_model("plant", system, start=stated)
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged=True), engaged="after")
+    diagram.add(After(name="after", time=0.03, period=0.01))
+    diagram.add(Hold(name="felt", period=0.01), x="plant.lam")
+    return diagram
+
+
+def table() -> sf.Diagram:
+    diagram = sf.Diagram("1 table")
+    diagram.add(Given(name="given"))
+    diagram.add(First(name="first"), x="given")
+    diagram.add(Lag(name="lag"), x="first")
+    diagram.add(Hold(name="held", period=0.25), x="given")
+    return diagram
+
+
+def ball() -> sf.Diagram:
+    diagram = sf.Diagram("ball")
+    diagram.add(Ball(name="ball"))
+    diagram.add(Counter(name="ticks", period=0.1))
+    return diagram
+
+
+def two() -> sf.Diagram:
+    """Parts that meet at samples."""
+    diagram = sf.Diagram("two")
+    diagram.add(Wave(name="wave"))
+    diagram.add(Lag(name="first"), x="wave")
+    diagram.add(Hold(name="hold", period=0.02), x="first")
+    diagram.add(Lag(name="second"), x="hold")
+    return diagram
+
+
+def still() -> sf.Diagram:
+    """Nothing moves between samples."""
+    diagram = sf.Diagram("still")
+    diagram.add(Counter(name="ticks", period=0.5))
+    return diagram
+
+
+CASES: dict[str, tuple[Any, list[str]]] = {
+    "pendulum": (pendulum, ["plant.q", "plant.a", "pd.effort"]),
+    "crank": (crank, ["plant.q", "plant.lam", "felt"]),
+    "table": (table, ["given", "lag", "held"]),
+    "ball": (ball, ["ball.height", "ball.bounces", "ticks"]),
+    "two": (two, ["first", "second"]),
+    "still": (still, ["ticks"]),
+}
+
+
+def built(folder: Path) -> Path:
+    """The program of an exported folder."""
+    toolchain = find_toolchain(None)
+    assert toolchain is not None
+    sources = [str(path) for path in sorted(folder.glob("*.c"))]
+    command = [*toolchain.command, *STRICT, *sources, "-o", str(folder / "program"), "-lm"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return folder / "program"
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_program_tells_what_python_tells(case: str, tmp_path: Path) -> None:
+    make, outputs = CASES[case]
+    diagram = make()
+    exported = sf.export(diagram, "c", tmp_path / "c", outputs=outputs)
+    assert exported.target == "c"
+    program = built(exported.folder)
+    check = subprocess.run([program, "--check"], capture_output=True, text=True)
+    assert check.returncode == 0, check.stdout
+    done = subprocess.run([program, "1.1", "0.05"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    header, *rows = done.stdout.splitlines()
+    told = np.array([[float(x) for x in row.split(",")] for row in rows])
+    run = sf.Simulation(diagram).run(1.1, dt=1e-3, record=0.05)
+    if case != "ball":  # Whose crossings are recorded, too.
+        want = np.concatenate([np.asarray(run[name]).reshape(len(run.t), -1) for name in outputs], axis=1)
+        assert header.split(",")[0] == "t" and len(header.split(",")) == 1 + want.shape[1]
+        assert np.abs(told[:, 0] - run.t).max() < 1e-12
+        assert np.abs(told[:, 1:] - want).max() < 1e-8 * max(1.0, np.abs(want).max())
+    else:
+        assert told[-1, 2] == run["ball.bounces"][-1] == 2
+
+
+def test_the_check_of_a_program_can_fail(tmp_path: Path) -> None:
+    exported = sf.export(pendulum(), "c", tmp_path / "c")
+    program = exported.folder / "arm_program.c"
+    program.write_text(program.read_text().replace("u_start[] = {0", "u_start[] = {0, 0", 1))
+    instants = exported.folder / "arm_instants.c"
+    text = instants.read_text()
+    assert "50.0" in text
+    instants.write_text(text.replace("50.0", "51.0", 1))
+    assert subprocess.run([built(exported.folder), "--check"], capture_output=True).returncode == 1
+
+
+def test_what_is_no_program() -> None:
+    diagram = pendulum()
+    diagram.add(Spoken(name="spoken", period=0.01, heard=[]), x="pd.effort")
+    with pytest.raises(sf.ExportError, match="block 'spoken' calls Python"):
+        sf.export(diagram, "c", "unused")
+    with pytest.raises(sf.ExportError, match="implicit"):
+        sf.export(pendulum(), "c", "unused", method="rodas4")
+    with pytest.raises(sf.ExportError, match="becomes a C program"):
+        sf.export(pendulum(), "fmu2", "unused")
+    with pytest.raises(sf.DescriptionError, match="no output 'z'"):
+        sf.export(pendulum(), "c", "unused", outputs=["pd.z"])
+
+
+def test_names_that_c_does_not_take(tmp_path: Path) -> None:
+    diagram = sf.Diagram("for")
+    diagram.add(Number(name="while", value=1.0))
+    diagram.add(Lag(name="double"), x="while")
+    assert subprocess.run([built(sf.export(diagram, "c", tmp_path / "c", outputs=["double"]).folder), "--check"],
+                          capture_output=True).returncode == 0  # fmt: skip

@@ -1,0 +1,14 @@
+"""The studies of the report, in its order."""
+
+from __future__ import annotations
+
+from validation.diagrams import square
+from validation.findings import Asked
+from validation.questions.topic import Topic
+
+STUDIES: dict[str, Asked] = {"square": square.study}
+
+TOPIC = Topic(
+    "diagrams", "Diagrams: a controlled flexible robot", "Run the paper's simulations from their block diagrams.",
+    "docs/theory/diagrams.md", STUDIES,
+)  # fmt: skip
