@@ -49,7 +49,8 @@ ALLOWED: dict[str, set[str]] = {
         "compiler", "description", "topology", "kinematics", "dynamics", "expr", "passes", "codegen", "runtime",
         "simulation", "errors", "options",
     },
-    "blocks": {"diagrams", "runtime", "simulation", "expr", "errors"},
+    # Formulas of blocks go through the parser of model files.
+    "blocks": {"diagrams", "runtime", "simulation", "description", "expr", "errors"},
     "loading": {"errors", "atomic", "description", "topology"},
     "__init__": {
         "errors", "options", "expr", "description", "compiler", "loading", "exporting", "runtime", "simulation",

@@ -130,9 +130,9 @@ def euler_of_matrix(R: Tensor, sequence: str) -> Tensor:
     Where the second angle aligns the other two axes, only their sum or difference is defined: the third is zero then.
     """
     i, j = "xyz".index(sequence[0]), "xyz".index(sequence[1])
-    k = 3 - i - j
+    k, repeats = 3 - i - j, sequence[0] == sequence[2]
     sign = 1.0 if (j - i) % 3 == 1 else -1.0
-    if sequence[0] == sequence[2]:
+    if repeats:
         side = _pair(R[i, j], R[i, k])
         second = side.apply("atan2", R[i, i])
         first = R[j, i].apply("atan2", -sign * R[k, i])
@@ -140,14 +140,12 @@ def euler_of_matrix(R: Tensor, sequence: str) -> Tensor:
         side = _pair(R[i, i], R[i, j])
         second = (sign * R[i, k]).apply("atan2", side)
         first = (-sign * R[j, k]).apply("atan2", R[k, k])
-    # What is left once the first turn is undone; well defined where the first angle is not.
     regular = (side - 1e-8).apply("step")
     first = first * regular + (1.0 - regular) * (sign * R[k, j]).apply("atan2", R[j, j])
+    # Row j of what is left once the first turn is undone is that of the third turn alone.
     c, s = first.apply("cos"), first.apply("sin")
-    row_j = [c * R[j, n] + sign * s * R[k, n] for n in range(3)]
-    third = (sign * -row_j[k if sequence[0] == sequence[2] else i]).apply("atan2", row_j[j])
-    if sequence[0] != sequence[2]:
-        third = (sign * -row_j[i]).apply("atan2", row_j[j])
+    row = [c * R[j, n] + sign * s * R[k, n] for n in range(3)]
+    third = (-sign * row[k] if repeats else sign * row[i]).apply("atan2", row[j])
     return joined([first, second, regular * third])
 
 

@@ -18,6 +18,7 @@ from symofros.expr.graph import Graph
 from symofros.runtime.kernel import Array
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.inputs import Signal
+from symofros.simulation.state_space import StateSpace
 
 Shape = tuple[int, ...]
 Values = Mapping[str, Tensor]
@@ -74,6 +75,10 @@ class Known(Protocol):
         Raises:
             DescriptionError: The model has no such frame.
         """
+        ...
+
+    def linear(self, name: str, u: Array) -> StateSpace:
+        """A model linearised about its first state and inputs u (nu), on its constraints."""
         ...
 
     def rubbing(self, model: str) -> list[bool]:

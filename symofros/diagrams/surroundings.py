@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from symofros.compiler import describe, plan
+from symofros.compiler import compile_system, describe, plan
 from symofros.description.forces import Friction
 from symofros.description.system import System
 from symofros.diagrams.block import ModelSetup
@@ -24,6 +24,8 @@ from symofros.kinematics.links import set_in_motion
 from symofros.options import FRAME_FUNCTIONS, Options
 from symofros.runtime.kernel import Array
 from symofros.runtime.record import ModelRecord
+from symofros.simulation.assembly import assemble
+from symofros.simulation.state_space import StateSpace, state_space
 from symofros.topology.tree import SpanningTree
 
 
@@ -103,6 +105,20 @@ class Models:
                 speed = key.removeprefix("d") if key not in record.v_names else key
                 v[self._index(name, "coordinate or speed", speed, record.v_names)] = value
         return q, v
+
+    def linear(self, name: str, u: Array) -> StateSpace:
+        """A model linearised about its first state and inputs u (nu), on its constraints, which are closed first.
+
+        Raises:
+            AssemblyError: The first state can't be brought onto the constraints.
+        """
+        # Evaluated once: interpreted, it needs no compiler.
+        model = compile_system(self.system(name), Options(backend="interpreter"))
+        (q, v), par = self.start(name), self.parameters(name)
+        if model.nc:
+            closed = assemble(model, q, v, u=u, par=par)
+            q, v = closed.q, closed.v
+        return state_space(model, q, v, u, par=par)
 
     def _index(self, model: str, what: str, name: str, known: tuple[str, ...]) -> int:
         if name not in known:

@@ -15,6 +15,7 @@ from symofros.diagrams.units import agree, parse
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.runtime.kernel import Array
 from symofros.runtime.record import ModelRecord
+from symofros.simulation.state_space import StateSpace
 
 Source = tuple[str, str]
 
@@ -74,6 +75,9 @@ class _Surroundings:
 
     def frame(self, model: str, frame: str) -> str:
         return self._models.frame(model, frame)
+
+    def linear(self, name: str, u: Array) -> StateSpace:
+        return self._models.linear(name, u)
 
     def rubbing(self, model: str) -> list[bool]:
         return self._models.rubbing(model)

@@ -1,11 +1,16 @@
-"""Controllers (section 6.2 of the paper): joint PD and what goes with it."""
+"""Control of joints, each by itself: PD, and PID with limits."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+import numpy as np
+
+from symofros.blocks.checks import number, numbers, refuse
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Shape, Values
+from symofros.diagrams.tensor import Tensor
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,13 +26,105 @@ class JointPD(Block):
     kd: Any
     tunable: ClassVar[tuple[str, ...]] = ("kp", "kd")
 
+    def __post_init__(self) -> None:
+        """Gains are numbers."""
+        _gains(self)
+
     def ports(self, known: Known) -> Ports:
         """Desired and actual motion of one size; the effort alike."""
-        size = known.inputs.get("q", known.inputs.get("q_desired"))
-        inputs = (Port("q_desired", size), Port("v_desired", size, "", 0.0), Port("q", size), Port("v", size))
-        return Ports(inputs, (Port("effort", size),))
+        return _joint_ports(self, known)
 
     def compute(self, at: At) -> Values:
         """Proportional and derivative terms."""
-        error, rate = (at.inputs[f"{name}_desired"] - at.inputs[name] for name in ("q", "v"))
+        error, rate = _errors(at)
         return {"effort": at.parameters["kp"] * error + at.parameters["kd"] * rate}
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointPID(Block):
+    """Efforts kp e + i + kd e' within limits, i' = ki e + (effort - unlimited) / tracking: back calculation.
+
+    While a limit holds, the integral follows it, so that it does not wind up. Sampled, i[k + 1] = i[k] + T i'.
+
+    Attributes:
+        kp: Of each joint, or one for all [N m/rad].
+        ki: Likewise [N m/(rad s)].
+        kd: Likewise [N m s/rad].
+        low: Least effort [N m].
+        high: Greatest effort [N m].
+        tracking: Time constant with which the integral follows a limit, at least the period [s].
+    """
+
+    kp: Any
+    ki: Any
+    kd: Any
+    low: Any = -1e300
+    high: Any = 1e300
+    tracking: float = 0.1
+    tunable: ClassVar[tuple[str, ...]] = ("kp", "ki", "kd", "low", "high")
+
+    def __post_init__(self) -> None:
+        """Gains are numbers, limits are in order."""
+        _gains(self)
+        number(self.name, "tracking", self.tracking, self.period or 0.0, math.inf, exclusive=self.period is None)
+        if np.any(np.asarray(self.low) > np.asarray(self.high)):
+            raise refuse(self.name, "low is above high", f"{self.low} and {self.high}", "limits in order",
+                         "exchange them")  # fmt: skip
+
+    def ports(self, known: Known) -> Ports:
+        """Desired and actual motion of one size; the effort alike."""
+        return _joint_ports(self, known)
+
+    def _first(self, known: Known) -> dict[str, Any]:
+        return {"i": np.zeros(known.inputs["q"])}
+
+    def states(self, known: Known) -> dict[str, Any]:
+        """Continuous: the integral."""
+        return self._first(known) if self.period is None else {}
+
+    def memory(self, known: Known) -> dict[str, Any]:
+        """Sampled: the integral."""
+        return {} if self.period is None else self._first(known)
+
+    def _terms(self, at: At) -> tuple[Tensor, Tensor]:
+        """The effort, and the rate of the integral."""
+        par, (error, rate) = at.parameters, _errors(at)
+        i = at.states["i"] if self.period is None else at.memory["i"]
+        wanted = par["kp"] * error + i + par["kd"] * rate
+        effort = wanted.clipped(par["low"], par["high"])
+        return effort, par["ki"] * error + (effort - wanted) / self.tracking
+
+    def compute(self, at: At) -> Values:
+        """Within limits."""
+        return {"effort": self._terms(at)[0]}
+
+    def rates(self, at: At) -> Values:
+        """Continuous: of the integral."""
+        return {"i": self._terms(at)[1]} if self.period is None else {}
+
+    def update(self, at: At) -> Values:
+        """Sampled: the integral, one period further."""
+        return {} if self.period is None else {"i": at.memory["i"] + self.period * self._terms(at)[1]}
+
+
+def _gains(block: Block) -> None:
+    for field in block.tunable:
+        if numbers(block.name, field, getattr(block, field)).ndim > 1:
+            raise refuse(block.name, f"{field} has the wrong shape", np.shape(getattr(block, field)),
+                         "one number, or one a joint", "leave out what couples joints")  # fmt: skip
+
+
+def _joint_ports(block: Block, known: Known) -> Ports:
+    size: Shape | None = known.inputs.get("q", known.inputs.get("q_desired"))
+    for field in block.tunable:
+        own = np.shape(getattr(block, field))
+        if own and size is not None and own != size:
+            raise refuse(block.name, f"{field} does not fit the joints", own, f"one number, or shape {size}",
+                         "give one a joint")  # fmt: skip
+    inputs = (Port("q_desired", size), Port("v_desired", size, "", 0.0), Port("q", size), Port("v", size))
+    return Ports(inputs, (Port("effort", size),))
+
+
+def _errors(at: At) -> tuple[Tensor, Tensor]:
+    inputs = at.inputs
+    return inputs["q_desired"] - inputs["q"], inputs["v_desired"] - inputs["v"]

@@ -1,5 +1,21 @@
-"""Generic blocks: signals, sampling."""
+"""Generic blocks: signals, sampling, limits, linear systems, orientations, formulas."""
 
+from symofros.blocks.generic.calculus import Derivative as Derivative
+from symofros.blocks.generic.calculus import Integrator as Integrator
+from symofros.blocks.generic.formula import Formula as Formula
+from symofros.blocks.generic.formula import PythonBlock as PythonBlock
+from symofros.blocks.generic.frames import FrameTransform as FrameTransform
+from symofros.blocks.generic.frames import Orientation as Orientation
+from symofros.blocks.generic.frames import OrientationError as OrientationError
+from symofros.blocks.generic.frames import Transform as Transform
+from symofros.blocks.generic.linear import StateSpace as StateSpace
+from symofros.blocks.generic.linear import TransferFunction as TransferFunction
+from symofros.blocks.generic.noise import Noise as Noise
+from symofros.blocks.generic.nonlinear import DeadZone as DeadZone
+from symofros.blocks.generic.nonlinear import LookupTable as LookupTable
+from symofros.blocks.generic.nonlinear import Quantizer as Quantizer
+from symofros.blocks.generic.nonlinear import Saturation as Saturation
+from symofros.blocks.generic.nonlinear import Switch as Switch
 from symofros.blocks.generic.sampling import Hold as Hold
 from symofros.blocks.generic.sampling import UnitDelay as UnitDelay
 from symofros.blocks.generic.signals import Constant as Constant
@@ -7,4 +23,7 @@ from symofros.blocks.generic.signals import Gain as Gain
 from symofros.blocks.generic.signals import Join as Join
 from symofros.blocks.generic.signals import Pick as Pick
 from symofros.blocks.generic.signals import Product as Product
+from symofros.blocks.generic.signals import Reshape as Reshape
 from symofros.blocks.generic.signals import Sum as Sum
+from symofros.blocks.generic.switching import RateLimit as RateLimit
+from symofros.blocks.generic.switching import Relay as Relay

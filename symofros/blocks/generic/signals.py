@@ -247,3 +247,33 @@ class Join(Block):
     def compute(self, at: At) -> Values:
         """All entries, row by row."""
         return {"y": joined([at.inputs[f"u{i + 1}"] for i in range(self.count)])}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reshape(Block):
+    """The same entries, row by row, in another shape: nine numbers as a matrix, say.
+
+    Attributes:
+        shape: Of the output; () for a scalar.
+    """
+
+    shape: Any = ()
+
+    def __post_init__(self) -> None:
+        """Sizes are whole numbers."""
+        if not isinstance(self.shape, (list, tuple)):
+            raise refuse(self.name, "shape", repr(self.shape), "a list of sizes", "write for example [3, 3]")
+        for size in self.shape:
+            whole(self.name, "shape", size, 1, 10**4)
+
+    def ports(self, known: Known) -> Ports:
+        """Input u, output y."""
+        into, out = known.inputs.get("u"), tuple(self.shape)
+        if into is not None and np.prod(into) != np.prod(out):
+            raise refuse(self.name, "sizes differ", into, f"{int(np.prod(out))} entries, as shape {out} has",
+                         "choose a shape of as many")  # fmt: skip
+        return Ports((Port("u", into),), (Port("y", out),))
+
+    def compute(self, at: At) -> Values:
+        """As they are."""
+        return {"y": at.inputs["u"].reshape(*self.shape)}

@@ -54,24 +54,22 @@ class InverseKinematics(Block):
         for field in ("damping", "near", "stride"):
             number(self.name, field, getattr(self, field), 0.0, exclusive=True)
 
+    def _chosen(self, known: Known) -> Chosen:
+        return Chosen.of(known, self.name, self.model, self.joints)
+
     def _task(self, known: Known) -> Task:
-        chosen = Chosen.of(known, self.name, self.model, self.joints)
-        return Task(self.model, known.frame(self.model, self.frame), rows_of(self.name, self.rows), chosen)
+        frame, columns = known.frame(self.model, self.frame), list(self._chosen(known).v)
+        return Task(self.model, frame, rows_of(self.name, self.rows), columns, bool(known.model(self.model).nc))
 
     def ports(self, known: Known) -> Ports:
         """Desired p, angle or R as the rows ask, v and a of the rows; out q (nq), v, a (nv), error of the rows."""
         task, record = self._task(known), known.model(self.model)
-        linear, turns, m = sum(row < 3 for row in task.rows), len(task.turns), len(task.rows)
-        inputs = [Port("p", (linear,), "m")] if linear else []
-        inputs += [Port("angle", (), "rad")] if turns == 1 else [Port("R", (3, 3))] if turns else []
-        v, a = ("m/s", "m/s^2") if not turns else ("", "")
-        inputs += [Port("v", (m,), v, 0.0), Port("a", (m,), a, 0.0)]
         units, nv = joint_units(record), len(record.v_names)
-        return Ports(tuple(inputs), (Port("q", (len(record.q_names),), units[0]), Port("v", (nv,), units[1]),
-                                     Port("a", (nv,), units[2]), Port("error", (m,))))  # fmt: skip
+        return Ports(tuple(task.ports()), (Port("q", (len(record.q_names),), units[0]), Port("v", (nv,), units[1]),
+                                           Port("a", (nv,), units[2]), Port("error", (len(task.rows),))))  # fmt: skip
 
     def _first(self, known: Known) -> dict[str, Any]:
-        chosen = self._task(known).chosen
+        chosen = self._chosen(known)
         return {"joints": chosen.start[list(chosen.q)]}
 
     def states(self, known: Known) -> dict[str, Any]:
@@ -82,52 +80,44 @@ class InverseKinematics(Block):
         """Sampled: the joints at the sample before."""
         return {} if self.period is None else self._first(known)
 
-    def _error(self, at: At, task: Task, joints: Tensor) -> Tensor:
-        orientation = at.inputs.get("R", at.inputs.get("angle"))
-        return task.error(at, task.chosen.configuration(at, joints), at.inputs.get("p"), orientation)
-
-    def _placed(self, at: At, task: Task) -> Tensor:
+    def _placed(self, at: At) -> Tensor:
         """Joints at which the frame is where it should be."""
         if self.period is None:
             return at.states["joints"]
-        joints = at.memory["joints"]
+        task, chosen, joints = self._task(at.known), self._chosen(at.known), at.memory["joints"]
         for _ in range(self.steps):
-            J = task.jacobian(at, task.chosen.configuration(at, joints))
-            step = resolved(damped(J, self.damping, self.near), self._error(at, task, joints))
-            largest = step[0].apply("abs")
-            for i in range(1, len(step)):
-                largest = largest.apply("max", step[i].apply("abs"))
-            joints = joints + step * (self.stride / largest.apply("max", self.stride))
+            q = chosen.configuration(at, joints)
+            step = resolved(damped(task.jacobian(at, q), self.damping, self.near), task.error(at, q))
+            largest = at.numbers(self.stride)
+            for entry in step:
+                largest = largest.apply("max", entry.apply("abs"))
+            joints = joints + step * (self.stride / largest)
         return joints
 
-    def _moved(self, at: At, task: Task, joints: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    def _moved(self, at: At, joints: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Rates and accelerations of the joints, and what is missing."""
-        q = task.chosen.configuration(at, joints)
-        J = task.jacobian(at, q)
-        system, error = damped(J, self.damping, self.near), self._error(at, task, joints)
+        task, chosen = self._task(at.known), self._chosen(at.known)
+        q = chosen.configuration(at, joints)
+        J, error = task.jacobian(at, q), task.error(at, q)
+        system = damped(J, self.damping, self.near)
         rates, accelerations = task.desired(at, at.inputs["v"]), task.desired(at, at.inputs["a"])
         gain = self.gain if self.period is None else 0.0
         v = resolved(system, rates + gain * error)
-        drift = task.drift(at, q, task.chosen.speeds_of(at, v))
+        drift = task.drift(at, q, chosen.speeds_of(at, v))
         a = resolved(system, accelerations + gain * (rates - J @ v) - drift)
         return v, a, error[: len(task.rows)]
 
     def compute(self, at: At) -> Values:
         """Position first, then rates there."""
-        task = self._task(at.known)
-        joints = self._placed(at, task)
-        v, a, error = self._moved(at, task, joints)
-        chosen = task.chosen
-        whole_q = chosen.configuration(at, joints)
-        return {"q": whole_q, "v": chosen.speeds_of(at, v), "a": chosen.speeds_of(at, a), "error": error}
+        chosen, joints = self._chosen(at.known), self._placed(at)
+        v, a, error = self._moved(at, joints)
+        return {"q": chosen.configuration(at, joints), "v": chosen.speeds_of(at, v), "a": chosen.speeds_of(at, a),
+                "error": error}  # fmt: skip
 
     def rates(self, at: At) -> Values:
         """Of the state."""
-        if self.period is not None:
-            return {}
-        task = self._task(at.known)
-        return {"joints": self._moved(at, task, at.states["joints"])[0]}
+        return {"joints": self._moved(at, at.states["joints"])[0]} if self.period is None else {}
 
     def update(self, at: At) -> Values:
         """Where the next sample starts."""
-        return {} if self.period is None else {"joints": self._placed(at, self._task(at.known))}
+        return {} if self.period is None else {"joints": self._placed(at)}

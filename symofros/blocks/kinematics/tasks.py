@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from symofros.blocks.checks import known_name, refuse
 from symofros.blocks.quantities import actuated_names, scalar_coordinates
 from symofros.blocks.rotations import error_vector
-from symofros.diagrams.block import At, Known
+from symofros.diagrams.block import At, Known, Port
 from symofros.diagrams.tensor import Tensor, joined, solved, stacked
 from symofros.runtime.kernel import Array
 
@@ -86,88 +86,102 @@ class Chosen:
 
 @dataclass(frozen=True)
 class Task:
-    """Rows of a frame's motion, and a model's closures, which are followed as well.
+    """Rows of a frame's motion and, if asked for, a model's closures, which are followed as well.
 
     Attributes:
         model: The model.
         frame: Its frame.
         rows: Places in (linear; angular).
-        chosen: What follows.
+        columns: Places in v of what moves.
+        closes: Whether closures count.
+        suffix: Of the names of the inputs for the desired motion.
     """
 
     model: str
     frame: str
     rows: list[int]
-    chosen: Chosen
+    columns: list[int]
+    closes: bool = False
+    suffix: str = ""
 
     @property
     def turns(self) -> list[int]:
         """Axes of the rows that are rotations."""
         return [row - 3 for row in self.rows if row > 2]
 
-    def error(self, at: At, q: Tensor, p: Tensor | None, orientation: Tensor | None) -> Tensor:
-        """What is missing: of the rows, then -phi of the closures.
+    def ports(self) -> list[Port]:
+        """Inputs for a desired motion: p, angle or R as the rows ask, v and a."""
+        linear, turns, m = sum(row < 3 for row in self.rows), len(self.turns), len(self.rows)
+        found = [Port("p", (linear,), "m")] if linear else []
+        found += [Port("angle", (), "rad")] if turns == 1 else [Port("R", (3, 3))] if turns else []
+        v, a = ("m/s", "m/s^2") if not turns else ("", "")
+        found += [Port("v", (m,), v, 0.0), Port("a", (m,), a, 0.0)]
+        return [replace(port, name=port.name + self.suffix) for port in found]
 
-        Args:
-            at: Where.
-            q: Configuration (nq).
-            p: Desired position, of the linear rows.
-            orientation: Desired R (3, 3), or the angle [rad] about the axis of a single rotation.
-        """
+    def given(self, at: At, name: str) -> Tensor | None:
+        """A desired quantity; None where the rows don't ask for it."""
+        return at.inputs.get(name + self.suffix)
+
+    def error(self, at: At, q: Tensor) -> Tensor:
+        """What is missing to the inputs p, and angle or R, at a configuration (nq); then -phi of the closures."""
         pose = at.call(self.model, "frame_pose", self.frame, q=q, t=at.t)
         parts = []
+        p, R, angle = (self.given(at, name) for name in ("p", "R", "angle"))
         if p is not None:
             parts.append(p - pose["p"][[row for row in self.rows if row < 3]])
-        if orientation is not None:
-            parts.append(self._turn(orientation, pose["R"]))
-        if at.known.model(self.model).nc:
+        if R is not None:
+            parts.append(error_vector(R, pose["R"])[self.turns])
+        if angle is not None:
+            parts.append(self._turn(angle, pose["R"]))
+        if self.closes:
             parts.append(-at.call(self.model, "constraint", q=q, t=at.t)["phi"])
         return joined(parts)
 
     def _turn(self, desired: Tensor, R: Tensor) -> Tensor:
-        if desired.shape:
-            return error_vector(desired, R)[self.turns]
         i, j = (self.turns[0] + 1) % 3, (self.turns[0] + 2) % 3
         c, s = desired.apply("cos"), desired.apply("sin")
         # The angle of R is that of its axis i, seen along the axis of rotation.
         x, y = R[i, i], R[j, i]
-        return joined([(s * x - c * y).apply("atan2", c * x + s * y)])
+        return (s * x - c * y).apply("atan2", c * x + s * y)
 
     def jacobian(self, at: At, q: Tensor) -> Tensor:
-        """Rates of the rows, and of the closures, by the joints (rows, joints)."""
+        """Rates of the rows, and of the closures, by the columns (rows, columns)."""
         J = at.call(self.model, "frame_jacobian", self.frame, q=q, t=at.t)["J"]
         parts = [J[row] for row in self.rows]
-        if at.known.model(self.model).nc:
+        if self.closes:
             parts += list(at.call(self.model, "constraint_jacobian", q=q, t=at.t)["G"])
-        return stacked([part[list(self.chosen.v)] for part in parts])
+        return stacked([part[self.columns] for part in parts])
 
     def drift(self, at: At, q: Tensor, v: Tensor) -> Tensor:
         """The part of the rows' acceleration that is J' v, and -gamma of the closures."""
-        zero = at.numbers(np.zeros(self.chosen.speeds))
+        zero = at.numbers(np.zeros(len(v)))
         A = at.call(self.model, "frame_acceleration", self.frame, q=q, v=v, a=zero, t=at.t)["A"]
         parts = [A[self.rows]]
-        if at.known.model(self.model).nc:
+        if self.closes:
             parts.append(-at.call(self.model, "constraint_bias", q=q, v=v, t=at.t)["gamma"])
         return joined(parts)
 
     def desired(self, at: At, rows: Tensor) -> Tensor:
         """Rates of the rows, zeros for the closures."""
-        return joined([rows, at.numbers(np.zeros(at.known.model(self.model).nc))])
+        return joined([rows, at.numbers(np.zeros(at.known.model(self.model).nc))]) if self.closes else rows
+
+
+def near_singular(J: Tensor, damping: float, near: float) -> tuple[Tensor, Tensor]:
+    """The smaller Gram matrix of J (m, n), and what to add to its diagonal where it is nearly singular.
+
+    The smallest pivot d of J J^T (or J^T J) + damping^2 tells: nothing is added where d - damping^2 >= near^2, and
+    below, smoothly, (1 - (d - damping^2) / near^2) damping^2.
+    """
+    gram = J @ J.T if J.shape[0] <= J.shape[1] else J.T @ J
+    full = damping * damping
+    smallest = _smallest_pivot(gram + full * np.eye(len(gram)))
+    return gram, full * (1.0 - (smallest - full) / (near * near)).clipped(0.0, 1.0)
 
 
 def damped(J: Tensor, damping: float, near: float) -> tuple[Tensor, Tensor]:
-    """What `resolved` needs of J (m, n): its smaller Gram matrix, damped where it is nearly singular, and J.
-
-    The smallest pivot d of J J^T (or J^T J) + damping^2 tells: damping is left out where d - damping^2 >= near^2, and
-    comes in smoothly below, as (1 - (d - damping^2) / near^2) damping^2.
-    """
-    m, n = J.shape
-    gram = J @ J.T if m <= n else J.T @ J
-    size = len(gram)
-    full = damping * damping
-    smallest = _smallest_pivot(gram + full * np.eye(size))
-    share = (1.0 - (smallest - full) / (near * near)).clipped(0.0, 1.0)
-    return gram + (full * share) * np.eye(size), J
+    """What `resolved` needs of J (m, n): its smaller Gram matrix, damped where it is nearly singular, and J."""
+    gram, extra = near_singular(J, damping, near)
+    return gram + extra * np.eye(len(gram)), J
 
 
 def resolved(system: tuple[Tensor, Tensor], rates: Tensor) -> Tensor:

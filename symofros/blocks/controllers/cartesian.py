@@ -1,0 +1,144 @@
+"""Control of a frame in space: linear control, and feedback of its dynamics (section 6.1 of the paper)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from symofros.blocks.checks import number, numbers, refuse
+from symofros.blocks.kinematics.tasks import Task, near_singular, rows_of
+from symofros.blocks.quantities import joint_units
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.tensor import Tensor, solved
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Cartesian(Block):
+    """A frame of a model, rows of its motion, and gains of them."""
+
+    model: str
+    frame: str
+    rows: Any = ("x", "y", "z")
+
+    def __post_init__(self) -> None:
+        """Known rows, gains one or one a row."""
+        size = len(rows_of(self.name, self.rows))
+        for field in self.tunable:
+            value = getattr(self, field)
+            numbers(self.name, field, value, (size,) if np.ndim(value) else ())
+
+    def _task(self, known: Known) -> Task:
+        columns = list(range(len(known.model(self.model).v_names)))
+        return Task(
+            self.model, known.frame(self.model, self.frame), rows_of(self.name, self.rows), columns, suffix="_desired"
+        )
+
+    def _ports(self, known: Known, result: str) -> Ports:
+        record, task = known.model(self.model), self._task(known)
+        units, nv, m = joint_units(record), len(record.v_names), len(task.rows)
+        inputs = (*task.ports(), Port("q", (len(record.q_names),), units[0]), Port("v", (nv,), units[1]))
+        return Ports(inputs, (Port(result, (nv,), units[3]), Port("wrench", (m,)), Port("error", (m,))))
+
+
+@dataclass(frozen=True, kw_only=True)
+class CartesianLinear(_Cartesian):
+    """Springs and dampers between a frame and where it should be: tau = J^T (stiffness e + damping e').
+
+    Compensate gravity and friction beside it.
+
+    Attributes:
+        model: The model.
+        frame: Its frame.
+        rows: Which rows of its motion, as in `InverseKinematics`.
+        stiffness: One, or one a row [N/m, N m/rad].
+        damping: Likewise [N s/m, N m s/rad].
+    """
+
+    stiffness: Any
+    damping: Any
+    tunable: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
+
+    def ports(self, known: Known) -> Ports:
+        """Desired p, angle or R, v; actual q, v in; effort (nv), wrench and error of the rows out."""
+        found = self._ports(known, "effort")
+        return Ports(tuple(port for port in found.inputs if port.name != "a_desired"), found.outputs)
+
+    def compute(self, at: At) -> Values:
+        """The wrench, and the efforts that make it."""
+        task, q = self._task(at.known), at.inputs["q"]
+        J, error = task.jacobian(at, q), task.error(at, q)
+        rate = at.inputs["v_desired"] - J @ at.inputs["v"]
+        wrench = at.parameters["stiffness"] * error + at.parameters["damping"] * rate
+        return {"effort": J.T @ wrench, "wrench": wrench, "error": error}
+
+
+@dataclass(frozen=True, kw_only=True)
+class CartesianFeedback(_Cartesian):
+    """Operational space control: the frame moves as e'' + kd e' + kp e = 0.
+
+    tau = J^T F + N^T tau_0 + h - Q(q, v, 0), F = L (a_d + kd e' + kp e - J' v), L = (J M^-1 J^T)^-1, where
+    tau_0 = -idle M v slows what the task leaves free and N^T = 1 - J^T L J M^-1 keeps it out of the task. O. Khatib,
+    A unified approach for motion and force control of robot manipulators, IEEE J. Robotics and Automation 3 (1987).
+
+    Attributes:
+        model: The model; it has no closures.
+        frame: Its frame.
+        rows: Which rows of its motion, as in `InverseKinematics`.
+        kp: One, or one a row [1/s^2].
+        kd: Likewise [1/s].
+        idle: Damping of motion that the task leaves free [1/s].
+        regular: Added to L^-1 where J is nearly singular, relative to its mean diagonal.
+        near: Smallest pivot of J J^T, as a root, below which a posture is nearly singular [m/rad, or 1].
+    """
+
+    kp: Any
+    kd: Any
+    idle: float = 1.0
+    regular: float = 1e-3
+    near: float = 0.02
+    tunable: ClassVar[tuple[str, ...]] = ("kp", "kd")
+
+    def __post_init__(self) -> None:
+        """Gains, and numbers within bounds."""
+        super().__post_init__()
+        number(self.name, "idle", self.idle, 0.0)
+        number(self.name, "regular", self.regular, 0.0)
+        number(self.name, "near", self.near, 0.0, exclusive=True)
+
+    def ports(self, known: Known) -> Ports:
+        """Desired p, angle or R, v, a; actual q, v in; tau (nv), wrench and error of the rows out."""
+        record = known.model(self.model)
+        if record.nc:
+            raise refuse(self.name, "a model with constraints", f"model '{self.model}', {record.nc} conditions",
+                         "feedback of dynamics is for trees of joints",
+                         "use CartesianLinear, or a model without")  # fmt: skip
+        return self._ports(known, "tau")
+
+    def compute(self, at: At) -> Values:
+        """Inverse dynamics of the frame."""
+        task, q, v = self._task(at.known), at.inputs["q"], at.inputs["v"]
+        J, error = task.jacobian(at, q), task.error(at, q)
+        x = (
+            at.inputs["a_desired"]
+            + at.parameters["kd"] * (at.inputs["v_desired"] - J @ v)
+            + at.parameters["kp"] * error
+        )
+        M = at.call(self.model, "mass_matrix", q=q, t=at.t)["M"]
+        MJ = at.solved(M, J.T)
+        mobility = self._regular(J, J @ MJ)
+        idle = -self.idle * v
+        F = solved(mobility, x - task.drift(at, q, v) - J @ idle)
+        bias = at.call(self.model, "inverse_dynamics", q=q, v=v, a=at.numbers(np.zeros(len(v))), t=at.t)["tau"]
+        return {"tau": J.T @ F + M @ idle + bias, "wrench": F, "error": error}
+
+    def _regular(self, J: Tensor, mobility: Tensor) -> Tensor:
+        m = len(mobility)
+        share = near_singular(J, self.near, self.near)[1] / (self.near * self.near)
+        mean = _diagonal(mobility).sum() / float(m)
+        return mobility + (self.regular * share * mean) * np.eye(m)
+
+
+def _diagonal(A: Tensor) -> Tensor:
+    return Tensor(A.g, A.edges.diagonal().copy())

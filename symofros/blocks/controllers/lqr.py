@@ -1,0 +1,94 @@
+"""The linear quadratic regulator about a model's first state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from symofros.blocks.checks import numbers, refuse
+from symofros.blocks.controllers.riccati import continuous_gain, held_inputs, sampled_gain
+from symofros.blocks.manifold import difference
+from symofros.blocks.quantities import joint_units
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.tensor import joined
+from symofros.runtime.kernel import Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class LQR(Block):
+    """u = u_0 - K x, x = (difference of q along the manifold, v - v_d), K least in int x^T Q x + u^T R u.
+
+    The model is linearised about its first state, exactly, once, as the block is written out; sampled, with inputs held
+    over the period. On constraints x is taken along the motions that they leave. Parameters changed for a run do not
+    change K.
+
+    Attributes:
+        model: The model; at its first state with inputs u_0 it should be at rest.
+        state_weights: Q: one, one an entry of x (2 nv), or a matrix.
+        input_weights: R: one, one an input (nu), or a matrix, positive.
+        nominal: u_0 (nu); None: the model's default inputs.
+    """
+
+    model: str
+    state_weights: Any = 1.0
+    input_weights: Any = 1.0
+    nominal: Any = None
+
+    def ports(self, known: Known) -> Ports:
+        """Actual q, v, and desired ones, the first state by default, in; u (nu) and x (2 nv) out."""
+        record = known.model(self.model)
+        q, v, _, effort = joint_units(record)
+        nq, nv, nu = len(record.q_names), len(record.v_names), len(record.u_names)
+        if not nu:
+            raise refuse(self.name, "nothing to control", f"model '{self.model}' has no inputs",
+                         "a regulated model has inputs", "actuate a joint")  # fmt: skip
+        if self.nominal is not None:
+            numbers(self.name, "nominal", self.nominal, (nu,))
+        self._weights("state_weights", 2 * nv)
+        self._weights("input_weights", nu)
+        q0, v0 = known.start(self.model)
+        inputs = (Port("q", (nq,), q), Port("v", (nv,), v), Port("q_desired", (nq,), q, tuple(q0)),
+                  Port("v_desired", (nv,), v, tuple(v0)))  # fmt: skip
+        return Ports(inputs, (Port("u", (nu,), effort), Port("x", (2 * nv,))))
+
+    def _weights(self, field: str, size: int) -> Array:
+        given = np.asarray(getattr(self, field), dtype=np.float64)
+        numbers(self.name, field, given, ((), (size,), (size, size))[min(given.ndim, 2)])
+        whole = given if given.ndim == 2 else np.diag(np.broadcast_to(given, size))
+        least = np.linalg.eigvalsh(0.5 * (whole + whole.T)).min(initial=np.inf)
+        if not np.allclose(whole, whole.T) or least < 0.0 or (field == "input_weights" and least == 0.0):
+            raise refuse(self.name, f"{field} are not weights", f"least eigenvalue {least:g}",
+                         "symmetric; state weights are not negative, input weights positive",
+                         "choose others")  # fmt: skip
+        return whole
+
+    def _nominal(self, known: Known) -> Array:
+        given = known.model(self.model).u_default if self.nominal is None else self.nominal
+        return np.asarray(given, dtype=np.float64)
+
+    def gain(self, known: Known) -> Array:
+        """K (nu, 2 nv).
+
+        Raises:
+            DescriptionError: Nothing stabilises the model.
+        """
+        linear = known.linear(self.model, self._nominal(known))
+        Q, R = self._weights("state_weights", len(linear.basis)), self._weights("input_weights", linear.B.shape[1])
+        Q = linear.basis.T @ Q @ linear.basis
+        if self.period is None:
+            K = continuous_gain(linear.A, linear.B, Q, R)
+        else:
+            K = sampled_gain(*held_inputs(linear.A, linear.B, self.period), Q, R)
+        if K is None:
+            raise refuse(self.name, "no gain", f"model '{self.model}' about its first state",
+                         "inputs reach every motion that does not die out, and weights see it",
+                         "actuate more joints, damp what is out of reach, weigh all states")  # fmt: skip
+        return K @ linear.basis.T
+
+    def compute(self, at: At) -> Values:
+        """The gain on the state's error."""
+        record, inputs = at.known.model(self.model), at.inputs
+        x = joined([difference(record, inputs["q_desired"], inputs["q"]), inputs["v"] - inputs["v_desired"]])
+        return {"u": self._nominal(at.known) - at.numbers(self.gain(at.known)) @ x, "x": x}

@@ -1,0 +1,76 @@
+"""Riccati equations by doubling, and the sampled form of a linear system: what a linear quadratic regulator needs.
+
+E. K.-W. Chu, H.-Y. Fan, W.-W. Lin, A structure-preserving doubling algorithm for continuous-time algebraic Riccati
+equations, Linear Algebra and its Applications 396 (2005).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from symofros.runtime.kernel import Array
+
+# Doubling: 2^40 is more than any time constant of a mechanism takes.
+_ROUNDS = 60
+
+
+def continuous_gain(A: Array, B: Array, Q: Array, R: Array) -> Array | None:
+    """K = R^-1 B^T X (m, n) of A^T X + X A - X B R^-1 B^T X + Q = 0; None where nothing stabilises the system."""
+    n, G = len(A), B @ np.linalg.solve(R, B.T)
+    # The Cayley transform keeps digits with a shift about the size of the eigenvalues.
+    shift = max(1e-3, float(np.sqrt(np.linalg.norm(A) * np.abs(np.linalg.eigvals(A)).max(initial=1e-3))))
+    moved = A - shift * np.eye(n)
+    try:
+        W = moved.T + Q @ np.linalg.solve(moved, G)
+        A0 = np.eye(n) + 2.0 * shift * np.linalg.inv(W).T
+        G0 = 2.0 * shift * np.linalg.solve(moved, G) @ np.linalg.inv(W)
+        H0 = 2.0 * shift * np.linalg.solve(W, Q) @ np.linalg.inv(moved)
+        X = _doubled(A0, G0, H0)
+    except np.linalg.LinAlgError:
+        return None
+    K = np.asarray(np.linalg.solve(R, B.T @ X), dtype=np.float64)
+    return K if bool(np.all(np.linalg.eigvals(A - B @ K).real < 0.0)) else None
+
+
+def sampled_gain(A: Array, B: Array, Q: Array, R: Array) -> Array | None:
+    """K (m, n) that minimises sum x^T Q x + u^T R u of x[k + 1] = A x[k] + B u[k]; None where nothing stabilises it."""
+    try:
+        X = _doubled(A, B @ np.linalg.solve(R, B.T), Q)
+    except np.linalg.LinAlgError:
+        return None
+    K = np.asarray(np.linalg.solve(R + B.T @ X @ B, B.T @ X @ A), dtype=np.float64)
+    return K if bool(np.all(np.abs(np.linalg.eigvals(A - B @ K)) < 1.0)) else None
+
+
+def _doubled(A: Array, G: Array, H: Array) -> Array:
+    """The limit of H."""
+    one = np.eye(len(A))
+    for _ in range(_ROUNDS):
+        inner = np.linalg.solve(one + G @ H, np.hstack([A, G]))
+        forward, across = inner[:, : len(A)], inner[:, len(A) :]
+        step = A.T @ H @ forward
+        A, G, H = A @ forward, G + A @ across @ A.T, H + 0.5 * (step + step.T)
+        if not np.all(np.isfinite(H)):
+            raise np.linalg.LinAlgError("the doubling diverges")
+        if np.linalg.norm(step) <= 1e-15 * np.linalg.norm(H):
+            break
+    return H
+
+
+def held_inputs(A: Array, B: Array, period: float) -> tuple[Array, Array]:
+    """x[k + 1] = A_d x[k] + B_d u[k] of x' = A x + B u where u is held over each period [s]."""
+    n, m = B.shape
+    whole = np.zeros((n + m, n + m))
+    whole[:n, :n], whole[:n, n:] = A * period, B * period
+    halvings = max(0, math.ceil(math.log2(max(1e-300, float(np.linalg.norm(whole, 1))))) + 1)
+    small = whole / 2.0**halvings
+    # The norm is at most a half: 18 terms of the series are exact to rounding.
+    total, term = np.eye(n + m), np.eye(n + m)
+    for k in range(1, 19):
+        term = term @ small / k
+        total = total + term
+    for _ in range(halvings):
+        total = total @ total
+    return total[:n, :n], total[:n, n:]

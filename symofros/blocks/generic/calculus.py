@@ -1,0 +1,171 @@
+"""Integrator and derivative, continuous and sampled."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from symofros.blocks.checks import choice, number, numbers
+from symofros.blocks.generic.nonlinear import ordered
+from symofros.diagrams.block import At, Block, Crossing, Known, Port, Ports, Values
+from symofros.diagrams.tensor import Tensor
+
+_DIRECTIONS = ("none", "rising", "falling", "both")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Integrator(Block):
+    """y' = u, y(0) = start; sampled, y[k + 1] = y[k] + T u[k]; entry by entry.
+
+    At a limit it stands still as long as u pushes against it. A reset takes y back to its start: continuous, where the
+    input "reset" crosses zero, located in time; sampled, at the first sample after.
+
+    Attributes:
+        start: First y, a number or one an entry, which also tells the shape inside loops.
+        low: Lower limit.
+        high: Upper limit.
+        reset: Which crossings of the input "reset" count: none (no such input), rising, falling, both.
+        unit_in: Of u.
+        unit_out: Of y.
+    """
+
+    start: Any = 0.0
+    low: float = -math.inf
+    high: float = math.inf
+    reset: str = "none"
+    unit_in: str = ""
+    unit_out: str = ""
+
+    def __post_init__(self) -> None:
+        """A start within limits in order."""
+        numbers(self.name, "start", self.start)
+        ordered(self, "low", "high")
+        ordered(self, "low", "start")
+        ordered(self, "start", "high")
+        choice(self.name, "reset", self.reset, _DIRECTIONS)
+
+    def ports(self, known: Known) -> Ports:
+        """Inputs u, and reset (scalar) if asked for; output y."""
+        shape = np.shape(self.start) or known.inputs.get("u")
+        inputs = (Port("u", shape, self.unit_in), *([Port("reset", ())] if self.reset != "none" else []))
+        return Ports(inputs, (Port("y", shape, self.unit_out),))
+
+    def _first(self, known: Known) -> Any:
+        return np.broadcast_to(np.asarray(self.start, dtype=np.float64), known.inputs["u"])
+
+    def states(self, known: Known) -> dict[str, Any]:
+        """Continuous: y."""
+        return {"x": self._first(known)} if self.period is None else {}
+
+    def memory(self, known: Known) -> dict[str, Any]:
+        """Sampled: y, and the reset signal at the sample before."""
+        if self.period is None:
+            return {}
+        return {"x": self._first(known)} | ({} if self.reset == "none" else {"before": 0.0})
+
+    def _limited(self, x: Tensor) -> Tensor:
+        x = x if self.low == -math.inf else x.apply("max", self.low)
+        return x if self.high == math.inf else x.apply("min", self.high)
+
+    def _now(self, at: At) -> Tensor:
+        """At a sample: what was reached, or the start."""
+        x = at.memory["x"]
+        if self.reset == "none":
+            return x
+        before, now = at.memory["before"], at.inputs["reset"]
+        rises, falls = _rises(before, now), _rises(-before, -now)
+        hit = {"rising": rises, "falling": falls, "both": rises.apply("max", falls)}[self.reset]
+        return x * (1.0 - hit) + hit * np.asarray(self.start, dtype=np.float64)
+
+    def compute(self, at: At) -> Values:
+        """The integral, within limits."""
+        return {"y": self._limited(at.states["x"]) if self.period is None else self._now(at)}
+
+    def rates(self, at: At) -> Values:
+        """U, unless it pushes against a limit."""
+        if self.period is not None:
+            return {}
+        x, rate = at.states["x"], at.inputs["u"]
+        if self.high < math.inf:
+            rate = rate * (1.0 - (x - self.high).apply("step") * rate.apply("step"))
+        if self.low > -math.inf:
+            rate = rate * (1.0 - (self.low - x).apply("step") * (-rate).apply("step"))
+        return {"x": rate}
+
+    def update(self, at: At) -> Values:
+        """One sample's share further."""
+        if self.period is None:
+            return {}
+        found = {"x": self._limited(self._now(at) + float(self.period) * at.inputs["u"])}
+        return found if self.reset == "none" else {**found, "before": at.inputs["reset"]}
+
+    def crossings(self, at: At) -> dict[str, Crossing]:
+        """Continuous: zeros of the reset signal."""
+        if self.period is not None or self.reset == "none":
+            return {}
+        return {"reset": Crossing(at.inputs["reset"], self.reset)}  # type: ignore[arg-type]
+
+    def crossed(self, at: At, which: str) -> Values:
+        """Back to the start."""
+        return {"x": at.states["x"] * 0.0 + np.asarray(self.start, dtype=np.float64)}
+
+
+def _rises(before: Tensor, now: Tensor) -> Tensor:
+    """1 where a signal was below zero and is not now."""
+    return (1.0 - before.apply("step")) * now.apply("step")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Derivative(Block):
+    """y = s u / (tau s + 1); sampled, y[k] = a y[k - 1] + (1 - a) (u[k] - u[k - 1]) / T, a = exp(-T / tau).
+
+    Attributes:
+        tau: Time constant of the filter [s]; above zero, or zero for plain differences of samples.
+        start: U before the start: its own first value keeps y from jumping.
+        unit_in: Of u.
+        unit_out: Of y.
+    """
+
+    tau: float = 0.01
+    start: Any = 0.0
+    unit_in: str = ""
+    unit_out: str = ""
+
+    def __post_init__(self) -> None:
+        """A time constant."""
+        number(self.name, "tau", self.tau, 0.0, exclusive=self.period is None)
+        numbers(self.name, "start", self.start)
+
+    def ports(self, known: Known) -> Ports:
+        """Input u, output y."""
+        shape = known.inputs.get("u", np.shape(self.start) or None)
+        return Ports((Port("u", shape, self.unit_in),), (Port("y", shape, self.unit_out),))
+
+    def _first(self, known: Known) -> Any:
+        return np.broadcast_to(np.asarray(self.start, dtype=np.float64), known.inputs["u"])
+
+    def states(self, known: Known) -> dict[str, Any]:
+        """Continuous: u, late by the filter."""
+        return {"x": self._first(known)} if self.period is None else {}
+
+    def memory(self, known: Known) -> dict[str, Any]:
+        """Sampled: u and y of the sample before."""
+        return {} if self.period is None else {"u": self._first(known), "y": np.zeros(known.inputs["u"])}
+
+    def compute(self, at: At) -> Values:
+        """How fast u moves."""
+        if self.period is None:
+            return {"y": (at.inputs["u"] - at.states["x"]) / self.tau}
+        a = math.exp(-self.period / self.tau) if self.tau else 0.0
+        return {"y": a * at.memory["y"] + (1.0 - a) * (at.inputs["u"] - at.memory["u"]) / self.period}
+
+    def rates(self, at: At) -> Values:
+        """Continuous: u is followed."""
+        return {"x": (at.inputs["u"] - at.states["x"]) / self.tau} if self.period is None else {}
+
+    def update(self, at: At) -> Values:
+        """Sampled: u and y are kept."""
+        return {} if self.period is None else {"u": at.inputs["u"], "y": self.compute(at)["y"]}

@@ -1,0 +1,194 @@
+"""What users write themselves: formulas, and functions of Python's."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from symofros.blocks.checks import numbers, refuse
+from symofros.blocks.generic.sampling import needs_period
+from symofros.description.parser import ExpressionError, parse
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.tensor import Tensor
+from symofros.errors import DescriptionError
+from symofros.expr.expression import Expression, lower
+from symofros.runtime.kernel import Array
+
+_ENTRY = re.compile(r"(?P<name>\w+)\[(?P<index>\d+)\]$", re.ASCII)
+_NAME = re.compile(r"[A-Za-z]\w*$", re.ASCII)
+MOST_FORMULAS = 256
+
+
+@dataclass(frozen=True, kw_only=True)
+class Formula(Block):
+    """Outputs by formulas of the inputs, of constants, and of the time t.
+
+    Names in formulas are inputs (scalars, or entries of vectors such as u[0]), constants, or t. They are read by the
+    parser of model files: nothing in them is run.
+
+    Attributes:
+        formulas: Output -> formula, or formulas of its entries; one formula alone is that of y.
+        constants: Name -> number, run-time parameters.
+        units: Input or output -> unit.
+    """
+
+    formulas: Any
+    constants: Any = None
+    units: Any = None
+
+    def __post_init__(self) -> None:
+        """Formulas that can be read."""
+        for name, value in dict(self.constants or {}).items():
+            numbers(self.name, f"constant '{name:.40}'", value, ())
+        stated = {*self._parsed, *self._entries}
+        for name in (*stated, *dict(self.constants or {})):
+            if not _NAME.match(name) or "__" in name or name == "t":
+                raise refuse(self.name, f"name '{name:.40}'", repr(name),
+                             "letters, digits and single underscores, a letter first; t is the time",
+                             "rename it")  # fmt: skip
+        for name in dict(self.units or {}):
+            if name not in stated:
+                raise refuse(self.name, f"a unit of '{name:.40}'", repr(name),
+                             f"inputs and outputs: {', '.join(sorted(stated))}", "rename it")  # fmt: skip
+
+    @cached_property
+    def _parsed(self) -> dict[str, list[Expression] | Expression]:
+        """Output -> formula, or those of its entries."""
+        given = dict(self.formulas) if isinstance(self.formulas, Mapping) else {"y": self.formulas}
+        count = sum(len(value) if isinstance(value, (list, tuple)) else 1 for value in given.values())
+        if not 0 < count <= MOST_FORMULAS or any(isinstance(v, (list, tuple)) and not v for v in given.values()):
+            raise refuse(self.name, "formulas", f"{count} of them", f"1 to {MOST_FORMULAS}", "state one, or part them")
+        return {
+            name: [self._read(name, text) for text in value]
+            if isinstance(value, (list, tuple))
+            else self._read(name, value)
+            for name, value in given.items()
+        }
+
+    def _read(self, name: str, text: object) -> Expression:
+        try:
+            return parse(str(text))
+        except ExpressionError as error:
+            raise DescriptionError(error.problem(f"block '{self.name}': formula of '{name:.40}'")) from None
+
+    def _expressions(self) -> list[Expression]:
+        return [item for value in self._parsed.values() for item in (value if isinstance(value, list) else [value])]
+
+    @cached_property
+    def _entries(self) -> dict[str, int | None]:
+        """Input -> least size of its vector; None: a scalar."""
+        found: dict[str, int | None] = {}
+        for symbol in sorted(set().union(*(item.symbols() for item in self._expressions()))):
+            match = _ENTRY.match(symbol)
+            name = match["name"] if match else symbol
+            if name == "t" or name in dict(self.constants or {}):
+                continue
+            size = int(match["index"]) + 1 if match else None
+            if name in found and (size is None) != (found[name] is None):
+                raise refuse(self.name, f"input '{name:.40}' is a scalar and a vector", symbol,
+                             "an input is one of them", f"write {name}[0] for its first entry")  # fmt: skip
+            found[name] = size if size is None else max(size, found.get(name) or 0)
+        return found
+
+    def ports(self, known: Known) -> Ports:
+        """An input for each name, an output for each formula."""
+        units = dict(self.units or {})
+        inputs = []
+        for name, least in self._entries.items():
+            shape = known.inputs.get(name) if least is not None else ()
+            if least is not None and shape is not None and (len(shape) != 1 or shape[0] < least):
+                raise refuse(self.name, f"input '{name}' has no entry {least - 1}", shape,
+                             "a vector that has the entries which formulas name", "correct the formula")  # fmt: skip
+            inputs.append(Port(name, shape, units.get(name, "")))
+        outputs = (Port(name, (len(value),) if isinstance(value, list) else (), units.get(name, ""))
+                   for name, value in self._parsed.items())  # fmt: skip
+        return Ports(tuple(inputs), tuple(outputs))
+
+    def parameters(self) -> dict[str, Array]:
+        """The constants."""
+        return {name: np.asarray(value, dtype=np.float64) for name, value in dict(self.constants or {}).items()}
+
+    def compute(self, at: At) -> Values:
+        """The formulas, lowered into the graph."""
+        bindings = {"t": at.t.flat[0], **{name: value.flat[0] for name, value in at.parameters.items()}}
+        for name, value in at.inputs.items():
+            if value.shape:
+                bindings |= {f"{name}[{i}]": edge for i, edge in enumerate(value.flat)}
+            else:
+                bindings[name] = value.flat[0]
+        try:
+            found = {
+                name: ([lower(item, at.g, bindings) for item in value], (len(value),))
+                if isinstance(value, list)
+                else ([lower(value, at.g, bindings)], ())
+                for name, value in self._parsed.items()
+            }
+        except ArithmeticError as error:
+            raise refuse(self.name, "a formula has no value", error,
+                         "constant parts are within the domain of functions", "mend the formula") from None  # fmt: skip
+        return {name: Tensor.of(at.g, edges, shape) for name, (edges, shape) in found.items()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class PythonBlock(Block):
+    """A function of Python's, called at samples by the loop in C; its outputs are held between.
+
+    Attributes:
+        function: (t, inputs) -> outputs, both mappings from ports to arrays.
+        inputs: Input -> shape, or None where any will do.
+        outputs: Output -> shape.
+        on_begin: Called before a run.
+        on_end: Called after a run, however it ended.
+    """
+
+    function: Callable[[float, Mapping[str, Array]], Mapping[str, Any]]
+    inputs: Any = None
+    outputs: Any = None
+    on_begin: Callable[[], None] | None = None
+    on_end: Callable[[], None] | None = None
+    is_opaque: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """A function, an output or more, a sample time."""
+        if not callable(self.function):
+            raise refuse(self.name, "nothing to call", repr(self.function), "function takes (t, inputs)", "give one")
+        if not dict(self.outputs or {}):
+            raise refuse(self.name, "no outputs", "none", "an output or more, with their shapes",
+                         'write for example {"y": (3,)}')  # fmt: skip
+        needs_period(self)
+
+    def ports(self, known: Known) -> Ports:
+        """As stated."""
+        given = {name: known.inputs.get(name) if shape is None else tuple(shape)
+                 for name, shape in dict(self.inputs or {}).items()}  # fmt: skip
+        return Ports(tuple(Port(name, shape) for name, shape in given.items()),
+                     tuple(Port(name, tuple(shape)) for name, shape in dict(self.outputs).items()))  # fmt: skip
+
+    def begin(self) -> None:
+        """By the user's function."""
+        if self.on_begin:
+            self.on_begin()
+
+    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
+        """By the user's function; what it returns must be the outputs.
+
+        Raises:
+            DescriptionError: Outputs are missing, or have other shapes.
+        """
+        found = self.function(t, inputs)
+        shapes = {name: tuple(shape) for name, shape in dict(self.outputs).items()}
+        given = {name: np.shape(value) for name, value in found.items()} if isinstance(found, Mapping) else type(found)
+        if given != shapes:
+            raise refuse(self.name, "its function returned something else", given, f"outputs {shapes}",
+                         "return a mapping of these")  # fmt: skip
+        return found
+
+    def end(self) -> None:
+        """By the user's function."""
+        if self.on_end:
+            self.on_end()

@@ -1,0 +1,195 @@
+"""Static non-linearities, entry by entry: limits, dead zone, steps, switches, tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from symofros.blocks.checks import choice, increasing, numbers, refuse
+from symofros.blocks.quantities import common_shape
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Shape, Values
+
+# Of a table, whose formula grows with its points.
+MOST_POINTS = 1000
+
+
+@dataclass(frozen=True, kw_only=True)
+class _OneToOne(Block):
+    """An input u and an output y of one shape; fields that are tunable are one number, or one an entry."""
+
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        """The fields are numbers."""
+        for field in self.tunable:
+            numbers(self.name, field, getattr(self, field))
+
+    def ports(self, known: Known) -> Ports:
+        """Input u, output y."""
+        shape: Shape | None = known.inputs.get("u")
+        for field in self.tunable:
+            own = np.shape(getattr(self, field))
+            if own and shape is not None and own != shape:
+                raise refuse(self.name, f"{field} does not fit the input", own, f"one number, or shape {shape}",
+                             "give one an entry")  # fmt: skip
+            shape = shape if shape is not None else own or None
+        return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
+
+
+def ordered(block: Block, low: str, high: str) -> None:
+    """Refuse bounds of which the lower is above the upper.
+
+    Raises:
+        DescriptionError: They cross.
+    """
+    a, b = getattr(block, low), getattr(block, high)
+    if np.any(np.asarray(a) > np.asarray(b)):
+        raise refuse(block.name, f"{low} is above {high}", f"{a} and {b}", f"{low} is at most {high}", "exchange them")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Saturation(_OneToOne):
+    """y = u within bounds.
+
+    Attributes:
+        low: Least output.
+        high: Greatest output.
+        unit: Of both.
+    """
+
+    low: Any = -1.0
+    high: Any = 1.0
+    tunable: ClassVar[tuple[str, ...]] = ("low", "high")
+
+    def __post_init__(self) -> None:
+        """Bounds in order."""
+        super().__post_init__()
+        ordered(self, "low", "high")
+
+    def compute(self, at: At) -> Values:
+        """The nearest value within."""
+        return {"y": at.inputs["u"].clipped(at.parameters["low"], at.parameters["high"])}
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeadZone(_OneToOne):
+    """y = 0 between two bounds, beyond them u less the bound.
+
+    Attributes:
+        low: Lower end of the zone.
+        high: Upper end.
+        unit: Of both.
+    """
+
+    low: Any = -1.0
+    high: Any = 1.0
+    tunable: ClassVar[tuple[str, ...]] = ("low", "high")
+
+    def __post_init__(self) -> None:
+        """Bounds in order."""
+        super().__post_init__()
+        ordered(self, "low", "high")
+
+    def compute(self, at: At) -> Values:
+        """What sticks out."""
+        u = at.inputs["u"]
+        return {"y": u - u.clipped(at.parameters["low"], at.parameters["high"])}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantizer(_OneToOne):
+    """y = the nearest multiple of a step, as an encoder gives it: step floor(u / step + 1/2).
+
+    Attributes:
+        step: Distance of neighbouring values, above zero.
+        unit: Of both.
+    """
+
+    step: Any = 1.0
+    tunable: ClassVar[tuple[str, ...]] = ("step",)
+
+    def __post_init__(self) -> None:
+        """Steps are above zero."""
+        super().__post_init__()
+        if np.min(self.step) <= 0.0:
+            raise refuse(self.name, "step", self.step, "a number above zero", "give another")
+
+    def compute(self, at: At) -> Values:
+        """Rounded."""
+        step = at.parameters["step"]
+        return {"y": step * (at.inputs["u"] / step + 0.5).apply("floor")}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Switch(Block):
+    """y = u1 where by >= threshold, else u2.
+
+    Attributes:
+        threshold: Of the input `by`, a scalar.
+        unit: Of u1, u2 and y.
+    """
+
+    threshold: float = 0.5
+    unit: str = ""
+    tunable: ClassVar[tuple[str, ...]] = ("threshold",)
+
+    def __post_init__(self) -> None:
+        """The threshold is a number."""
+        numbers(self.name, "threshold", self.threshold, ())
+
+    def ports(self, known: Known) -> Ports:
+        """Inputs u1, u2 of one shape, by (scalar); output y."""
+        shape = common_shape(known, ("u1", "u2"))
+        inputs = (Port("u1", shape, self.unit), Port("u2", shape, self.unit), Port("by", ()))
+        return Ports(inputs, (Port("y", shape, self.unit),))
+
+    def compute(self, at: At) -> Values:
+        """One of the two; both must be finite."""
+        on = (at.inputs["by"] - at.parameters["threshold"]).apply("step")
+        return {"y": on * at.inputs["u1"] + (1.0 - on) * at.inputs["u2"]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class LookupTable(Block):
+    """y(u) by straight lines between points: y_0 + sum slope_i clip(u - x_i, 0, h_i).
+
+    Attributes:
+        x: Where points are (n), increasing.
+        y: Values there (n), or vectors (n, m).
+        outside: "hold" the first and last value, or "extend" the first and last line.
+        unit_in: Of u.
+        unit_out: Of y.
+    """
+
+    x: Any
+    y: Any
+    outside: str = "hold"
+    unit_in: str = ""
+    unit_out: str = ""
+
+    def __post_init__(self) -> None:
+        """Increasing points, as many values."""
+        x, y = increasing(self.name, "x", self.x), numbers(self.name, "y", self.y)
+        if y.ndim not in (1, 2) or len(y) != len(x) or y.size > MOST_POINTS:
+            raise refuse(self.name, "y does not fit x", y.shape,
+                         f"({len(x)}) or ({len(x)}, any), {MOST_POINTS} numbers in all", "one row a point")  # fmt: skip
+        choice(self.name, "outside", self.outside, ("hold", "extend"))
+
+    def ports(self, known: Known) -> Ports:
+        """Input u, a scalar; output y."""
+        return Ports((Port("u", (), self.unit_in),), (Port("y", np.shape(self.y)[1:], self.unit_out),))
+
+    def compute(self, at: At) -> Values:
+        """The first value and what each interval adds."""
+        x, y = np.asarray(self.x, dtype=np.float64), np.asarray(self.y, dtype=np.float64)
+        total = at.numbers(y[0])
+        for i in range(len(x) - 1):
+            h, along = float(x[i + 1] - x[i]), at.inputs["u"] - float(x[i])
+            if self.outside == "hold" or i > 0:
+                along = along.apply("max", 0.0)
+            if self.outside == "hold" or i < len(x) - 2:
+                along = along.apply("min", h)
+            total = total + along * ((y[i + 1] - y[i]) / h)
+        return {"y": total}

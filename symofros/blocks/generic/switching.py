@@ -1,0 +1,119 @@
+"""Non-linearities with memory: relay, rate limit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from symofros.blocks.checks import number, numbers, refuse
+from symofros.blocks.generic.sampling import needs_period
+from symofros.diagrams.block import At, Block, Crossing, Known, Port, Ports, Values
+
+
+@dataclass(frozen=True, kw_only=True)
+class Relay(Block):
+    """On from u >= upper until u <= lower: sampled, at samples; continuous, at the crossings, located in time.
+
+    Attributes:
+        lower: Where it falls off.
+        upper: Where it comes on, above `lower`.
+        on: Output while on.
+        off: Output while off.
+        starts_on: Whether it is on at first.
+        unit: Of the output.
+    """
+
+    lower: float = 0.0
+    upper: float = 1.0
+    on: float = 1.0
+    off: float = 0.0
+    starts_on: bool = False
+    unit: str = ""
+    tunable: ClassVar[tuple[str, ...]] = ("lower", "upper", "on", "off")
+
+    def __post_init__(self) -> None:
+        """Numbers, with room between the thresholds."""
+        for field in self.tunable:
+            number(self.name, field, getattr(self, field))
+        if not self.lower < self.upper:
+            raise refuse(self.name, "no hysteresis", f"lower {self.lower}, upper {self.upper}", "lower is below upper",
+                         "use a Switch, or part them")  # fmt: skip
+
+    def ports(self, known: Known) -> Ports:
+        """Input u, output y, scalars."""
+        return Ports((Port("u", ()),), (Port("y", (), self.unit),))
+
+    def memory(self, known: Known) -> dict[str, Any]:
+        """Whether it is on."""
+        return {"is_on": float(self.starts_on)}
+
+    def _next(self, at: At) -> Any:
+        u, par = at.inputs["u"], at.parameters
+        comes_on, stays = (u - par["upper"]).apply("step"), 1.0 - (par["lower"] - u).apply("step")
+        return comes_on.apply("max", stays * at.memory["is_on"])
+
+    def compute(self, at: At) -> Values:
+        """One of two values."""
+        is_on = at.memory["is_on"] if self.period is None else self._next(at)
+        return {"y": is_on * at.parameters["on"] + (1.0 - is_on) * at.parameters["off"]}
+
+    def update(self, at: At) -> Values:
+        """At samples."""
+        return {"is_on": at.memory["is_on"] if self.period is None else self._next(at)}
+
+    def crossings(self, at: At) -> dict[str, Crossing]:
+        """Continuous: both thresholds."""
+        if self.period is not None:
+            return {}
+        u = at.inputs["u"]
+        return {"on": Crossing(u - at.parameters["upper"], "rising"),
+                "off": Crossing(u - at.parameters["lower"], "falling")}  # fmt: skip
+
+    def crossed(self, at: At, which: str) -> Values:
+        """On or off."""
+        return {"is_on": at.numbers(float(which == "on"))}
+
+
+@dataclass(frozen=True, kw_only=True)
+class RateLimit(Block):
+    """y follows u as fast as it may: y += clip(u - y, -falling T, rising T) at each sample; y = u at the first.
+
+    Attributes:
+        rising: Greatest rate, above zero [1/s].
+        falling: Greatest rate downwards, above zero [1/s].
+        unit: Of both.
+    """
+
+    rising: Any = 1.0
+    falling: Any = 1.0
+    unit: str = ""
+    tunable: ClassVar[tuple[str, ...]] = ("rising", "falling")
+
+    def __post_init__(self) -> None:
+        """Rates above zero, and a sample time."""
+        for field in self.tunable:
+            if np.min(numbers(self.name, field, getattr(self, field))) <= 0.0:
+                raise refuse(self.name, field, getattr(self, field), "a rate above zero", "give another")
+        needs_period(self)
+
+    def ports(self, known: Known) -> Ports:
+        """Input u, output y."""
+        shape = known.inputs.get("u")
+        return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
+
+    def memory(self, known: Known) -> dict[str, Any]:
+        """The output before, and whether there was one."""
+        return {"before": np.zeros(known.inputs["u"]), "began": 0.0}
+
+    def compute(self, at: At) -> Values:
+        """As near to the input as the rates let it."""
+        u, before, began = at.inputs["u"], at.memory["before"], at.memory["began"]
+        T = float(self.period or 0.0)
+        limited = before + (u - before).clipped(-T * at.parameters["falling"], T * at.parameters["rising"])
+        return {"y": began * limited + (1.0 - began) * u}
+
+    def update(self, at: At) -> Values:
+        """The output."""
+        return {"before": self.compute(at)["y"], "began": at.numbers(1.0)}

@@ -1,0 +1,171 @@
+"""Sequences over time, of torques, trajectories or perturbations: given, or read from a file (section 6.1)."""
+
+from __future__ import annotations
+
+import csv
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from symofros.blocks.checks import choice, increasing, known_name, numbers, refuse
+from symofros.diagrams.block import Block, Known, Port, Ports
+from symofros.errors import DescriptionError, Problem
+from symofros.runtime.kernel import Array
+from symofros.simulation.inputs import Signal
+
+# A file is read whole.
+MOST_BYTES = 256_000_000
+MOST_NUMBERS = 20_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sequence(Block):
+    """Outputs given by samples over time; beyond their ends the first and last value hold.
+
+    A CSV file has a line of names, one of them t, then numbers. An NPZ file has arrays by name, one of them t (n), the
+    others (n) or (n, m).
+
+    Attributes:
+        t: Times (n) [s], where values are given here.
+        values: One output y (n) or (n, m), or a mapping from outputs to such.
+        file: Where they are read from instead, once, when the block is made.
+        outputs: Output -> name, or names, of what it consists of in the file; none: one output y of all but t.
+        kind: "linear" between samples, or "hold" each until the next.
+        units: Output -> unit.
+    """
+
+    t: Any = None
+    values: Any = None
+    file: str = ""
+    outputs: Any = None
+    kind: str = "linear"
+    units: Any = None
+
+    def __post_init__(self) -> None:
+        """Samples at increasing times."""
+        choice(self.name, "kind", self.kind, ("linear", "hold"))
+        if bool(self.file) == (self.values is not None):
+            raise refuse(self.name, "no samples" if not self.file else "samples twice",
+                         "neither file nor values" if not self.file else "file and values",
+                         "samples are given, or read from a file", "state one of them")  # fmt: skip
+        for name in dict(self.units or {}):
+            known_name(self.name, "output", name, self._signals)
+
+    @cached_property
+    def _signals(self) -> dict[str, Signal]:
+        """Output -> samples."""
+        arrays = self._arrays()
+        if "t" not in arrays or len(arrays) < 2:
+            raise refuse(self.name, "no times", f"only {', '.join(arrays)}" if arrays else "nothing",
+                         "samples have times t and values", "add them")  # fmt: skip
+        t = increasing(self.name, "t", arrays.pop("t"), 1)
+        found = {}
+        for output, names in self._chosen(list(arrays)).items():
+            alone = isinstance(names, str)
+            parts = [self._part(arrays, name, len(t)) for name in ([names] if alone else names)]
+            values = parts[0] if alone else np.concatenate([part.reshape(len(t), -1) for part in parts], axis=1)
+            found[output] = Signal(t, values, "linear") if self.kind == "linear" else Signal(_early(t), values, "hold")
+        return found
+
+    def _chosen(self, names: list[str]) -> dict[str, Any]:
+        """Output -> name or names of arrays."""
+        if self.outputs:
+            return dict(self.outputs)
+        if not self.file:
+            return {name: name for name in names}
+        return {"y": names}
+
+    def _part(self, arrays: Mapping[str, Any], name: str, size: int) -> Array:
+        known_name(self.name, "column", name, arrays)
+        values = numbers(self.name, f"'{name:.40}'", arrays[name])
+        if values.ndim not in (1, 2) or len(values) != size:
+            raise refuse(self.name, f"'{name:.40}' does not fit t", values.shape, f"({size}) or ({size}, any)",
+                         "one row of values a time")  # fmt: skip
+        return values
+
+    def _arrays(self) -> dict[str, Any]:
+        if self.file:
+            return _read(self.name, Path(self.file))
+        values = dict(self.values) if isinstance(self.values, Mapping) else {"y": self.values}
+        return {"t": self.t, **values}
+
+    def ports(self, known: Known) -> Ports:
+        """The outputs."""
+        units = dict(self.units or {})
+        return Ports((), tuple(Port(name, signal.values.shape[1:], units.get(name, ""))
+                               for name, signal in self._signals.items()))  # fmt: skip
+
+    def samples(self) -> Mapping[str, Signal]:
+        """All of them."""
+        return self._signals
+
+
+def _early(t: Array) -> Array:
+    """Times a billionth of the shortest interval earlier: 35 * 0.01 is above 0.35, yet the same instant is meant."""
+    return t - 1e-9 * np.diff(t).min(initial=1.0)
+
+
+def _read(block: str, path: Path) -> dict[str, Any]:
+    """Arrays of a file, by name.
+
+    Raises:
+        DescriptionError: It is missing, too large, or not what its ending says.
+    """
+    try:
+        size = path.stat().st_size
+    except OSError as error:
+        raise refuse(
+            block, f"file '{path}'", error.strerror or "unreadable", "an existing file", "mend the path"
+        ) from None
+    if size > MOST_BYTES:
+        raise refuse(block, f"file '{path}' is too large", f"{size} bytes", f"at most {MOST_BYTES}", "thin it out")
+    readers = {".csv": _read_csv, ".npz": _read_npz}
+    if path.suffix.lower() not in readers:
+        raise refuse(block, f"file '{path}' of unknown kind", repr(path.suffix), "names end in .csv or .npz",
+                     "convert it")  # fmt: skip
+    return readers[path.suffix.lower()](block, path)
+
+
+def _read_npz(block: str, path: Path) -> dict[str, Any]:
+    try:
+        with zipfile.ZipFile(path) as archive:
+            unpacked = sum(item.file_size for item in archive.infolist())
+        if unpacked > 8 * MOST_NUMBERS:
+            raise refuse(block, f"file '{path}' is too large", f"{unpacked} bytes unpacked",
+                         f"at most {MOST_NUMBERS} numbers", "thin it out")  # fmt: skip
+        with np.load(path, allow_pickle=False) as stored:
+            return {name: stored[name] for name in stored.files}
+    except (OSError, ValueError, zipfile.BadZipFile) as error:
+        raise refuse(block, f"file '{path}' is no NPZ file", error, "arrays of numbers, as numpy.savez writes them",
+                     "write it anew") from None  # fmt: skip
+
+
+def _read_csv(block: str, path: Path) -> dict[str, Any]:
+    rows: list[list[float]] = []
+    with path.open(newline="", encoding="utf-8", errors="replace") as text:
+        lines = csv.reader(text)
+        names = [name.strip() for name in next(lines, [])]
+        if len(set(names)) < len(names) or not all(names):
+            raise refuse(block, f"file '{path}': names", ", ".join(names), "the first line names each column, once",
+                         "mend the first line")  # fmt: skip
+        for line in lines:
+            if not line:
+                continue
+            try:
+                row = [float(cell) for cell in line]
+            except ValueError:
+                row = []
+            if len(row) != len(names) or (len(rows) + 1) * len(names) > MOST_NUMBERS:
+                raise DescriptionError(Problem(
+                    f"block '{block}': a line of samples", ",".join(line)[:120],
+                    f"{len(names)} numbers a line, {MOST_NUMBERS} in all", "mend the line",
+                    f"{path}:{lines.line_num}",
+                ))  # fmt: skip
+            rows.append(row)
+    table = np.array(rows).reshape(-1, len(names))
+    return {name: table[:, i] for i, name in enumerate(names)}

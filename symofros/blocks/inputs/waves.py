@@ -1,0 +1,224 @@
+"""Test signals: step, ramp, pulse, sine, chirp. All numbers broadcast: one signal, or one an entry."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from symofros.blocks.checks import choice, number, numbers, refuse
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Shape, Values
+from symofros.diagrams.tensor import Tensor
+from symofros.diagrams.units import parse
+
+
+def _rates(unit: str) -> tuple[str, str, str]:
+    return (unit, f"{unit}/s", f"{unit}/s^2") if unit else ("", "", "")
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Wave(Block):
+    """What the signals share: numbers that broadcast, and a unit."""
+
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        """Numbers that broadcast, a unit that exists."""
+        _ = self.shape
+        parse(self.unit)
+
+    @property
+    def shape(self) -> Shape:
+        """Of the signal."""
+        arrays = [numbers(self.name, field, getattr(self, field)) for field in self.tunable]
+        try:
+            return np.broadcast_shapes(*(array.shape for array in arrays))
+        except ValueError:
+            raise refuse(self.name, "shapes differ", ", ".join(str(array.shape) for array in arrays),
+                         f"{', '.join(self.tunable)} broadcast to one shape",
+                         "give as many of each") from None  # fmt: skip
+
+    def _whole(self, at: At, value: Tensor) -> Tensor:
+        return value + np.zeros(self.shape)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Step(_Wave):
+    """y = before, and after from some time on.
+
+    Attributes:
+        time: When it steps [s].
+        before: Value before.
+        after: Value from then on.
+        unit: Of the signal.
+    """
+
+    time: Any = 1.0
+    before: Any = 0.0
+    after: Any = 1.0
+    tunable: ClassVar[tuple[str, ...]] = ("time", "before", "after")
+
+    def ports(self, known: Known) -> Ports:
+        """Output y."""
+        return Ports((), (Port("y", self.shape, self.unit),))
+
+    def compute(self, at: At) -> Values:
+        """One or the other."""
+        time, before, after = (at.parameters[key] for key in self.tunable)
+        on = (at.t - time).apply("step")
+        return {"y": self._whole(at, before * (1.0 - on) + after * on)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ramp(_Wave):
+    """y = start, from some time on start + slope (t - time), until it has risen for a duration.
+
+    Attributes:
+        time: When it begins to rise [s].
+        slope: Rate [1/s].
+        start: First value.
+        duration: How long it rises [s].
+        unit: Of the signal.
+    """
+
+    time: Any = 0.0
+    slope: Any = 1.0
+    start: Any = 0.0
+    duration: Any = 1e9
+    tunable: ClassVar[tuple[str, ...]] = ("time", "slope", "start", "duration")
+
+    def ports(self, known: Known) -> Ports:
+        """Output y, and its rate."""
+        y, rate, _ = _rates(self.unit)
+        return Ports((), (Port("y", self.shape, y), Port("rate", self.shape, rate)))
+
+    def compute(self, at: At) -> Values:
+        """By the time it has been rising."""
+        time, slope, start, duration = (at.parameters[key] for key in self.tunable)
+        rising = at.t - time
+        rises = rising.apply("step") * (1.0 - (rising - duration).apply("step"))
+        risen = rising.apply("max", 0.0).apply("min", duration)
+        return {"y": self._whole(at, start + slope * risen), "rate": self._whole(at, slope * rises)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pulse(_Wave):
+    """A square wave: high for a part of every interval, low otherwise, low before it starts.
+
+    Attributes:
+        time: When it starts [s].
+        every: Seconds from pulse to pulse.
+        width: Part of the interval that is high, 0 to 1.
+        high: Value during pulses.
+        low: Value otherwise.
+        unit: Of the signal.
+    """
+
+    time: Any = 0.0
+    every: Any = 1.0
+    width: Any = 0.5
+    high: Any = 1.0
+    low: Any = 0.0
+    tunable: ClassVar[tuple[str, ...]] = ("time", "every", "width", "high", "low")
+
+    def __post_init__(self) -> None:
+        """Intervals are above zero."""
+        super().__post_init__()
+        if np.min(self.every) <= 0.0:
+            raise refuse(self.name, "every", self.every, "seconds above zero", "give another")
+
+    def ports(self, known: Known) -> Ports:
+        """Output y."""
+        return Ports((), (Port("y", self.shape, self.unit),))
+
+    def compute(self, at: At) -> Values:
+        """By the place within the interval."""
+        time, every, width, high, low = (at.parameters[key] for key in self.tunable)
+        turns = (at.t - time) / every
+        place = turns - turns.apply("floor")
+        on = turns.apply("step") * (1.0 - (place - width).apply("step"))
+        return {"y": self._whole(at, low + (high - low) * on)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sine(_Wave):
+    """y = offset + amplitude sin(2 pi f t + phase), with its rates: an excitation, or a trajectory.
+
+    Attributes:
+        amplitude: Amplitude.
+        frequency: f [Hz].
+        phase: Phase [rad].
+        offset: Mean.
+        unit: Of the signal.
+    """
+
+    amplitude: Any = 1.0
+    frequency: Any = 1.0
+    phase: Any = 0.0
+    offset: Any = 0.0
+    tunable: ClassVar[tuple[str, ...]] = ("amplitude", "frequency", "phase", "offset")
+
+    def ports(self, known: Known) -> Ports:
+        """Outputs y, rate, acceleration."""
+        units = zip(("y", "rate", "acceleration"), _rates(self.unit), strict=True)
+        return Ports((), tuple(Port(name, self.shape, unit) for name, unit in units))
+
+    def compute(self, at: At) -> Values:
+        """The sine and its derivatives."""
+        amplitude, frequency, phase, offset = (at.parameters[key] for key in self.tunable)
+        w = 2.0 * math.pi * frequency
+        angle = w * at.t + phase
+        s, c = amplitude * angle.apply("sin"), amplitude * angle.apply("cos")
+        found = {"y": offset + s, "rate": w * c, "acceleration": -(w * w * s)}
+        return {name: self._whole(at, value) for name, value in found.items()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chirp(_Wave):
+    """A sine whose frequency goes from one to another, and stays: y = amplitude sin(phi), phi' = 2 pi f(t).
+
+    Attributes:
+        amplitude: Amplitude.
+        first: Frequency at the start [Hz].
+        last: Frequency after the duration [Hz].
+        duration: How long it changes [s].
+        sweep: "linear" f over time, or "exponential".
+        unit: Of the signal.
+    """
+
+    amplitude: Any = 1.0
+    first: float = 0.1
+    last: float = 10.0
+    duration: float = 10.0
+    sweep: str = "linear"
+    tunable: ClassVar[tuple[str, ...]] = ("amplitude",)
+
+    def __post_init__(self) -> None:
+        """Frequencies and a duration above zero."""
+        super().__post_init__()
+        for field in ("first", "last", "duration"):
+            number(self.name, field, getattr(self, field), 0.0, exclusive=True)
+        choice(self.name, "sweep", self.sweep, ("linear", "exponential"))
+
+    def ports(self, known: Known) -> Ports:
+        """Outputs y, and frequency [Hz]."""
+        return Ports((), (Port("y", self.shape, self.unit), Port("frequency", (), "Hz")))
+
+    def compute(self, at: At) -> Values:
+        """The integral of the frequency, then its sine."""
+        T, first, last = float(self.duration), float(self.first), float(self.last)
+        t = at.t.clipped(0.0, T)
+        after, before = (at.t - T).apply("max", 0.0), at.t.apply("min", 0.0)
+        if self.sweep == "linear":
+            k = (last - first) / T
+            frequency, turns = first + k * t, t * (first + 0.5 * k * t)
+        else:
+            k = math.log(last / first) / T
+            grown = (k * t).apply("exp")
+            frequency = first * grown
+            turns = (grown - 1.0) * (first / k) if k else first * t
+        turns = turns + last * after + first * before
+        y = at.parameters["amplitude"] * (2.0 * math.pi * turns).apply("sin")
+        return {"y": self._whole(at, y), "frequency": frequency}

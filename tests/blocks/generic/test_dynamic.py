@@ -1,0 +1,115 @@
+"""Linear systems, integrators, derivatives: against SciPy and closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy import signal
+
+import symofros as sf
+from symofros.blocks import Constant, Derivative, Integrator, Ramp, Sine, StateSpace, TransferFunction
+from tests.blocks.support import STEP, run
+
+A, B, C, D = [[0.0, 1.0], [-4.0, -0.6]], [[0.0, 0.3], [1.0, 0.0]], [[1.0, 0.5]], [[0.2, 0.0]]
+# Runge-Kutta's error with steps of 0.01 s at 2 rad/s.
+STEPPING = 1e-7
+
+
+def test_state_space_follows_scipy() -> None:
+    t = STEP * np.arange(300)
+    u = np.stack([np.sin(t), t], axis=1)
+    found = run(StateSpace(name="s", A=A, B=B, C=C, D=D, start=[1.0, -1.0]), {"u": u}, kind="linear")
+    _, y, _ = signal.lsim((A, B, C, D), u, t, X0=[1.0, -1.0])
+    np.testing.assert_allclose(found["y"][:, 0], y, atol=STEPPING)
+
+
+def test_sampled_state_space_follows_its_recursion(rng: np.random.Generator) -> None:
+    u = rng.normal(size=(40, 2))
+    F = 0.3 * np.array(A)
+    found = run(StateSpace(name="s", A=F, B=B, C=C, period=STEP), {"u": u})["y"]
+    _, y, _ = signal.dlsim((F, B, C, np.zeros((1, 2)), STEP), u)
+    np.testing.assert_allclose(found, y, atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("num", "den"), [([1.0], [1.0, 0.6, 4.0]), ([2.0, 0.0, 1.0], [2.0, 1.0, 8.0]), ([3.0], [2.0]), ([1.0, 2.0], [1.0, 1.0])]
+)
+def test_transfer_function_follows_scipy(num: list[float], den: list[float]) -> None:
+    t = STEP * np.arange(300)
+    u = np.sin(3 * t)
+    y = signal.lsim((num, den), u, t)[1] if len(den) > 1 else u * num[0] / den[0]
+    np.testing.assert_allclose(run(TransferFunction(name="f", num=num, den=den), {"u": u}, kind="linear")["y"], y, atol=1e-6)
+    sampled = run(TransferFunction(name="f", num=num, den=[8.0 * den[0], *den[1:]], period=STEP), {"u": u})["y"]
+    padded = [0.0] * (len(den) - len(num)) + num
+    np.testing.assert_allclose(sampled, signal.lfilter(padded, [8.0 * den[0], *den[1:]], u), atol=1e-12)
+
+
+def test_an_integrator_stands_at_its_limits_and_leaves_them_at_once() -> None:
+    diagram = sf.Diagram("limits")
+    diagram.add(Sine(name="u", frequency=1.0, amplitude=2 * math.pi))
+    diagram.add(Integrator(name="x", high=1.0, low=-0.5), u="u.y")
+    simulation = sf.Simulation(diagram)
+    found = simulation.run(2.0, dt=1e-3, record=1e-3)
+    y = found["x.y"]
+    # 1 - cos reaches 1 at 1/4 s, stays until the sine turns at 1/2 s, and falls from there.
+    t = found.t
+    assert y[(t > 0.26) & (t < 0.5)] == pytest.approx(1.0, abs=1e-12)
+    # The step that reaches the limit may pass it by what a step covers at most, 2 pi dt.
+    assert y[np.argmin(abs(t - 0.6))] == pytest.approx(1.0 - (1 + math.cos(2 * math.pi * 0.6)), abs=2e-3 * math.pi)
+    assert y.min() == -0.5
+    other = simulation.interpret(2.0, dt=1e-3, record=1e-3)["x.y"]
+    np.testing.assert_allclose(other, y, atol=1e-12)
+
+
+def test_a_reset_is_located_in_time() -> None:
+    diagram = sf.Diagram("reset")
+    diagram.add(Ramp(name="when", slope=1.0, start=-0.4321))
+    diagram.add(Constant(name="one", value=[1.0, 2.0]))
+    diagram.add(Integrator(name="x", start=0.5, reset="rising"), u="one.y", reset="when.y")
+    found = sf.Simulation(diagram).run(1.0, dt=0.1)
+    assert found.crossings[0].t == pytest.approx(0.4321, abs=1e-9)
+    assert found["x.y"][-1] == pytest.approx([0.5 + 0.5679, 0.5 + 2 * 0.5679], abs=1e-9)
+
+
+@pytest.mark.parametrize(("reset", "expected"), [("rising", [0, 1, 0, 1, 2]), ("falling", [0, 1, 2, 3, 0]),
+                                                 ("both", [0, 1, 0, 1, 0])])  # fmt: skip
+def test_a_sampled_integrator_resets_at_samples(reset: str, expected: list[int]) -> None:
+    integrator = Integrator(name="x", reset=reset, period=STEP)
+    found = run(integrator, {"u": np.full(5, 100.0), "reset": [-1, -1, 1, 1, -1]})["y"]
+    assert found == pytest.approx(expected, abs=1e-12)
+    limited = run(Integrator(name="x", high=1.5, period=STEP), {"u": [100.0] * 3 + [-100.0] * 2})["y"]
+    assert limited == pytest.approx([0, 1, 1.5, 1.5, 0.5])
+
+
+def test_derivatives_are_those_of_the_filtered_signal() -> None:
+    t = STEP * np.arange(400)
+    u = np.sin(t)
+    found = run(Derivative(name="d", tau=0.05), {"u": u}, kind="linear")["y"]
+    np.testing.assert_allclose(found, signal.lsim(([1.0, 0.0], [0.05, 1.0]), u, t)[1], atol=1e-5)
+    sampled = run(Derivative(name="d", tau=0.05, period=STEP), {"u": u})["y"]
+    a = math.exp(-STEP / 0.05)
+    np.testing.assert_allclose(sampled, signal.lfilter([(1 - a) / STEP, (a - 1) / STEP], [1, -a], u), atol=1e-11)
+    plain = run(Derivative(name="d", tau=0.0, period=STEP), {"u": u})["y"]
+    np.testing.assert_allclose(plain[1:], np.diff(u) / STEP, atol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("make", "found", "remedy"),
+    [
+        (lambda: StateSpace(name="s", A=[[1, 2]], B=[[1]], C=[[1, 0]]), "(1, 2)", "shape"),
+        (lambda: StateSpace(name="s", A=[[1]], B=[[1]], C=[[1]], start=[1, 2]), "(2,)", "shape"),
+        (lambda: StateSpace(name="s", A=np.eye(201), B=np.ones((201, 1)), C=np.ones((1, 201))), "201", "reduce"),
+        (lambda: TransferFunction(name="f", num=[1, 0], den=[1]), "[1. 0.]", "add a pole"),
+        (lambda: TransferFunction(name="f", num=[1], den=[0, 1]), "[0. 1.]", "leading zeros"),
+        (lambda: Integrator(name="x", start=2.0, high=1.0), "2.0 and 1.0", "exchange"),
+        (lambda: Integrator(name="x", reset="up"), "'up'", "use one of"),
+        (lambda: Derivative(name="d", tau=0.0), "0.0", "within"),
+    ],
+)
+def test_what_is_wrong_is_said(make: object, found: str, remedy: str) -> None:
+    with pytest.raises(sf.DescriptionError) as caught:
+        make()  # type: ignore[operator]
+    assert found in caught.value.problems[0].found
+    assert remedy in caught.value.problems[0].remedy

@@ -1,0 +1,78 @@
+"""Blocks that users write: formulas and functions of Python's."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.blocks import Formula, PythonBlock
+from tests.blocks.support import STEP, run
+
+
+def test_formulas_of_inputs_constants_and_time(rng: np.random.Generator) -> None:
+    u, x = rng.normal(size=(6, 3)), rng.normal(size=6)
+    block = Formula(
+        name="f",
+        formulas={"y": "k*u[0] + sin(x)*t", "z": ["u[2]^2", "max(x, 0)", "pi"]},
+        constants={"k": 2.5},
+        units={"x": "rad", "y": "N"},
+    )
+    found = run(block, {"u": u, "x": x})
+    np.testing.assert_allclose(found["y"], 2.5 * u[:, 0] + np.sin(x) * found["t"], atol=1e-14)
+    np.testing.assert_allclose(found["z"], np.stack([u[:, 2] ** 2, np.maximum(x, 0), np.full(6, np.pi)], 1), atol=1e-14)
+
+
+def test_constants_are_run_time_parameters() -> None:
+    diagram = sf.Diagram("one")
+    diagram.add(Formula(name="f", formulas="k*t", constants={"k": 1.0}))
+    assert sf.Simulation(diagram).run(1.0, dt=0.1, parameters={"f.k": 3.0})["f.y"][-1] == pytest.approx(3.0)
+
+
+def test_python_is_called_at_samples_and_told_of_the_run() -> None:
+    heard: list[object] = []
+
+    def function(t: float, inputs: object) -> dict[str, object]:
+        heard.append(t)
+        return {"y": 2.0 * inputs["u"]}  # type: ignore[index]
+
+    block = PythonBlock(name="p", function=function, inputs={"u": None}, outputs={"y": (2,)}, period=2 * STEP,
+                        on_begin=lambda: heard.append("begin"), on_end=lambda: heard.append("end"))  # fmt: skip
+    u = np.arange(10.0).reshape(5, 2)
+    found = run(block, {"u": u}, compare=0)["y"]
+    np.testing.assert_array_equal(found, 2 * u[[0, 0, 2, 2, 4]])
+    assert heard == ["begin", 0.0, 2 * STEP, 4 * STEP, "end"]
+    run(block, {"u": u})
+
+
+def test_what_python_returns_is_checked() -> None:
+    block = PythonBlock(name="p", function=lambda t, inputs: {"y": [1, 2, 3]}, outputs={"y": (2,)}, period=STEP)
+    with pytest.raises(sf.DescriptionError, match="returned something else"):
+        block.call(0.0, {})
+
+
+@pytest.mark.parametrize(
+    ("make", "found"),
+    [
+        (lambda: Formula(name="f", formulas="u +"), "'u +'"),
+        (lambda: Formula(name="f", formulas="__import__(u)"), "__import__"),
+        (lambda: Formula(name="f", formulas="u + u[1]"), "u"),
+        (lambda: Formula(name="f", formulas={}), "0 of them"),
+        (lambda: Formula(name="f", formulas={"y": []}), "0 of them"),
+        (lambda: Formula(name="f", formulas="arm.q"), "arm.q"),
+        (lambda: Formula(name="f", formulas="t", constants={"t": 1}), "'t'"),
+        (lambda: Formula(name="f", formulas="u", units={"w": "m"}), "'w'"),
+        (lambda: run(Formula(name="f", formulas="u[3]"), {"u": np.zeros((2, 3))}), "(3,)"),
+        (lambda: run(Formula(name="f", formulas="sqrt(0 - 1)"), t_end=0.1), "not a number"),
+        (lambda: PythonBlock(name="p", function=3, outputs={"y": ()}, period=1.0), "3"),
+        (lambda: PythonBlock(name="p", function=print, period=1.0), "none"),
+        (lambda: PythonBlock(name="p", function=print, outputs={"y": ()}), "period None"),
+    ],
+)
+def test_what_is_wrong_is_said(make: object, found: str) -> None:
+    with pytest.raises(sf.DescriptionError) as caught:
+        make()  # type: ignore[operator]
+    problem = caught.value.problems[0]
+    assert found in problem.found
+    assert problem.rule
+    assert problem.remedy

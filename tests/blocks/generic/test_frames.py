@@ -1,0 +1,126 @@
+"""Frames and orientations, against SciPy's Rotation and the models' own poses."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.blocks import FrameTransform, Orientation, OrientationError, Transform
+from symofros.blocks.rotations import EULER
+from tests.blocks.support import run
+
+# Angles at which formulas lose digits: none, tiny, a right angle, half a turn and about it.
+TURNS = np.array([
+    [0, 0, 0], [1e-9, 0, 0], [0, -1e-5, 1e-7], [np.pi / 2, 0, 0], [0, np.pi, 0], [0, 0, np.pi - 1e-7], [1.0, -2.0, 0.5],
+    [0.3, 0.4, -2.5], [-1.2, 0.1, 0.2], [0, np.pi / 2, 0], [2.0, 1.0, 1.5],
+])  # fmt: skip
+ROTATIONS = Rotation.from_rotvec(TURNS)
+FORMS = {
+    "matrix": ROTATIONS.as_matrix(),
+    "quaternion": -1.5 * ROTATIONS.as_quat(),  # Of any length and sign.
+    "rotation_vector": TURNS,
+    "axis_angle": np.hstack([3 * TURNS + [[1.0, 0, 0]] * (TURNS == 0).all(1)[:, None],
+                             np.linalg.norm(TURNS, axis=1)[:, None]]),
+    "euler_zyx": ROTATIONS.as_euler("ZYX"),
+    "euler_xzx": ROTATIONS.as_euler("XZX"),
+}  # fmt: skip
+
+
+def back(form: str, value: np.ndarray) -> np.ndarray:
+    """Matrices of a form, by SciPy."""
+    if form == "matrix":
+        return value
+    if form == "quaternion":
+        return Rotation.from_quat(value).as_matrix()
+    if form == "rotation_vector":
+        return Rotation.from_rotvec(value).as_matrix()
+    if form == "axis_angle":
+        assert np.linalg.norm(value[:, :3], axis=1) == pytest.approx(1.0)
+        return Rotation.from_rotvec(value[:, :3] * value[:, 3:]).as_matrix()
+    return Rotation.from_euler(form[-3:].upper(), value).as_matrix()
+
+
+@pytest.mark.parametrize("source", FORMS)
+@pytest.mark.parametrize("target", FORMS)
+def test_orientations_keep_their_digits_at_every_angle(source: str, target: str) -> None:
+    found = run(Orientation(name="o", source=source, target=target), {"u": FORMS[source]})["y"]
+    # Euler angles near their singular attitude keep half the digits, as an arc sine does.
+    np.testing.assert_allclose(back(target, found), FORMS["matrix"], atol=2e-8 if "euler" in target else 1e-14)
+
+
+@pytest.mark.parametrize("sequence", EULER)
+def test_all_sequences_of_euler_angles(sequence: str, rng: np.random.Generator) -> None:
+    angles = rng.uniform(-3, 3, size=(20, 3))
+    R = Rotation.from_euler(sequence.upper(), angles).as_matrix()
+    to = run(Orientation(name="o", source=f"euler_{sequence}", target="matrix"), {"u": angles})["y"]
+    np.testing.assert_allclose(to, R, atol=1e-14)
+    found = run(Orientation(name="o", source="matrix", target=f"euler_{sequence}"), {"u": R})["y"]
+    np.testing.assert_allclose(found, Rotation.from_matrix(R).as_euler(sequence.upper()), atol=1e-11)
+
+
+def test_quaternions_have_no_negative_w_and_turns_are_of_at_most_half_a_revolution() -> None:
+    found = run(Orientation(name="o", source="rotation_vector", target="quaternion"), {"u": 2.5 * TURNS})["y"]
+    assert found[:, 3].min() >= 0.0
+    vectors = run(Orientation(name="o", source="rotation_vector", target="rotation_vector"), {"u": 2.5 * TURNS})["y"]
+    assert np.linalg.norm(vectors, axis=1).max() <= np.pi + 1e-12
+
+
+@pytest.mark.parametrize("axes", ["world", "body"])
+def test_the_error_turns_what_is_into_what_should_be(axes: str, rng: np.random.Generator) -> None:
+    desired, actual = Rotation.random(9, random_state=1), Rotation.random(9, random_state=2)
+    block = OrientationError(name="e", kind="quaternion", axes=axes)
+    error = run(block, {"desired": desired.as_quat(), "actual": actual.as_quat()})["error"]
+    expected = desired * actual.inv() if axes == "world" else actual.inv() * desired
+    np.testing.assert_allclose(error, expected.as_rotvec(), atol=1e-13)
+
+
+@pytest.mark.parametrize("quantity", ["point", "vector", "velocity", "wrench"])
+def test_transforms_go_forth_and_back_and_keep_power(quantity: str, rng: np.random.Generator) -> None:
+    p, R = rng.normal(size=(5, 3)), Rotation.random(5, random_state=3).as_matrix()
+    u = rng.normal(size=(5, 3 if quantity in ("point", "vector") else 6))
+    y = run(Transform(name="x", quantity=quantity), {"p": p, "R": R, "u": u})["y"]
+    again = run(Transform(name="x", quantity=quantity, inverse=True), {"p": p, "R": R, "u": y})["y"]
+    np.testing.assert_allclose(again, u, atol=1e-13)
+    if quantity == "point":
+        np.testing.assert_allclose(y, p + np.einsum("nij,nj->ni", R, u), atol=1e-14)
+    if quantity == "wrench":
+        # A wrench does the same power on a velocity, wherever both are seen from.
+        V = rng.normal(size=(5, 6))
+        W = run(Transform(name="x", quantity="velocity"), {"p": p, "R": R, "u": V})["y"]
+        np.testing.assert_allclose((y * W).sum(1), (u * V).sum(1), atol=1e-13)
+        # The moment about A's origin is that of the force at B's origin, and B's moment.
+        np.testing.assert_allclose(y[:, 3:], np.einsum("nij,nj->ni", R, u[:, 3:]) + np.cross(p, y[:, :3]), atol=1e-14)
+
+
+def test_frames_of_a_model(rng: np.random.Generator) -> None:
+    q = rng.normal(size=(4, 6))
+    model = sf.compile(MODELS["rx90"])
+    block = FrameTransform(name="x", model="m", source="tool", target="link3")
+    u = rng.normal(size=(4, 3))
+    found = run(block, {"q": q, "u": u}, models={"m": (MODELS["rx90"], {})})
+    (p_s, R_s), (p_t, R_t) = model.frame_pose("tool", q), model.frame_pose("link3", q)
+    np.testing.assert_allclose(found["R"], np.swapaxes(R_t, 1, 2) @ R_s, atol=1e-13)
+    world = p_s + np.einsum("nij,nj->ni", R_s, u)
+    np.testing.assert_allclose(p_t + np.einsum("nij,nj->ni", R_t, found["y"]), world, atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Orientation(name="o", source="quaternions"),
+        lambda: Orientation(name="o", target="euler_zzx"),
+        lambda: OrientationError(name="o", axes="tool"),
+        lambda: Transform(name="x", quantity="twist"),
+        lambda: FrameTransform(name="x", model="m", source="tool", quantity="force"),
+    ],
+)
+def test_what_is_wrong_is_said(make: object) -> None:
+    with pytest.raises(sf.DescriptionError) as caught:
+        make()  # type: ignore[operator]
+    problem = caught.value.problems[0]
+    assert problem.found.startswith("'")
+    assert problem.rule
+    assert problem.remedy

@@ -1,0 +1,85 @@
+"""Limits, dead zones, steps, switches, tables, relays, rates."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.blocks import DeadZone, LookupTable, Quantizer, RateLimit, Relay, Saturation, Sine, Switch
+from tests.blocks.support import STEP, run
+
+U = np.linspace(-3, 3, 25)
+X, Y = [-1.0, 0.5, 2.0], [3.0, -1.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("block", "expected"),
+    [
+        (Saturation(name="b", low=-1.5, high=0.5), np.clip(U, -1.5, 0.5)),
+        (DeadZone(name="b", low=-1.0, high=2.0), np.where(U > 2, U - 2, np.where(U < -1, U + 1, 0))),
+        (Quantizer(name="b", step=0.4), 0.4 * np.floor(U / 0.4 + 0.5)),
+        (LookupTable(name="b", x=X, y=Y), np.interp(U, X, Y)),
+        (
+            LookupTable(name="b", x=X, y=Y, outside="extend"),
+            np.select([U < -1, U > 2], [3 - (U + 1) * 4 / 1.5, (U - 2) / 1.5], np.interp(U, X, Y)),
+        ),
+    ],
+)
+def test_static(block: sf.blocks.Saturation, expected: np.ndarray) -> None:
+    np.testing.assert_allclose(run(block, {"u": U})["y"], expected, atol=1e-14)
+
+
+def test_a_table_of_vectors() -> None:
+    table = np.array([Y, X]).T
+    found = run(LookupTable(name="b", x=X, y=table), {"u": U})["y"]
+    np.testing.assert_allclose(found, np.stack([np.interp(U, X, Y), np.clip(U, -1, 2)], axis=1), atol=1e-14)
+
+
+def test_a_switch_takes_the_first_from_its_threshold_on() -> None:
+    u = {"u1": np.ones((3, 2)), "u2": np.zeros((3, 2)), "by": [0.4, 0.5, 0.6]}
+    assert run(Switch(name="s", threshold=0.5), u)["y"][:, 0].tolist() == [0, 1, 1]
+
+
+def test_a_sampled_relay_remembers() -> None:
+    u = [0.5, 1.0, 0.5, 0.1, 0.0, 0.5, 2.0, -1.0]
+    relay = Relay(name="r", lower=0.0, upper=1.0, on=5.0, off=-5.0, period=STEP)
+    assert run(relay, {"u": u})["y"].tolist() == [-5, 5, 5, 5, -5, -5, 5, -5]
+
+
+def test_a_continuous_relay_switches_where_thresholds_are_crossed() -> None:
+    diagram = sf.Diagram("relay")
+    diagram.add(Sine(name="u", frequency=1.0))
+    diagram.add(Relay(name="r", lower=-0.5, upper=0.5), u="u.y")
+    diagram.add(sf.blocks.Integrator(name="x"), u="r.y")
+    found = sf.Simulation(diagram).run(1.0, dt=1e-3)
+    # On from sin = 1/2, at 1/12 s, until sin falls to -1/2, at 7/12 s.
+    assert [event.t for event in found.crossings] == pytest.approx([1 / 12, 7 / 12], abs=1e-9)
+    assert found["x.y"][-1] == pytest.approx(0.5, abs=1e-9)
+
+
+def test_rates_are_limited_both_ways() -> None:
+    u = np.array([[1.0, 0.0], [3.0, 0.0], [3.0, -9.0], [3.0, -9.0], [0.0, 5.0]])
+    found = run(RateLimit(name="r", rising=[100.0, 50.0], falling=[50.0, 200.0], period=STEP), {"u": u})["y"]
+    np.testing.assert_allclose(found, [[1, 0], [2, 0], [3, -2], [3, -4], [2.5, -3.5]], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("make", "found", "remedy"),
+    [
+        (lambda: Saturation(name="b", low=1, high=0), "1 and 0", "exchange"),
+        (lambda: Quantizer(name="b", step=0), "0", "give another"),
+        (lambda: LookupTable(name="b", x=[0, 0], y=[1, 2]), "[0. 0.]", "sort"),
+        (lambda: LookupTable(name="b", x=[0, 1], y=[1, 2, 3]), "(3,)", "one row"),
+        (lambda: LookupTable(name="b", x=[0, 1], y=[1, 2], outside="hald"), "'hald'", "did you mean 'hold'"),
+        (lambda: Relay(name="b", lower=1, upper=1), "lower 1, upper 1", "Switch"),
+        (lambda: RateLimit(name="b", rising=0, period=1.0), "0", "give another"),
+        (lambda: RateLimit(name="b"), "period None", "give a period"),
+        (lambda: run(Saturation(name="b", low=[0, 0]), {"u": np.zeros((2, 3))}), "(2,)", "one an entry"),
+    ],
+)
+def test_what_is_wrong_is_said(make: object, found: str, remedy: str) -> None:
+    with pytest.raises(sf.DescriptionError) as caught:
+        make()  # type: ignore[operator]
+    assert found in caught.value.problems[0].found
+    assert remedy in caught.value.problems[0].remedy
