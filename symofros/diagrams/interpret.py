@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -191,11 +191,13 @@ class InterpretedRun:
         resolved: What ran.
         t: Times (n) [s].
         values: (block, output) -> its signal.
+        kept: Block -> what it kept of the run, by name.
     """
 
     resolved: Resolved
     t: Array
     values: dict[Source, Array]
+    kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Array:
         """A signal over time."""
