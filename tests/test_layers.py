@@ -45,10 +45,11 @@ ALLOWED: dict[str, set[str]] = {
         "simulation", "errors", "options",
     },
     "blocks": {"diagrams", "runtime", "simulation", "expr", "errors"},
+    "diagram_files": {"blocks", "diagrams", "description", "loading", "simulation", "atomic", "errors"},
     "loading": {"errors", "atomic", "description", "topology"},
     "__init__": {
         "errors", "options", "expr", "description", "compiler", "loading", "exporting", "runtime", "simulation",
-        "advice", "diagrams",
+        "advice", "diagrams", "diagram_files",
     },
 }  # fmt: skip
 ENGINES = {"pinocchio", "mujoco", "exudyn", "casadi"}

@@ -236,6 +236,10 @@ class Block:
         """What an opaque block kept of the run that comes to its end, by name; the run hands it on."""
         return {}
 
+    def reaches(self) -> str:
+        """The address of another machine that an opaque block would talk to; "" for none."""
+        return ""
+
     def shown(self) -> tuple[Plot, ...]:
         """Pictures that it asks for; their signals are ports of its own."""
         return ()

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from symofros.diagrams.saving import columns
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import split
 from symofros.diagrams.wiring import Wired
+from symofros.errors import Problem, SymofrosError
 from symofros.simulation.plots import figure_class
 
 if TYPE_CHECKING:
     from symofros.diagrams.result import DiagramRun
 
+# Matplotlib's ways to draw that have no windows.
+_PAPER = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
 _MOST = 12  # Curves in one picture; more can't be told apart.
 
 
@@ -39,7 +43,8 @@ def draw(run: DiagramRun, plots: Sequence[Plot], figure: Any = None) -> Any:
     Raises:
         SymofrosError: Matplotlib is not installed, or there is no such signal.
     """
-    figure = figure or figure_class()(figsize=(8.0, 1.0 + 2.2 * len(plots)), layout="constrained")
+    if figure is None:
+        figure = figure_class()(figsize=(8.0, 1.0 + 2.2 * len(plots)), layout="constrained")
     run.compute([run.compiled.resolved.wired.output(split(text)[0]) for plot in plots for text in plot.signals])
     grid = figure.subplots(len(plots), 1, sharex=True, squeeze=False)[:, 0]
     for axis, plot in zip(grid, plots, strict=True):
@@ -55,3 +60,19 @@ def draw(run: DiagramRun, plots: Sequence[Plot], figure: Any = None) -> Any:
     grid[-1].set_xlabel("t [s]")
     figure.suptitle(f"{run.compiled.resolved.wired.name}: {run.outcome.kind} at t = {run.outcome.t:.4g} s")
     return figure
+
+
+def show_window(run: DiagramRun, *signals: str) -> None:
+    """Draw in a window, and wait until it is closed.
+
+    Raises:
+        SymofrosError: Matplotlib is not installed, or has no screen to draw on.
+    """
+    figure_class()
+    pyplot = import_module("matplotlib.pyplot")
+    backend = pyplot.get_backend()
+    if backend.lower() in _PAPER:
+        raise SymofrosError(str(Problem("plot: no window can be opened", f"Matplotlib draws by '{backend}'",
+                                        "a window needs a screen", "write a picture: --plot run.png")))  # fmt: skip
+    run.plot(*signals, figure=pyplot.figure(layout="constrained"))
+    pyplot.show()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -39,6 +40,7 @@ class Cost:
         seconds: On the clock, in the loop.
         worked: Of the processor, by the calling thread [s].
         late: How late each instant began (n) [s]; empty unless pace was kept.
+        spacing: The shortest time between two instants [s].
     """
 
     steps: int
@@ -47,6 +49,7 @@ class Cost:
     seconds: float
     worked: float
     late: Array = field(default_factory=lambda: np.zeros(0))
+    spacing: float = math.inf
 
 
 @dataclass(frozen=True)

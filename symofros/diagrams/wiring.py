@@ -53,6 +53,15 @@ class Wired:
         """
         return _output(self.name, text, self.blocks, self.ports, self.outlets)
 
+    def check_signal(self, text: str) -> None:
+        """Refuse what names no signal, or no entry of one: "block.port" or "block.port[i]".
+
+        Raises:
+            DescriptionError: There is none.
+        """
+        name, index = split(text)
+        check_entry(text, index, self.shape(self.output(name)))
+
     def shape(self, source: Source) -> Shape:
         """Of an output."""
         return next(port.shape or () for port in self.ports[source[0]].outputs if port.name == source[1])
@@ -132,9 +141,8 @@ def _unseen(wired: Wired) -> list[Problem]:
     problems: list[Problem] = []
     for i, plot in enumerate(wired.plots):
         for text in plot.signals:
-            name, index = split(text)
             try:
-                check_entry(text, index, wired.shape(wired.output(name)))
+                wired.check_signal(text)
             except DescriptionError as error:
                 problems += located(error.problems, wired.origin.get(("plot", str(i)), ""))
     return problems
