@@ -108,8 +108,9 @@ def tell_run(run: DiagramRun, files: list[str], speed: float, as_json: bool, out
         return
     out.print(str(outcome), markup=False, highlight=False, soft_wrap=True)
     span = float(run.t[-1] - run.t[0])
+    pace = span / max(cost.seconds, 1e-9)
     out.print(f"{len(run.t)} records; {cost.steps} steps, {cost.rejected} rejected, {cost.evaluations} evaluations; "
-              f"{cost.seconds:.3g} s, {span / max(cost.seconds, 1e-9):.3g} times real time", markup=False, soft_wrap=True)  # fmt: skip
+              f"{cost.seconds:.3g} s, {pace:.3g} times real time", markup=False, soft_wrap=True)  # fmt: skip
     _tell_more(run, jitter, counts, files, out)
 
 
