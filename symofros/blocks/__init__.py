@@ -7,6 +7,7 @@ from symofros.blocks.graphics import ExtremityPlot as ExtremityPlot
 from symofros.blocks.graphics import Scope as Scope
 from symofros.blocks.graphics import StatePlot as StatePlot
 from symofros.blocks.graphics import Store as Store
+from symofros.blocks.live_plot import LivePlot as LivePlot
 from symofros.blocks.middleware import ZenohPublisher as ZenohPublisher
 from symofros.blocks.middleware import ZenohSubscriber as ZenohSubscriber
 from symofros.blocks.network import UdpReceiver as UdpReceiver

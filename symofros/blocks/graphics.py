@@ -17,7 +17,7 @@ from symofros.errors import DescriptionError, Problem
 from symofros.runtime.kernel import Array
 
 
-def _open_ports(name: str, signals: tuple[str, ...], known: Known) -> Ports:
+def open_ports(name: str, signals: tuple[str, ...], known: Known) -> Ports:
     """An input for each name, of any shape."""
     if not signals or len(set(signals)) < len(signals) or not all(signal.isidentifier() for signal in signals):
         raise DescriptionError(Problem(f"block '{name}': no inputs can be named so", f"{list(signals)}"[:80],
@@ -40,7 +40,7 @@ class Scope(Block):
 
     def ports(self, known: Known) -> Ports:
         """The signals."""
-        return _open_ports(self.name, self.signals, known)
+        return open_ports(self.name, self.signals, known)
 
     def shown(self) -> tuple[Plot, ...]:
         """All of them together."""
@@ -68,7 +68,7 @@ class Store(Block):
             raise DescriptionError(Problem(f"block '{self.name}': can't store that", f"{self.signals}, {self.most}",
                                            "t is the name of the times, and at least one sample is kept",
                                            "rename the signal"))  # fmt: skip
-        return _open_ports(self.name, self.signals, known)
+        return open_ports(self.name, self.signals, known)
 
     def begin(self) -> None:
         """Forget the run before."""

@@ -60,7 +60,7 @@ def test_it_runs_as_the_same_diagram_from_python(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "line", "words"),
     [
-        ("kind: joint_pd", "kind: joint_pdd", "joint_pdd", ("no kind of blocks 'joint_pdd'", "did you mean 'joint_pd'")),
+        ("kind: joint_pd", "kind: joint_pdd", "joint_pdd", ("no kind of blocks", "did you mean 'joint_pd'")),
         ("kp: [40, 20]", "kp: [40, {a: 1}]", "kp:", ("kp does not fit", "lists of numbers")),
         ("period: 0.01", "period: soon", "period:", ("period does not fit", "a number or null")),
         ("kd: 2", "gain: 2", "gain:", ("unknown entry 'gain'", "kp, kd")),
