@@ -65,6 +65,8 @@ if TYPE_CHECKING:
     from symofros.compiler import compile_library as compile_library
     from symofros.compiler import compile_system
     from symofros.compiler import program_of as program_of
+    from symofros.diagram_files.reader import load_diagram as load_diagram
+    from symofros.diagram_files.writer import save_diagram as save_diagram
     from symofros.diagrams.diagram import Diagram as Diagram
     from symofros.diagrams.result import DiagramRun as DiagramRun
     from symofros.diagrams.simulation import Simulation as Simulation
@@ -101,6 +103,8 @@ _LAZY = {
     "compile_library": ("symofros.compiler", "compile_library"),
     "program_of": ("symofros.compiler", "program_of"),
     "export": ("symofros.exporting", "export"),
+    "load_diagram": ("symofros.diagram_files.reader", "load_diagram"),
+    "save_diagram": ("symofros.diagram_files.writer", "save_diagram"),
     "Diagram": ("symofros.diagrams.diagram", "Diagram"),
     "DiagramRun": ("symofros.diagrams.result", "DiagramRun"),
     "Simulation": ("symofros.diagrams.simulation", "Simulation"),

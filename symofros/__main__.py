@@ -1,4 +1,4 @@
-"""Command line: symofros info | compile | simulate | advise | export MODEL."""
+"""Command line: symofros info | compile | simulate | advise | export MODEL; info and simulate take diagrams, too."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from symofros.codegen.names import identifier
 from symofros.codegen.templates import template
 from symofros.compiler import compile_system, describe, generate, plan, requested
 from symofros.description.system import System
+from symofros.diagram_files import command as diagrams
 from symofros.errors import did_you_mean
 from symofros.exporting import TARGETS
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
@@ -34,6 +35,8 @@ _out = Console()
 _err = Console(stderr=True)
 
 ModelPath = Annotated[Path, typer.Argument(help="A model: .yaml, .urdf or .xml (MJCF)", show_default=False)]
+FilePath = Annotated[Path, typer.Argument(help="A model, or a diagram's .yaml.", show_default=False)]
+Network = Annotated[bool, typer.Option("--network", help="Let a diagram's blocks reach other machines.")]
 Floating = Annotated[bool, typer.Option("--floating-base", help="Put a free joint under a URDF's root link.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Machine-readable output.")]
 BAD_INPUT = 2
@@ -49,9 +52,21 @@ def _load(path: Path, floating_base: bool) -> System:
         raise typer.Exit(BAD_INPUT) from None
 
 
+def _refuse(error: Exception) -> typer.Exit:
+    """Say what is wrong with the input."""
+    _err.print(str(error), markup=False, highlight=False, soft_wrap=True)
+    return typer.Exit(BAD_INPUT)
+
+
 @app.command()
-def info(model: ModelPath, floating_base: Floating = False, as_json: AsJson = False) -> None:
-    """Show a model: its tree, its sizes, the operations of each function."""
+def info(model: FilePath, floating_base: Floating = False, network: Network = False, as_json: AsJson = False) -> None:
+    """Show a model: its tree, its sizes, the operations of each function; or a diagram: blocks, rates, order."""
+    if diagrams.is_diagram(model):
+        try:
+            diagrams.tell_diagram(sf.load_diagram(model, network=network), as_json, _out)
+        except sf.SymofrosError as error:
+            raise _refuse(error) from None
+        return
     system = _load(model, floating_base)
     tree = plan(system)
     counts = _counts(tree)
@@ -169,6 +184,12 @@ def _number(name: str, text: str) -> float:
         raise typer.Exit(BAD_INPUT) from None
 
 
+def _numbers(name: str, text: str) -> float | list[float]:
+    """One number, or some between commas."""
+    parts = text.strip("[]").split(",")
+    return _number(name, parts[0]) if len(parts) == 1 else [_number(name, part) for part in parts]
+
+
 def _first_state(model: sf.Model, given: dict[str, str]) -> tuple[Array, Array]:
     """The neutral state, with what --set gives; closed where the model has loops."""
     q, v = model.neutral(), np.zeros(model.nv)
@@ -192,39 +213,76 @@ def _first_state(model: sf.Model, given: dict[str, str]) -> tuple[Array, Array]:
 
 @app.command()
 def simulate(
-    model: ModelPath,
-    t_end: Annotated[float, typer.Argument(help="Where to end [s].")] = 1.0,
+    model: FilePath,
+    t_end: Annotated[float | None, typer.Argument(help="Where to end [s]; 1, or what the diagram says.")] = None,
     floating_base: Floating = False,
-    method: Annotated[str, typer.Option(help=", ".join(METHODS))] = "rk4",
+    method: Annotated[str | None, typer.Option(help=f"{', '.join(METHODS)}; rk4 by default.")] = None,
     dt: Annotated[float | None, typer.Option(help="Step [s]; the first one of adaptive methods.")] = None,
-    rtol: Annotated[float, typer.Option(help="Relative error of a step, adaptive methods.")] = 1e-6,
-    given: Annotated[list[str], typer.Option("--set", help="NAME=NUMBER: a first coordinate or speed (dNAME).")] = [],  # noqa: B006
+    rtol: Annotated[float | None, typer.Option(help="Relative error of a step, adaptive methods.")] = None,
+    given: Annotated[
+        list[str], typer.Option("--set", help="NAME=NUMBER: a first coordinate or speed (dNAME); of a diagram "
+                                "BLOCK.FIELD=NUMBER or NUMBER,NUMBER: a run-time parameter.")
+    ] = [],  # noqa: B006
     inputs: Annotated[list[str], typer.Option("--input", help="NAME=FORMULA of coordinates, speeds and t.")] = [],  # noqa: B006
-    every: Annotated[float | None, typer.Option(help="Record at this interval [s]; each step by default.")] = None,
+    every: Annotated[
+        float | None, typer.Option("--record", "--every", help="Record at this interval [s]; each step by default.")
+    ] = None,
+    signals: Annotated[str, typer.Option(help="Of a diagram: BLOCK.PORT,... to save and plot.")] = "",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write .npz, .csv or .parquet.")] = None,
-    picture: Annotated[Path | None, typer.Option(help="Write a picture: .png, .svg, .pdf.")] = None,
+    picture: Annotated[
+        str, typer.Option("--plot", "--picture", help="Write a picture: .png, .svg, .pdf; of a diagram also 'window'.")
+    ] = "",
     realtime: Annotated[bool, typer.Option("--realtime", help="Keep pace with the clock.")] = False,
+    speed: Annotated[
+        float | None, typer.Option(min=1e-6, help="Seconds of motion a second; keeps pace with the clock.")
+    ] = None,
+    jitter: Annotated[Path | None, typer.Option(help="Of a diagram: picture of how late instants were.")] = None,
+    network: Network = False,
     as_json: AsJson = False,
-) -> None:
-    """Move a model through time, and say how it went."""
-    system = _load(model, floating_base)
+) -> None:  # fmt: skip
+    """Move a model or a diagram through time, and say how it went."""
+    pace = speed or float(realtime)
+    settings = {"method": method, "dt": dt, "rtol": rtol}
+    stated: dict[str, Any] = {name: value for name, value in settings.items() if value is not None}
+    wanted = not as_json and _err.is_terminal
     try:
-        compiled = compile_system(system)
-        q, v = _first_state(compiled, _assignments(given, "--set"))
-        run = sf.simulate(
-            compiled, q, v, t_end, u=_assignments(inputs, "--input") or None, method=method, dt=dt, rtol=rtol,
-            output=every, realtime=realtime, progress=not as_json and _err.is_terminal,
-        )  # fmt: skip
-        files = [str(run.save(output))] if output else []
-        if picture:
-            run.plot().savefig(picture, dpi=120)
-            files.append(str(picture))
-    except (sf.SymofrosError, ValueError) as error:
-        _err.print(str(error), markup=False, highlight=False, soft_wrap=True)
-        raise typer.Exit(BAD_INPUT) from None
-    _tell(run, files, as_json)
-    if not run.outcome.ok:
+        if diagrams.is_diagram(model):
+            if inputs:
+                raise sf.SymofrosError(f"--input: a diagram's inputs are blocks\n  found:  {inputs[0]}")
+            stated |= {"record": every} if every is not None else {}
+            stated |= {
+                "parameters": {name: _numbers(name, text) for name, text in _assignments(given, "--set").items()}
+            }
+            names = tuple(_names(signals) or ())
+            wishes = diagrams.Wishes(t_end, stated, pace, names, output, picture, jitter)
+            found = diagrams.run_diagram(sf.load_diagram(model, network=network), wishes, wanted)
+            diagrams.tell_run(found, diagrams.write_files(found, wishes), pace, as_json, _out)
+            ok = found.outcome.ok
+        else:
+            run = _simulated(_load(model, floating_base), t_end, given, inputs, every, pace, stated, wanted)
+            files = [str(run.save(output))] if output else []
+            if picture:
+                run.plot().savefig(picture, dpi=120)
+                files.append(picture)
+            _tell(run, files, as_json)
+            ok = run.outcome.ok
+    except (sf.SymofrosError, ValueError, OSError) as error:
+        raise _refuse(error) from None
+    if not ok:
         raise typer.Exit(1)
+
+
+def _simulated(
+    system: System, t_end: float | None, given: list[str], inputs: list[str], every: float | None, pace: float,
+    settings: dict[str, Any], progress: bool,
+) -> sf.Trajectory:  # fmt: skip
+    """The run of one model."""
+    compiled = compile_system(system)
+    q, v = _first_state(compiled, _assignments(given, "--set"))
+    return sf.simulate(
+        compiled, q, v, 1.0 if t_end is None else t_end, u=_assignments(inputs, "--input") or None, output=every,
+        realtime=pace, progress=progress, **settings,
+    )  # fmt: skip
 
 
 @app.command()

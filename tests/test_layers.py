@@ -51,10 +51,11 @@ ALLOWED: dict[str, set[str]] = {
     },
     # Formulas of blocks go through the parser of model files.
     "blocks": {"diagrams", "runtime", "simulation", "description", "expr", "errors"},
+    "diagram_files": {"blocks", "diagrams", "description", "loading", "simulation", "atomic", "errors"},
     "loading": {"errors", "atomic", "description", "topology"},
     "__init__": {
         "errors", "options", "expr", "description", "compiler", "loading", "exporting", "runtime", "simulation",
-        "advice", "diagrams",
+        "advice", "diagrams", "diagram_files",
     },
 }  # fmt: skip
 ENGINES = {"pinocchio", "mujoco", "exudyn", "casadi"}

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Literal, Protocol
 import numpy as np
 
 from symofros.description.system import System
+from symofros.diagrams.settings import Plot
 from symofros.diagrams.tensor import Tensor
 from symofros.expr.graph import Graph
 from symofros.runtime.kernel import Array
@@ -240,6 +241,18 @@ class Block:
     def end(self) -> None:
         """After a run, however it ended."""
 
+    def kept(self) -> Mapping[str, Array]:
+        """What an opaque block kept of the run that comes to its end, by name; the run hands it on."""
+        return {}
+
+    def reaches(self) -> str:
+        """The address of another machine that an opaque block would talk to; "" for none."""
+        return ""
+
+    def shown(self) -> tuple[Plot, ...]:
+        """Pictures that it asks for; their signals are ports of its own."""
+        return ()
+
     def parameters(self) -> dict[str, Array]:
         """Run-time parameter -> value."""
         return {name: np.asarray(getattr(self, name), dtype=np.float64) for name in self.tunable}
@@ -251,6 +264,21 @@ class Block:
 
 
 @dataclass(frozen=True)
+class ModelFile:
+    """Where a model was read from.
+
+    Attributes:
+        path: The file.
+        functions: As of `Diagram.add_model`.
+        floating_base: As of `sf.load`.
+    """
+
+    path: str
+    functions: int | None = None
+    floating_base: bool = False
+
+
+@dataclass(frozen=True)
 class ModelSetup:
     """A model of a diagram: the paper's initialisation.
 
@@ -258,8 +286,10 @@ class ModelSetup:
         system: Its description.
         start: Coordinate, or d and a speed's name -> first value; zero for the others.
         parameters: Run-time parameter -> value, where not the description's own.
+        file: Where it was read from, if it was.
     """
 
     system: System
     start: Mapping[str, float] = field(default_factory=dict)
     parameters: Mapping[str, float] = field(default_factory=dict)
+    file: ModelFile | None = field(default=None, compare=False)

@@ -18,8 +18,8 @@ from symofros.diagrams.layout import Layout, Part, lay_out
 from symofros.diagrams.order import groups_in_motion, order_of
 from symofros.diagrams.pieces import Piece, piece_of
 from symofros.diagrams.rates import Schedule, schedule
-from symofros.diagrams.wiring import Source, Wired, wire
-from symofros.errors import CompileError
+from symofros.diagrams.wiring import Source, Wired, located, wire
+from symofros.errors import CompileError, DescriptionError, Problem
 from symofros.expr.program import Program
 from symofros.options import Options
 from symofros.passes import run_passes
@@ -67,7 +67,19 @@ def resolve(diagram: Diagram) -> Resolved:
         DescriptionError: With what is wrong: names, shapes, units, sample times, algebraic loops.
     """
     wired = wire(diagram)
-    pieces = {name: piece_of(wired, name) for name in wired.blocks}
+    pieces, problems = {}, []
+    for name in wired.blocks:
+        try:
+            pieces[name] = piece_of(wired, name)
+        except DescriptionError as error:
+            problems += located(error.problems, diagram.where(name))
+        except (ValueError, IndexError, TypeError) as error:  # Fields that do not fit what is connected.
+            shapes = ", ".join(f"{port.name} {port.shape}" for port in wired.ports[name].inputs)
+            problems.append(Problem(f"block '{name}': its fields do not fit its inputs", f"{error}"[:200],
+                                    f"inputs here: {shapes or 'none'}", "mend the shapes of its fields",
+                                    diagram.where(name)))  # fmt: skip
+    if problems:
+        raise DescriptionError(problems)
     order = order_of(wired, pieces)
     layout = lay_out(wired, pieces, groups_in_motion(wired, pieces))
     found = Resolved(wired, pieces, order, layout, Schedule.empty())

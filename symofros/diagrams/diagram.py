@@ -8,12 +8,28 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from symofros.description.system import System
-from symofros.diagrams.block import Block, ModelSetup
+from symofros.diagrams.block import Block, ModelFile, ModelSetup
+from symofros.diagrams.settings import RunSettings
 from symofros.diagrams.variants import with_functions
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
 INSIDE = "/"
+
+
+@dataclass(frozen=True)
+class Part:
+    """A diagram inside another, as it was put there.
+
+    Attributes:
+        diagram: What was included.
+        models: Its name of a model -> the including diagram's.
+        inputs: Inlet -> source.
+    """
+
+    diagram: Diagram
+    models: Mapping[str, str]
+    inputs: Mapping[str, str]
 
 
 @dataclass
@@ -27,6 +43,11 @@ class Diagram:
         wires: (block, input port) -> source, as "block.port" or "block" where that has one output.
         inlets: Where it is part of another: name -> input ports "block.port" that it feeds.
         outlets: Alike: name -> "block.port" that it is read from.
+        simulation: How its author means it to be run.
+        parts: Name -> what was included, for those who write the diagram down again.
+        origin: ("block", name), ("input", block, port), ("model", name) or ("outlet", name) -> "file:line" of what
+            came from a file.
+        file: Where it was read from; "" for none.
     """
 
     name: str
@@ -35,10 +56,19 @@ class Diagram:
     wires: dict[tuple[str, str], str] = field(default_factory=dict)
     inlets: dict[str, Sequence[str]] = field(default_factory=dict)
     outlets: dict[str, str] = field(default_factory=dict)
+    simulation: RunSettings = field(default_factory=RunSettings)
+    parts: dict[str, Part] = field(default_factory=dict)
+    origin: dict[tuple[str, ...], str] = field(default_factory=dict, compare=False)
+    file: str = field(default="", compare=False)
+
+    def where(self, block: str, port: str = "") -> str:
+        """The "file:line" of an input, or else of its block; "" for what was stated in Python."""
+        return self.origin.get(("input", block, port)) or self.origin.get(("block", block), "")
 
     def add_model(
         self, name: str, system: System, start: Mapping[str, float] | None = None,
         parameters: Mapping[str, float] | None = None, functions: int | None = None,
+        file: ModelFile | None = None,
     ) -> None:  # fmt: skip
         """State a model.
 
@@ -48,10 +78,11 @@ class Diagram:
             start: Coordinate, or d and a speed's name -> first value.
             parameters: Run-time parameters that differ from the description's.
             functions: Shape functions in each direction that beams have any in; 0: the equivalent rigid mechanism.
+            file: Where the description was read from, for those who write the diagram down again.
         """
         self._refuse_name("model", name, self.models)
         stated = system if functions is None else with_functions(system, functions)
-        self.models[name] = ModelSetup(stated, dict(start or {}), dict(parameters or {}))
+        self.models[name] = ModelSetup(stated, dict(start or {}), dict(parameters or {}), file)
 
     def add(self, block: Block, **inputs: str) -> Block:
         """Add a block, its inputs fed by `port="block.port"`.
@@ -95,6 +126,7 @@ class Diagram:
             DescriptionError: An inlet is unknown, or a name is taken.
         """
         self._refuse_name("part", name, {block.split(INSIDE)[0] for block in self.blocks})
+        self.parts[name] = Part(part, dict(models or {}), dict(inputs))
         known = dict(models or {})
         for inner, setup in part.models.items():
             if inner not in known:
@@ -114,6 +146,9 @@ class Diagram:
                 self.connect(source, f"{name}{INSIDE}{target}")
         for outlet, source in part.outlets.items():
             self.outlets[f"{name}.{outlet}"] = f"{name}{INSIDE}{source}"
+        for (kind, first, *rest), line in part.origin.items():
+            inside = f"{name}.{first}" if kind == "outlet" else f"{name}{INSIDE}{first}"
+            self.origin[kind, inside, *rest] = line
 
     def with_model(self, name: str, setup: ModelSetup) -> Diagram:
         """The same diagram about another model: rigid in place of flexible, say."""

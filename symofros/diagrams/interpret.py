@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -114,7 +114,11 @@ class Blocks:
         return self._par[layout.parameters["", model].slice]
 
     def signals(self, due: frozenset[str] | None = None) -> None:
-        """Continuous outputs at the present point, in order; those of sampled blocks that are due, too."""
+        """Continuous outputs at the present point, in order; those of sampled blocks that are due, too.
+
+        Python is called once a block: at its first output, all of which need all inputs; without outputs, at the end.
+        """
+        waiting = {name for name in due or () if self.resolved.pieces[name].block.is_opaque}
         for source in self.resolved.order:
             name, port = source
             piece = self.resolved.pieces[name]
@@ -122,10 +126,14 @@ class Blocks:
             if port in block.samples():
                 self._sample(source)
             elif not piece.is_discrete or (due is not None and name in due):
-                if block.is_opaque:
+                if name in waiting:
+                    waiting.remove(name)
                     self._call_python(piece)
-                else:
+                elif not block.is_opaque:
                     self.calls[name, f"out_{port}"][0]()
+        for name in self.resolved.pieces:
+            if name in waiting:
+                self._call_python(self.resolved.pieces[name])
 
     def _sample(self, source: Source) -> None:
         signal = self.resolved.pieces[source[0]].block.samples()[source[1]]
@@ -197,11 +205,13 @@ class InterpretedRun:
         resolved: What ran.
         t: Times (n) [s].
         values: (block, output) -> its signal.
+        kept: Block -> what it kept of the run, by name.
     """
 
     resolved: Resolved
     t: Array
     values: dict[Source, Array]
+    kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Array:
         """A signal over time."""

@@ -50,6 +50,7 @@ def _loop(wired: Wired, path: Sequence[Source]) -> DescriptionError:
         f"diagram '{wired.name}': an algebraic loop", text,
         "a signal does not depend on itself at the same instant",
         "break the loop by a delay, an integrator or a filter, or sample one of its blocks before the other",
+        wired.origin.get(("block", forward[0][0]), ""),
     ))  # fmt: skip
 
 

@@ -31,6 +31,13 @@ class Schedule:
     instants: tuple[tuple[int, int], ...]
     sets: tuple[frozenset[str], ...]
 
+    @property
+    def spacing(self) -> float:
+        """The shortest time between two instants [s]; infinite without any."""
+        at = [k for k, _ in self.instants]
+        gaps = [b - a for a, b in zip(at, [*at[1:], *(first + self.cycle for first in at[:1])], strict=True)]
+        return float(min(gaps) * self.base) if gaps else math.inf
+
     @staticmethod
     def empty() -> Schedule:
         """Nothing is ever due."""

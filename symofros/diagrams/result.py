@@ -5,13 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from symofros.diagrams.block import Shape
 from symofros.diagrams.compiled import CompiledDiagram
 from symofros.diagrams.fuse import AFTER
+from symofros.diagrams.plots import draw, plots_of
+from symofros.diagrams.saving import save_run
+from symofros.diagrams.settings import Plot
 from symofros.diagrams.wiring import Source
 from symofros.runtime.kernel import Array
 from symofros.simulation.outcome import Outcome
@@ -36,6 +40,7 @@ class Cost:
         seconds: On the clock, in the loop.
         worked: Of the processor, by the calling thread [s].
         late: How late each instant began (n) [s]; empty unless pace was kept.
+        spacing: The shortest time between two instants [s].
     """
 
     steps: int
@@ -44,6 +49,7 @@ class Cost:
     seconds: float
     worked: float
     late: Array = field(default_factory=lambda: np.zeros(0))
+    spacing: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,7 @@ class DiagramRun(Mapping[str, Array]):
         outcome: How the run ended.
         crossings: What was met, in the order of time.
         cost: What it took.
+        kept: Block -> what it kept of the run by itself, by name: arrays at its own times "t", or counts.
     """
 
     compiled: CompiledDiagram
@@ -71,6 +78,7 @@ class DiagramRun(Mapping[str, Array]):
     outcome: Outcome
     crossings: tuple[Crossed, ...]
     cost: Cost
+    kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
     _known: dict[Source, Array] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Array:
@@ -102,6 +110,23 @@ class DiagramRun(Mapping[str, Array]):
         """Of a signal at one time."""
         wired = self.compiled.resolved.wired
         return wired.shape(wired.output(name))
+
+    def save(self, path: str | Path, *signals: str) -> list[Path]:
+        """Write signals, "block.port" or "block.port[i]"; all by default: .npz (arrays), .csv or .parquet (columns).
+
+        Raises:
+            SymofrosError: As `save_run`.
+        """
+        return save_run(self, Path(path), signals)
+
+    def plot(self, *signals: str, figure: Any = None) -> Any:
+        """A Matplotlib figure of signals; by default what the diagram asks to be shown, or else every output.
+
+        Raises:
+            SymofrosError: Matplotlib is not installed, or there is no such signal.
+        """
+        wired = self.compiled.resolved.wired
+        return draw(self, [Plot(s, (s,)) for s in signals] or plots_of(wired) or [Plot(s, (s,)) for s in self], figure)
 
     def compute(self, sources: Sequence[Source]) -> None:
         """Make several signals known by one compiled function."""

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from symofros.diagrams.block import Block
 from symofros.diagrams.compiled import CompiledDiagram, Resolved, fuser
 from symofros.diagrams.layout import Place
 from symofros.diagrams.loop import RECORD, Loop, Stage
@@ -129,11 +131,17 @@ def run_compiled(
             status = stepper.start(q, v, 1)
             if status < 0:
                 raise SymofrosError(f"diagram '{resolved.wired.name}': the first accelerations are not finite")
-        return _drive(compiled, loop, plan, interval, t0, t_end, par, float(realtime), threads, progress)
+        run = _drive(compiled, loop, plan, interval, t0, t_end, par, float(realtime), threads, progress)
+        return replace(run, kept=kept_by(opened))
     finally:
         loop.close()
         for block in opened:
             block.end()
+
+
+def kept_by(blocks: Iterable[Block]) -> dict[str, dict[str, Array]]:
+    """What each block kept of a run, those left out that keep nothing."""
+    return {block.name: dict(found) for block in blocks if (found := block.kept())}
 
 
 def _drive(
@@ -169,7 +177,7 @@ def _drive(
     watched = _watched(compiled)
     crossings = tuple(Crossed(*watched[which], when) for when, which in met)
     d = loop.d
-    cost = Cost(int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, loop.late)
+    cost = Cost(int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, loop.late, plan.spacing)
     return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +15,7 @@ from symofros.diagrams.interpret import Blocks, InterpretedRun, run_interpreted
 from symofros.diagrams.loop import RECORD
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
-from symofros.diagrams.simulate import parameter_values, record_interval, run_compiled
+from symofros.diagrams.simulate import kept_by, parameter_values, record_interval, run_compiled
 from symofros.errors import Problem, SymofrosError
 from symofros.options import Options
 from symofros.runtime.toolchain import find_toolchain
@@ -43,9 +44,18 @@ class Simulation:
         """The diagram as C functions."""
         return compile_diagram(self.resolved, self.options)
 
-    def run(self, t_end: float, **settings: Any) -> DiagramRun:
-        """Run it in C; the settings are those of `run_compiled`."""
-        return run_compiled(self.compiled, t_end, **settings)
+    def run(self, t_end: float | None = None, **settings: Any) -> DiagramRun:
+        """Run it in C.
+
+        Args:
+            t_end: Where to end [s]; the diagram's own where it states one.
+            settings: Of `run_compiled`, in place of the diagram's own.
+
+        Raises:
+            SymofrosError: As `run_compiled`; or nobody says where to end.
+        """
+        stated = self.diagram.simulation
+        return run_compiled(self.compiled, _end(self.diagram, t_end), **{**stated.keywords(), **settings})
 
     def interpret(
         self, t_end: float, *, t0: float = 0.0, method: str = "rk4", dt: float = 1e-3, record: float | None = None,
@@ -87,10 +97,20 @@ class Simulation:
                 opened.append(block)
             with bar(progress, t0, t_end) as show:
                 instants = list(_instants(plan, t0, t_end))
-                return run_interpreted(blocks, instants, t_end, dt, METHODS[method].tableau, gains is None, show)
+                run = run_interpreted(blocks, instants, t_end, dt, METHODS[method].tableau, gains is None, show)
+                return replace(run, kept=kept_by(opened))
         finally:
             for block in opened:
                 block.end()
+
+
+def _end(diagram: Diagram, t_end: float | None) -> float:
+    end = t_end if t_end is not None else diagram.simulation.t_end
+    if end is None:
+        raise SymofrosError(str(Problem(f"diagram '{diagram.name}': no end of time", "t_end is not stated",
+                                        "a run ends somewhere", "give t_end, or state it under simulation")
+                                ))  # fmt: skip
+    return end
 
 
 def _instants(plan: Schedule, t0: float, t_end: float) -> Iterator[tuple[float, frozenset[str], bool]]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from symofros.diagrams.block import Block, Port, Ports, Shape
 from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.settings import Plot
+from symofros.diagrams.signals import check_entry, split
 from symofros.diagrams.surroundings import Models
 from symofros.diagrams.units import agree, parse
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -31,6 +33,8 @@ class Wired:
         sources: (block, input) -> (block, output); inputs on their defaults are left out.
         models: What blocks refer to.
         outlets: Name -> (block, output), of included parts and of the diagram's own.
+        origin: As of the diagram.
+        plots: What the diagram asks to be shown.
     """
 
     name: str
@@ -39,6 +43,8 @@ class Wired:
     sources: Mapping[Source, Source]
     models: Models
     outlets: Mapping[str, Source]
+    origin: Mapping[tuple[str, ...], str]
+    plots: tuple[Plot, ...] = ()
 
     def output(self, text: str) -> Source:
         """The (block, output) of "block.port", of "block" where it has one output, or of an outlet.
@@ -47,6 +53,15 @@ class Wired:
             DescriptionError: There is none.
         """
         return _output(self.name, text, self.blocks, self.ports, self.outlets)
+
+    def check_signal(self, text: str) -> None:
+        """Refuse what names no signal, or no entry of one: "block.port" or "block.port[i]".
+
+        Raises:
+            DescriptionError: There is none.
+        """
+        name, index = split(text)
+        check_entry(text, index, self.shape(self.output(name)))
 
     def shape(self, source: Source) -> Shape:
         """Of an output."""
@@ -97,22 +112,49 @@ def wire(diagram: Diagram) -> Wired:
     """
     models = Models(diagram.name, diagram.models)
     problems: list[Problem] = []
+    for name in diagram.models:
+        try:
+            models.start(name), models.parameters(name)
+        except DescriptionError as error:
+            problems += located(error.problems, diagram.origin.get(("model", name), ""))
     for block in diagram.blocks.values():
-        problems += _sampling(diagram.name, block)
+        problems += located(_sampling(diagram.name, block), diagram.where(block.name))
     ports = _first_ports(diagram, models, problems)
     if problems:
         raise DescriptionError(problems)
     outlets: dict[str, Source] = {}
     for name, text in diagram.outlets.items():
-        outlets[name] = _collected(problems, diagram.name, text, diagram.blocks, ports, outlets) or ("", "")
+        where = diagram.origin.get(("outlet", name), "")
+        outlets[name] = _collected(problems, where, diagram.name, text, diagram.blocks, ports, outlets) or ("", "")
     sources = _sources(diagram, ports, outlets, problems)
     if problems:
         raise DescriptionError(problems)
     ports = _settle(diagram, models, ports, sources, problems)
     _check(diagram, ports, sources, problems)
+    plots = diagram.simulation.plots
+    wired = Wired(diagram.name, dict(diagram.blocks), ports, sources, models, outlets, diagram.origin, plots)
+    if not problems:
+        problems += _unseen(wired)
     if problems:
         raise DescriptionError(problems)
-    return Wired(diagram.name, dict(diagram.blocks), ports, sources, models, outlets)
+    return wired
+
+
+def _unseen(wired: Wired) -> list[Problem]:
+    """Signals that are to be shown and do not exist."""
+    problems: list[Problem] = []
+    for i, plot in enumerate(wired.plots):
+        for text in plot.signals:
+            try:
+                wired.check_signal(text)
+            except DescriptionError as error:
+                problems += located(error.problems, wired.origin.get(("plot", str(i)), ""))
+    return problems
+
+
+def located(problems: Sequence[Problem], where: str) -> list[Problem]:
+    """Problems at the place of what has them, where they don't know a better one."""
+    return [replace(problem, where=problem.where or where) for problem in problems]
 
 
 def _sampling(name: str, block: Block) -> list[Problem]:
@@ -132,7 +174,7 @@ def _first_ports(diagram: Diagram, models: Models, problems: list[Problem]) -> d
         try:
             found[name] = block.ports(_Surroundings(models, {}))
         except DescriptionError as error:
-            problems += error.problems
+            problems += located(error.problems, diagram.where(name))
     return found
 
 
@@ -144,15 +186,18 @@ def _sources(
         if block not in diagram.blocks:
             problems.append(Problem(f"diagram '{diagram.name}': no block '{block}'", f"'{block}.{port}' is fed",
                                     "wires end at blocks of the diagram",
-                                    did_you_mean(block, diagram.blocks) or "add the block"))  # fmt: skip
+                                    did_you_mean(block, diagram.blocks) or "add the block",
+                                    diagram.where(block, port)))  # fmt: skip
             continue
         known = [item.name for item in ports[block].inputs]
         if port not in known:
             problems.append(Problem(f"diagram '{diagram.name}': block '{block}' has no input '{port}'", f"'{port}'",
                                     f"inputs: {', '.join(known) or 'none'}",
-                                    did_you_mean(port, known) or "feed one of them"))  # fmt: skip
+                                    did_you_mean(port, known) or "feed one of them",
+                                    diagram.where(block, port)))  # fmt: skip
             continue
-        source = _collected(problems, diagram.name, text, diagram.blocks, ports, outlets)
+        where = diagram.where(block, port)
+        source = _collected(problems, where, diagram.name, text, diagram.blocks, ports, outlets)
         if source is not None:
             sources[block, port] = source
     for block, found in ports.items():
@@ -161,6 +206,7 @@ def _sources(
                 problems.append(Problem(
                     f"diagram '{diagram.name}': input '{block}.{item.name}' is not connected", "nothing",
                     "an input without a default has a source", f"connect a signal{_in_unit(item)} to it",
+                    diagram.where(block),
                 ))  # fmt: skip
     return sources
 
@@ -170,11 +216,11 @@ def _in_unit(port: Port) -> str:
     return f"{shape} in {port.unit}" if port.unit else shape
 
 
-def _collected(problems: list[Problem], *arguments: object) -> Source | None:
+def _collected(problems: list[Problem], where: str, *arguments: object) -> Source | None:
     try:
         return _output(*arguments)  # type: ignore[arg-type]
     except DescriptionError as error:
-        problems += error.problems
+        problems += located(error.problems, where)
         return None
 
 
@@ -218,7 +264,7 @@ def _settle(
             try:
                 found = block.ports(_Surroundings(models, inputs))
             except DescriptionError as error:
-                problems += error.problems
+                problems += located(error.problems, diagram.where(name))
                 return ports
             arrived = [replace(item, shape=inputs.get(item.name)) if item.shape is None else item
                        for item in found.inputs]  # fmt: skip
@@ -239,12 +285,14 @@ def _check(
                 parse(item.unit)
             except DescriptionError as error:
                 one = error.problems[0]
-                problems.append(replace(one, what=f"diagram '{diagram.name}': '{block}.{item.name}': {one.what}"))
+                what = f"diagram '{diagram.name}': '{block}.{item.name}': {one.what}"
+                problems.append(replace(one, what=what, where=diagram.where(block, item.name)))
         unknown = [item.name for item in found.outputs if item.shape is None]
         if unknown:
             problems.append(Problem(
                 f"diagram '{diagram.name}': the shape of '{block}.{unknown[0]}' is unknown", "a loop of open shapes",
                 "the shape of a signal follows from one of its sources", "give a block of the loop a first value",
+                diagram.where(block),
             ))  # fmt: skip
     if problems:
         return
@@ -254,7 +302,8 @@ def _check(
         wire = f"diagram '{diagram.name}': {'.'.join(source)} -> {block}.{port}"
         if item.shape != given.shape:
             problems.append(Problem(f"{wire}: shapes differ", f"{given.shape}", f"the input takes {item.shape}",
-                                    "pick or join entries in a block between"))  # fmt: skip
+                                    "pick or join entries in a block between",
+                                    diagram.where(block, port)))  # fmt: skip
         if not agree(given.unit, item.unit):
             problems.append(Problem(f"{wire}: units differ", f"{given.unit}", f"the input takes {item.unit}",
-                                    "convert by a gain with units"))  # fmt: skip
+                                    "convert by a gain with units", diagram.where(block, port)))  # fmt: skip

@@ -15,6 +15,20 @@ if TYPE_CHECKING:
 _MOST = 12  # Curves in one picture; more can't be told apart.
 
 
+def figure_class() -> Any:
+    """Matplotlib's Figure, which needs no window.
+
+    Raises:
+        SymofrosError: Matplotlib is not installed.
+    """
+    try:
+        return import_module("matplotlib.figure").Figure
+    except ImportError:
+        missing = Problem("plot: Matplotlib is not installed", "no module matplotlib", "pictures are an extra",
+                          "pip install 'symofros[plots]'")  # fmt: skip
+        raise SymofrosError(str(missing)) from None
+
+
 def plot(run: Trajectory, names: tuple[str, ...] = ()) -> Any:
     """A Matplotlib figure: coordinates, speeds, inputs and the change of energy over time.
 
@@ -25,17 +39,11 @@ def plot(run: Trajectory, names: tuple[str, ...] = ()) -> Any:
     Raises:
         SymofrosError: Matplotlib is not installed.
     """
-    try:
-        figures = import_module("matplotlib.figure")
-    except ImportError:
-        missing = Problem("plot: Matplotlib is not installed", "no module matplotlib", "pictures are an extra",
-                          "pip install 'symofros[plots]'")  # fmt: skip
-        raise SymofrosError(str(missing)) from None
     model = run.model.names
     shown_q = [i for i, name in enumerate(model.q) if not names or name in names][:_MOST]
     shown_v = [i for i, name in enumerate(model.v) if not names or name in names][:_MOST]
     rows = 4 if model.u and np.any(run.u) else 3
-    figure = figures.Figure(figsize=(8.0, 2.2 * rows), layout="constrained")
+    figure = figure_class()(figsize=(8.0, 2.2 * rows), layout="constrained")
     axes = figure.subplots(rows, 1, sharex=True)
     for i in shown_q:
         axes[0].plot(run.t, run.q[:, i], label=model.q[i])

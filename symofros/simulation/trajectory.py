@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from symofros.atomic import write_atomically
-from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.outcome import Outcome
 from symofros.simulation.plots import plot
+from symofros.simulation.saving import refuse_suffix, write_columns, write_npz
 
 
 class Found(NamedTuple):
@@ -183,34 +177,12 @@ class Trajectory:
             SymofrosError: Another suffix; or Parquet without pyarrow.
         """
         path = Path(path)
+        refuse_suffix(path, "trajectory")
         if path.suffix == ".npz":
-            stream = io.BytesIO()
             arrays: dict[str, Any] = {"t": self.t, "q": self.q, "v": self.v, "u": self.u, "par": self.par}
-            np.savez_compressed(stream, **arrays, names_q=self.model.names.q, names_v=self.model.names.v,
-                                names_u=self.model.names.u, outcome=str(self.outcome))  # fmt: skip
-            write_atomically(path, stream.getvalue())
-        elif path.suffix == ".csv":
-            text = io.StringIO(newline="")
-            writer = csv.writer(text)
-            columns = self.columns()
-            writer.writerow(columns)
-            writer.writerows(zip(*(map(repr, column.tolist()) for column in columns.values()), strict=True))
-            write_atomically(path, text.getvalue())
-        elif path.suffix == ".parquet":
-            self._save_parquet(path)
+            names = self.model.names
+            write_npz(path, {**arrays, "names_q": names.q, "names_v": names.v, "names_u": names.u,
+                             "outcome": str(self.outcome)})  # fmt: skip
         else:
-            raise SymofrosError(str(Problem(f"trajectory: can't save as '{path.name}'", path.suffix or "no suffix",
-                                            ".npz, .csv or .parquet", "choose one of them")))  # fmt: skip
+            write_columns(path, self.columns(), "trajectory")
         return path
-
-    def _save_parquet(self, path: Path) -> None:
-        try:
-            pyarrow = import_module("pyarrow")  # An extra: 40 MB that only this needs.
-            parquet = import_module("pyarrow.parquet")
-        except ImportError:
-            raise SymofrosError(str(Problem("trajectory: Parquet needs pyarrow", "it is not installed",
-                                            "pyarrow writes Parquet", "pip install pyarrow, or save as .npz")
-                                    )) from None  # fmt: skip
-        stream = io.BytesIO()
-        parquet.write_table(pyarrow.table(self.columns()), stream)
-        write_atomically(path, stream.getvalue())

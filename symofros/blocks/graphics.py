@@ -1,0 +1,141 @@
+"""Graphics (section 6.2 of the paper): what is kept and what is drawn of a run."""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from symofros.blocks.quantities import joint_units
+from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.settings import Plot
+from symofros.errors import DescriptionError, Problem
+from symofros.runtime.kernel import Array
+
+
+def open_ports(name: str, signals: tuple[str, ...], known: Known) -> Ports:
+    """An input for each name, of any shape."""
+    if not signals or len(set(signals)) < len(signals) or not all(signal.isidentifier() for signal in signals):
+        raise DescriptionError(Problem(f"block '{name}': no inputs can be named so", f"{list(signals)}"[:80],
+                                       "signals are different names, one an input", "for example [desired, actual]"
+                                       ))  # fmt: skip
+    return Ports(tuple(Port(signal, known.inputs.get(signal)) for signal in signals))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scope(Block):
+    """Draws its inputs over time in one picture, when a run is plotted.
+
+    Attributes:
+        signals: Names of its inputs.
+        title: Above the picture; the block's name by default.
+    """
+
+    signals: tuple[str, ...]
+    title: str = ""
+
+    def ports(self, known: Known) -> Ports:
+        """The signals."""
+        return open_ports(self.name, self.signals, known)
+
+    def shown(self) -> tuple[Plot, ...]:
+        """All of them together."""
+        return (Plot(self.title, self.signals),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Store(Block):
+    """Keeps its inputs at samples of its own, whatever interval the run is recorded at.
+
+    `run.kept[name]` has them afterwards: "t" (n) and each signal (n, *shape).
+
+    Attributes:
+        signals: Names of its inputs.
+        most: Samples that are kept; the oldest are dropped.
+    """
+
+    signals: tuple[str, ...]
+    most: int = 1_000_000
+    is_opaque: ClassVar[bool] = True
+
+    def ports(self, known: Known) -> Ports:
+        """The signals."""
+        if "t" in self.signals or self.most < 1:
+            raise DescriptionError(Problem(f"block '{self.name}': can't store that", f"{self.signals}, {self.most}",
+                                           "t is the name of the times, and at least one sample is kept",
+                                           "rename the signal"))  # fmt: skip
+        return open_ports(self.name, self.signals, known)
+
+    def begin(self) -> None:
+        """Forget the run before."""
+        object.__setattr__(self, "_rows", deque(maxlen=self.most))
+
+    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
+        """Keep one sample."""
+        self.__dict__["_rows"].append((t, *(np.array(inputs[name]) for name in self.signals)))
+        return {}
+
+    def kept(self) -> Mapping[str, Array]:
+        """Times and signals."""
+        rows = list(zip(*self.__dict__["_rows"], strict=True)) or [()] * (len(self.signals) + 1)
+        return {name: np.array(row) for name, row in zip(("t", *self.signals), rows, strict=True)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class StatePlot(Block):
+    """Draws a mechanism's coordinates and its speeds, a picture each.
+
+    Attributes:
+        model: Of the mechanism.
+    """
+
+    model: str
+
+    def ports(self, known: Known) -> Ports:
+        """Coordinates q (nq) and speeds v (nv)."""
+        record = known.model(self.model)
+        q, v, _, _ = joint_units(record)
+        return Ports((Port("q", (len(record.q_names),), q), Port("v", (len(record.v_names),), v)))
+
+    def shown(self) -> tuple[Plot, ...]:
+        """Two pictures."""
+        return Plot(f"{self.name}: coordinates", ("q",)), Plot(f"{self.name}: speeds", ("v",))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExtremityPlot(Block):
+    """Draws where frames of a mechanism are, x, y and z over time, a picture a frame.
+
+    Attributes:
+        model: Of the mechanism.
+        frames: Whose origins are drawn.
+    """
+
+    model: str
+    frames: tuple[str, ...]
+
+    def ports(self, known: Known) -> Ports:
+        """Coordinates q (nq) in; out "p_FRAME" (3), the frame's origin in the world [m]."""
+        record = known.model(self.model)
+        for name in self.frames:
+            known.frame(self.model, name)
+        outputs = tuple(Port(_position(name), (3,), "m") for name in self.frames)
+        return Ports((Port("q", (len(record.q_names),), joint_units(record)[0]),), outputs)
+
+    def compute(self, at: At) -> Values:
+        """Positions by the model's own kinematics."""
+        q = at.inputs["q"]
+        return {_position(name): at.call(self.model, "frame_pose", name, q=q, t=at.t)["p"] for name in self.frames}
+
+    def shown(self) -> tuple[Plot, ...]:
+        """The outputs."""
+        return tuple(Plot(f"{self.name}: {name}", (_position(name),)) for name in self.frames)
+
+
+def _position(frame: str) -> str:
+    """The output that is a frame's position."""
+    return "p_" + re.sub(r"\W", "_", frame)

@@ -1,0 +1,1 @@
+"""Diagrams as YAML files: kinds of blocks, reading, writing, and the schema."""

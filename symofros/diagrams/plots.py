@@ -1,0 +1,78 @@
+"""Pictures of a run of a diagram, by Matplotlib (the extra `plots`)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from symofros.diagrams.saving import columns
+from symofros.diagrams.settings import Plot
+from symofros.diagrams.signals import split
+from symofros.diagrams.wiring import Wired
+from symofros.errors import Problem, SymofrosError
+from symofros.simulation.plots import figure_class
+
+if TYPE_CHECKING:
+    from symofros.diagrams.result import DiagramRun
+
+# Matplotlib's ways to draw that have no windows.
+_PAPER = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
+_MOST = 12  # Curves in one picture; more can't be told apart.
+
+
+def plots_of(wired: Wired) -> list[Plot]:
+    """What a diagram asks to be shown: what it lists, then its scopes."""
+    found = list(wired.plots)
+    for name, block in wired.blocks.items():
+        outputs = [port.name for port in wired.ports[name].outputs]
+        for plot in block.shown():
+            own = [(name, port) if port in outputs else wired.sources.get((name, port)) for port in plot.signals]
+            found.append(Plot(plot.title or name, tuple(".".join(source) for source in own if source)))
+    return [plot for plot in found if plot.signals]
+
+
+def draw(run: DiagramRun, plots: Sequence[Plot], figure: Any = None) -> Any:
+    """A Matplotlib figure with a diagram below the other for each plot, over one axis of time.
+
+    Args:
+        run: What is shown.
+        plots: What of it; at least one.
+        figure: To draw in; by default one that `savefig` writes.
+
+    Raises:
+        SymofrosError: Matplotlib is not installed, or there is no such signal.
+    """
+    if figure is None:
+        figure = figure_class()(figsize=(8.0, 1.0 + 2.2 * len(plots)), layout="constrained")
+    run.compute([run.compiled.resolved.wired.output(split(text)[0]) for plot in plots for text in plot.signals])
+    grid = figure.subplots(len(plots), 1, sharex=True, squeeze=False)[:, 0]
+    for axis, plot in zip(grid, plots, strict=True):
+        shown = columns(run, plot.signals)
+        for name in list(shown)[1 : _MOST + 1]:
+            axis.plot(run.t, shown[name], label=name)
+        left_out = len(shown) - 1 - _MOST
+        axis.set_title(plot.title + (f" (first {_MOST} of {len(shown) - 1})" if left_out > 0 else ""), loc="left")
+        units = {run.unit(split(text)[0]) for text in plot.signals} - {""}
+        axis.set_ylabel(", ".join(f"[{unit}]" for unit in sorted(units)))
+        axis.grid(alpha=0.3)
+        axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
+    grid[-1].set_xlabel("t [s]")
+    figure.suptitle(f"{run.compiled.resolved.wired.name}: {run.outcome.kind} at t = {run.outcome.t:.4g} s")
+    return figure
+
+
+def show_window(run: DiagramRun, *signals: str) -> None:
+    """Draw in a window, and wait until it is closed.
+
+    Raises:
+        SymofrosError: Matplotlib is not installed, or has no screen to draw on.
+    """
+    figure_class()
+    pyplot = import_module("matplotlib.pyplot")
+    backend = pyplot.get_backend()
+    if backend.lower() in _PAPER:
+        raise SymofrosError(str(Problem("plot: no window can be opened", f"Matplotlib draws by '{backend}'",
+                                        "a window needs a screen", "write a picture: --plot run.png")))  # fmt: skip
+    run.plot(*signals, figure=pyplot.figure(layout="constrained"))
+    pyplot.show()
