@@ -1,0 +1,38 @@
+"""The report on diagrams: its quick variant, and that it can fail."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from validation.__main__ import app
+from validation.diagrams import catalogue
+
+
+@pytest.mark.parametrize("name", ["square", "two_arms"])
+def test_the_studies_answer(name: str, tmp_path: Path) -> None:
+    command = ["diagrams", "--study", name, "--quick", "--json", "--report", str(tmp_path)]
+    done = CliRunner().invoke(app, command)
+    data = json.loads(done.stdout)
+    # How fast a busy machine is says nothing of the answer.
+    found = {check["what"]: check["ok"] for check in data["studies"][name]["checks"] if "second" not in check["what"]}
+    assert found and all(found.values()), found
+    page = (tmp_path / "diagrams.html").read_text()
+    assert page.count("<svg") >= 3 and "Figure 1.1" in page
+
+
+def test_a_miss_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    from validation.diagrams import threads
+
+    def missed(quick: bool) -> object:
+        study = threads.study(quick)
+        return replace(study, checks=(replace(study.checks[0], high=1.0), *study.checks[1:]))
+
+    monkeypatch.setitem(catalogue.STUDIES, "threads", missed)
+    done = CliRunner().invoke(app, ["diagrams", "--study", "threads", "--quick", "--report", str(tmp_path)])
+    assert done.exit_code == 1
+    assert "missed" in (tmp_path / "diagrams.md").read_text()
