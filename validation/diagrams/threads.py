@@ -58,7 +58,7 @@ def study(quick: bool) -> Study:
     )  # fmt: skip
     answer = (
         "Mechanisms that see each other at samples only are integrated by themselves in between. On two threads the"
-        f" run takes 1/{max(gains):.2f} of the time at best (wall clock, the fastest of five runs each), and every bit of the"
-        " result is that of one thread."
+        f" run takes 1/{max(gains):.2f} of the time at best (wall clock, the fastest of five runs each), and every"
+        " bit of the result is that of one thread."
     )
     return Study("What do several processors gain, and do they change anything?", answer, (figure,), checks)
