@@ -22,10 +22,10 @@ from symofros.description.forces import Anchor
 from symofros.description.system import RigidBody
 from symofros.topology.numbers import Numbers
 from symofros.topology.tree import BASE, Link, NamedFrame, Placement, SpanningTree, frame_of
-from symofros.view.centre_line import CentreLine
-from symofros.view.drawing import Bend, Color, Drawing, Part, Place, Strut, Triad
-from symofros.view.inertia_box import inertia_box, longest_edges
-from symofros.view.shapes import Array, Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
+from symofros.viewing.centre_line import CentreLine
+from symofros.viewing.drawing import Bend, Color, Drawing, Part, Place, Strut, Triad
+from symofros.viewing.inertia_box import inertia_box, longest_edges
+from symofros.viewing.shapes import Array, Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
 
 # Told apart on white and on grey, also by those who see red and green alike.
 _PALETTE: tuple[Color, ...] = (

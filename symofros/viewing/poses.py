@@ -16,10 +16,10 @@ from symofros.runtime.model import Given, Model
 from symofros.simulation.assembly import assemble
 from symofros.topology.numbers import Numbers
 from symofros.topology.tree import SpanningTree, frame_of
-from symofros.view.drawing import Bend, Drawing, Place, Strut
-from symofros.view.geometry import draw, landmarks
-from symofros.view.inertia_box import longest_edges
-from symofros.view.shapes import Array, axes_along, ellipse, tube_vertices
+from symofros.viewing.drawing import Bend, Drawing, Place, Strut
+from symofros.viewing.geometry import draw, landmarks
+from symofros.viewing.inertia_box import longest_edges
+from symofros.viewing.shapes import Array, Mesh, cylinder, tube
 
 _LEAST_SIZE = 1e-6  # [m]; what is smaller is drawn as if it were a metre, for want of anything to go by.
 
@@ -78,7 +78,9 @@ class Mechanism:
         functions: tuple[str, ...] = ("frame_pose",)
         if system.constraints:
             functions += ("constraint", "constraint_jacobian", "constraint_rate")
-            ends = [end for item in system.constraints if isinstance(item, Closure) for end in (item.first, item.second)]
+            ends = [
+                end for item in system.constraints if isinstance(item, Closure) for end in (item.first, item.second)
+            ]
             wanted |= {frame_of(self.tree, *end).name for end in ends}
         asked = tuple(frame.name for frame in frames if frame.name in wanted)
         self.model: Model = compile_system(system, Options(functions, asked, batch="loop"))
@@ -165,15 +167,13 @@ class Mechanism:
         return state._replace(q=found.q), ""
 
 
-def bend_vertices(bend: Bend, posture: Posture) -> Array:
-    """The vertices of a beam's tube in its root's axes (V, 3) [m]."""
+def bend_mesh(bend: Bend, posture: Posture) -> Mesh:
+    """A beam's tube in its root's axes; its faces are those of every posture."""
     start, size = bend.q
     q = posture.q[start : start + size]
-    return tube_vertices(bend.outline, bend.line.points(bend.length, q), bend.line.axes(bend.length, q))
+    return tube(bend.outline, bend.line.points(bend.length, q), bend.line.axes(bend.length, q))
 
 
-def strut_vertices(strut: Strut, posture: Posture) -> Array:
-    """The vertices of a strut in the world (V, 3) [m]."""
-    first, second = posture.point(strut.first), posture.point(strut.second)
-    R = axes_along(second - first)
-    return tube_vertices(ellipse(strut.radius, strut.radius), np.stack([first, second]), np.stack([R, R]))
+def strut_mesh(strut: Strut, posture: Posture) -> Mesh:
+    """A strut in the world; its faces are those of every posture."""
+    return cylinder(posture.point(strut.first), posture.point(strut.second), strut.radius)

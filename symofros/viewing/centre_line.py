@@ -11,7 +11,7 @@ import numpy as np
 from symofros.beams.deformation import Deformation, deformation_of
 from symofros.beams.fields import Field, Monomial
 from symofros.description.beam import Beam
-from symofros.view.shapes import Array
+from symofros.viewing.shapes import Array
 
 STATIONS = 25  # Of a beam, ends included: three a bend of the fourth mode.
 

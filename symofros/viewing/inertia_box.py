@@ -9,7 +9,7 @@ import numpy as np
 from symofros.description.system import RigidBody, System
 from symofros.topology.numbers import Numbers
 from symofros.topology.physics import moments_about_center
-from symofros.view.shapes import Array
+from symofros.viewing.shapes import Array
 
 
 class InertiaBox(NamedTuple):
@@ -45,18 +45,14 @@ def inertia_box(body: RigidBody, numbers: Numbers) -> InertiaBox | None:
     if body.inertia.about == "center_of_mass":
         R = numbers.rotation(body.inertia.rotation)
         J = R @ J @ R.T
-    moments, axes = np.linalg.eigh((J + J.T) / 2)
+    moments, axes = (found[..., ::-1] for found in np.linalg.eigh((J + J.T) / 2))  # The largest moment first.
     if np.linalg.det(axes) < 0.0:
         axes = axes * np.array([1.0, 1.0, -1.0])
     edges = np.sqrt(np.maximum(6.0 * (moments.sum() - 2.0 * moments) / mass, 0.0))
-    return InertiaBox(numbers.values(body.inertia.center_of_mass), axes[:, ::-1] * _handed, edges[::-1])
+    return InertiaBox(numbers.values(body.inertia.center_of_mass), axes, edges)
 
 
 def longest_edges(system: System, numbers: Numbers) -> list[float]:
     """The longest edge of every body's box [m]."""
     boxes = (inertia_box(body, numbers) for body in system.bodies if isinstance(body, RigidBody))
     return [float(found.edges.max()) for found in boxes if found is not None]
-
-
-# Reversing the order of three axes turns a right-handed triple into a left-handed one.
-_handed = np.array([1.0, 1.0, -1.0])

@@ -64,6 +64,14 @@ def cylinder(start: Array, end: Array, radius: float) -> Mesh:
     return tube(_circle(radius), np.stack([start, end]), np.stack([R, R]))
 
 
+def cone(base: Array, tip: Array, radius: float) -> Mesh:
+    """A closed cone between two points (3)."""
+    mesh = cylinder(base, tip, radius)
+    vertices = mesh.vertices.copy()
+    vertices[_SIDES : 2 * _SIDES] = vertices[3 * _SIDES :] = tip
+    return Mesh(vertices, mesh.faces)
+
+
 def disc(radius: float, thickness: float) -> Mesh:
     """A flat cylinder about the origin, its axis along z."""
     half = np.array([0.0, 0.0, thickness / 2])
@@ -78,21 +86,13 @@ def tube(outline: Array, points: Array, axes: Array) -> Mesh:
         points: Of the line (S, 3) [m].
         axes: Of the section at each of them: R with x along the line (S, 3, 3).
     """
-    return Mesh(tube_vertices(outline, points, axes), tube_faces(len(points), len(outline)))
-
-
-def tube_vertices(outline: Array, points: Array, axes: Array) -> Array:
-    """The vertices of a tube (S K + 2 K, 3): its rings, and the first and the last once more for its ends."""
     rings = points[:, None, :] + outline @ axes[:, :, 1:].transpose(0, 2, 1)
-    found: Array = np.concatenate([rings, rings[:1], rings[-1:]]).reshape(-1, 3)
-    return found
-
-
-def tube_faces(count: int, sides: int) -> Faces:
-    """The faces of a tube of so many rings of so many sides."""
+    count, sides = rings.shape[:2]
+    # Its ends have corners of their own, so that a viewer that smooths over shared corners keeps them flat.
+    vertices = np.concatenate([rings, rings[:1], rings[-1:]]).reshape(-1, 3)
     fan = np.array([(0, i, i + 1) for i in range(1, sides - 1)])
     ends = fan[:, ::-1] + count * sides, fan + (count + 1) * sides
-    return np.concatenate([_sleeve(count, sides), *ends])
+    return Mesh(vertices, np.concatenate([_sleeve(count, sides), *ends]))
 
 
 def ellipse(half_y: float, half_z: float) -> Array:

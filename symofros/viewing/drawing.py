@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
-from symofros.view.centre_line import CentreLine
-from symofros.view.shapes import Array, Mesh
+import numpy as np
+
+from symofros.viewing.centre_line import CentreLine
+from symofros.viewing.shapes import Array, Mesh
 
 Kind = Literal["bodies", "inertias", "joints", "constraints"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -117,3 +119,17 @@ class Drawing:
     size: float
     center: Array
     inertias_fit: bool
+
+
+def alike(a: Drawing, b: Drawing) -> bool:
+    """Whether two drawings of one system, for different parameters, show the same."""
+
+    def numbers(x: Drawing) -> list[Array]:
+        parts = [part.mesh.vertices for part in x.parts]
+        bends = [array for bend in x.bends for array in (np.array(bend.length), bend.outline)]
+        struts = [end.position for strut in x.struts for end in (strut.first, strut.second)]
+        triads = [array for triad in x.triads for array in (triad.position, triad.rotation)]
+        return [*parts, *bends, *struts, *triads, x.gravity]
+
+    one, other = numbers(a), numbers(b)
+    return len(one) == len(other) and all(map(np.array_equal, one, other))
