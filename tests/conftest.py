@@ -23,11 +23,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    for word, why in (
-        ("slow", "takes minutes"),
-        ("tools", "needs programs of the system"),
-        ("browser", "needs Chromium"),
-    ):
+    needs = {"slow": "takes minutes", "tools": "needs programs of the system", "browser": "needs Chromium"}
+    for word, why in needs.items():
         if not config.getoption(f"--{word}"):
             for item in items:
                 if word in item.keywords:

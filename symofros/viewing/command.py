@@ -10,10 +10,12 @@ import typer
 
 import symofros as sf
 from symofros.errors import Problem
+from symofros.viewing.motion import read_motion
+from symofros.viewing.poses import Mechanism
 
 
 def add_view(app: typer.Typer, load: Callable[[Path, bool], sf.System], bad_input: int) -> None:
-    """Add the command; what it needs is imported when it runs.
+    """Add the command; viser is imported when it runs.
 
     Args:
         app: To add it to.
@@ -53,30 +55,22 @@ def add_view(app: typer.Typer, load: Callable[[Path, bool], sf.System], bad_inpu
 
 
 def _record(system: sf.System, trajectory: Path | None, output: Path, exaggeration: float, speed: float) -> Path:
-    from symofros.viewing.motion import read_motion
-    from symofros.viewing.poses import Mechanism
-    from symofros.viewing.record import record
-
     mechanism = Mechanism(system)
     if trajectory is not None:
-        return record(system, read_motion(trajectory, mechanism.model), output, exaggeration=exaggeration, speed=speed)
+        motion = read_motion(trajectory, mechanism.model)
+        return sf.record(system, motion, output, exaggeration=exaggeration, speed=speed)
     if output.suffix != ".png":
         raise sf.SymofrosError(str(Problem("record: nothing moves", "no --trajectory", "a recording is of a motion",
                                            "simulate one: symofros simulate MODEL T -o FILE.npz; or record a .png"
                                            )))  # fmt: skip
     state = mechanism.closed(mechanism.state())[0]
-    return record(system, ([0.0], [state.q]), output, exaggeration=exaggeration)
+    return sf.record(system, ([0.0], [state.q]), output, exaggeration=exaggeration)
 
 
 def _serve(
     system: sf.System, trajectory: Path | None, exaggeration: float, speed: float, host: str, port: int, browser: bool
 ) -> None:
-    from symofros.viewing.motion import read_motion
-    from symofros.viewing.poses import Mechanism
-    from symofros.viewing.view import view
-
     run = None if trajectory is None else read_motion(trajectory, Mechanism(system).model)
-    shown = view(system, run, exaggeration=exaggeration, speed=speed, host=host, port=port, browser=browser)
-    with shown:
+    with sf.view(system, run, exaggeration=exaggeration, speed=speed, host=host, port=port, browser=browser) as shown:
         typer.echo(f"{system.name} is at {shown.url} (Ctrl-C ends)")
         shown.wait()

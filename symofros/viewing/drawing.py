@@ -73,7 +73,7 @@ class Strut:
         kind: As for a Part.
         first: One end.
         second: The other.
-        radius: [m].
+        outline: Of its section (K, 2) [m].
         color: Red, green, blue.
     """
 
@@ -81,7 +81,7 @@ class Strut:
     kind: Kind
     first: Place
     second: Place
-    radius: float
+    outline: Array
     color: Color
 
 

@@ -202,8 +202,23 @@ class _Draughtsman:
         for i, link in enumerate(self.tree.links):
             if link.joint.kind in _SLIDING:
                 start = Place(link.parent, placed(link.placement, self.numbers)[0])
+                radius = self._scaled(_ROD_RADIUS, i) / 2
                 yield Strut(f"joints/{link.joint.name}.slide", "joints", start, Place(i, np.zeros(3)),
-                            self._scaled(_ROD_RADIUS, i) / 2, _SLIDE)  # fmt: skip
+                            ellipse(radius, radius), _SLIDE)  # fmt: skip
+
+    def _ties(self) -> Iterator[Strut]:
+        system, radius = self.tree.system, _ROD_RADIUS * self.size
+        for item in system.constraints:
+            if isinstance(item, Closure):
+                yield self._tie(item.name, item.first, item.second, radius / 2, _CLOSURE)
+            elif isinstance(item, Rod):
+                yield self._tie(item.name, item.first, item.second, radius, _ROD)
+        for spring in system.connections:
+            yield self._tie(spring.name, spring.first, spring.second, radius / 2, _SPRING)
+
+    def _tie(self, name: str, first: Anchor, second: Anchor, radius: float, color: Color) -> Strut:
+        return Strut(f"constraints/{name}", "constraints", self._place(first), self._place(second),
+                     ellipse(radius, radius), color)  # fmt: skip
 
     def _anchor(self, anchor: Anchor) -> NamedFrame:
         return frame_of(self.tree, *anchor)
@@ -211,17 +226,6 @@ class _Draughtsman:
     def _place(self, anchor: Anchor) -> Place:
         frame = self._anchor(anchor)
         return Place(frame.link, placed(frame.placement, self.numbers)[0])
-
-    def _ties(self) -> Iterator[Strut]:
-        radius = _ROD_RADIUS * self.size
-        for item in self.tree.system.constraints:
-            if isinstance(item, Closure | Rod):
-                color, share = (_CLOSURE, 0.5) if isinstance(item, Closure) else (_ROD, 1.0)
-                yield Strut(f"constraints/{item.name}", "constraints", self._place(item.first),
-                            self._place(item.second), share * radius, color)  # fmt: skip
-        for spring in self.tree.system.connections:
-            yield Strut(f"constraints/{spring.name}", "constraints", self._place(spring.first),
-                        self._place(spring.second), radius / 2, _SPRING)  # fmt: skip
 
     def _contacts(self) -> Iterator[Part]:
         """The marks of closures, rolling contacts and knife edges."""

@@ -123,8 +123,8 @@ def _read_arrays(file: Path, model: Model) -> Motion:
         if names != model.names.q:
             _refuse(file.name, f"coordinates {_some(names)}", f"the model's are {_some(model.names.q)}",
                     "show it with the model that it was simulated with")  # fmt: skip
-        more = (found[name] if name in found else None for name in ("u", "par"))
-        return _checked(model, found["t"], found["q"], *more, file.name)
+        u, par = (found[name] if name in found else None for name in ("u", "par"))
+        return _checked(model, found["t"], found["q"], u, par, file.name)
 
 
 def _read_csv(file: Path, model: Model) -> Motion:

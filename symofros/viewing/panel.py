@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -71,7 +72,8 @@ class Panel:
     ) -> None:
         self._gui = gui = server.gui
         self._controls = controls
-        self._play = self._time = None
+        self._play: Any = None
+        self._time: Any = None
         self._sliders: list[Any] = []
         gui.reset()
         gui.configure_theme(show_logo=False, show_share_button=False)
@@ -96,7 +98,7 @@ class Panel:
                 self._on(slider, controls.set_exaggeration)
             for layer in LAYERS:
                 box = gui.add_checkbox(_LAYER_NAMES.get(layer, layer), layer in layers)
-                self._on(box, lambda visible, layer=layer: controls.set_layer(layer, visible))
+                self._on(box, partial(controls.set_layer, layer))
 
     def _on(self, handle: Any, act: Callable[[Any], None]) -> Any:
         """Act on what a person changes; a change by this program has no client, and nothing follows from it."""
@@ -126,7 +128,7 @@ class Panel:
                     one = sliders[i]
                     step = (one.high - one.low) / _STEPS or 1.0
                     handle = gui.add_slider(one.label, one.low, one.high, step, float(np.clip(0.0, one.low, one.high)))
-                    handles[i] = self._on(handle, lambda value, i=i: self._controls.slide(i, value))
+                    handles[i] = self._on(handle, partial(self._controls.slide, i))
         if sliders:
             gui.add_button("Reset").on_click(lambda _: self._controls.reset())
         self._sliders = [handles[i] for i in range(len(sliders))]
@@ -144,6 +146,6 @@ class Panel:
         """
         for handle, value in zip(self._sliders, values, strict=False):  # No sliders without controls.
             handle.value = float(np.clip(value, handle.min, handle.max))
-        if player is not None and self._time is not None and self._play is not None:
+        if player is not None and self._time is not None:
             self._time.value = player.time
             self._play.label = "Pause" if player.playing else "Play"

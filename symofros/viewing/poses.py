@@ -19,7 +19,7 @@ from symofros.topology.tree import SpanningTree, frame_of
 from symofros.viewing.drawing import Bend, Drawing, Place, Strut
 from symofros.viewing.geometry import draw, landmarks
 from symofros.viewing.inertia_box import longest_edges
-from symofros.viewing.shapes import Array, Mesh, cylinder, tube
+from symofros.viewing.shapes import Array, axes_along
 
 _LEAST_SIZE = 1e-6  # [m]; what is smaller is drawn as if it were a metre, for want of anything to go by.
 
@@ -167,13 +167,22 @@ class Mechanism:
         return state._replace(q=found.q), ""
 
 
-def bend_mesh(bend: Bend, posture: Posture) -> Mesh:
-    """A beam's tube in its root's axes; its faces are those of every posture."""
+class Sweep(NamedTuple):
+    """A section that goes along a line: p (S, 3) and R (S, 3, 3) of its stations."""
+
+    points: Array
+    axes: Array
+
+
+def bend_sweep(bend: Bend, posture: Posture) -> Sweep:
+    """A beam's sections in the axes of its root."""
     start, size = bend.q
     q = posture.q[start : start + size]
-    return tube(bend.outline, bend.line.points(bend.length, q), bend.line.axes(bend.length, q))
+    return Sweep(bend.line.points(bend.length, q), bend.line.axes(bend.length, q))
 
 
-def strut_mesh(strut: Strut, posture: Posture) -> Mesh:
-    """A strut in the world; its faces are those of every posture."""
-    return cylinder(posture.point(strut.first), posture.point(strut.second), strut.radius)
+def strut_sweep(strut: Strut, posture: Posture) -> Sweep:
+    """A strut's ends in the world."""
+    first, second = posture.point(strut.first), posture.point(strut.second)
+    R = axes_along(second - first)
+    return Sweep(np.stack([first, second]), np.stack([R, R]))

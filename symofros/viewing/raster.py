@@ -13,9 +13,9 @@ import numpy.typing as npt
 from symofros.viewing.camera import Camera
 from symofros.viewing.drawing import Drawing
 from symofros.viewing.ground import GRAVITY_COLOR, gravity_arrow, ground_lines
-from symofros.viewing.poses import Posture, bend_mesh, strut_mesh
+from symofros.viewing.poses import Posture, bend_sweep, strut_sweep
 from symofros.viewing.scene import SEE_THROUGH
-from symofros.viewing.shapes import Array, Mesh, cone, cylinder
+from symofros.viewing.shapes import Array, Mesh, cone, cylinder, tube
 
 Image = npt.NDArray[np.uint8]
 Indices = npt.NDArray[np.int64]
@@ -77,7 +77,8 @@ class _Canvas:
             colors[pixel] += SEE_THROUGH * (one.color[ahead] - colors[pixel])
         height, width = self.shape
         blocks = colors.reshape(height // _FINER, _FINER, width // _FINER, _FINER, 3)
-        return np.rint(blocks.mean(axis=(1, 3))).astype(np.uint8)
+        image: Image = np.rint(blocks.mean(axis=(1, 3))).astype(np.uint8)
+        return image
 
     def _surfaces(
         self, drawing: Drawing, posture: Posture, layers: frozenset[str]
@@ -90,11 +91,12 @@ class _Canvas:
                 mesh = part.mesh.moved(posture.p[part.link], posture.R[part.link])
                 (clear if part.kind == "inertias" else opaque).append((mesh, np.array(part.color, dtype=float)))
         for bend in drawing.bends if "bodies" in layers else ():
-            mesh = bend_mesh(bend, posture).moved(posture.p[bend.link], posture.R[bend.link])
+            mesh = tube(bend.outline, *bend_sweep(bend, posture)).moved(posture.p[bend.link], posture.R[bend.link])
             opaque.append((mesh, np.array(bend.color, dtype=float)))
         for strut in drawing.struts:
             if strut.kind in layers:
-                opaque.append((strut_mesh(strut, posture), np.array(strut.color, dtype=float)))
+                mesh = tube(strut.outline, *strut_sweep(strut, posture))
+                opaque.append((mesh, np.array(strut.color, dtype=float)))
         arrow = gravity_arrow(drawing) if "ground" in layers else None
         if arrow is not None:
             middle, length = 0.75 * arrow[1] + 0.25 * arrow[0], float(np.linalg.norm(arrow[1] - arrow[0]))

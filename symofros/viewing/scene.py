@@ -11,8 +11,8 @@ from symofros.topology.tree import BASE
 from symofros.viewing.camera import Camera
 from symofros.viewing.drawing import KINDS, Color, Drawing
 from symofros.viewing.ground import GRAVITY_COLOR, cell_of, gravity_arrow
-from symofros.viewing.poses import Posture, bend_mesh, strut_mesh
-from symofros.viewing.shapes import Mesh
+from symofros.viewing.poses import Posture, Sweep, bend_sweep, strut_sweep
+from symofros.viewing.shapes import Array, Mesh, tube, tube_stations
 
 # What can be shown or hidden: kinds of pieces, and what is not of the mechanism itself.
 LAYERS = (*KINDS, "frames", "labels", "ground")
@@ -54,14 +54,15 @@ class Scene:
             for part in drawing.parts:
                 self._add_mesh(part.kind, f"{self._link(part.link)}/{_node(part.name)}", part.mesh, part.color)
             self._bends = [
-                self._add_mesh("bodies", f"{self._link(bend.link)}/{_node(bend.name)}.beam", bend_mesh(bend, posture),
-                               bend.color)
+                self._add_tube("bodies", f"{self._link(bend.link)}/{_node(bend.name)}.beam", bend.outline,
+                               bend_sweep(bend, posture), bend.color)
                 for bend in drawing.bends
             ]  # fmt: skip
             self._struts = [
-                self._add_mesh(strut.kind, f"{_ROOT}/{_node(strut.name)}", strut_mesh(strut, posture), strut.color)
+                self._add_tube(strut.kind, f"{_ROOT}/{_node(strut.name)}", strut.outline, strut_sweep(strut, posture),
+                               strut.color)
                 for strut in drawing.struts
-            ]
+            ]  # fmt: skip
             self._add_frames()
             self._add_ground()
             self._aim()
@@ -75,9 +76,14 @@ class Scene:
                 node.position, node.wxyz = posture.p[i], turns[i]
             for bend, node in zip(self.drawing.bends, self._bends, strict=True):
                 if bend.q[1]:
-                    node.vertices = bend_mesh(bend, posture).vertices.astype(np.float32)
+                    self._pose(node, bend_sweep(bend, posture))
             for strut, node in zip(self.drawing.struts, self._struts, strict=True):
-                node.vertices = strut_mesh(strut, posture).vertices.astype(np.float32)
+                self._pose(node, strut_sweep(strut, posture))
+
+    def _pose(self, node: Any, sweep: Sweep) -> None:
+        turns = self._rotation.from_matrix(sweep.axes).wxyz
+        for bone, point, turn in zip(node.bones, sweep.points, turns, strict=True):
+            bone.position, bone.wxyz = point, turn
 
     @property
     def layers(self) -> frozenset[str]:
@@ -104,6 +110,15 @@ class Scene:
         node = self.server.scene.add_mesh_simple(
             name, mesh.vertices, mesh.faces, color=color, opacity=SEE_THROUGH if layer == "inertias" else None,
             cast_shadow=layer != "inertias",
+        )  # fmt: skip
+        return self._kept(layer, node)
+
+    def _add_tube(self, layer: str, name: str, outline: Array, sweep: Sweep, color: Color) -> Any:
+        """A tube with a bone a station: browsers move bones at once with nodes, but meshes some time later."""
+        mesh, stations = tube(outline, *sweep), tube_stations(len(sweep.points), len(outline))
+        node = self.server.scene.add_mesh_skinned(
+            name, mesh.vertices, mesh.faces, bone_wxyzs=self._rotation.from_matrix(sweep.axes).wxyz,
+            bone_positions=sweep.points, skin_weights=np.eye(len(sweep.points))[stations], color=color,
         )  # fmt: skip
         return self._kept(layer, node)
 

@@ -95,9 +95,15 @@ def tube(outline: Array, points: Array, axes: Array) -> Mesh:
     return Mesh(vertices, np.concatenate([_sleeve(count, sides), *ends]))
 
 
+def tube_stations(count: int, sides: int) -> Faces:
+    """Which of a tube's points each of its vertices goes with (V): it moves as the section there does."""
+    return np.concatenate([np.repeat(np.arange(count), sides), np.repeat([0, count - 1], sides)])
+
+
 def ellipse(half_y: float, half_z: float) -> Array:
     """The outline of an elliptic section (K, 2)."""
-    return _circle(1.0) * np.array([half_y, half_z])
+    outline: Array = _circle(1.0) * np.array([half_y, half_z])
+    return outline
 
 
 def axes_along(direction: Array) -> Array:
@@ -108,7 +114,8 @@ def axes_along(direction: Array) -> Array:
     x = direction / length
     y = np.cross(np.eye(3)[int(np.argmin(np.abs(x)))], x)
     y /= np.linalg.norm(y)
-    return np.stack([x, y, np.cross(x, y)], axis=1)
+    R: Array = np.stack([x, y, np.cross(x, y)], axis=1)
+    return R
 
 
 def _circle(radius: float) -> Array:

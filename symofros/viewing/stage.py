@@ -25,7 +25,9 @@ class Stage:
     def __init__(self, server: Any, mechanism: Mechanism, exaggeration: float) -> None:
         self.server, self.mechanism, self.exaggeration = server, mechanism, exaggeration
         self.first = self.state = mechanism.closed(mechanism.state())[0]
-        self._draw(mechanism.drawing(self.state.par), None)
+        drawing = mechanism.drawing(self.state.par)
+        self._drawn_par = self.state.par
+        self.scene = Scene(server, drawing, self._posture(), shown_at_first(drawing))
 
     def change(self, mechanism: Mechanism) -> None:
         """Show another mechanism; where it has the same coordinates, they stay, and so do the layers shown."""
@@ -33,7 +35,7 @@ class Stage:
         self.mechanism = mechanism
         self.first = mechanism.closed(mechanism.state())[0]
         self.state = self.first if kept is None else mechanism.closed(self.first._replace(q=kept))[0]
-        self._draw(mechanism.drawing(self.state.par), self.scene.layers)
+        self._draw(mechanism.drawing(self.state.par))
 
     def paint(self, state: State) -> bool:
         """Show a state; False where it is not finite, and the picture stays.
@@ -46,7 +48,7 @@ class Stage:
         if not np.array_equal(state.par, self._drawn_par):
             drawing = self.mechanism.drawing(state.par)
             if not alike(drawing, self.scene.drawing):
-                self._draw(drawing, self.scene.layers)
+                self._draw(drawing)
                 return True
             self._drawn_par = state.par
         self.scene.move(self._posture())
@@ -68,7 +70,7 @@ class Stage:
     def _posture(self) -> Posture:
         return self.mechanism.posture(self.state.q, self.state.u, self.state.par, self.exaggeration)
 
-    def _draw(self, drawing: Drawing, layers: frozenset[str] | None) -> None:
+    def _draw(self, drawing: Drawing) -> None:
+        """Draw anew; what is shown or hidden stays so."""
         self._drawn_par = self.state.par
-        shown = shown_at_first(drawing) if layers is None else layers
-        self.scene = Scene(self.server, drawing, self._posture(), shown)
+        self.scene = Scene(self.server, drawing, self._posture(), self.scene.layers)
