@@ -59,7 +59,7 @@ def _record(system: sf.System, trajectory: Path | None, output: Path, exaggerati
     if trajectory is not None:
         motion = read_motion(trajectory, mechanism.model)
         return sf.record(system, motion, output, exaggeration=exaggeration, speed=speed)
-    if output.suffix != ".png":
+    if output.suffix in (".html", ".mp4", ".gif"):
         raise sf.SymofrosError(str(Problem("record: nothing moves", "no --trajectory", "a recording is of a motion",
                                            "simulate one: symofros simulate MODEL T -o FILE.npz; or record a .png"
                                            )))  # fmt: skip

@@ -74,7 +74,7 @@ class Mechanism:
         self._names = [
             next((f.name for f in frames if f.link == i and not f.placement), None) for i in range(len(self.tree.links))
         ]
-        wanted = {frames[0].name, *(name for name in self._names if name is not None)}
+        wanted = {name for name in self._names if name is not None}
         functions: tuple[str, ...] = ("frame_pose",)
         if system.constraints:
             functions += ("constraint", "constraint_jacobian", "constraint_rate")
