@@ -168,17 +168,17 @@ class Mechanism:
 
 
 class Sweep(NamedTuple):
-    """A section that goes along a line: p (S, 3) and R (S, 3, 3) of its stations."""
+    """A section that goes along a line: p_WS (S, 3) and R_WS (S, 3, 3) of its stations."""
 
     points: Array
     axes: Array
 
 
 def bend_sweep(bend: Bend, posture: Posture) -> Sweep:
-    """A beam's sections in the axes of its root."""
+    """A beam's sections in the world."""
     start, size = bend.q
-    q = posture.q[start : start + size]
-    return Sweep(bend.line.points(bend.length, q), bend.line.axes(bend.length, q))
+    q, p, R = posture.q[start : start + size], posture.p[bend.link], posture.R[bend.link]
+    return Sweep(p + bend.line.points(bend.length, q) @ R.T, R @ bend.line.axes(bend.length, q))
 
 
 def strut_sweep(strut: Strut, posture: Posture) -> Sweep:

@@ -91,12 +91,10 @@ class _Canvas:
                 mesh = part.mesh.moved(posture.p[part.link], posture.R[part.link])
                 (clear if part.kind == "inertias" else opaque).append((mesh, np.array(part.color, dtype=float)))
         for bend in drawing.bends if "bodies" in layers else ():
-            mesh = tube(bend.outline, *bend_sweep(bend, posture)).moved(posture.p[bend.link], posture.R[bend.link])
-            opaque.append((mesh, np.array(bend.color, dtype=float)))
+            opaque.append((tube(bend.outline, *bend_sweep(bend, posture)), np.array(bend.color, dtype=float)))
         for strut in drawing.struts:
             if strut.kind in layers:
-                mesh = tube(strut.outline, *strut_sweep(strut, posture))
-                opaque.append((mesh, np.array(strut.color, dtype=float)))
+                opaque.append((tube(strut.outline, *strut_sweep(strut, posture)), np.array(strut.color, dtype=float)))
         arrow = gravity_arrow(drawing) if "ground" in layers else None
         if arrow is not None:
             middle, length = 0.75 * arrow[1] + 0.25 * arrow[0], float(np.linalg.norm(arrow[1] - arrow[0]))

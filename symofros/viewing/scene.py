@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from symofros.viewing.shapes import Array, Mesh, tube, tube_stations
 # What can be shown or hidden: kinds of pieces, and what is not of the mechanism itself.
 LAYERS = (*KINDS, "frames", "labels", "ground")
 
-_ROOT = "/mechanism"
+_ROOT, _TUBES = "/mechanism", "/tubes"
 SEE_THROUGH = 0.3  # Opacity of boxes of inertia.
 _TRIAD = 0.05  # Length of a frame's axes, of the mechanism's size.
 
@@ -42,6 +43,7 @@ class Scene:
         self.server, self.drawing = server, drawing
         self._rotation = import_module("viser.transforms").SO3
         self._shown = layers
+        self._tubes = 0
         self._nodes: dict[str, list[Any]] = {layer: [] for layer in LAYERS}
         with server.atomic():
             if server.scene.get_handle_by_name(_ROOT) is not None:
@@ -54,15 +56,13 @@ class Scene:
             for part in drawing.parts:
                 self._add_mesh(part.kind, f"{self._link(part.link)}/{_node(part.name)}", part.mesh, part.color)
             self._bends = [
-                self._add_tube("bodies", f"{self._link(bend.link)}/{_node(bend.name)}.beam", bend.outline,
-                               bend_sweep(bend, posture), bend.color)
-                for bend in drawing.bends
-            ]  # fmt: skip
+                self._add_tube("bodies", bend.outline, bend_sweep(bend, posture), bend.color) for bend in drawing.bends
+            ]
             self._struts = [
-                self._add_tube(strut.kind, f"{_ROOT}/{_node(strut.name)}", strut.outline, strut_sweep(strut, posture),
-                               strut.color)
+                self._add_tube(strut.kind, strut.outline, strut_sweep(strut, posture), strut.color)
                 for strut in drawing.struts
-            ]  # fmt: skip
+            ]
+            self._hide_spare_tubes()
             self._add_frames()
             self._add_ground()
             self._aim()
@@ -113,14 +113,28 @@ class Scene:
         )  # fmt: skip
         return self._kept(layer, node)
 
-    def _add_tube(self, layer: str, name: str, outline: Array, sweep: Sweep, color: Color) -> Any:
-        """A tube with a bone a station: browsers move bones at once with nodes, but meshes some time later."""
+    def _add_tube(self, layer: str, outline: Array, sweep: Sweep, color: Color) -> Any:
+        """A tube with a bone a station: browsers move bones at once with nodes, but vertices some pictures later.
+
+        It takes the place of a tube of the drawing before, if there was one: viser 1.1's page breaks down where a mesh
+        with bones is removed (its clean-up looks for a node that is gone), but not where it is replaced.
+        """
         mesh, stations = tube(outline, *sweep), tube_stations(len(sweep.points), len(outline))
         node = self.server.scene.add_mesh_skinned(
-            name, mesh.vertices, mesh.faces, bone_wxyzs=self._rotation.from_matrix(sweep.axes).wxyz,
-            bone_positions=sweep.points, skin_weights=np.eye(len(sweep.points))[stations], color=color,
+            f"{_TUBES}/{self._tubes}", mesh.vertices, mesh.faces, color=color,
+            bone_wxyzs=self._rotation.from_matrix(sweep.axes).wxyz, bone_positions=sweep.points,
+            skin_weights=np.eye(len(sweep.points))[stations],
         )  # fmt: skip
+        self._tubes += 1
         return self._kept(layer, node)
+
+    def _hide_spare_tubes(self) -> None:
+        """Those of the drawing before that this one has no use for."""
+        for i in count(self._tubes):
+            spare = self.server.scene.get_handle_by_name(f"{_TUBES}/{i}")
+            if spare is None:
+                return
+            spare.visible = False
 
     def _add_frames(self) -> None:
         size = _TRIAD * self.drawing.size
@@ -137,9 +151,9 @@ class Scene:
 
     def _add_ground(self) -> None:
         drawing, scene = self.drawing, self.server.scene
-        cell, count = cell_of(drawing)
+        cell, cells = cell_of(drawing)
         self._kept("ground", scene.add_grid(
-            f"{_ROOT}/ground", 2 * count * cell, 2 * count * cell, cell_size=cell, section_size=count * cell,
+            f"{_ROOT}/ground", 2 * cells * cell, 2 * cells * cell, cell_size=cell, section_size=cells * cell,
             fade_distance=10 * drawing.size,
         ))  # fmt: skip
         arrow = gravity_arrow(drawing)

@@ -125,7 +125,7 @@ def test_what_a_beam_carries_stays_on_its_tip_however_exaggerated() -> None:
     it = mechanism("planar_robot")
     q = np.full(it.model.nq, 0.02)
     posture, bend = it.posture(q, exaggeration=10.0), drawing("planar_robot").bends[0]
-    end = posture.p[bend.link] + posture.R[bend.link] @ bend_sweep(bend, posture).points[-1]
+    end = bend_sweep(bend, posture).points[-1]
     tip = next(triad for triad in drawing("planar_robot").triads if triad.name == "link1.tip")
     assert np.allclose(end, posture.p[tip.link] + posture.R[tip.link] @ tip.position, atol=1e-12)
 
