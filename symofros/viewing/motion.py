@@ -182,6 +182,30 @@ def _checked(model: Model, t: Given, q: Given, u: Given | None, par: Given | Non
     return Motion(model, t[:count], q[:count], u[:count], par)
 
 
+def finite(name: str, value: float) -> float:
+    """A finite number.
+
+    Raises:
+        SymofrosError: It is none.
+    """
+    if not np.isfinite(value):
+        raise SymofrosError(str(Problem(f"view: no such {name}", repr(value), f"{name} is a finite number",
+                                        "give another")))  # fmt: skip
+    return float(value)
+
+
+def positive(name: str, value: float) -> float:
+    """A finite number above 0.
+
+    Raises:
+        SymofrosError: It is none.
+    """
+    if not (np.isfinite(value) and value > 0.0):
+        raise SymofrosError(str(Problem(f"view: no such {name}", repr(value), f"{name} is a finite number above 0",
+                                        "give another")))  # fmt: skip
+    return float(value)
+
+
 def _some(names: Sequence[str]) -> str:
     return ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
 

@@ -74,6 +74,8 @@ class Panel:
         self._controls = controls
         self._play: Any = None
         self._time: Any = None
+        self._exaggeration: Any = None
+        self._boxes: dict[str, Any] = {}
         self._sliders: list[Any] = []
         gui.reset()
         gui.configure_theme(show_logo=False, show_share_button=False)
@@ -93,12 +95,12 @@ class Panel:
         with gui.add_folder("Show"):
             if exaggeration is not None:
                 most = max(_MOST_EXAGGERATION, 2 * exaggeration)
-                slider = gui.add_slider("exaggeration", 0.0, most, 0.5, exaggeration,
-                                        hint="multiplies the elastic coordinates")  # fmt: skip
-                self._on(slider, controls.set_exaggeration)
+                self._exaggeration = gui.add_slider("exaggeration", 0.0, most, 0.5, max(exaggeration, 0.0),
+                                                    hint="multiplies the elastic coordinates")  # fmt: skip
+                self._on(self._exaggeration, controls.set_exaggeration)
             for layer in LAYERS:
-                box = gui.add_checkbox(_LAYER_NAMES.get(layer, layer), layer in layers)
-                self._on(box, partial(controls.set_layer, layer))
+                self._boxes[layer] = gui.add_checkbox(_LAYER_NAMES.get(layer, layer), layer in layers)
+                self._on(self._boxes[layer], partial(controls.set_layer, layer))
 
     def _on(self, handle: Any, act: Callable[[Any], None]) -> Any:
         """Act on what a person changes; a change by this program has no client, and nothing follows from it."""
@@ -136,6 +138,13 @@ class Panel:
     def say(self, text: str) -> None:
         """Show a line of text above the controls."""
         self._status.content = text
+
+    def show(self, layers: frozenset[str], exaggeration: float) -> None:
+        """Let the controls say what is shown."""
+        for layer, box in self._boxes.items():
+            box.value = layer in layers
+        if self._exaggeration is not None:
+            self._exaggeration.value = float(np.clip(exaggeration, 0.0, self._exaggeration.max))
 
     def follow(self, values: Array, player: Player | None) -> None:
         """Let the controls stand where the picture is.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symofros.viewing.motion import Motion
+from symofros.viewing.motion import Motion, positive
 
 
 class Player:
@@ -12,11 +12,14 @@ class Player:
         motion: What is played.
         speed: Seconds of the motion a second.
         loop: Whether it begins again at its end.
+
+    Raises:
+        SymofrosError: The speed is not a number above 0.
     """
 
     def __init__(self, motion: Motion, speed: float = 1.0, loop: bool = True) -> None:
         self.motion = motion
-        self.speed, self.loop = speed, loop
+        self.speed, self.loop = positive("speed", speed), loop
         self.time = motion.start
         self.playing = False
 

@@ -20,7 +20,7 @@ from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.runtime.model import Given
 from symofros.simulation.trajectory import Trajectory
 from symofros.viewing.camera import Camera
-from symofros.viewing.motion import Motion, motion_of
+from symofros.viewing.motion import Motion, finite, motion_of, positive
 from symofros.viewing.poses import Mechanism, Posture
 from symofros.viewing.raster import Image, picture
 from symofros.viewing.scene import Scene, shown_at_first
@@ -87,10 +87,7 @@ def record(
         raise SymofrosError(str(Problem(f"record: can't write '{file.name}'", file.suffix or "no suffix",
                                         f"one of {', '.join(_SUFFIXES)}", did_you_mean(file.suffix, _SUFFIXES)
                                         )))  # fmt: skip
-    for name, value in (("speed", speed), ("rate", rate), ("exaggeration", exaggeration)):
-        if not (np.isfinite(value) and (value > 0.0 or name == "exaggeration")):
-            raise SymofrosError(str(Problem(f"record: no such {name}", repr(value), f"{name} is a finite number"
-                                            + " above 0" * (name != "exaggeration"), "give another")))  # fmt: skip
+    speed, rate, exaggeration = positive("speed", speed), positive("rate", rate), finite("exaggeration", exaggeration)
     if any(side < 2 or side % 2 or side > 4096 for side in size):
         raise SymofrosError(str(Problem("record: no such size", str(size), "even numbers of pixels, 2 to 4096",
                                         "such as (960, 720)")))  # fmt: skip

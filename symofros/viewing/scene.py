@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.topology.tree import BASE
 from symofros.viewing.camera import Camera
 from symofros.viewing.drawing import KINDS, Color, Drawing
@@ -91,7 +92,15 @@ class Scene:
         return self._shown
 
     def show(self, layer: str, visible: bool) -> None:
-        """Show or hide a layer, one of LAYERS."""
+        """Show or hide a layer.
+
+        Raises:
+            UnknownNameError: It is none of LAYERS.
+        """
+        if layer not in LAYERS:
+            raise UnknownNameError(str(Problem(f"view: no layer '{layer}'", f"'{layer}'",
+                                               f"one of {', '.join(LAYERS)}", did_you_mean(layer, LAYERS)
+                                               )))  # fmt: skip
         self._shown = self._shown | {layer} if visible else self._shown - {layer}
         for node in self._nodes[layer]:
             node.visible = visible

@@ -11,7 +11,7 @@ from typing import NamedTuple, Self
 from symofros.description.system import System
 from symofros.runtime.model import Given
 from symofros.simulation.trajectory import Trajectory
-from symofros.viewing.motion import Motion, motion_of
+from symofros.viewing.motion import Motion, finite, motion_of, positive
 from symofros.viewing.panel import Panel
 from symofros.viewing.player import Player
 from symofros.viewing.poses import Mechanism, State
@@ -63,9 +63,10 @@ class Viewer:
         rate: float = RATE,
         controls: bool = True,
     ) -> None:
+        self._period, self._controls = 1.0 / positive("rate", rate), controls
+        exaggeration = finite("exaggeration", exaggeration)
         mechanism = Mechanism(system)
         self._server = start_server(host, port)
-        self._period, self._controls = 1.0 / rate, controls
         self._wake = threading.Condition()  # Guards what is wanted; held for moments only, never while painting.
         self._painting = threading.RLock()  # Guards the picture, the player and the controls.
         self._wanted: _Wanted | None = None
@@ -73,7 +74,7 @@ class Viewer:
         self._player: Player | None = None
         self._followed = -_FOLLOWED
         self.painted = self.dropped = 0
-        self._stage = Stage(self._server, mechanism, float(exaggeration))
+        self._stage = Stage(self._server, mechanism, exaggeration)
         self._panel = self._new_panel()
         self._worker = threading.Thread(target=self._work, name="symofros view", daemon=True)
         self._worker.start()
@@ -174,6 +175,7 @@ class Viewer:
 
         Raises:
             ShapeError: The motion does not fit the model.
+            SymofrosError: The speed is not a number above 0.
         """
         player = Player(motion_of(self.mechanism.model, run), speed, loop)
         player.start()
@@ -191,9 +193,7 @@ class Viewer:
 
     @exaggeration.setter
     def exaggeration(self, factor: float) -> None:
-        with self._painting:
-            self.set_exaggeration(factor)
-            self._panel = self._new_panel()
+        self.set_exaggeration(factor)
 
     # What the controls on the page do.
 
@@ -219,18 +219,28 @@ class Viewer:
         """Play the motion at so many seconds a second."""
         with self._painting:
             if self._player is not None:
-                self._player.speed = speed
+                self._player.speed = positive("speed", speed)
 
     def set_layer(self, layer: str, visible: bool) -> None:
-        """Show or hide a layer, one of `symofros.viewing.scene.LAYERS`."""
+        """Show or hide a layer.
+
+        Args:
+            layer: "bodies", "inertias", "joints", "constraints", "frames", "labels" or "ground".
+            visible: Whether it is to be seen.
+
+        Raises:
+            UnknownNameError: There is no such layer.
+        """
         with self._painting:
             self._stage.scene.show(layer, visible)
+            self._panel.show(self._stage.scene.layers, self._stage.exaggeration)
 
     def set_exaggeration(self, factor: float) -> None:
         """Multiply elastic coordinates in the picture."""
         with self._painting:
-            self._stage.exaggeration = float(factor)
+            self._stage.exaggeration = finite("exaggeration", factor)
             self._paint(self._stage.state)
+            self._panel.show(self._stage.scene.layers, self._stage.exaggeration)
 
     def slide(self, index: int, value: float) -> None:
         """Move one degree of freedom, by the index of its speed; loops close around it where they can."""

@@ -139,6 +139,11 @@ class TestPlayer:
         player.start()
         assert player.time == 1.0
 
+    @pytest.mark.parametrize("speed", [0.0, -1.0, float("nan")])
+    def test_it_goes_forward(self, speed: float, player: Player) -> None:
+        with pytest.raises(SymofrosError, match="speed is a finite number above 0"):
+            Player(player.motion, speed)
+
     def test_it_goes_to_a_time_within_the_motion(self, player: Player) -> None:
         for asked, found in ((2.2, 2.2), (0.0, 1.0), (9.0, 3.0)):
             player.seek(asked)

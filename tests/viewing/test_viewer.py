@@ -231,6 +231,28 @@ def test_two_may_look_at_once(viewer: sf.Viewer) -> None:
     assert min(sizes) > 1000
 
 
+@pytest.mark.parametrize("more", [{"exaggeration": float("nan")}, {"rate": 0.0}])
+def test_numbers_that_can_not_be_are_refused(more: dict) -> None:
+    before = threading.active_count()
+    with pytest.raises(SymofrosError, match=f"no such {next(iter(more))}"):
+        sf.Viewer(MODELS["pendulum"], port=0, **more)
+    assert threading.active_count() <= before
+
+
+def test_layers_have_names(viewer: sf.Viewer) -> None:
+    with pytest.raises(sf.UnknownNameError, match=r"no layer 'frame'\n(.*\n)*  remedy: did you mean 'frames'\?"):
+        viewer.set_layer("frame", True)
+
+
+def test_the_controls_say_what_is_shown(viewer: sf.Viewer) -> None:
+    viewer.set_layer("frames", True)
+    viewer.exaggeration = 7.0
+    viewer.show(np.full(10, 0.25))
+    panel = viewer._panel
+    assert panel._boxes["frames"].value and not panel._boxes["labels"].value
+    assert panel._exaggeration.value == 7.0 and panel._sliders[0].value == 0.25
+
+
 def test_it_may_be_closed_twice_and_its_port_is_free_again(viewer: sf.Viewer) -> None:
     port = viewer.port
     viewer.close()
