@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symofros.compiler import compile_system, plan
-from symofros.description.constraints import Closure
+from symofros.description.constraints import Closure, Rolling
 from symofros.description.system import System
 from symofros.errors import AssemblyError, Problem, ShapeError
 from symofros.options import Options
@@ -148,7 +148,10 @@ class Mechanism:
         points = np.array([neutral.point(place) for place in landmarks(self.tree, numbers)])
         low, high = points.min(axis=0), points.max(axis=0)
         # A body on its own has no other size than its inertia's; a typical one, as files have placeholders.
-        size = max(float(np.linalg.norm(high - low)), float(np.median(longest_edges(self.system, numbers) or [0.0])))
+        size = max(
+            float(np.linalg.norm(high - low)), float(np.median(longest_edges(self.system, numbers) or [0.0])),
+            *(2 * numbers.value(item.radius) for item in self.system.constraints if isinstance(item, Rolling)),
+        )  # fmt: skip
         return draw(self.tree, values, size if size > _LEAST_SIZE else 1.0, (low + high) / 2)
 
     def closed(self, state: State, held: tuple[str, ...] = ()) -> tuple[State, str]:

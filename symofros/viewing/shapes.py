@@ -11,6 +11,7 @@ Array = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]
 
 _SIDES = 12  # Of anything round: few enough for hundreds of them in a browser.
+_WHEEL = 48  # Of discs, which may be the largest thing there is.
 _RINGS = 7
 
 
@@ -58,10 +59,10 @@ def sphere(radius: float) -> Mesh:
     return Mesh(vertices.reshape(-1, 3), _sleeve(_RINGS, _SIDES))
 
 
-def cylinder(start: Array, end: Array, radius: float) -> Mesh:
+def cylinder(start: Array, end: Array, radius: float, sides: int = _SIDES) -> Mesh:
     """A closed cylinder between two points (3)."""
     R = axes_along(end - start)
-    return tube(_circle(radius), np.stack([start, end]), np.stack([R, R]))
+    return tube(_circle(radius, sides), np.stack([start, end]), np.stack([R, R]))
 
 
 def cone(base: Array, tip: Array, radius: float) -> Mesh:
@@ -75,7 +76,7 @@ def cone(base: Array, tip: Array, radius: float) -> Mesh:
 def disc(radius: float, thickness: float) -> Mesh:
     """A flat cylinder about the origin, its axis along z."""
     half = np.array([0.0, 0.0, thickness / 2])
-    return cylinder(-half, half, radius)
+    return cylinder(-half, half, radius, _WHEEL)
 
 
 def tube(outline: Array, points: Array, axes: Array) -> Mesh:
@@ -118,8 +119,8 @@ def axes_along(direction: Array) -> Array:
     return R
 
 
-def _circle(radius: float) -> Array:
-    angles = np.linspace(0.0, 2 * np.pi, _SIDES, endpoint=False)
+def _circle(radius: float, sides: int = _SIDES) -> Array:
+    angles = np.linspace(0.0, 2 * np.pi, sides, endpoint=False)
     return radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 

@@ -74,8 +74,12 @@ class Viewer:
         self._player: Player | None = None
         self._followed = -_FOLLOWED
         self.painted = self.dropped = 0
-        self._stage = Stage(self._server, mechanism, exaggeration)
-        self._panel = self._new_panel()
+        try:
+            self._stage = Stage(self._server, mechanism, exaggeration)
+            self._panel = self._new_panel()
+        except BaseException:
+            stop_server(self._server)
+            raise
         self._worker = threading.Thread(target=self._work, name="symofros view", daemon=True)
         self._worker.start()
 

@@ -20,7 +20,8 @@ MESHES = {
     "tube": shapes.tube(shapes.ellipse(0.05, 0.1), LINE, np.stack([shapes.axes_along(np.ones(3))] * 4)),
     "merged": shapes.merged([shapes.disc(1.0, 0.1), shapes.box(np.ones(3)).moved(5 * np.ones(3), np.eye(3))]),
 }
-TWELVE_SIDES = 12 / (2 * np.pi) * np.sin(2 * np.pi / 12)  # Area of a regular polygon of twelve, over its circle's.
+# Areas of regular polygons over those of their circles.
+TWELVE_SIDES, WHEEL = (n / (2 * np.pi) * np.sin(2 * np.pi / n) for n in (12, 48))
 
 
 def volume(mesh: Mesh) -> float:
@@ -41,8 +42,8 @@ def test_every_edge_has_two_faces_that_run_along_it_both_ways(name: str) -> None
 
 @pytest.mark.parametrize(
     ("name", "expected"),
-    [("box", 6.0), ("cylinder", 0.01 * np.pi * np.sqrt(6) * TWELVE_SIDES), ("disc", 0.1 * np.pi * TWELVE_SIDES),
-     ("cone", 0.01 * np.pi * np.sqrt(6) * TWELVE_SIDES / 3), ("merged", 0.1 * np.pi * TWELVE_SIDES + 1.0)],
+    [("box", 6.0), ("cylinder", 0.01 * np.pi * np.sqrt(6) * TWELVE_SIDES), ("disc", 0.1 * np.pi * WHEEL),
+     ("cone", 0.01 * np.pi * np.sqrt(6) * TWELVE_SIDES / 3), ("merged", 0.1 * np.pi * WHEEL + 1.0)],
 )  # fmt: skip
 def test_volumes(name: str, expected: float) -> None:
     assert volume(MESHES[name]) == pytest.approx(expected, rel=1e-12)
