@@ -297,9 +297,11 @@ class Viewer:
                     last = time.monotonic()
                 if self._closing:
                     return
-                wanted, self._wanted = self._wanted, None
             began = time.monotonic()
             with self._painting:
+                # Taken only now: what is shown meanwhile by another thread is newer than what waited.
+                with self._wake:
+                    wanted, self._wanted = self._wanted, None
                 if wanted is not None:
                     self._live(wanted)
                 elif self._player is not None:
