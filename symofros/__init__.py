@@ -89,6 +89,9 @@ if TYPE_CHECKING:
     from symofros.simulation.state_space import state_space as state_space
     from symofros.simulation.trajectories import Trajectories as Trajectories
     from symofros.simulation.trajectory import Trajectory as Trajectory
+    from symofros.viewing.record import record as record
+    from symofros.viewing.view import view as view
+    from symofros.viewing.viewer import Viewer as Viewer
 
     compile = compile_system
 
@@ -131,6 +134,9 @@ _LAZY = {
     "Trajectories": ("symofros.simulation.trajectories", "Trajectories"),
     "Trajectory": ("symofros.simulation.trajectory", "Trajectory"),
     "state_space": ("symofros.simulation.state_space", "state_space"),
+    "record": ("symofros.viewing.record", "record"),
+    "view": ("symofros.viewing.view", "view"),
+    "Viewer": ("symofros.viewing.viewer", "Viewer"),
 }
 
 

@@ -1,4 +1,4 @@
-"""Command line: symofros info | compile | simulate | advise | export MODEL; info and simulate take diagrams, too."""
+"""Command line: symofros info | compile | simulate | advise | export | view; info and simulate take diagrams, too."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ from symofros.passes.count import Operations, count_program
 from symofros.runtime.kernel import Array
 from symofros.simulation.methods import METHODS
 from symofros.topology.tree import BASE, SpanningTree
+from symofros.viewing.command import add_view
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, help="Symbolic multibody models as fast C code.")
 _out = Console()
@@ -355,6 +356,9 @@ def export_command(
         _out.print(f"wrote {file}", markup=False, highlight=False, soft_wrap=True)
     for note in done.notes:
         _out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+
+
+add_view(app, _load, BAD_INPUT)
 
 
 def _names(text: str | None) -> list[str] | None:

@@ -77,7 +77,7 @@ def assemble(
     while np.abs(phi).max(initial=0.0) > tolerance and count < iterations:
         G = model.constraint_jacobian(q, u=u, par=par, t=t)[:, free]
         step = np.zeros(model.nv)
-        step[free] = -np.linalg.pinv(G, rcond=RANK) @ phi
+        step[free] = -_inverse(model, G) @ phi
         step *= min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
         for _ in range(30):
             tried = model.integrate(q, step)
@@ -93,7 +93,7 @@ def assemble(
     G = model.constraint_jacobian(q, u=u, par=par, t=t)
     rate = model.constraint_rate(q, wished, u=u, par=par, t=t)
     change = np.zeros(model.nv)
-    change[free] = -np.linalg.pinv(G[:, free], rcond=RANK) @ rate
+    change[free] = -_inverse(model, G[:, free]) @ rate
     speeds = wished + change
     left = model.constraint_rate(q, speeds, u=u, par=par, t=t)
     scale = 1.0 + float(np.abs(wished).max(initial=0.0))
@@ -106,6 +106,19 @@ def assemble(
         )
     rank = int(np.linalg.matrix_rank(G, tol=RANK * max(float(np.linalg.norm(G, 2)), 1e-300))) if G.size else 0
     return Assembled(q, speeds, float(np.abs(phi).max(initial=0.0)), count, rank)
+
+
+def _inverse(model: Model, G: Array) -> Array:
+    """The pseudo-inverse of the constraints' Jacobian."""
+    if not np.all(np.isfinite(G)):
+        worst = model.names.constraints[int(np.argmin(np.isfinite(G).all(axis=1)))]
+        raise AssemblyError(
+            f"model '{model.record.name}': can't be assembled from this guess\n"
+            f"  found:  '{worst}' has no finite derivative there\n"
+            "  rule:   constraints are smooth near the guess; a disc that lies flat has no contact, for example\n"
+            "  remedy: start from another guess"
+        )
+    return np.asarray(np.linalg.pinv(G, rcond=RANK), dtype=np.float64)
 
 
 def free_speeds(model: Model, held: Collection[str]) -> Indices:

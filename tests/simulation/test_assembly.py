@@ -74,3 +74,9 @@ def test_the_wrong_way_round() -> None:
 def test_unknown_names() -> None:
     with pytest.raises(sf.UnknownNameError, match="did you mean 'q1'"):
         sf.assemble(sf.compile(MODELS["four_bar"], FUNCTIONS), held=["q11"])
+
+
+def test_a_guess_where_constraints_are_not_smooth() -> None:
+    """A disc that lies flat touches the ground all around: no direction leads to its contact."""
+    with pytest.raises(sf.AssemblyError, match=r"has no finite derivative there\n(.*\n)*.*another guess"):
+        sf.assemble(sf.compile(MODELS["rolling_disc"], FUNCTIONS))

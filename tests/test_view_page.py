@@ -1,0 +1,35 @@
+"""docs/view.md: its examples run as they stand, and its pictures are there."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+import reference_models
+
+PAGE = Path(__file__).parent.parent / "docs" / "view.md"
+ARM = Path(reference_models.__file__).parent / "rigid" / "double_pendulum.yaml"
+
+
+def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(ARM, "arm.yaml")
+    snippets = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    assert len(snippets) == 3
+    names: dict[str, object] = {}
+    for snippet in snippets:
+        # Examples may run beside others: any free port in place of the usual one.
+        exec(compile(snippet.replace("speed=0.5)", "speed=0.5, port=0)"), "view.md", "exec"), names)
+    assert len(opened) == 1 and opened[0].startswith("http://127.0.0.1:")
+    assert {path.name for path in tmp_path.iterdir()} == {"arm.yaml", "run.html", "run.gif", "last.png"}
+
+
+def test_its_pictures_are_there_and_small() -> None:
+    named = re.findall(r"!\[[^]]+\]\((images/[^)]+)\)", PAGE.read_text())
+    assert len(named) == 3
+    assert all(10_000 < (PAGE.parent / name).stat().st_size < 120_000 for name in named)

@@ -1,0 +1,100 @@
+"""Recordings: what is in the files, and what is refused."""
+
+from __future__ import annotations
+
+import base64
+import re
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.errors import SymofrosError
+
+SYSTEM = MODELS["planar_robot"]
+NQ = 10
+
+
+def swing(seconds: float) -> tuple[np.ndarray, np.ndarray]:
+    t = np.linspace(0.0, seconds, 5)
+    q = np.zeros((5, NQ))
+    q[:, 0], q[:, 4] = np.sin(t), 0.02 * np.sin(5 * t)
+    return t, q
+
+
+def test_a_gif_moves_at_the_speed_that_was_asked_for(tmp_path: Path) -> None:
+    images = import_module("PIL.Image")
+    file = sf.record(SYSTEM, swing(1.0), tmp_path / "m.gif", rate=10, speed=2.0, size=(160, 120))
+    with images.open(file) as gif:
+        assert gif.size == (160, 120) and gif.n_frames == 6 and gif.info["duration"] == 100
+        assert gif.info["loop"] == 0  # For ever.
+        first = np.asarray(gif.convert("RGB")).astype(int)
+        gif.seek(5)
+        assert (np.abs(np.asarray(gif.convert("RGB")) - first).max(axis=2) > 40).sum() > 50
+
+
+def test_the_pictures_of_a_gif_last_whole_hundredths(tmp_path: Path) -> None:
+    with import_module("PIL.Image").open(sf.record(SYSTEM, swing(0.1), tmp_path / "m.gif", size=(64, 48))) as gif:
+        assert gif.info["duration"] == 30 and gif.n_frames == 5  # 0.1 s by 0.03 s, and the first.
+
+
+def test_a_film_is_as_long_as_the_motion(tmp_path: Path) -> None:
+    file = sf.record(SYSTEM, swing(1.0), tmp_path / "m.mp4", rate=20, size=(160, 120))
+    frames, seconds = import_module("imageio_ffmpeg").count_frames_and_secs(str(file))
+    assert frames == 21 and seconds == pytest.approx(21 / 20, abs=0.03)
+
+
+def test_a_picture_is_of_the_last_state(tmp_path: Path) -> None:
+    images = import_module("PIL.Image")
+    t, q = swing(1.0)
+    one = sf.record(SYSTEM, (t, q), tmp_path / "a.png", size=(160, 120))
+    other = sf.record(SYSTEM, (t[-1:], q[-1:]), tmp_path / "b.png", size=(160, 120))
+    with images.open(one) as a, images.open(other) as b:
+        assert np.array_equal(np.asarray(a), np.asarray(b)) and a.size == (160, 120)
+
+
+def test_a_page_holds_all_states_and_asks_for_nothing_else(tmp_path: Path) -> None:
+    file = sf.record(SYSTEM, swing(0.5), tmp_path / "m.html", rate=10)
+    page = file.read_text()
+    (data,) = re.findall(r'__VISER_EMBED_DATA__="([^"]+)"', page)
+    scene = base64.b64decode(data)
+    whole = import_module("zstandard").ZstdDecompressor().decompress(scene[8:], max_output_size=1 << 26)
+    size = int.from_bytes(whole[:8], "little")
+    found = import_module("msgspec").msgpack.decode(whole[8 : 8 + size])
+    assert found["durationSeconds"] == pytest.approx(0.6)
+    kinds = [message["type"] for _, message in found["messages"]]
+    assert kinds.count("SkinnedMeshMessage") == 2  # Its beams.
+    times = {round(time, 6) for time, message in found["messages"] if message["type"] == "SetPositionMessage"}
+    assert times == {0.0, 0.1, 0.2, 0.3, 0.4, 0.5}
+    assert not re.findall(r'<(?:script|link)[^>]+(?:src|href)="https?:', page)
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "expected"),
+    [
+        ("m.avi", {}, r"can't write 'm.avi'\n  found:  .avi\n  rule:   one of .html, .mp4, .gif, .png"),
+        ("m.gif", {"speed": 0.0}, r"no such speed\n  found:  0.0\n  rule:   speed is a finite number above 0"),
+        ("m.gif", {"rate": float("nan")}, "no such rate"),
+        ("m.gif", {"exaggeration": float("inf")}, "exaggeration is a finite number\n"),
+        ("m.mp4", {"size": (161, 120)}, r"no such size\n  found:  \(161, 120\)\n  rule:   even numbers"),
+        ("m.gif", {"speed": 1e-6}, r"too long\n  found:  \d+ pictures\n  rule:   20000 at most"),
+    ],
+)
+def test_what_can_not_be_is_refused(name: str, more: dict, expected: str, tmp_path: Path) -> None:
+    with pytest.raises(SymofrosError, match=expected):
+        sf.record(SYSTEM, swing(1.0), tmp_path / name, **more)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_motion_of_another_system_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(sf.ShapeError, match=r"q \(5, 10\)\n  rule:   q has shape \(5, 3\)"):
+        sf.record(MODELS["four_bar"], swing(1.0), tmp_path / "m.gif")
+
+
+def test_a_missing_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
+    with pytest.raises(SymofrosError, match=r"MP4 needs ffmpeg\n(.*\n)*  remedy: pip install 'symofros\[video\]'"):
+        sf.record(SYSTEM, swing(0.1), tmp_path / "m.mp4", size=(64, 48))

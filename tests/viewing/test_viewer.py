@@ -1,0 +1,284 @@
+"""The viewer without a browser: what it serves, what is shown, what is dropped."""
+
+from __future__ import annotations
+
+import socket
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.errors import ShapeError, SymofrosError
+
+PATIENCE = 10.0  # Seconds that a thread may take on a busy machine.
+
+
+def until(condition: object) -> None:
+    deadline = time.monotonic() + PATIENCE
+    while not condition():  # type: ignore[operator]
+        assert time.monotonic() < deadline, "it did not come to pass"
+        time.sleep(0.005)
+
+
+@pytest.fixture
+def viewer() -> Iterator[sf.Viewer]:
+    with sf.Viewer(MODELS["planar_robot"], port=0) as made:
+        yield made
+
+
+def node(viewer: sf.Viewer, name: str) -> object:
+    return viewer._server.scene.get_handle_by_name(f"/mechanism/{name}")
+
+
+def test_it_is_seen_from_this_machine_alone(viewer: sf.Viewer) -> None:
+    assert viewer.host == "127.0.0.1" and viewer.url == f"http://127.0.0.1:{viewer.port}"
+    with socket.create_connection(("127.0.0.1", viewer.port), timeout=5):
+        pass
+    # Every address of 127.0.0.0/8 is this machine; a server that is bound to all of them would answer on another, too.
+    with socket.socket() as other:
+        other.settimeout(5)
+        assert other.connect_ex(("127.0.0.2", viewer.port)) != 0
+
+
+def test_a_port_that_is_taken_is_refused(viewer: sf.Viewer) -> None:
+    with pytest.raises(SymofrosError, match=rf"can't serve at 127.0.0.1:{viewer.port}\n(.*\n)*.*another port, or 0"):
+        sf.Viewer(MODELS["pendulum"], port=viewer.port)
+
+
+@pytest.mark.parametrize(("host", "port"), [("127.0.0.1", 70000), ("192.0.2.1", 0)])
+def test_an_address_that_can_not_be_is_refused(host: str, port: int) -> None:
+    with pytest.raises(SymofrosError, match="can't serve at"):
+        sf.Viewer(MODELS["pendulum"], host=host, port=port)
+
+
+def test_it_says_nothing_of_its_own(capsys: pytest.CaptureFixture[str]) -> None:
+    sf.Viewer(MODELS["pendulum"], port=0).close()
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "viser", None)
+    with pytest.raises(SymofrosError, match=r"viser is not installed\n(.*\n)*  remedy: pip install 'symofros\[view\]'"):
+        sf.Viewer(MODELS["pendulum"])
+
+
+def test_show_puts_links_where_the_model_has_them(viewer: sf.Viewer, rng: np.random.Generator) -> None:
+    q, _ = viewer.mechanism.model.random_state(rng)
+    viewer.show(q)
+    posture = viewer.mechanism.posture(q)
+    for i in range(len(viewer.mechanism.tree.links)):
+        assert np.allclose(node(viewer, f"link{i}").position, posture.p[i])
+
+
+def test_beams_bend_by_their_bones(viewer: sf.Viewer) -> None:
+    q = viewer.mechanism.model.neutral()
+    q[viewer.mechanism.model.names.q.index("link1.bend_y[2]")] = 0.01
+    viewer.show(q)
+    bones = viewer._stage.scene._bends[0].bones
+    plain = bones[-1].position[1]
+    viewer.exaggeration = 8.0
+    assert plain > 0.005 and bones[-1].position[1] == pytest.approx(8 * plain)
+
+
+class TestPush:
+    def test_the_newest_state_is_shown(self, viewer: sf.Viewer) -> None:
+        nq = viewer.mechanism.model.nq
+        for k in range(500):
+            viewer.push(k / 500, np.full(nq, k / 500))
+        until(lambda: viewer.painted + viewer.dropped == 500)
+        assert viewer.state.q[0] == 499 / 500
+
+    def test_it_never_waits_for_the_picture(self, viewer: sf.Viewer) -> None:
+        q = viewer.mechanism.model.neutral()
+        done = threading.Event()
+
+        def loop() -> None:
+            for k in range(100):
+                viewer.push(k, q)
+            done.set()
+
+        with viewer._painting:  # As if the picture took for ever.
+            threading.Thread(target=loop, daemon=True).start()
+            assert done.wait(PATIENCE)
+        assert viewer.dropped == 99
+
+    def test_what_is_shown_meanwhile_is_newer(self, viewer: sf.Viewer) -> None:
+        nq = viewer.mechanism.model.nq
+        with viewer._painting:
+            viewer.push(0.0, np.ones(nq))
+            time.sleep(0.1)  # The worker wakes, and waits for the picture.
+            viewer.show(np.full(nq, 0.5))
+        time.sleep(0.1)
+        assert np.all(viewer.state.q == 0.5)
+
+    def test_it_copies(self, viewer: sf.Viewer) -> None:
+        q = viewer.mechanism.model.neutral()
+        with viewer._painting:
+            viewer.push(0.0, q)
+            q[:] = 0.5
+        until(lambda: viewer.painted == 1)
+        assert np.all(viewer.state.q == 0.0)
+
+    def test_a_state_that_is_not_finite_leaves_the_picture(self, viewer: sf.Viewer) -> None:
+        nq = viewer.mechanism.model.nq
+        viewer.show(np.full(nq, 0.1))
+        viewer.push(0.0, np.full(nq, np.nan))
+        until(lambda: viewer._wanted is None)
+        with viewer._painting:
+            assert np.all(viewer.state.q == 0.1)
+
+    def test_a_wrong_shape_is_said_at_once(self, viewer: sf.Viewer) -> None:
+        with pytest.raises(ShapeError, match=r"q has shape \(10,\)"):
+            viewer.push(0.0, [0.0])
+
+
+class TestPlay:
+    def test_it_goes_on_by_itself_until_it_is_paused(self, viewer: sf.Viewer) -> None:
+        t = np.array([0.0, 1000.0])
+        q = np.zeros((2, viewer.mechanism.model.nq))
+        q[1, 0] = 1000.0
+        viewer.play((t, q))
+        until(lambda: viewer.state.q[0] > 0.1)
+        viewer.toggle()
+        stands = viewer.state.q[0]
+        time.sleep(0.1)
+        assert viewer.state.q[0] == stands
+        viewer.seek(500.0)
+        assert viewer.state.q[0] == pytest.approx(500.0)
+
+    def test_it_ends(self, viewer: sf.Viewer) -> None:
+        nq = viewer.mechanism.model.nq
+        viewer.play(([0.0, 0.1], [np.zeros(nq), np.ones(nq)]), loop=False)
+        until(lambda: not viewer._is_playing())
+        assert np.allclose(viewer.state.q, 1.0)
+
+    def test_a_trajectory_brings_its_parameters(self, viewer: sf.Viewer) -> None:
+        model = sf.compile(viewer.mechanism.system).with_parameters(L1=0.8)
+        viewer.play(sf.simulate(model, t_end=0.01, dt=1e-3))
+        assert viewer._stage.scene.drawing.bends[0].length == pytest.approx(0.8)
+
+
+class TestAnotherSystem:
+    def test_the_scene_is_built_anew(self, viewer: sf.Viewer) -> None:
+        viewer.set_system(MODELS["four_bar"])
+        assert viewer.mechanism.model.nq == 3 and node(viewer, "link7") is None
+        viewer.show([1.2, -1.2, 1.2])
+        assert viewer.state.q[0] == 1.2
+
+    def test_coordinates_and_layers_stay_where_they_are_the_same(self, viewer: sf.Viewer) -> None:
+        viewer.show(np.full(viewer.mechanism.model.nq, 0.01))
+        viewer.set_layer("frames", True)
+        system = viewer.mechanism.system
+        longer = tuple(replace(p, value=0.7) if p.name == "L1" else p for p in system.parameters)
+        viewer.set_system(replace(system, parameters=longer))
+        assert np.all(viewer.state.q == 0.01) and "frames" in viewer._stage.scene.layers
+        assert viewer._stage.scene.drawing.bends[0].length == pytest.approx(0.7)
+
+    def test_one_that_is_refused_leaves_the_picture(self, viewer: sf.Viewer) -> None:
+        before = viewer.mechanism
+        with pytest.raises(sf.DescriptionError):
+            viewer.set_system(sf.System("empty"))
+        assert viewer.mechanism is before
+
+    def test_what_was_pushed_before_is_forgotten(self, viewer: sf.Viewer) -> None:
+        with viewer._painting:
+            viewer.push(0.0, np.ones(viewer.mechanism.model.nq))
+            viewer.set_system(MODELS["four_bar"])
+        assert viewer.state.q.shape == (3,)
+
+
+class TestParameters:
+    def test_they_draw_anew_only_where_they_are_seen(self, viewer: sf.Viewer) -> None:
+        model = viewer.mechanism.model
+        q, par = model.neutral(), np.array(model.parameter_values)
+        scene = viewer._stage.scene
+        par[model.names.par.index("k1")] *= 2
+        viewer.show(q, par=par)
+        assert viewer._stage.scene is scene
+        par[model.names.par.index("L2")] *= 2
+        viewer.show(q, par=par)
+        assert viewer._stage.scene is not scene and viewer._stage.scene.drawing.bends[1].length == pytest.approx(0.8)
+
+
+class TestSliders:
+    def test_loops_close_around_the_one_that_moves(self) -> None:
+        with sf.Viewer(MODELS["four_bar"], port=0) as viewer:
+            viewer.show([1.2, -1.2, 1.2])
+            viewer.slide(0, 1.0)
+            q = viewer.state.q
+            full = sf.compile(MODELS["four_bar"])
+            assert q[0] == 1.0 and np.abs(full.constraint(q)).max() < 1e-9 and q[2] != 1.2
+
+    def test_where_they_can_not_the_picture_stays(self) -> None:
+        stop = sf.Rod("rod", ("world", None), ("b", "end"), 1.0)
+        body = sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(1.0), (sf.Frame("end"),))
+        with sf.Viewer(sf.System("s", [body], constraints=[stop]), port=0) as viewer:
+            viewer.show([1.0])
+            viewer.slide(0, 0.3)
+            assert viewer.state.q[0] == 1.0
+
+    def test_reset_goes_back(self, viewer: sf.Viewer) -> None:
+        viewer.slide(0, 0.5)
+        assert viewer.state.q[0] == 0.5
+        viewer.reset()
+        assert np.all(viewer.state.q == 0.0)
+
+
+def test_two_may_look_at_once(viewer: sf.Viewer) -> None:
+    """Both are sent the scene: the handshake and the first messages, without a browser."""
+    connect, version = import_module("websockets.sync.client").connect, import_module("viser").__version__
+    url = f"ws://127.0.0.1:{viewer.port}"
+    with connect(url, subprotocols=[f"viser-v{version}"]) as a, connect(url, subprotocols=[f"viser-v{version}"]) as b:
+        sizes = [len(one.recv(timeout=PATIENCE)) for one in (a, b)]
+    assert min(sizes) > 1000
+
+
+@pytest.mark.parametrize("more", [{"exaggeration": float("nan")}, {"rate": 0.0}])
+def test_numbers_that_can_not_be_are_refused(more: dict) -> None:
+    before = threading.active_count()
+    with pytest.raises(SymofrosError, match=f"no such {next(iter(more))}"):
+        sf.Viewer(MODELS["pendulum"], port=0, **more)
+    assert threading.active_count() <= before
+
+
+def test_layers_have_names(viewer: sf.Viewer) -> None:
+    with pytest.raises(sf.UnknownNameError, match=r"no layer 'frame'\n(.*\n)*  remedy: did you mean 'frames'\?"):
+        viewer.set_layer("frame", True)
+
+
+def test_the_controls_say_what_is_shown(viewer: sf.Viewer) -> None:
+    viewer.set_layer("frames", True)
+    viewer.exaggeration = 7.0
+    viewer.show(np.full(10, 0.25))
+    panel = viewer._panel
+    assert panel._boxes["frames"].value and not panel._boxes["labels"].value
+    assert panel._exaggeration.value == 7.0 and panel._sliders[0].value == 0.25
+
+
+def test_it_may_be_closed_twice_and_its_port_is_free_again(viewer: sf.Viewer) -> None:
+    port = viewer.port
+    viewer.close()
+    viewer.close()
+    with sf.Viewer(MODELS["pendulum"], port=port) as again:
+        assert again.port == port
+
+
+def test_view_opens_the_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    with sf.view(MODELS["pendulum"], q=[0.5], port=0) as viewer:
+        assert opened == [viewer.url] and viewer.state.q[0] == 0.5
+
+
+def test_view_serves_nothing_where_it_fails() -> None:
+    before = threading.active_count()
+    with pytest.raises(ShapeError):
+        sf.view(MODELS["pendulum"], q=[0.5, 1.0], port=0, browser=False)
+    until(lambda: threading.active_count() <= before)
