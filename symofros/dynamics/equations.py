@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 
 from symofros.dynamics.applied.forces import generalized_forces, stored_energy
+from symofros.dynamics.articulated import articulated_acceleration, is_local
 from symofros.dynamics.constraints import Constraints, Row
 from symofros.dynamics.derivatives import by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
@@ -85,16 +87,42 @@ class Equations:
         return self.factors.solve(self.net)
 
     @cached_property
+    def articulated(self) -> list[Edge]:
+        """The same by articulated bodies.
+
+        Raises:
+            DescriptionError: As for `factors`; or a rotor is borne by neither its link's parent nor the base.
+        """
+        for rotor in self.rotors:
+            if not is_local(self.motion, rotor):
+                link = self.tree.links[rotor.link].name
+                raise DescriptionError(
+                    Problem(f"system '{self.tree.system.name}': forward dynamics by articulated bodies",
+                            f"a rotor that the joint of '{link}' drives, borne by another body than its parent",
+                            "what a joint's speeds move is its link, and rotors on the parent or the base",
+                            "choose Options(forward_dynamics='factors'), or 'auto'")
+                )  # fmt: skip
+        inertias, _ = link_inertias(self.motion, regrouped=False)
+        with self._refusing_singular():
+            return articulated_acceleration(self.motion, inertias, self.rotors, self.gravity, self.Q)
+
+    @cached_property
     def factors(self) -> Factors:
         """Those of M.
 
         Raises:
             DescriptionError: A speed moves no mass whatever the state, and so has no acceleration.
         """
-        self.refuse_massless()
-        try:
+        with self._refusing_singular():
             return Factors(self.g, self.M)
+
+    @contextmanager
+    def _refusing_singular(self) -> Iterator[None]:
+        """In words, where the matter is that M is singular in every state."""
+        try:
+            yield
         except SingularMassMatrixError as error:
+            self.refuse_massless()
             name = self.tree.coordinates.v[error.speed]
             raise DescriptionError(
                 Problem(f"system '{self.tree.system.name}': speed '{name}' moves nothing that those after it do not"
