@@ -24,6 +24,7 @@ from typing import Any
 
 from symofros.beams.deformation import small_coordinates
 from symofros.codegen.dispatch import dispatch_source
+from symofros.codegen.effort import cheapest
 from symofros.codegen.interpreted import InterpretedUnit
 from symofros.codegen.model import Lanes, model_source
 from symofros.codegen.names import identifier
@@ -33,7 +34,7 @@ from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
 from symofros.description.values import as_value
 from symofros.dynamics.formulas import formula_program
-from symofros.dynamics.functions import Request, write_program
+from symofros.dynamics.functions import Request, methods, write_program
 from symofros.dynamics.wrenches import acts_on_bodies
 from symofros.errors import (
     CompileError,
@@ -182,8 +183,10 @@ def generate(
 
 def _written(tree: SpanningTree, requests: Sequence[Request], form: str, method: str) -> Program:
     """The optimised program, its forward dynamics by the cheaper method where that is left to us."""
-    if method == "auto":
-        method = "articulated"
+    asked = [request for request in requests if request.name == "forward_dynamics"]
+    if method == "auto" and asked:
+        ways = methods(tree)
+        method = cheapest({way: run_passes(write_program(tree, asked, form, way)) for way in ways})
     return run_passes(write_program(tree, requests, form, method))
 
 

@@ -1,181 +1,148 @@
-"""Forward dynamics by articulated bodies: the wrench a link takes per acceleration, with the joints beyond it free.
+"""Forward dynamics by articulated bodies: from the tips to the base, and back (docs/theory/rigid.md, section 7).
 
-One pass from the tips to the base and one back, so operations grow with the number of links (docs/theory/rigid.md,
-section 7). M is never formed: what a heavy load and light links exchange cancels link by link, not among sums of all.
+Operations grow with the number of links. M is never formed: what a heavy load and light links exchange cancels link by
+link, not among sums over all of them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from symofros.dynamics.acceleration import Acceleration, LinkMotion, Wrench, velocities
+from symofros.dynamics.acceleration import Acceleration, Wrench, no_wrench, velocities
+from symofros.dynamics.articulated_inertia import ArticulatedInertia, Rows, acceleration_carried, wrench_carried
 from symofros.dynamics.beams import added_momentum, modal_mass
 from symofros.dynamics.forward import SingularMassMatrixError
 from symofros.dynamics.inertia import LinkInertia, deformed
 from symofros.dynamics.jourdain import link_wrenches
-from symofros.dynamics.mass_matrix import Matrix
 from symofros.dynamics.rotors import MovingRotor
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
-from symofros.expr.vector import Mat3, Sym3, Vec3
+from symofros.expr.vector import Vec3
 from symofros.kinematics.joint import Column
 from symofros.kinematics.links import Motion, MovingLink
 from symofros.topology.tree import BASE
 
 
 def is_local(motion: Motion, rotor: MovingRotor) -> bool:
-    """Whether a rotor couples the joint that drives it with no third body: its carrier is the parent, or rests."""
+    """Whether a rotor couples no third body with the joint that drives it: its carrier is the parent, or rests."""
     return rotor.k is None or rotor.carrier in (BASE, motion.links[rotor.link].parent)
 
 
 def articulated_acceleration(
     motion: Motion, inertias: list[LinkInertia], rotors: list[MovingRotor], gravity: Vec3, Q: Sequence[Edge]
 ) -> list[Edge]:
-    """The solution v' (nv) of M v' + h = Q (eqs. 39-45).
+    """The solution v' of M v' + h = Q (eqs. 39-46).
 
     Args:
         motion: The tree.
-        inertias: Of its links, not regrouped: that would have light links carry a heavy load's moments.
-        rotors: That spin in its links; `is_local`.
+        inertias: Of its links, not regrouped: light links would bear the moments of a heavy load.
+        rotors: That spin in its links; each `is_local`.
         gravity: Acceleration of gravity in the world.
         Q: Generalized forces (nv).
+
+    Returns:
+        One edge a speed.
 
     Raises:
         SingularMassMatrixError: A pivot is the number zero.
     """
-    g = motion.g
     moving, added = velocities(motion)
-    joints = _tip_to_base(motion, inertias, rotors, moving, added, Q)
+    wrenches, own = link_wrenches(motion, inertias, rotors, moving, [ZERO] * motion.nv)
+    surplus = [motion.g.sub(asked, given) for asked, given in zip(own, Q, strict=True)]
+    joints = _tip_to_base(motion, [*map(_Taken, _inertias(motion, inertias), wrenches)], rotors, added, surplus)
     v_rate = [ZERO] * motion.nv
-    base = Acceleration(Vec3(g), -gravity)
+    base = Acceleration(Vec3(motion.g), -gravity)
     accelerations: list[Acceleration] = []
-    for i, link in enumerate(motion.links):
+    for i, (link, joint) in enumerate(zip(motion.links, joints, strict=True)):
         parent = base if link.parent == BASE else accelerations[link.parent]
-        carried = _acceleration_carried(link, parent) + added[i]
-        rates = joints[i].rates(parent if joints[i].in_parent else carried)
-        for k, (column, rate) in enumerate(zip(link.free_columns, rates, strict=True)):
-            v_rate[link.v + k] = rate
-            carried = carried + Acceleration(column.w.scaled(rate), column.v.scaled(rate))
-        accelerations.append(carried)
+        x = acceleration_carried(link, parent) + added[i]
+        rates = joint.rates(parent if joint.in_parent else x)
+        v_rate[link.v : link.v + len(rates)] = rates
+        for column, rate in zip(link.free_columns, rates, strict=True):
+            x = x + Acceleration(column.w.scaled(rate), column.v.scaled(rate))
+        accelerations.append(x)
     return v_rate
+
+
+class _Taken(NamedTuple):
+    """What a body takes: its inertia times its acceleration, and a wrench besides, about its origin, in its frame."""
+
+    body: ArticulatedInertia
+    wrench: Wrench
+
+    def given(self, x: Acceleration) -> _Taken:
+        """With a part of the acceleration known."""
+        return _Taken(self.body, self.wrench + self.body.times(x))
+
+    def carried(self, link: MovingLink, onto: _Taken) -> _Taken:
+        """Taken over by the link's parent, by which this moves, on top of what that takes already (eqs. 11, 44)."""
+        return _Taken(self.body.carried(link, onto.body), onto.wrench + wrench_carried(link, self.wrench))
+
+
+def _inertias(motion: Motion, inertias: list[LinkInertia]) -> list[ArticulatedInertia]:
+    """Of the links by themselves, beams as they are bent."""
+    found = [ArticulatedInertia.of(inertia) for inertia in inertias]
+    for beam in motion.beams:
+        if beam.tip is not None:
+            found[beam.root] = found[beam.root] + ArticulatedInertia.of(deformed(motion, beam))
+    return found
 
 
 def _tip_to_base(
     motion: Motion,
-    inertias: list[LinkInertia],
+    alone: list[_Taken],
     rotors: list[MovingRotor],
-    moving: Sequence[LinkMotion],
     added: Sequence[Acceleration],
-    Q: Sequence[Edge],
-) -> list[_Joint]:
-    """Every joint, the links beyond it articulated."""
+    surplus: Sequence[Edge],
+) -> list[_FreeJoint]:
+    """Each joint, with everything beyond it articulated.
+
+    Args:
+        motion: The tree.
+        alone: What the links take by themselves at rates zero.
+        rotors: That spin in them.
+        added: What each joint adds to the acceleration of its parent at rates zero.
+        surplus: What the speeds take besides, less their generalized forces (nv).
+    """
     g = motion.g
-    wrenches, own = link_wrenches(motion, inertias, rotors, moving, [ZERO] * motion.nv)
-    bodies = [ArticulatedInertia.of(inertia) for inertia in inertias]
-    for beam in motion.beams:
-        if beam.tip is not None:
-            bodies[beam.root] = bodies[beam.root] + ArticulatedInertia.of(deformed(motion, beam))
-    joints: list[_Joint] = []
+    beyond = dict(enumerate(alone)) | {BASE: _Taken(ArticulatedInertia.none(g), no_wrench(g))}
+    joints: list[_FreeJoint] = []
     for i, link in reversed(list(enumerate(motion.links))):
-        body, wrench = bodies[i], wrenches[i]
-        columns, speeds = link.free_columns, range(link.v, link.v + len(link.free_columns))
-        coupling = _coupling(motion, rotors, i)
+        taken, parent, coupling = beyond[i], beyond[link.parent], _coupling(motion, rotors, i)
+        per_rate = [taken.body.times(Acceleration(column.w, column.v)) for column in link.free_columns]
+        D = [[g.add(_power(column, per), own) for per, own in zip(per_rate, row, strict=True)]
+             for column, row in zip(link.free_columns, coupling.own, strict=True)]  # fmt: skip
         if coupling.in_parent:
-            wrench = wrench + body.times(added[i])
-        per_speed = [body.times(Acceleration(column.w, column.v)) for column in columns]
-        D = [[g.add(_power(column, per), coupling.own[j][k]) for k, per in enumerate(per_speed)]
-             for j, column in enumerate(columns)]  # fmt: skip
+            taken = taken.given(added[i])
         lacking = [
-            g.sub(g.add(own[k], _power(column, wrench)), Q[k]) for k, column in zip(speeds, columns, strict=True)
+            g.add(surplus[k], _power(column, taken.wrench)) for k, column in enumerate(link.free_columns, start=link.v)
         ]
         if coupling.in_parent:
-            body, wrench = body.carried(link), _wrench_carried(link, wrench)
-            per_speed = [
-                _wrench_carried(link, per) + more for per, more in zip(per_speed, coupling.wrenches, strict=True)
-            ]
-        joint = _Joint(g, body, wrench, per_speed, D, lacking, coupling.in_parent, link.v)
+            per_rate = [wrench_carried(link, a) + b for a, b in zip(per_rate, coupling.wrenches, strict=True)]
+            joint = _FreeJoint(g, taken.carried(link, parent), per_rate, D, lacking, True, link.v)
+            beyond[link.parent] = joint.taken
+        else:
+            joint = _FreeJoint(g, taken, per_rate, D, lacking, False, link.v)
+            beyond[link.parent] = joint.taken.given(added[i]).carried(link, parent)
         joints.insert(0, joint)
-        if link.parent == BASE:
-            continue
-        body, wrench = joint.body, joint.wrench
-        if not coupling.in_parent:
-            body, wrench = body.carried(link), _wrench_carried(link, wrench + body.times(added[i]))
-        bodies[link.parent], wrenches[link.parent] = bodies[link.parent] + body, wrenches[link.parent] + wrench
     return joints
 
 
-@dataclass(frozen=True)
-class ArticulatedInertia:
-    """The wrench f = A a + B alpha, n = B^T a + C alpha about Lo that an acceleration of L takes, in L (eq. 39)."""
-
-    A: Sym3
-    B: Mat3
-    C: Sym3
-
-    @staticmethod
-    def of(body: LinkInertia) -> ArticulatedInertia:
-        """Of a rigid body."""
-        g, m, (x, y, z) = body.S.g, body.m, body.S
-        return ArticulatedInertia(Sym3(g, m, m, m), Mat3(g, (ZERO, z, -y, -z, ZERO, x, y, -x, ZERO)), body.J)
-
-    @staticmethod
-    def of_rows(g: Graph, rows: Matrix) -> ArticulatedInertia:
-        """Of its 6 x 6 matrix, f and a before n and alpha."""
-        A, C = (
-            Sym3(g, *(rows[at + i][at + j] for i, j in ((0, 0), (1, 1), (2, 2), (1, 0), (2, 0), (2, 1))))
-            for at in (0, 3)
-        )
-        return ArticulatedInertia(A, Mat3(g, tuple(rows[3 + j][i] for i in range(3) for j in range(3))), C)
-
-    def rows(self) -> Matrix:
-        """The 6 x 6 matrix."""
-        A, B, C = self.A.matrix(), self.B, self.C.matrix()
-        return [[*A.row(i), *B.row(i)] for i in range(3)] + [[*B.column(i), *C.row(i)] for i in range(3)]
-
-    def __add__(self, other: ArticulatedInertia) -> ArticulatedInertia:
-        g = self.B.g
-        B = tuple(g.add(a, b) for a, b in zip(self.B.entries, other.B.entries, strict=True))
-        return ArticulatedInertia(self.A + other.A, Mat3(g, B), self.C + other.C)
-
-    def times(self, x: Acceleration) -> Wrench:
-        """The wrench of an acceleration."""
-        return Wrench(self.A.times(x.a) + self.B.times(x.alpha), self.B.T.times(x.a) + self.C.times(x.alpha))
-
-    def carried(self, link: MovingLink) -> ArticulatedInertia:
-        """The same about the parent's origin, in the parent's frame (eq. 44)."""
-        g, p = self.B.g, link.p_AL
-        A, B, C = link.R_AL.conjugate(self.A), link.R_AL.conjugate_any(self.B), link.R_AL.conjugate(self.C)
-        if p.is_zero:
-            return ArticulatedInertia(A, B, C)
-        # Rows of A [p] are those of A, x p; columns of [p] B are p x those of B.
-        rows = [B.row(i) - A.matrix().row(i).cross(p) for i in range(3)]
-        moved = Mat3(g, tuple(edge for row in rows for edge in row))
-        first = Mat3.from_columns(g, [p.cross(B.column(j)) for j in range(3)])
-        last = Mat3.from_columns(g, [p.cross(moved.column(j)) for j in range(3)])
-
-        def both(i: int, j: int) -> Edge:
-            return g.add(last.at(i, j), first.at(j, i))
-
-        C = C + Sym3(g, both(0, 0), both(1, 1), both(2, 2), both(0, 1), both(0, 2), both(1, 2))
-        return ArticulatedInertia(A, moved, C)
-
-
-class _Joint:
-    """The speeds of one joint, eliminated from what its bodies' accelerations take (eqs. 41-43).
+class _FreeJoint:
+    """One joint's speeds, eliminated from what the bodies beyond it take (eqs. 41-43).
 
     Args:
         g: The graph.
-        body: What carries the joint's speeds, all beyond articulated.
-        wrench: What it takes besides.
-        per_speed: What it takes per rate of each speed.
+        taken: By the body whose acceleration it all refers to.
+        per_rate: What that body takes per rate of each speed (n).
         D: What the speeds take per rate (n x n).
-        lacking: What they take besides, less their generalized force (n).
-        in_parent: Whether all that is of the parent's acceleration, in its frame; otherwise of the link's own at
-            rates zero.
+        lacking: What they take besides, less their generalized forces (n).
+        in_parent: Whether that body is the parent; otherwise the link itself, as it moves at rates zero.
         v: Index of the first speed.
 
     Attributes:
-        body, wrench: The same with the joint free.
+        taken: By that body with the joint free.
         in_parent: As given.
 
     Raises:
@@ -183,81 +150,88 @@ class _Joint:
     """
 
     def __init__(
-        self, g: Graph, body: ArticulatedInertia, wrench: Wrench, per_speed: Sequence[Wrench], D: Matrix,
-        lacking: Sequence[Edge], in_parent: bool, v: int,
+        self, g: Graph, taken: _Taken, per_rate: Sequence[Wrench], D: Rows, lacking: Sequence[Edge], in_parent: bool,
+        v: int,
     ) -> None:  # fmt: skip
         self.in_parent = in_parent
-        self._g, self._n = g, len(per_speed)
-        rows = body.rows() + [[*per.f, *per.n, *D[k]] for k, per in enumerate(per_speed)]
-        right = [*wrench.f, *wrench.n, *lacking]
+        self._g = g
         self._ratios: list[list[Edge]] = []
         self._free: list[Edge] = []
-        for k in reversed(range(6, 6 + self._n)):
+        rows = taken.body.rows() + [[*per.f, *per.n, *D[k]] for k, per in enumerate(per_rate)]
+        right = [*taken.wrench.f, *taken.wrench.n, *lacking]
+        for k in reversed(range(6, len(rows))):
             row, pivot = rows[k], rows[k][k]
             if pivot == ZERO:
                 raise SingularMassMatrixError(v + k - 6)
             inverse = g.div(ONE, pivot)
-            ratio = [_quotient(g, edge, pivot, inverse) for edge in row[:k]]
+            ratios = [_quotient(g, edge, pivot, inverse) for edge in row[:k]]
             for i in range(k):
                 for j in range(i + 1):
-                    rows[i][j] = g.sub(rows[i][j], _product(g, row[i], ratio[i], row[j], ratio[j]))
-                right[i] = g.sub(right[i], g.mul(ratio[i], right[k]))
-            self._ratios.insert(0, ratio)
+                    rows[i][j] = g.sub(rows[i][j], _product(g, (row[i], ratios[i]), (row[j], ratios[j])))
+                right[i] = g.sub(right[i], g.mul(ratios[i], right[k]))
+            self._ratios.insert(0, ratios)
             self._free.insert(0, -g.mul(right[k], inverse))
-        self.body = ArticulatedInertia.of_rows(g, rows)
-        self.wrench = Wrench(Vec3(g, *right[:3]), Vec3(g, *right[3:6]))
+        wrench = Wrench(Vec3(g, *right[:3]), Vec3(g, *right[3:6]))
+        self.taken = _Taken(ArticulatedInertia.of_rows(g, rows), wrench)
 
     def rates(self, x: Acceleration) -> list[Edge]:
-        """Of its speeds, at an acceleration as given by `in_parent` (eq. 45)."""
-        g, known = self._g, [*x.a, *x.alpha]
-        for ratio, free in zip(self._ratios, self._free, strict=True):
-            known.append(g.sub(free, g.sum(g.mul(a, b) for a, b in zip(ratio, known, strict=True))))
+        """Of the speeds, at an acceleration of the body (eq. 45)."""
+        known = [*x.a, *x.alpha]
+        for ratios, free in zip(self._ratios, self._free, strict=True):
+            products = [-self._g.mul(a, b) for a, b in zip(ratios, known, strict=True)]
+            known.append(_sum_in_pairs(self._g, [free, *products]))
         return known[6:]
 
 
 def _quotient(g: Graph, edge: Edge, pivot: Edge, inverse: Edge) -> Edge:
-    """Edge / pivot: exactly 1 for the pivot itself, so that what a free joint can't transmit is zero."""
+    """Edge / pivot: exactly 1 for the pivot itself, so that entries which a free joint makes vanish fold to zero."""
     return g.div(edge, pivot) if abs(edge) == abs(pivot) else g.mul(edge, inverse)
 
 
-def _product(g: Graph, x: Edge, x_ratio: Edge, y: Edge, y_ratio: Edge) -> Edge:
-    """X y / pivot, the same node for y x / pivot."""
-    if abs(x_ratio) == ONE or (abs(y_ratio) != ONE and abs(x) > abs(y)):
-        return g.mul(x_ratio, y)
-    return g.mul(x, y_ratio)
+def _product(g: Graph, x: tuple[Edge, Edge], y: tuple[Edge, Edge]) -> Edge:
+    """X y / pivot of two entries, each with its quotient; the same node whichever comes first."""
+    if abs(x[1]) == ONE or (abs(y[1]) != ONE and abs(x[0]) > abs(y[0])):
+        return g.mul(x[1], y[0])
+    return g.mul(x[0], y[1])
+
+
+def _sum_in_pairs(g: Graph, terms: Sequence[Edge]) -> Edge:
+    """A sum that waits for fewer additions in a row: along a chain all links wait for it."""
+    while len(terms) > 1:
+        terms = [g.sum(terms[i : i + 2]) for i in range(0, len(terms), 2)]
+    return terms[0]
 
 
 @dataclass(frozen=True)
 class _Coupling:
-    """What the rates of a joint's speeds take besides the acceleration of its link.
+    """What rates of a joint's speeds take apart from the acceleration of its link (eq. 46).
 
     Attributes:
-        own: Per rate of each speed, of each speed (n x n): modal masses, spins of rotors.
-        wrenches: Per rate of each speed, of the parent (n).
-        in_parent: Whether one of these is not zero.
+        own: Of each speed, per rate of each (n x n).
+        wrenches: Of the parent, per rate of each (n).
     """
 
-    own: Matrix
+    own: Rows
     wrenches: list[Wrench]
 
     @property
     def in_parent(self) -> bool:
+        """Whether the parent takes anything."""
         return not all(wrench.f.is_zero and wrench.n.is_zero for wrench in self.wrenches)
 
 
 def _coupling(motion: Motion, rotors: Sequence[MovingRotor], index: int) -> _Coupling:
-    """Of one link's joint: the beam that ends in the link, rotors that the joint drives (eq. 46)."""
-    g, link = motion.g, motion.links[index]
-    size = range(len(link.free_columns))
-    own, wrenches = [[ZERO for _ in size] for _ in size], [Wrench(Vec3(g), Vec3(g)) for _ in size]
+    """By the beam that ends in a link, and by rotors that its joint drives."""
+    g = motion.g
+    n = range(len(motion.links[index].free_columns))
+    own, wrenches = [[ZERO for _ in n] for _ in n], [no_wrench(g) for _ in n]
     for beam in motion.beams:
         if beam.tip == index:
-            own = [[modal_mass(beam, i, j) for j in size] for i in size]
-            wrenches = [Wrench(*added_momentum(motion, beam, i)) for i in size]
+            own = [[modal_mass(beam, i, j) for j in n] for i in n]
+            wrenches = [Wrench(*added_momentum(motion, beam, i)) for i in n]
     for rotor in rotors:
         if rotor.link == index and rotor.k is not None:
-            c = rotor.coordinate
-            per_spin = g.mul(rotor.inertia, rotor.ratio)
+            c, per_spin = rotor.coordinate, g.mul(rotor.inertia, rotor.ratio)
             own[c][c] = g.add(own[c][c], g.mul(per_spin, rotor.ratio))
             if rotor.carrier != BASE:
                 wrenches[c] = wrenches[c] + Wrench(Vec3(g), rotor.axis.scaled(per_spin))
@@ -266,14 +240,3 @@ def _coupling(motion: Motion, rotors: Sequence[MovingRotor], index: int) -> _Cou
 
 def _power(column: Column, wrench: Wrench) -> Edge:
     return wrench.f.g.add(column.w.dot(wrench.n), column.v.dot(wrench.f))
-
-
-def _wrench_carried(link: MovingLink, wrench: Wrench) -> Wrench:
-    """From Lo, in L, to Ao, in A (eq. 11)."""
-    f = link.R_AL.apply(wrench.f)
-    return Wrench(f, link.R_AL.apply(wrench.n) + link.p_AL.cross(f))
-
-
-def _acceleration_carried(link: MovingLink, x: Acceleration) -> Acceleration:
-    """Of the parent -> what of it the link takes over, but for speeds (eqs. 7, 8)."""
-    return Acceleration(link.R_AL.apply_inverse(x.alpha), link.R_AL.apply_inverse(x.a + x.alpha.cross(link.p_AL)))

@@ -86,22 +86,25 @@ class Equations:
         """V' = M^-1 (Q - h)."""
         return self.factors.solve(self.net)
 
+    @property
+    def is_articulated(self) -> bool:
+        """Whether each joint concerns its link and its parent alone, rotors included."""
+        return all(is_local(self.motion, rotor) for rotor in self.rotors)
+
     @cached_property
     def articulated(self) -> list[Edge]:
         """The same by articulated bodies.
 
         Raises:
-            DescriptionError: As for `factors`; or a rotor is borne by neither its link's parent nor the base.
+            DescriptionError: As for `factors`; or not `is_articulated`.
         """
-        for rotor in self.rotors:
-            if not is_local(self.motion, rotor):
-                link = self.tree.links[rotor.link].name
-                raise DescriptionError(
-                    Problem(f"system '{self.tree.system.name}': forward dynamics by articulated bodies",
-                            f"a rotor that the joint of '{link}' drives, borne by another body than its parent",
-                            "what a joint's speeds move is its link, and rotors on the parent or the base",
-                            "choose Options(forward_dynamics='factors'), or 'auto'")
-                )  # fmt: skip
+        if not self.is_articulated:
+            raise DescriptionError(
+                Problem(f"system '{self.tree.system.name}': forward dynamics by articulated bodies",
+                        "a rotor that is borne by another body than the parent of the joint that drives it",
+                        "a joint's speeds move its link, and rotors on its parent or on the base, alone",
+                        "choose Options(forward_dynamics='factors'), or 'auto'")
+            )  # fmt: skip
         inertias, _ = link_inertias(self.motion, regrouped=False)
         with self._refusing_singular():
             return articulated_acceleration(self.motion, inertias, self.rotors, self.gravity, self.Q)

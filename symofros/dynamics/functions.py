@@ -181,7 +181,7 @@ def _function(e: Equations, request: Request, form: str, method: str) -> Functio
 
 def _free(e: Equations, method: str) -> Function:
     """Forward dynamics of a tree."""
-    a = {"articulated": lambda: e.articulated, "factors": lambda: e.acceleration}[method]()
+    a = e.articulated if method == "articulated" else e.acceleration
     return Function("forward_dynamics", "", ("q", "v", "u", "t"), (_vector("a", a),))
 
 
@@ -244,6 +244,13 @@ def _project(e: Equations) -> Function:
     move = Function("move", "", ("q", "step"), (_vector("q_moved", moved(e.motion)),))
     solved = (("q_on", (nq,)), ("v_on", (e.nv,)), ("residual", ()), ("rank", ()))
     return Function("project", "", ("q", "v", "u", "t"), outputs, Solver("project", solved, (move,)))
+
+
+def methods(tree: SpanningTree) -> tuple[str, ...]:
+    """The ways to form forward dynamics, the most accurate first; under constraints there is one."""
+    if tree.system.constraints:
+        return ("factors",)
+    return ("articulated", "factors") if Equations(tree).is_articulated else ("factors",)
 
 
 def write_program(
