@@ -72,7 +72,7 @@ class _Taken(NamedTuple):
     wrench: Wrench
 
     def given(self, x: Acceleration) -> _Taken:
-        """With a part of the acceleration known."""
+        """With a part of the acceleration known (eq. 43)."""
         return _Taken(self.body, self.wrench + self.body.times(x))
 
     def carried(self, link: MovingLink, onto: _Taken) -> _Taken:
@@ -130,7 +130,7 @@ def _tip_to_base(
 
 
 class _FreeJoint:
-    """One joint's speeds, eliminated from what the bodies beyond it take (eqs. 41-43).
+    """One joint's speeds, eliminated from what the bodies beyond it take (eqs. 41, 42).
 
     Args:
         g: The graph.

@@ -28,7 +28,7 @@ class ArticulatedInertia:
 
     @staticmethod
     def of(body: LinkInertia) -> ArticulatedInertia:
-        """That of a rigid body: m 1, -[S], J."""
+        """That of a rigid body: m 1, -[S], J (eq. 40)."""
         g, m, (x, y, z) = body.S.g, body.m, body.S
         return ArticulatedInertia(Sym3(g, m, m, m), Mat3(g, (ZERO, z, -y, -z, ZERO, x, y, -x, ZERO)), body.J)
 
