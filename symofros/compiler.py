@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import hashlib
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
@@ -24,6 +24,7 @@ from typing import Any
 
 from symofros.beams.deformation import small_coordinates
 from symofros.codegen.dispatch import dispatch_source
+from symofros.codegen.effort import cheapest
 from symofros.codegen.interpreted import InterpretedUnit
 from symofros.codegen.model import Lanes, model_source
 from symofros.codegen.names import identifier
@@ -33,7 +34,7 @@ from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
 from symofros.description.values import as_value
 from symofros.dynamics.formulas import formula_program
-from symofros.dynamics.functions import Request, write_program
+from symofros.dynamics.functions import Request, methods, write_program
 from symofros.dynamics.wrenches import acts_on_bodies
 from symofros.errors import (
     CompileError,
@@ -117,7 +118,7 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
         raise CompileError("no C compiler was found\n  remedy: install gcc or clang, or `pip install ziglang`")
     tree = plan(system)
     record = describe(tree, options)
-    program, _ = generate(tree, requested(tree, options), record, options.constraints)
+    program, _ = generate(tree, requested(tree, options), record, options.constraints, options.forward_dynamics)
     symbol = f"{identifier(record.name)}_model"
     lanes: Lanes = "shared" if options.batch == "vector" else "none"
 
@@ -159,7 +160,8 @@ def program_of(system: System, functions: Iterable[str], frames: Iterable[str] =
         UnknownNameError: No such function or frame.
     """
     tree = plan(system)
-    return run_passes(write_program(tree, requested(tree, Options(tuple(functions), tuple(frames)))))
+    options = Options(tuple(functions), tuple(frames))
+    return _written(tree, requested(tree, options), options.constraints, options.forward_dynamics)
 
 
 def generate(
@@ -167,14 +169,25 @@ def generate(
     requests: Iterable[Key],
     record: ModelRecord,
     form: str = "multipliers",
+    method: str = "auto",
     c_name: str | None = None,
 ) -> tuple[Program, Callable[[], str]]:
-    """Requests -> optimised Program, and its C text on demand; form as in `Options.constraints`.
+    """Requests -> optimised Program, and its C text on demand.
 
-    c_name is what the C symbols begin with; made of the model's name by default.
+    form and method are as in `Options.constraints` and `Options.forward_dynamics`; c_name is what the C symbols begin
+    with, made of the model's name by default.
     """
-    program = run_passes(write_program(tree, [Request(*key) for key in requests], form))
+    program = _written(tree, [Request(*key) for key in requests], form, method)
     return program, lambda: model_source(program, record, GENERATOR, c_name=c_name)
+
+
+def _written(tree: SpanningTree, requests: Sequence[Request], form: str, method: str) -> Program:
+    """The optimised program, its forward dynamics by the cheaper method where that is left to us."""
+    asked = [request for request in requests if request.name == "forward_dynamics"]
+    if method == "auto" and asked:
+        ways = methods(tree)
+        method = cheapest({way: run_passes(write_program(tree, asked, form, way)) for way in ways})
+    return run_passes(write_program(tree, requests, form, method))
 
 
 def _warn_inconsistent(system: System) -> None:
@@ -199,8 +212,9 @@ class _Builder:
 
     def functions(self, requests: tuple[Key, ...]) -> Unit:
         """Functions of the model."""
-        form = self._options.constraints
-        return self._unit(requests, lambda: generate(self._tree, requests, self._record, form)[0])
+        stated = [Request(*key) for key in requests]
+        how = self._options.constraints, self._options.forward_dynamics
+        return self._unit(requests, lambda: _written(self._tree, stated, *how))
 
     def formulas(self, formulas: tuple[Any, ...], derivatives: bool) -> Unit:
         """Numbers, formula texts or SymPy expressions over the model's names."""

@@ -108,8 +108,8 @@ def _without_empty(head: Sequence[str], rows: Sequence[tuple[str, ...]]) -> tupl
 _NOTES = {
     "dynamics": "Ours is M + h + Q, in one function. Pinocchio's is crba, then nonLinearEffects; MuJoCo's shares its "
     "kinematics between both; CasADi's is one function, common subexpressions shared.",
-    "forward_dynamics": "Pinocchio's is aba, CasADi's articulated bodies, MuJoCo's M + h, a sparse L D L^T "
-    "and a solve.",
+    "forward_dynamics": "Ours is by articulated bodies or by factors of M, whichever counts less; Pinocchio's is "
+    "aba, CasADi's articulated bodies, MuJoCo's M + h, a sparse L D L^T and a solve.",
     "inverse_dynamics_derivatives": "By q and v. CasADi's are made by its differentiation of Newton-Euler.",
     "forward_dynamics_derivatives": "By q and v; ours by u, too. CasADi's are -M^-1 times those of inverse dynamics at "
     "the acceleration, all in one graph.",
