@@ -57,7 +57,7 @@ def test_values_are_the_same(name: str, fixed: dict[str, float]) -> None:
 @pytest.mark.parametrize("name", ["chain22", "mss"])
 def test_packs_come_along(name: str) -> None:
     """As many lanes are computed alike as before."""
-    program, other, _, function = moved(name, "forward_dynamics", {})
+    program, other, _, function = moved(name, "mass_matrix", {})
     before = sum(len(pack.own) for pack in program.graph.packs)
     wanted = set(needed_nodes(other.graph, function.edges()))
     after = sum(sum(abs(pack.lanes[lane]) in wanted for lane in pack.own) for pack in other.graph.packs)
