@@ -14,12 +14,12 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.codegen.model import Lanes, model_source
+from symofros.codegen.model import model_source
 from symofros.codegen.templates import template
 from symofros.compiler import compile_library, describe, generate, plan
 from symofros.options import MODEL_FUNCTIONS
 from symofros.runtime import library
-from symofros.runtime.kernel import Array, Kernel
+from symofros.runtime.kernel import Array, Kernel, Lanes
 from symofros.runtime.library import CompiledUnit
 from symofros.runtime.toolchain import DEFAULT_FLAGS, cpu_identity
 from tests.codegen.test_source import COMPILERS, compile_strictly
@@ -138,14 +138,14 @@ def test_large_batches_take_vectors_by_themselves(monkeypatch: pytest.MonkeyPatc
     model, loop = (sf.compile(MODELS["chain7"], sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
     rng = np.random.default_rng(0)
     q, v = rng.standard_normal((2, library.MANY + 3, 7))
-    made: list[tuple[tuple[str, str], bool]] = []
+    made: list[tuple[tuple[str, str], Lanes]] = []
     unit = model.kernel("dynamics")._unit  # type: ignore[attr-defined]
     original = unit.in_lanes
-    monkeypatch.setattr(unit, "in_lanes", lambda key, own: made.append((key, own)) or original(key, own))
+    monkeypatch.setattr(unit, "in_lanes", lambda key, how: made.append((key, how)) or original(key, how))
     for n in (library.MANY - 1, library.MANY, library.MANY + 3):
         for found, expected in zip(model.dynamics(q[:n], v[:n], None), loop.dynamics(q[:n], v[:n], None), strict=True):
             assert np.array_equal(found, expected)
-    assert made == [(("dynamics", ""), False)]
+    assert made == [(("dynamics", ""), Lanes())]
 
 
 @pytest.mark.parametrize("case", ["rx90", "friction_arm", "operations"])
@@ -161,12 +161,14 @@ def test_parameters_of_each_state(case: str) -> None:
         assert np.array_equal(found, expected, equal_nan=True)
     kernel = model.kernel("dynamics")
     pre, inputs = kernel.prepare(par[:1]), [q, v, u, np.zeros((1, 1))]
-    own = kernel.in_lanes(own=True)  # type: ignore[attr-defined]
+    own = kernel.in_lanes(Lanes(own=True))  # type: ignore[attr-defined]
     for found, expected in zip(own.run(n, pre, inputs), kernel.run(n, pre, inputs), strict=True):
         assert own is not kernel and np.array_equal(found, expected, equal_nan=True)
 
 
-@pytest.mark.parametrize("lanes", ["shared", "own"])
+@pytest.mark.parametrize(
+    "lanes", [Lanes(own, precision) for own in (False, True) for precision in ("double", "single")], ids=str
+)
 @pytest.mark.parametrize(
     "flags", [(), ("-std=gnu99", "-O2"), ("-std=gnu99", "-O2", "-mavx512f"), ("-std=gnu99", "-mavx")]
 )
