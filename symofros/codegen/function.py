@@ -98,20 +98,15 @@ class FunctionWriter:
         """
         writer = self.writer.in_lanes(single)
         parts = [self._chunk_in_lanes(i, writer) for i in range(len(self.chunks))]
-        arrays = [f"sym_nth(in[{i}], i)" for i in range(1, len(self.inputs))]
-        arrays += [f"sym_nth(out[{i}], i)" for i in range(len(self.outputs))]
-        arguments = ",\n            ".join(
-            ["(const sym_p *)(in[0].at + i * in[0].next)", *arrays, f"work + i * {self.work}"]
-        )
-        body = [
-            f"    for (i = 0; i < count; ++i)\n        {self.c_name}_v_{i}({arguments});"
-            for i in range(len(self.chunks))
+        columns = [f"in[{i}]" for i in range(1, len(self.inputs))] + [f"out[{i}]" for i in range(len(self.outputs))]
+        arguments = ["(const sym_p *)(in[0].at + i * in[0].next)"]
+        arguments += [*(f"{x}.at + i * {x}.next, {x}.step" for x in columns), f"work + i * {self.work}"]
+        calls = [
+            f"    for (i = 0; i < count; ++i)\n        {self.c_name}_v_{k}({', '.join(arguments)});"
+            for k in range(len(self.chunks))
         ]
-        head = (
-            f"static void {self.c_name}_v(int count, const sym_column *in, const sym_column *out, sym_v *work) {{\n"
-            "    int i;"
-        )
-        return "\n".join([*parts, head, *body, "}"])
+        head = f"static void {self.c_name}_v(int count, const sym_column *in, const sym_column *out, sym_v *work) {{"
+        return "\n".join([*parts, head, "    int i;", *calls, "}"])
 
     def _clear(self, output: Output) -> list[str]:
         zeros = [i for i, edge in enumerate(output.edges) if edge == 0]
@@ -134,15 +129,17 @@ class FunctionWriter:
     def _chunk_in_lanes(self, index: int, writer: StatementWriter) -> str:
         lines, used = self._body(index, writer, "sym_v")
         pre, *inputs = self.inputs
-        kinds = dict.fromkeys(inputs, "const ") | {output.name: "" for output in self.outputs}
-        unpacked = [f"    (void){name};" for name in (pre, *kinds, "work") if name not in used]
-        for name, const in kinds.items():
-            if name in used:
-                unpacked.append(f"    {const}sym_number *restrict {name}_at = {name}.at;")
-                unpacked.append(f"    const ptrdiff_t {name}_step = {name}.step;")
-        arguments = [f"const sym_p *restrict {pre}", *(f"sym_column {name}" for name in kinds), "sym_v *restrict work"]
-        head = f"static SYM_NOINLINE void {self.c_name}_v_{index}({', '.join(arguments)}) {{"
-        return "\n".join([head, *unpacked, *lines, "}"])
+        arguments = [f"const sym_p *restrict {pre}"]
+        arguments += [f"const sym_number *restrict {name}_at, ptrdiff_t {name}_step" for name in inputs]
+        arguments += [f"sym_number *restrict {o.name}_at, ptrdiff_t {o.name}_step" for o in self.outputs]
+        unused = [
+            f"    (void){name}_at, (void){name}_step;"
+            for name in (*inputs, *(o.name for o in self.outputs))
+            if name not in used
+        ]
+        unused += [f"    (void){name};" for name in (pre, "work") if name not in used]
+        head = f"static SYM_NOINLINE void {self.c_name}_v_{index}({', '.join([*arguments, 'sym_v *restrict work'])}) {{"
+        return "\n".join([head, *unused, *lines, "}"])
 
     def _body(self, index: int, writer: StatementWriter, real: str) -> tuple[list[str], set[str]]:
         """Lines of a chunk, and the arrays that they mention."""

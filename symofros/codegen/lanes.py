@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from itertools import groupby
 from math import prod
 from string import Template
 
 from symofros.codegen import trigonometry
 from symofros.codegen.templates import template
+from symofros.expr.graph import Edge
 from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
 from symofros.expr.program import Function, Program
 from symofros.runtime.kernel import Lanes
@@ -55,10 +58,10 @@ def _rows(c_name: str, function: Function, lanes: Lanes) -> list[str]:
         # One state alone is evaluated as the others are where that is less precise.
         f"    if (n > {0 if lanes.single else 1} && (SYM_OWN || in_stride[0] == 0)) {{",
         f"        sym_strided from[{n_in}], to[{n_out}];",
-        f"        sym_number *room[{n_in + n_out}];",
+        f"        sym_way way[{n_in + n_out}];",
         f"        sym_column columns[{n_in + n_out}];",
         f"        sym_rows(&{c_name}_vectors, in, in_stride, out, from, to);",
-        f"        sym_batch_lanes(&{c_name}_vectors, n, from, to, {int(lanes.single)}, room, columns, work);",
+        f"        sym_batch_lanes(&{c_name}_vectors, n, from, to, {int(lanes.single)}, way, columns, work);",
         "        return;",
         "    }",
         "#endif",
@@ -76,21 +79,31 @@ def strided(c_name: str, program: Program, function: Function, work: int) -> str
     """
     inputs = [len(program.init), *(program.sizes[name] for name in function.inputs)]
     outputs = [prod(shape) for _, shape in function.returns]
-    zeros = [(k, i) for k, output in enumerate(function.outputs) for i, edge in enumerate(output.edges) if edge == 0]
+    zeros = [(k, *run) for k, output in enumerate(function.outputs) for run in _runs(output.edges)]
     most = vectors_at_once(program, function, work)
     n = len(inputs) + len(outputs)
     return "\n".join([
         f"static const int {c_name}_in_size[] = {{{', '.join(map(str, inputs))}}};",
         f"static const int {c_name}_out_size[] = {{{', '.join(map(str, outputs))}}};",
-        f"static const int {c_name}_zero[] = {{{''.join(f'{k}, {i}, ' for k, i in zeros)}-1}};",
+        f"static const int {c_name}_zero[] = {{{''.join(f'{k}, {first}, {count}, ' for k, first, count in zeros)}-1}};",
         f"static const sym_vectors {c_name}_vectors = {{{len(inputs)}, {len(outputs)}, {most}, {c_name}_in_size,",
         f"    {c_name}_out_size, {c_name}_zero, {c_name}_v}};",
         f"static void {c_name}_lanes(size_t n, const sym_strided *in, const sym_strided *out, double *work) {{",
-        f"    sym_number *room[{n}];",
+        f"    sym_way way[{n}];",
         f"    sym_column columns[{n}];",
-        f"    sym_batch_lanes(&{c_name}_vectors, n, in, out, 0, room, columns, work);",
+        f"    sym_batch_lanes(&{c_name}_vectors, n, in, out, 0, way, columns, work);",
         "}",
     ])  # fmt: skip
+
+
+def _runs(edges: Sequence[Edge]) -> Iterator[tuple[int, int]]:
+    """Where entries that are always zero begin, and how many there are."""
+    first = 0
+    for is_zero, group in groupby(edge == 0 for edge in edges):
+        count = sum(1 for _ in group)
+        if is_zero:
+            yield first, count
+        first += count
 
 
 def vectors_at_once(program: Program, function: Function, work: int) -> int:
@@ -114,7 +127,9 @@ def scratch(program: Program, function: Function, work: int) -> int:
         work: Scratch of one vector.
     """
     most = vectors_at_once(program, function, work)
-    return _WIDEST * (1 + most * work + sum(most * size + _MOST_LANES for size in _sizes(program, function)))
+    return _WIDEST * (
+        1 + most * work + sum(most * size + max(0, _MOST_LANES - size) for size in _sizes(program, function))
+    )
 
 
 def _sizes(program: Program, function: Function) -> list[int]:

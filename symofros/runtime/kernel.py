@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from math import prod
+from typing import Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from symofros.runtime.layout import Numbers as Numbers
+from symofros.runtime.layout import columns
+
 Array = npt.NDArray[np.float64]
-# Of a batch: doubles, or floats where that was asked for.
-Numbers = npt.NDArray[Any]
 Precision = Literal["double", "single"]
 
 
@@ -72,21 +74,19 @@ class Manner:
         """Of inputs and results."""
         return np.float32 if self.precision == "single" else np.float64
 
-    def empty(self, n: int, shape: tuple[int, ...]) -> Numbers:
-        """Room for results of one output (n, *shape), laid out as wanted."""
-        if self.columns:
-            return np.moveaxis(np.empty((*shape, n), self.dtype), -1, 0)
-        return np.empty((n, *shape), self.dtype)
+    def empty(self, n: int, size: int) -> Numbers:
+        """Room for results of so many numbers a state (n, size), laid out as wanted."""
+        return columns(n, size, self.dtype) if self.columns else np.empty((n, size), self.dtype)
 
     def of(self, results: Array) -> Numbers:
         """Results (n, *shape), row by row in double precision, as wanted: a copy where they are not so already."""
         if not self.columns and self.precision == "double":
             return results
-        wanted = self.empty(len(results), results.shape[1:])
+        wanted = self.empty(len(results), prod(results.shape[1:]))
         # Beyond the range of floats lies infinity, as in the code by vectors.
         with np.errstate(over="ignore", invalid="ignore"):
-            wanted[...] = results
-        return wanted
+            wanted[...] = results.reshape(wanted.shape)
+        return wanted.reshape(results.shape)
 
 
 PLAIN = Manner()
