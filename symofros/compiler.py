@@ -51,7 +51,7 @@ from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS, Options
 from symofros.passes import run_passes
 from symofros.runtime.build import build_library, recall_library
 from symofros.runtime.functions import Rate
-from symofros.runtime.kernel import Lanes, Unit
+from symofros.runtime.kernel import Lanes, Precision, Unit
 from symofros.runtime.library import CompiledKernel, CompiledUnit
 from symofros.runtime.model import Key, Model
 from symofros.runtime.record import ClosureRecord, ModelRecord, Segment, SegmentKind
@@ -97,12 +97,15 @@ def plan(system: System) -> SpanningTree:
     return build_tree(system)
 
 
-def compile_library(system: System, options: Options | None = None) -> tuple[Path, str]:
+def compile_library(
+    system: System, options: Options | None = None, precision: Precision = "double"
+) -> tuple[Path, str]:
     """The shared library of a system, for programs that call C themselves.
 
     Args:
         system: What the user stated.
         options: What to generate; backend "c".
+        precision: Of the lanes of functions by vectors (`sym_lanes`); "single": of batches by rows, too.
 
     Returns:
         Path of the library in the cache, and the name of its exported function (see symofros_model.h).
@@ -119,7 +122,7 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
     record = describe(tree, options)
     program, _ = generate(tree, requested(tree, options), record, options.constraints)
     symbol = f"{identifier(record.name)}_model"
-    lanes = Lanes() if options.batch == "vector" else None
+    lanes = Lanes(precision=precision) if options.batch == "vector" else None
 
     def made(build: Build) -> Path:
         source = model_source(program, record, GENERATOR, lanes, packs=build.packs)
