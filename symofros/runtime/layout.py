@@ -10,19 +10,21 @@ import numpy.typing as npt
 
 # Of a batch: doubles, or floats where that was asked for.
 Numbers = npt.NDArray[Any]
-# Bytes of a line of the cache.
-_LINE = 64
+# Bytes of a line of the cache; lines of a column from which on a line more of it is little.
+_LINE, _MANY = 64, 16
 
 
 def columns(n: int, size: int, dtype: type[np.float32] | type[np.float64]) -> Numbers:
     """Room for n states (n, size) whose batch is the fast axis.
 
-    Each entry's column begins at a line of the cache, and the next one an odd number of lines further: columns a power
-    of two apart would have to share a few places in the first cache (1024 states of 22 joints took four times as long).
+    Each entry's column begins at a line of the cache; the next one, of long columns, an odd number of lines further:
+    columns a power of two apart would share a few places in the first cache (1024 states of 22 joints took four times
+    as long). Short ones lie close, so that no more memory is used than must be.
     """
     line = _LINE // (4 if dtype is np.float32 else 8)
-    step = (-(-n // line) | 1) * line
-    room = np.empty((size + 1) * step, dtype)
+    lines = -(-n // line)
+    step = (lines | 1 if lines >= _MANY else lines) * line
+    room = np.empty(size * step + line, dtype)
     start = -_address(room) % _LINE // room.itemsize
     return room[start : start + size * step].reshape(size, step)[:, :n].T
 

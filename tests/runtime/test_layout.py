@@ -171,7 +171,8 @@ def test_entries_that_are_always_zero_are_written() -> None:
 def test_columns_begin_at_lines_an_odd_number_apart(n: int, dtype: type[np.float64]) -> None:
     found = columns(n, 5, dtype)
     lines, rest = divmod(found.strides[1], 64)
-    assert found.shape == (n, 5) and rest == 0 and lines % 2 == 1 and found.ctypes.data % 64 == 0
+    assert found.shape == (n, 5) and rest == 0 and found.ctypes.data % 64 == 0
+    assert lines % 2 == 1 or lines == -(-n * found.itemsize // 64) < 16
     assert n * found.itemsize <= found.strides[1] < n * found.itemsize + 128
 
 
