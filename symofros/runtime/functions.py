@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.kernel import Array, Kernel, Manner, Numbers, Precision, Unit
-from symofros.runtime.layout import by_columns, states
+from symofros.runtime.layout import by_columns, flat, states
 from symofros.runtime.record import ModelRecord
 
 Given = npt.ArrayLike
@@ -306,11 +306,3 @@ class Functions:
         shown = names.get(group, ())
         listed = ", ".join(shown[:8]) + (", …" if len(shown) > 8 else "")
         return f"\n  remedy: its last dimension runs over {listed}" if shown else ""
-
-
-def flat(array: Array, batch: tuple[int, ...]) -> Array:
-    """As rows (n or 1, size), contiguous: one row where the array has no batch of its own."""
-    size = array.shape[-1]
-    if array.size == size:
-        return np.ascontiguousarray(array.reshape(1, size))
-    return np.ascontiguousarray(np.broadcast_to(array, (*batch, size))).reshape(-1, size)

@@ -61,6 +61,14 @@ def states(array: Numbers, batch: tuple[int, ...]) -> Numbers:
     return np.lib.stride_tricks.as_strided(spread, (n, size), (stride, step), writeable=False)
 
 
+def flat(array: Numbers, batch: tuple[int, ...]) -> Numbers:
+    """As rows (n or 1, size), contiguous: one row where the array has no batch of its own."""
+    size = array.shape[-1]
+    if array.size == size:
+        return np.ascontiguousarray(array.reshape(1, size))
+    return np.ascontiguousarray(np.broadcast_to(array, (*batch, size))).reshape(-1, size)
+
+
 def by_columns(arrays: Iterable[Numbers]) -> bool:
     """Whether the batch is the fast axis of all arrays (n or 1, size) in which it could be told."""
     found = [x.strides[0] == x.itemsize for x in arrays if len(x) > 1 and x.shape[1] > 1]

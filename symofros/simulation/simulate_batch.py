@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.errors import Problem, ShapeError, SymofrosError
-from symofros.runtime.functions import flat
 from symofros.runtime.kernel import Array
+from symofros.runtime.layout import flat
 from symofros.runtime.model import Given, Model
 from symofros.simulation import stepper as native
 from symofros.simulation.batch_inputs import Shape, sort_inputs

@@ -191,7 +191,8 @@ SCENE = Scene(
     "kinematic tree with the law inside; RK44, RK67, DOPRI5, generalised alpha, trapezoidal rule. Pinocchio has no "
     "integrator: its aba from Python in RK4 and in SciPy's, whose time is mostly Python's. "
     '"Floats" are ours with accelerations in single precision and states in double, as a batch of one: code in floats '
-    "is for batches, so that a motion alone takes one of its lanes and the time of all; the error shows how far it goes.",
+    "is for batches, so that a motion alone takes one of its lanes and the time of all; its error shows how far it "
+    "goes.",
     prepare,
     (Target("MuJoCo", 1e-6, 5.0), Target("Exudyn", 1e-6, 1.0)),
     1e-7,
