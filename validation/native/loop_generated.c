@@ -18,7 +18,7 @@ typedef struct loop_arrays {
     double *work;
     long long *iwork;
 } loop_arrays;
-/* The same in blocks of so many states each: arrays of one block after those of another. */
+/* The same in n blocks of so many states each: the arrays of one block after those of another. */
 typedef struct loop_blocks {
     size_t n;
     int32_t n_in, n_out, keep;

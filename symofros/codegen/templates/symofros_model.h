@@ -52,8 +52,8 @@ typedef struct sym_function {
     void (*batch)(size_t n, const double *const *in, const size_t *in_stride, double *const *out, double *work);
 } sym_function;
 
-/* One array of a batch in any layout: entry k of state i is number k * step + i * stride from `at` on. Row by row, step 1
- * and stride = entries; column by column (the batch is the fast axis), stride 1; stride 0, inputs: one for all states. */
+/* One array of a batch in any layout: entry k of state i is number k * step + i * stride from `at` on. Row by row:
+ * step 1, stride = entries; column by column, the batch as the fast axis: stride 1; one input for all: stride 0. */
 typedef struct sym_strided {
     void *at;
     ptrdiff_t step, stride;
