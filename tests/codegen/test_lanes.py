@@ -19,7 +19,7 @@ from symofros.codegen.templates import template
 from symofros.compiler import compile_library, describe, generate, plan
 from symofros.options import MODEL_FUNCTIONS
 from symofros.runtime import library
-from symofros.runtime.kernel import Array, Kernel, Lanes
+from symofros.runtime.kernel import Array, Kernel, Lanes, Manner
 from symofros.runtime.library import CompiledUnit
 from symofros.runtime.toolchain import DEFAULT_FLAGS, cpu_identity
 from tests.codegen.test_source import COMPILERS, compile_strictly
@@ -88,6 +88,21 @@ def test_any_number_of_states(case: str, width: str) -> None:
     if not HAS[width]:
         pytest.skip("a processor without these vectors")
     assert_alike(case, WIDTHS[width], (*CHEAP, *SCALAR), list(range(1, 21)))
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_columns_of_any_number_of_states(width: str) -> None:
+    """In place, but for fewer states than lanes; entries that are always zero are cleared."""
+    if not HAS[width]:
+        pytest.skip("a processor without these vectors")
+    vectors = unit("friction_arm", "vector", WIDTHS[width], (*CHEAP, *SCALAR))
+    for kernel in vectors.compiled.values():
+        pre = kernel.prepare(np.array([parameters("friction_arm")]))
+        for n in (1, 2, 3, 7, 8, 9, 16, 21):
+            inputs = given(kernel, n)
+            columns = kernel._by_lanes(n, pre, [*map(np.asfortranarray, inputs)], Manner(columns=True))
+            for found, expected in zip(columns, kernel._by_rows(n, [pre, *inputs], 1), strict=True):
+                assert np.array_equal(found, expected) and (found.strides[0] == 8 or n == 1)
 
 
 @pytest.mark.parametrize("shared", [("q",), ("v", "u", "t"), ("q", "v", "u", "a", "t")])
