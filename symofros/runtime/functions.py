@@ -157,7 +157,8 @@ class Functions:
 
         In single precision they run by vectors of twice as many states, at any size of a batch, and are right to about
         seven digits of the largest term that makes up a result. Functions that a solver finishes (constraints,
-        derivatives of forward dynamics), and interpreted models, are evaluated in double precision and rounded.
+        derivatives of forward dynamics), interpreted models and those of `Options(batch="loop")` are evaluated in
+        double precision and rounded.
         Parameters stay in double precision, and so do `bind`, `sf.simulate` and exports; `sf.simulate_batch` keeps
         states in double precision and takes accelerations in that of the model.
 
