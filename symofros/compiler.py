@@ -26,7 +26,7 @@ from symofros.beams.deformation import small_coordinates
 from symofros.codegen.dispatch import dispatch_source
 from symofros.codegen.effort import cheapest
 from symofros.codegen.interpreted import InterpretedUnit
-from symofros.codegen.model import Lanes, model_source
+from symofros.codegen.model import model_source
 from symofros.codegen.names import identifier
 from symofros.codegen.templates import template
 from symofros.description.beam import Beam
@@ -52,8 +52,8 @@ from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS, Options
 from symofros.passes import run_passes
 from symofros.runtime.build import build_library, recall_library
 from symofros.runtime.functions import Rate
-from symofros.runtime.kernel import Kernel, Unit
-from symofros.runtime.library import CompiledUnit
+from symofros.runtime.kernel import Lanes, Precision, Unit
+from symofros.runtime.library import CompiledKernel, CompiledUnit
 from symofros.runtime.model import Key, Model
 from symofros.runtime.record import ClosureRecord, ModelRecord, Segment, SegmentKind
 from symofros.runtime.toolchain import Toolchain, find_toolchain
@@ -98,12 +98,15 @@ def plan(system: System) -> SpanningTree:
     return build_tree(system)
 
 
-def compile_library(system: System, options: Options | None = None) -> tuple[Path, str]:
+def compile_library(
+    system: System, options: Options | None = None, precision: Precision = "double"
+) -> tuple[Path, str]:
     """The shared library of a system, for programs that call C themselves.
 
     Args:
         system: What the user stated.
         options: What to generate; backend "c".
+        precision: Of the lanes of functions by vectors (`sym_lanes`); "single": of batches by rows, too.
 
     Returns:
         Path of the library in the cache, and the name of its exported function (see symofros_model.h).
@@ -120,7 +123,7 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
     record = describe(tree, options)
     program, _ = generate(tree, requested(tree, options), record, options.constraints, options.forward_dynamics)
     symbol = f"{identifier(record.name)}_model"
-    lanes: Lanes = "shared" if options.batch == "vector" else "none"
+    lanes = Lanes(precision=precision) if options.batch == "vector" else None
 
     def made(build: Build) -> Path:
         source = model_source(program, record, GENERATOR, lanes, packs=build.packs)
@@ -229,11 +232,11 @@ class _Builder:
         if self._toolchain is None:
             return InterpretedUnit(program())
         in_lanes = self._in_lanes(what, program) if self._options.batch == "vector" else None
-        return self._compiled((what, "one by one"), program, self._toolchain, "none", in_lanes)
+        return self._compiled((what, "one by one"), program, self._toolchain, None, in_lanes)
 
     def _compiled(
-        self, what: object, program: Callable[[], Program], toolchain: Toolchain, vectors: Lanes,
-        in_lanes: Callable[[Key, bool], Kernel | None] | None = None,
+        self, what: object, program: Callable[[], Program], toolchain: Toolchain, vectors: Lanes | None,
+        in_lanes: Callable[[Key, Lanes], CompiledKernel | None] | None = None,
     ) -> CompiledUnit:  # fmt: skip
         header = template("symofros_model.h")
         symbol = f"{identifier(self._record.name)}_model"
@@ -248,19 +251,18 @@ class _Builder:
         path = _chosen(made, self._options, toolchain, symbol, self._record.hash)
         return CompiledUnit(path, symbol, header, self._record.hash, in_lanes)
 
-    def _in_lanes(self, what: object, program: Callable[[], Program]) -> Callable[[Key, bool], Kernel | None]:
-        """Function, and whether states have parameters of their own -> the same by vectors, compiled when asked for.
+    def _in_lanes(self, what: object, program: Callable[[], Program]) -> Callable[[Key, Lanes], CompiledKernel | None]:
+        """Function, and how to use vectors -> the same by vectors, compiled when asked for.
 
         None for a function that a solver finishes.
         """
 
-        def compiled(key: Key, own: bool) -> Kernel | None:
+        def compiled(key: Key, lanes: Lanes) -> CompiledKernel | None:
             function = next(f for f in program().functions if (f.name, f.frame) == key)
             if function.solver is not None or self._toolchain is None:
                 return None
             one = replace(program(), functions=(function,))
-            lanes: Lanes = "own" if own else "shared"
-            return self._compiled((what, lanes, key), lambda: one, self._toolchain, lanes).kernels[key]
+            return self._compiled((what, lanes, key), lambda: one, self._toolchain, lanes).compiled[key]
 
         return compiled
 
