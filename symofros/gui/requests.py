@@ -1,0 +1,51 @@
+"""Bodies of requests -> edits; whatever a page, or somebody else, sends is checked here."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+from symofros.description.native.yaml_nodes import scalar_of
+from symofros.errors import Problem
+from symofros.gui.plain import Edit, EditError, Op
+
+MAX_EDITS = 1000
+MAX_PATH = 50
+
+
+def edits_of(given: Any) -> list[Edit]:
+    """The edits of a request.
+
+    Raises:
+        EditError: They are not what the contract says.
+    """
+    if not isinstance(given, list) or len(given) > MAX_EDITS:
+        raise _malformed("edits", given, f"a list of at most {MAX_EDITS}")
+    return [_edit(item) for item in given]
+
+
+def _edit(item: Any) -> Edit:
+    if not isinstance(item, dict) or item.get("op") not in get_args(Op):
+        raise _malformed("an edit", item, f"a mapping whose op is one of {', '.join(get_args(Op))}")
+    path, index, op = item.get("path"), item.get("index"), item["op"]
+    if not isinstance(path, list) or len(path) > MAX_PATH or not all(type(step) in (str, int) for step in path):
+        raise _malformed("path", path, "a list of names and indices")
+    if index is not None and (type(index) is not int or index < 0):
+        raise _malformed("index", index, "a number from 0")
+    key = item.get("to" if op == "rename" else "key", "")
+    if not isinstance(key, str):
+        raise _malformed("key", key, "a text")
+    value = item.get("value")
+    if "text" in item:
+        value = _typed(item["text"])
+    return Edit(op, tuple(path), value, key, index)
+
+
+def _typed(text: Any) -> Any:
+    """What somebody who types this into a field means: a number where it is one, otherwise a text."""
+    if not isinstance(text, str):
+        raise _malformed("text", text, "a text")
+    return scalar_of(text.strip())
+
+
+def _malformed(what: str, found: Any, rule: str) -> EditError:
+    return EditError(Problem(f"{what} of the request is malformed", f"{found!r:.100}", rule, "reload the page"))

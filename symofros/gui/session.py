@@ -1,0 +1,206 @@
+"""One run of the editor: a workspace, the document that is open, and what each request does to them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from symofros.errors import Problem, SymofrosError
+from symofros.gui.document import BOM, Document, refuse_text
+from symofros.gui.edits import apply_all
+from symofros.gui.plain import EditError
+from symofros.gui.requests import edits_of
+from symofros.gui.workspace import (
+    FileError,
+    Workspace,
+    autosave_of,
+    digest,
+    layout_of,
+    positions,
+    read_layout,
+    read_text,
+    write,
+)
+
+Json = dict[str, Any]
+
+EMPTY = "symofros: 1\nsystem: {{name: {name}, gravity: [0, 0, -9.81]}}\nparameters: {{}}\nbodies: {{}}\n"
+
+
+class ConflictError(SymofrosError):
+    """The file on disk is not the one that was opened; carries what the answer says."""
+
+    def __init__(self, problem: Problem, disk: str, over: str) -> None:
+        self.problem, self.disk, self.over = problem, disk, over
+        super().__init__(str(problem))
+
+
+class Session:
+    """What the server holds between requests. Not to be used by two threads at once."""
+
+    def __init__(self, workspace: Workspace, file: Path | None = None) -> None:
+        """Open a file, or begin an empty document."""
+        self.workspace = workspace
+        self.recovered = False
+        self.on_disk = ""  # Digest of the file's bytes when it was last read or written.
+        self.layout: dict[str, list[float]] = {}
+        self.document: Document
+        if file is None:
+            self.begin(workspace.root / _unused(workspace.root))
+        elif file.exists():
+            self.open(file)
+        else:
+            self.begin(file)
+
+    def as_json(self) -> Json:
+        """The document as every answer carries it."""
+        return {
+            "path": self.workspace.shown(self.document.file),
+            **self.document.as_json(),
+            "layout": self.layout,
+            "recovered": self.recovered,
+        }
+
+    # Opening.
+
+    def open(self, file: Path) -> None:
+        """Open a file; unsaved work on it, left by a server that was killed, is taken up again."""
+        text, data = read_text(file)
+        self.document = Document(file, text, text, marked=data.startswith(BOM.encode()))
+        self.on_disk, self.layout = digest(data), read_layout(file)
+        self._recover()
+
+    def begin(self, file: Path) -> None:
+        """Begin a file that is not there yet."""
+        self.document = Document(file, EMPTY.format(name=_identifier(file.stem)), None)
+        self.on_disk, self.layout = "", read_layout(file)
+        self._recover()
+
+    def create(self, file: Path) -> None:
+        """Begin a new file.
+
+        Raises:
+            FileError: There is one of that name, or its folder is missing.
+        """
+        if file.exists() or not file.parent.is_dir():
+            found = "a file of that name" if file.exists() else "no such folder"
+            raise FileError(Problem(f"'{file.name}' can't be begun", found, "a new file has a name of its own",
+                                    "choose another name"))  # fmt: skip
+        self.begin(file)
+
+    def _recover(self) -> None:
+        self.recovered = False
+        try:
+            text, _ = read_text(autosave_of(self.document.file))
+        except FileError:
+            return
+        if text != self.document.text:
+            self.document.change("recovered work", lambda _: text)
+            self.recovered = True
+
+    def discard(self) -> None:
+        """Go back to the file as it was saved; what was discarded can be had back by undo."""
+        saved = self.document.saved
+        if saved is not None:
+            self.document.change("discard", lambda _: saved)
+        elif self.recovered:
+            self.document.undo()
+        self.recovered = False
+        self._autosave()
+
+    # Changing.
+
+    def edit(self, body: Json) -> None:
+        """Apply edits, all or none."""
+        self.document.expect(body.get("revision"))
+        edits = edits_of(body.get("edits"))
+        label = str(body.get("label", "edit"))[:200]
+        self.document.change(label, lambda text: apply_all(text, edits))
+        self._autosave()
+
+    def set_text(self, body: Json) -> None:
+        """Replace the whole text."""
+        self.document.expect(body.get("revision"))
+        text = body.get("text")
+        refuse_text(text)
+        self.document.change("text", lambda _: str(text))
+        self._autosave()
+
+    def undo(self, body: Json) -> None:
+        """One step back."""
+        self.document.expect(body.get("revision"))
+        self.document.undo()
+        self._autosave()
+
+    def redo(self, body: Json) -> None:
+        """One step forth."""
+        self.document.expect(body.get("revision"))
+        self.document.redo()
+        self._autosave()
+
+    def place(self, body: Json) -> None:
+        """Remember where blocks are; of those that are named."""
+        self.layout |= positions(body.get("positions"))
+        self._write_layout()
+
+    def _autosave(self) -> None:
+        file = autosave_of(self.document.file)
+        if self.document.dirty:
+            write(file, self.document.text)
+        else:
+            file.unlink(missing_ok=True)
+
+    def _write_layout(self) -> None:
+        import json
+
+        write(layout_of(self.document.file), json.dumps({"layout": self.layout}, indent=1, sort_keys=True) + "\n")
+
+    # Saving.
+
+    def save(self, body: Json) -> None:
+        """Write the document, to its own file or to another.
+
+        Raises:
+            StaleError: Another revision.
+            ConflictError: The file is not as it was when it was opened; `over` says which state may be overwritten.
+        """
+        self.document.expect(body.get("revision"))
+        before, file = self.document.file, self.document.file
+        if body.get("path"):
+            file = self.workspace.inside(str(body["path"]))
+        known = self.on_disk if file == before else ""
+        self._refuse_conflict(file, known, body.get("over"))
+        write(file, self.document.content)
+        autosave_of(before).unlink(missing_ok=True)
+        self.document.moved(file)
+        self.on_disk, self.recovered = digest(self.document.content), False
+        if self.layout:
+            self._write_layout()
+
+    def _refuse_conflict(self, file: Path, known: str, over: Any) -> None:
+        try:
+            disk, data = read_text(file)
+        except FileError:
+            if file.exists():
+                raise
+            return  # Removed, or not there yet: nothing can be lost.
+        there = digest(data)
+        if there in (known, over) or data == self.document.content:
+            return
+        raise ConflictError(
+            Problem(f"'{file.name}' has changed on disk" if known else f"'{file.name}' is there already",
+                    "another text", "a file is overwritten only in the state that you saw",
+                    "compare the two texts; overwrite, or take the other"), disk, there)  # fmt: skip
+
+
+def _unused(folder: Path) -> str:
+    """A name for a document that has none: one with unsaved work, or the first that is free."""
+    for n in range(1, 1000):
+        name = f"untitled{n if n > 1 else ''}.yaml"
+        if not (folder / name).exists():
+            return name
+    raise EditError(Problem("no free name", "999 untitled files", "a document has a file name", "give one"))
+
+
+def _identifier(stem: str) -> str:
+    return "".join(sign if sign.isalnum() or sign == "_" else "_" for sign in stem) or "untitled"
