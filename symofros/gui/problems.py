@@ -17,7 +17,9 @@ from symofros.gui.sheet import Sheet
 
 Found = dict[str, Any]
 
-_NAMED = re.compile(r"(joint|body|beam|constraint|connection|virtual power|virtual_power|potential|parameter|input) '([^']*)'")
+_NAMED = re.compile(
+    r"(joint|body|beam|constraint|connection|virtual power|virtual_power|potential|parameter|input) '([^']*)'"
+)
 _FRAME = re.compile(r"frame '([^']*)' of body '([^']*)'")
 _SECTION_OF = {
     "connection": ("connections",),

@@ -6,7 +6,7 @@ from typing import Any, get_args
 
 from symofros.description.native.yaml_nodes import scalar_of
 from symofros.errors import Problem
-from symofros.gui.plain import Edit, EditError, Op
+from symofros.gui.plain import Edit, EditError, Op, Path
 
 MAX_EDITS = 1000
 MAX_PATH = 50
@@ -23,12 +23,21 @@ def edits_of(given: Any) -> list[Edit]:
     return [_edit(item) for item in given]
 
 
+def path_of(given: Any) -> Path:
+    """A path of a request.
+
+    Raises:
+        EditError: It is not one.
+    """
+    if not isinstance(given, list) or len(given) > MAX_PATH or not all(type(step) in (str, int) for step in given):
+        raise _malformed("path", given, "a list of names and indices")
+    return tuple(given)
+
+
 def _edit(item: Any) -> Edit:
     if not isinstance(item, dict) or item.get("op") not in get_args(Op):
         raise _malformed("an edit", item, f"a mapping whose op is one of {', '.join(get_args(Op))}")
-    path, index, op = item.get("path"), item.get("index"), item["op"]
-    if not isinstance(path, list) or len(path) > MAX_PATH or not all(type(step) in (str, int) for step in path):
-        raise _malformed("path", path, "a list of names and indices")
+    path, index, op = path_of(item.get("path")), item.get("index"), item["op"]
     if index is not None and (type(index) is not int or index < 0):
         raise _malformed("index", index, "a number from 0")
     key = item.get("to" if op == "rename" else "key", "")
@@ -37,7 +46,7 @@ def _edit(item: Any) -> Edit:
     value = item.get("value")
     if "text" in item:
         value = _typed(item["text"])
-    return Edit(op, tuple(path), value, key, index)
+    return Edit(op, path, value, key, index)
 
 
 def _typed(text: Any) -> Any:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
 from symofros.errors import Problem, SymofrosError
 from symofros.gui.document import BOM, Document, refuse_text
 from symofros.gui.edits import apply_all
+from symofros.gui.expressions import check_field
 from symofros.gui.plain import EditError
-from symofros.gui.requests import edits_of
+from symofros.gui.requests import edits_of, path_of
 from symofros.gui.workspace import (
+    READABLE,
     FileError,
     Workspace,
     autosave_of,
@@ -24,6 +27,7 @@ from symofros.gui.workspace import (
 
 Json = dict[str, Any]
 
+JOBS = ("compile", "crosscheck", "simulate", "export")
 EMPTY = "symofros: 1\nsystem: {{name: {name}, gravity: [0, 0, -9.81]}}\nparameters: {{}}\nbodies: {{}}\n"
 
 
@@ -108,6 +112,21 @@ class Session:
         self.recovered = False
         self._autosave()
 
+    def open_named(self, body: Json) -> None:
+        """Open a file of the workspace."""
+        self.open(self.workspace.inside(str(body.get("path", ""))))
+
+    def create_named(self, body: Json) -> None:
+        """Begin a file of the workspace."""
+        self.create(self.workspace.inside(str(body.get("path", ""))))
+
+    def adopt(self, stem: str, text: str) -> None:
+        """Begin a new document with a text that came from elsewhere; it takes a free name."""
+        stem = _identifier(Path(stem).stem)
+        self.begin(self.workspace.root / _unused(self.workspace.root, stem))
+        self.document.change("import", lambda _: text)
+        self._autosave()
+
     # Changing.
 
     def edit(self, body: Json) -> None:
@@ -151,9 +170,47 @@ class Session:
             file.unlink(missing_ok=True)
 
     def _write_layout(self) -> None:
-        import json
-
         write(layout_of(self.document.file), json.dumps({"layout": self.layout}, indent=1, sort_keys=True) + "\n")
+
+    # Asking.
+
+    def check_field(self, body: Json) -> Json:
+        """What is to say about one field's text."""
+        document = self.document
+        return check_field(document.file, document.text, document.analysis, path_of(body.get("path", [])),
+                           body.get("text"))  # fmt: skip
+
+    def job_request(self, body: Json) -> tuple[str, Json]:
+        """The kind of a job, and what its worker needs.
+
+        Raises:
+            EditError: An unknown kind, or options that are no mapping.
+            FileError: An export to outside of the workspace.
+        """
+        kind, options = body.get("kind"), body.get("options") or {}
+        if kind not in JOBS or not isinstance(options, dict):
+            raise EditError(Problem("no such job", f"{kind!r:.50}", f"one of {', '.join(JOBS)}; options are a mapping",
+                                    "choose one of them"))  # fmt: skip
+        document = self.document
+        request: Json = {"file": str(document.file), "text": document.text, "options": options}
+        if kind == "export":
+            folder = self.workspace.inside(str(options.get("folder", "")), ())
+            request |= {"folder": str(folder), "root": str(self.workspace.root)}
+        return kind, request
+
+    def to_import(self, body: Json, folder: Path) -> Path:
+        """The file to import: one of the workspace, or the request's text, put into a folder.
+
+        Raises:
+            FileError: Neither, or of another format.
+        """
+        if "path" in body:
+            return self.workspace.inside(str(body["path"]), READABLE)
+        refuse_text(body.get("text"))
+        name = Path(str(body.get("name", ""))).name
+        file = Workspace(folder).inside(name, READABLE)
+        write(file, str(body["text"]))
+        return file
 
     # Saving.
 
@@ -193,13 +250,14 @@ class Session:
                     "compare the two texts; overwrite, or take the other"), disk, there)  # fmt: skip
 
 
-def _unused(folder: Path) -> str:
-    """A name for a document that has none: one with unsaved work, or the first that is free."""
+def _unused(folder: Path, stem: str = "untitled") -> str:
+    """The first free name for a document that has none; an untitled one with unsaved work is free to go on with."""
     for n in range(1, 1000):
-        name = f"untitled{n if n > 1 else ''}.yaml"
-        if not (folder / name).exists():
+        name = f"{stem}{n if n > 1 else ''}.yaml"
+        taken = (folder / name).exists() or (stem != "untitled" and autosave_of(folder / name).exists())
+        if not taken:
             return name
-    raise EditError(Problem("no free name", "999 untitled files", "a document has a file name", "give one"))
+    raise EditError(Problem("no free name", f"999 files '{stem}'", "a document has a file name", "give one"))
 
 
 def _identifier(stem: str) -> str:

@@ -49,12 +49,16 @@ class Workspace:
         try:
             path = (self.root / text).resolve()
             hidden = any(part.startswith(".") for part in Path(text).parts)
-            hidden |= path.is_relative_to(self.root) and any(p.startswith(".") for p in path.relative_to(self.root).parts)
+            hidden |= path.is_relative_to(self.root) and any(
+                p.startswith(".") for p in path.relative_to(self.root).parts
+            )
             if not text or len(text) > 1000 or not text.isprintable() or hidden or not path.is_relative_to(self.root):
                 raise FileError(Problem(f"'{text[:100]}' is not in the workspace", text[:100] or "nothing", rule,
                                         f"choose a place in '{self.root.name}'"))  # fmt: skip
         except (OSError, ValueError, RuntimeError) as error:  # A NUL character, or a loop of links.
-            raise FileError(Problem(f"'{text[:100]!r}' is not a path", str(error)[:100], rule, "choose another")) from None
+            raise FileError(
+                Problem(f"'{text[:100]!r}' is not a path", str(error)[:100], rule, "choose another")
+            ) from None
         if suffixes and path.suffix.lower() not in suffixes:
             raise FileError(Problem(f"'{text[:100]}' has another suffix", path.suffix or "none",
                                     f"one of {', '.join(suffixes)}", "rename it"))  # fmt: skip
