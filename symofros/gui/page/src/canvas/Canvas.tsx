@@ -1,0 +1,137 @@
+import "@xyflow/react/dist/style.css";
+
+import {
+  applyNodeChanges,
+  Background,
+  BackgroundVariant,
+  type Connection,
+  ConnectionMode,
+  Controls,
+  MiniMap,
+  type NodeChange,
+  ReactFlow,
+  useReactFlow,
+} from "@xyflow/react";
+import { type DragEvent, useCallback, useEffect, useMemo, useState } from "react";
+
+import type { Point } from "../api/types";
+import { completed } from "../model/layout";
+import { add, mount } from "../store/bodies";
+import { place } from "../store/edits";
+import { insertPart } from "../store/clipboard";
+import { now, show, update, useDocument, useStore } from "../store/store";
+import { useTheme } from "../store/theme";
+import { Block, type BlockNode, frameOf, JOINT } from "./Block";
+import { Mount, Tie } from "./links";
+import { blocks, links } from "./nodes";
+
+const NODE_TYPES = { block: Block };
+const EDGE_TYPES = { mount: Mount, tie: Tie };
+export const DRAGGED = "application/x-symofros";
+
+const bodyOf = (id: string): string => (id === "world" ? "world" : id.slice("bodies/".length));
+
+/** A link from a frame to a joint mounts the joint there; one between two frames asks what shall join them. */
+function connect({ source, target, sourceHandle, targetHandle }: Connection): void {
+  if (source === target || sourceHandle === null || targetHandle === null) return;
+  if (targetHandle === JOINT) void mount(bodyOf(target), { body: bodyOf(source), frame: frameOf(sourceHandle) });
+  else if (sourceHandle === JOINT) void mount(bodyOf(source), { body: bodyOf(target), frame: frameOf(targetHandle) });
+  else {
+    const first = { body: bodyOf(source), frame: frameOf(sourceHandle) };
+    show({ kind: "link", first, second: { body: bodyOf(target), frame: frameOf(targetHandle) } });
+  }
+}
+
+/** Opens the property window of a block or a link. */
+export function openProperties(id: string): void {
+  const [section, name] = id.split("/");
+  if (id === "world") show({ kind: "properties", path: ["system"] });
+  else if (section !== undefined && name !== undefined) show({ kind: "properties", path: [section, name] });
+}
+
+function drop(event: DragEvent, where: Point): void {
+  event.preventDefault();
+  const word = event.dataTransfer.getData(DRAGGED);
+  const item = now().catalogue?.palette.find((each) => each.name === word);
+  const part = now().parts.find((each) => `part ${each.name}` === word);
+  if (item !== undefined) void add(item, where);
+  else if (part !== undefined) void insertPart(part, where);
+}
+
+/** The diagram. */
+export function Canvas() {
+  const document = useDocument();
+  const known = useStore((state) => state.places);
+  const selected = useStore((state) => state.selected);
+  const sight = useStore((state) => state.sight);
+  const theme = useTheme();
+  const flow = useReactFlow();
+  const places = useMemo(() => completed(document.graph, known), [document.graph, known]);
+  const [nodes, setNodes] = useState<BlockNode[]>([]);
+  const edges = useMemo(() => links(document.graph, selected), [document.graph, selected]);
+
+  useEffect(() => setNodes((before) => blocks(document, places, selected, before)), [document, places, selected]);
+  useEffect(() => {
+    const frame = requestAnimationFrame(() => void flow.fitView({ padding: 0.15, maxZoom: 1 }));
+    return () => cancelAnimationFrame(frame);
+  }, [flow, document.path]);
+  useEffect(() => {
+    if (sight === null) return undefined;
+    const frame = requestAnimationFrame(() => void flow.fitView({ nodes: [{ id: sight.id }], padding: 0.6, maxZoom: 1, minZoom: 0.6, duration: 200 }));
+    return () => cancelAnimationFrame(frame);
+  }, [flow, sight]);
+
+  const onNodesChange = useCallback((changes: NodeChange<BlockNode>[]) => {
+    setNodes((before) => applyNodeChanges(changes, before));
+    const moved = changes.filter((change) => change.type === "position" && change.dragging !== true && change.position !== undefined);
+    if (moved.length === 0) return;
+    const entries = moved.map((change) => {
+      const at = change.type === "position" ? change.position : undefined;
+      return ["id" in change ? change.id : "", [Math.round(at?.x ?? 0), Math.round(at?.y ?? 0)] as const] as const;
+    });
+    // The others keep the places they have by now, or they would be laid out anew around the moved one.
+    void place({ ...completed(now().document?.graph ?? { nodes: [], edges: [] }, now().places), ...Object.fromEntries(entries) });
+  }, []);
+
+  return (
+    <ReactFlow
+      id="diagram"
+      className="canvas"
+      colorMode={theme}
+      nodes={nodes}
+      edges={edges}
+      nodeTypes={NODE_TYPES}
+      edgeTypes={EDGE_TYPES}
+      onNodesChange={onNodesChange}
+      onSelectionChange={({ nodes: some, edges: more }) => {
+        const ids = [...some, ...more].map((each) => each.id);
+        const same = ids.length === now().selected.length && ids.every((id) => now().selected.includes(id));
+        if (!same) update({ selected: ids });
+      }}
+      onConnect={connect}
+      onNodeDoubleClick={(_, node) => openProperties(node.id)}
+      onEdgeDoubleClick={(_, edge) => openProperties(edge.id)}
+      onDragOver={(event) => event.preventDefault()}
+      onDrop={(event) => {
+        const at = flow.screenToFlowPosition({ x: event.clientX, y: event.clientY });
+        drop(event, [Math.round(at.x), Math.round(at.y)]);
+      }}
+      connectionMode={ConnectionMode.Loose}
+      connectionRadius={28}
+      snapToGrid
+      snapGrid={[4, 4]}
+      minZoom={0.1}
+      maxZoom={2.5}
+      zoomOnDoubleClick={false}
+      deleteKeyCode={null}
+      selectionKeyCode="Shift"
+      multiSelectionKeyCode={["Control", "Meta"]}
+      elevateNodesOnSelect={false}
+      proOptions={{ hideAttribution: true }}
+    >
+      <Background variant={BackgroundVariant.Dots} gap={20} size={1} />
+      <Controls showInteractive={false} position="bottom-left" />
+      {nodes.length > 12 ? <MiniMap pannable zoomable ariaLabel="overview of the diagram" /> : null}
+    </ReactFlow>
+  );
+}

@@ -1,0 +1,101 @@
+/** What a person does to the diagram: add, link, unlink, remove. */
+
+import type { Edit, Json, JsonMap, PaletteItem, Point } from "../api/types";
+import { frameNames, fresh, symbols } from "../model/names";
+import { isMap, mapAt, textAt } from "../model/paths";
+import { usesOf } from "../model/uses";
+import { edit, place } from "./edits";
+import { now, show, update, type Anchor } from "./store";
+
+const data = (): JsonMap => now().document?.data ?? {};
+
+/** The frame that a new body goes to: the last one of the selected body, else the ground. */
+function carrier(): Anchor | null {
+  const [chosen, ...others] = now().selected;
+  if (chosen === undefined || others.length > 0 || !chosen.startsWith("bodies/")) return null;
+  const body = chosen.slice("bodies/".length);
+  return { body, frame: frameNames(data(), body).at(-1) ?? "" };
+}
+
+function attached(template: Json, on: Anchor | null, name: string): Json {
+  if (!isMap(template) || !isMap(template["joint"])) return template;
+  const taken = symbols(data());
+  const coordinate: JsonMap = template["joint"]["kind"] === "fixed" ? {} : { name: fresh("q1", taken) };
+  const joint: JsonMap = { ...coordinate, ...template["joint"] };
+  if (on !== null && on.body !== name) joint["parent"] = on.body;
+  if (on !== null && on.frame !== "") joint["frame"] = on.frame;
+  return { ...template, joint };
+}
+
+/** Adds what a palette entry says; at a place if it was dropped there, beside the selected block if not. */
+export async function add(item: PaletteItem, where?: Point): Promise<void> {
+  if (item.section === "system") {
+    show({ kind: "properties", path: ["system"] });
+    return;
+  }
+  const isSymbol = item.section === "parameters" || item.section === "inputs";
+  const taken = isSymbol ? symbols(data()) : Object.keys(mapAt(data(), [item.section]));
+  const name = fresh(item.name, taken);
+  const id = item.kind === "base" ? "world" : `${item.section}/${name}`;
+  if (where !== undefined) update((state) => ({ places: { ...state.places, [id]: where } }));
+  const value = item.section === "bodies" ? attached(item.template, carrier(), name) : item.template;
+  const done = await edit(`add ${name}`, [{ op: "set", path: [item.section, name], value }]);
+  if (!done) return;
+  if (where !== undefined) await place({ [id]: where });
+  if (item.section === "bodies" || item.section === "nonholonomic") update({ selected: [id], sight: { id } });
+  if (isSymbol) update({ right: "parameters" });
+  else if (item.section !== "bodies") show({ kind: "properties", path: [item.section, name] });
+}
+
+/** Puts a body's joint into a frame of another body. */
+export function mount(body: string, on: Anchor): Promise<boolean> {
+  const joint = ["bodies", body, "joint"];
+  const frame: Edit[] =
+    on.frame !== ""
+      ? [{ op: "set", path: [...joint, "frame"], value: on.frame }]
+      : textAt(data(), [...joint, "frame"]) !== undefined
+        ? [{ op: "remove", path: [...joint, "frame"] }]
+        : [];
+  return edit(`mount ${body}`, [{ op: "set", path: [...joint, "parent"], value: on.body }, ...frame]);
+}
+
+export type Join = "closure" | "rod" | "spring";
+
+/** Joins two frames: they stay together, or at a distance, or a spring is between them. */
+export async function join(kind: Join, first: Anchor, second: Anchor): Promise<void> {
+  const section = kind === "spring" ? "connections" : "closures";
+  const stem = kind === "spring" ? "spring" : kind === "rod" ? "rod" : "loop";
+  const name = fresh(stem, Object.keys(mapAt(data(), [section])));
+  const anchor = ({ body, frame }: Anchor): JsonMap => (frame === "" ? { body } : { body, frame });
+  const more: JsonMap = kind === "spring" ? { stiffness: 100, length: 1 } : kind === "rod" ? { length: 1 } : {};
+  const value = { first: anchor(first), second: anchor(second), ...more };
+  if (await edit(`add ${name}`, [{ op: "set", path: [section, name], value }])) {
+    show({ kind: "properties", path: [section, name] });
+  }
+}
+
+/** Edits that take an element of the diagram away, with what cannot be without it. */
+function removal(id: string): Edit[] {
+  const path = id.split("/");
+  if (path.length === 3) {
+    const joint = mapAt(data(), path);
+    return ["parent", "frame"].filter((key) => key in joint).map((key) => ({ op: "remove", path: [...path, key] }));
+  }
+  const [section, name] = path;
+  if (section === undefined || name === undefined) return [];
+  const uses = section === "bodies" ? usesOf(data(), name) : [];
+  return [...uses, path].map((each) => ({ op: "remove", path: each }));
+}
+
+export async function remove(ids: string[]): Promise<void> {
+  const gone = new Set(ids);
+  // A joint goes with its body.
+  const kept = ids.filter((id) => !(id.endsWith("/joint") && gone.has(id.slice(0, -"/joint".length))));
+  const seen = new Set<string>();
+  const edits = kept.flatMap(removal).filter(({ path }) => {
+    const key = path.join("/");
+    return !seen.has(key) && seen.add(key);
+  });
+  const label = kept.length === 1 ? `remove ${kept[0]?.split("/")[1] ?? ""}` : `remove ${kept.length} elements`;
+  await edit(label, edits);
+}

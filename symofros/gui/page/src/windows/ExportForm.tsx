@@ -1,0 +1,52 @@
+import { useState } from "react";
+
+import { Window } from "../shell/Window";
+import { run } from "../store/jobs";
+import { dismiss, useDocument, useStore } from "../store/store";
+
+/** What to write, and into which folder of the workspace. */
+export function ExportForm() {
+  const { name } = useDocument();
+  const kinds = useStore((state) => state.catalogue?.targets) ?? [];
+  const [kind, setKind] = useState(kinds[0] ?? "");
+  const [folder, setFolder] = useState(`${name}_export`);
+  const start = (): void => {
+    dismiss();
+    void run("export", { target: kind, folder });
+  };
+  return (
+    <Window
+      title="Export"
+      onClose={dismiss}
+      onSubmit={start}
+      foot={
+        <>
+          <button type="button" onClick={dismiss}>
+            Cancel
+          </button>
+          <button type="submit" className="primary" disabled={kind === "" || folder.trim() === ""}>
+            Export
+          </button>
+        </>
+      }
+    >
+      <fieldset className="kinds">
+        <legend>Format</legend>
+        {kinds.map((each) => (
+          <label key={each}>
+            <input type="radio" name="kind" checked={kind === each} onChange={() => setKind(each)} />
+            {each}
+          </label>
+        ))}
+      </fieldset>
+      <div className="row">
+        <label className="row-label" htmlFor="folder">
+          Folder
+        </label>
+        <div className="row-control">
+          <input id="folder" value={folder} spellCheck={false} onChange={(event) => setFolder(event.target.value)} />
+        </div>
+      </div>
+    </Window>
+  );
+}
