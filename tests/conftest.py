@@ -18,11 +18,13 @@ os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(_CACHE / "zig"))
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run tests that take minutes")
     parser.addoption("--tools", action="store_true", help="also run tests of programs that .ci/run installs")
+    parser.addoption("--browser", action="store_true", help="also run tests that look at pages with Chromium")
     parser.addoption("--update-golden", action="store_true", help="rewrite the expected texts that tests compare with")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    for word, why in (("slow", "takes minutes"), ("tools", "needs programs of the system")):
+    needs = {"slow": "takes minutes", "tools": "needs programs of the system", "browser": "needs Chromium"}
+    for word, why in needs.items():
         if not config.getoption(f"--{word}"):
             for item in items:
                 if word in item.keywords:
