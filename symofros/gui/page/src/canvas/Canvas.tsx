@@ -7,6 +7,7 @@ import {
   type Connection,
   ConnectionMode,
   Controls,
+  type EdgeChange,
   MiniMap,
   type NodeChange,
   ReactFlow,
@@ -24,6 +25,7 @@ import { useTheme } from "../store/theme";
 import { Block, type BlockNode, frameOf, JOINT } from "./Block";
 import { Mount, Tie } from "./links";
 import { blocks, links } from "./nodes";
+import { useSight } from "./useSight";
 
 const NODE_TYPES = { block: Block };
 const EDGE_TYPES = { mount: Mount, tie: Tie };
@@ -40,6 +42,18 @@ function connect({ source, target, sourceHandle, targetHandle }: Connection): vo
     const first = { body: bodyOf(source), frame: frameOf(sourceHandle) };
     show({ kind: "link", first, second: { body: bodyOf(target), frame: frameOf(targetHandle) } });
   }
+}
+
+/** Keeps what is chosen in the store, which alone says it: the diagram shows what stands there. */
+function choose(changes: readonly (NodeChange<BlockNode> | EdgeChange)[]): void {
+  const chosen = new Set(now().selected);
+  for (const change of changes) {
+    if (change.type !== "select") continue;
+    if (change.selected) chosen.add(change.id);
+    else chosen.delete(change.id);
+  }
+  const before = now().selected;
+  if (chosen.size !== before.length || before.some((id) => !chosen.has(id))) update({ selected: [...chosen] });
 }
 
 /** Opens the property window of a block or a link. */
@@ -63,7 +77,6 @@ export function Canvas() {
   const document = useDocument();
   const known = useStore((state) => state.places);
   const selected = useStore((state) => state.selected);
-  const sight = useStore((state) => state.sight);
   const theme = useTheme();
   const flow = useReactFlow();
   const places = useMemo(() => completed(document.graph, known), [document.graph, known]);
@@ -75,14 +88,12 @@ export function Canvas() {
     const frame = requestAnimationFrame(() => void flow.fitView({ padding: 0.15, maxZoom: 1 }));
     return () => cancelAnimationFrame(frame);
   }, [flow, document.path]);
-  useEffect(() => {
-    if (sight === null) return undefined;
-    const frame = requestAnimationFrame(() => void flow.fitView({ nodes: [{ id: sight.id }], padding: 0.6, maxZoom: 1, minZoom: 0.6, duration: 200 }));
-    return () => cancelAnimationFrame(frame);
-  }, [flow, sight]);
+  useSight(document.graph, places);
 
   const onNodesChange = useCallback((changes: NodeChange<BlockNode>[]) => {
-    setNodes((before) => applyNodeChanges(changes, before));
+    choose(changes);
+    const others = changes.filter((change) => change.type !== "select");
+    if (others.length > 0) setNodes((before) => applyNodeChanges(others, before));
     const moved = changes.filter((change) => change.type === "position" && change.dragging !== true && change.position !== undefined);
     if (moved.length === 0) return;
     const entries = moved.map((change) => {
@@ -103,11 +114,7 @@ export function Canvas() {
       nodeTypes={NODE_TYPES}
       edgeTypes={EDGE_TYPES}
       onNodesChange={onNodesChange}
-      onSelectionChange={({ nodes: some, edges: more }) => {
-        const ids = [...some, ...more].map((each) => each.id);
-        const same = ids.length === now().selected.length && ids.every((id) => now().selected.includes(id));
-        if (!same) update({ selected: ids });
-      }}
+      onEdgesChange={choose}
       onConnect={connect}
       onNodeDoubleClick={(_, node) => openProperties(node.id)}
       onEdgeDoubleClick={(_, edge) => openProperties(edge.id)}

@@ -12,7 +12,7 @@ export function Status() {
   return (
     <footer className="status">
       <span>
-        {bodies} bodies, {loops} closures, {parameters.length} parameters
+        bodies {bodies} · closures {loops} · parameters {parameters.length}
       </span>
       {running === undefined ? null : (
         <span className="working">

@@ -29,7 +29,7 @@ function Column({ title, names, given, onChange }: { title: string; names: strin
 }
 
 // What was asked last is what is likely to be asked next.
-let last = { end: "5", step: "0.001", method: "", q0: {} as Numbers, v0: {} as Numbers };
+let last = { end: "5", step: "0.001", method: "rk4", q0: {} as Numbers, v0: {} as Numbers };
 
 /** What to simulate: from where, how long, by which method. */
 export function SimulateForm() {

@@ -1,0 +1,34 @@
+import { useReactFlow, useStoreApi } from "@xyflow/react";
+import { useEffect, useRef } from "react";
+
+import type { Graph, GraphNode, Point } from "../api/types";
+import { size } from "../model/geometry";
+import { useStore } from "../store/store";
+
+const MARGIN = 20;
+
+/** The block that an id means: itself, or one end of a link. */
+function target(graph: Graph, id: string): GraphNode | undefined {
+  const end = graph.edges.find((edge) => edge.id === id)?.target ?? id;
+  return graph.nodes.find((node) => node.id === end);
+}
+
+/** Moves the diagram, if it must, so that what was asked for is seen. */
+export function useSight(graph: Graph, places: Record<string, Point>): void {
+  const sight = useStore((state) => state.sight);
+  const flow = useReactFlow();
+  const store = useStoreApi();
+  const seen = useRef<object | null>(null);
+  useEffect(() => {
+    const node = sight === null ? undefined : target(graph, sight.id);
+    const place = node === undefined ? undefined : places[node.id];
+    if (sight === seen.current || node === undefined || place === undefined) return;
+    seen.current = sight;
+    const { x, y, zoom } = flow.getViewport();
+    const { width, height } = store.getState();
+    const [w, h] = size(node);
+    const isInside = (from: number, extent: number, room: number): boolean => from >= MARGIN && from + extent <= room - MARGIN;
+    if (zoom >= 0.5 && isInside(place[0] * zoom + x, w * zoom, width) && isInside(place[1] * zoom + y, h * zoom, height)) return;
+    void flow.setCenter(place[0] + w / 2, place[1] + h / 2, { zoom: Math.min(1, Math.max(0.7, zoom)), duration: 200 });
+  }, [sight, graph, places, flow, store]);
+}
