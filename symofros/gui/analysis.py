@@ -66,13 +66,13 @@ def analyse(file: Path, text: str) -> Analysis:
     graph = diagram(data)
     blocks = {node["id"]: node for node in graph["nodes"]}
     base = next((node for node in graph["nodes"] if node["kind"] == "base"), None)
-    for problem in shown_problems:
-        if base and problem["path"][:2] == base["path"]:
-            problem["node"] = base["id"]
-        if problem["node"] in blocks:
-            blocks[problem["node"]]["problems"] += 1
+    for entry in shown_problems:
+        if base and entry["path"][:2] == base["path"]:
+            entry["node"] = base["id"]
+        if entry["node"] in blocks:
+            blocks[entry["node"]]["problems"] += 1
         else:
-            problem["node"] = ""
+            entry["node"] = ""
     stated = system.parameters if system else ()
     parameters = [
         {"name": item.name, "value": item.value, "unit": item.unit, "constant": item.constant, "number": item.value}

@@ -201,7 +201,13 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
         both = {"disk": error.disk, "over": error.over, "text": session.document.text}
         return JSONResponse({**error_body(error.problem), **both, "document": session.as_json()}, 409)
 
-    handlers = {EditError: refused, FileError: refused, YamlFault: refused, StaleError: stale, ConflictError: conflict}
+    handlers: dict[Any, Any] = {
+        EditError: refused,
+        FileError: refused,
+        YamlFault: refused,
+        StaleError: stale,
+        ConflictError: conflict,
+    }
     pages = [Mount("/", StaticFiles(directory=STATIC, html=True))] if STATIC.is_dir() else []
 
     @asynccontextmanager
@@ -211,7 +217,7 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
 
     inner = Starlette(
         routes=[*editor.routes(), *pages],
-        exception_handlers=handlers,  # type: ignore[arg-type]
+        exception_handlers=handlers,
         lifespan=running,
     )
     return Guard(inner, token, port)

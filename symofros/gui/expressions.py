@@ -40,11 +40,11 @@ def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any) ->
     value = as_value(formula)
     names = sorted(symbols(value))
     answer: Json = {"ok": True, "names": names}
-    problem = _in_place(file, text, path, typed) if path else None
-    if problem is not None:
-        at = next((typed.find(name) + 1 for name in names if f"'{name}'" in problem["object"]), 0)
-        error = {"found": problem["object"], "rule": problem["rule"], "remedy": problem["remedy"], "column": at}
-        return {"ok": False, "names": names, "error": error}
+    refused = _in_place(file, text, path, typed) if path else None
+    if refused is not None:
+        at = next((typed.find(name) + 1 for name in names if f"'{name}'" in refused["object"]), 0)
+        shown = {"found": refused["object"], "rule": refused["rule"], "remedy": refused["remedy"], "column": at}
+        return {"ok": False, "names": names, "error": shown}
     known = {item["name"]: item["number"] for item in now.parameters}
     if known.keys() >= set(names):
         try:

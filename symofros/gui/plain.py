@@ -142,7 +142,7 @@ def _set(data: Any, path: Path, whole: Path, value: Any) -> Any:
 
 def _changed(owner: Any, step: str | int, edit: Edit) -> Any:
     _entry(owner, step, edit.path)
-    pairs = list(owner.items()) if isinstance(owner, dict) else list(enumerate(owner))
+    pairs: list[tuple[Any, Any]] = list(owner.items() if isinstance(owner, dict) else enumerate(owner))
     at = next(i for i, (key, _) in enumerate(pairs) if key == step)
     if edit.op == "remove":
         del pairs[at]

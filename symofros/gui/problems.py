@@ -183,7 +183,9 @@ def _mapping(data: Any, key: str) -> dict[str, Any]:
 
 def _at(data: Any, path: Path) -> Any:
     for step in path:
-        if isinstance(data, dict) and step in data or isinstance(data, list) and step in range(len(data)):
+        if isinstance(data, dict) and step in data:
+            data = data[step]
+        elif isinstance(data, list) and isinstance(step, int) and step < len(data):
             data = data[step]
         else:
             return None

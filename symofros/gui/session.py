@@ -8,7 +8,7 @@ from typing import Any
 
 from symofros.errors import Problem, SymofrosError
 from symofros.gui.document import BOM, Document, refuse_text
-from symofros.gui.edits import apply_all
+from symofros.gui.edits import with_references
 from symofros.gui.expressions import check_field
 from symofros.gui.plain import EditError
 from symofros.gui.requests import edits_of, path_of
@@ -134,7 +134,10 @@ class Session:
         self.document.expect(body.get("revision"))
         edits = edits_of(body.get("edits"))
         label = str(body.get("label", "edit"))[:200]
-        self.document.change(label, lambda text: apply_all(text, edits))
+        self.document.change(label, lambda text: with_references(text, edits))
+        for edit in edits:
+            if edit.op == "rename" and (place := self.layout.get("/".join(map(str, edit.path)))):
+                self.layout["/".join(map(str, (*edit.path[:-1], edit.key)))] = place
         self._autosave()
 
     def set_text(self, body: Json) -> None:

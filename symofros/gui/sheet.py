@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from symofros.description.native.yaml_nodes import Node, compose_text
 from symofros.gui.plain import Path
@@ -37,6 +37,24 @@ class Sheet:
         self.root, self.problems = compose_text(text, file)
         first = _BREAK.search(text)
         self.newline = first.group() if first else "\n"
+        self._settle(self.root)
+
+    def _settle(self, owner: Node) -> None:
+        """Put values that are not written (the scanner has them at the next token) after their colon or dash."""
+        if not owner.value or not isinstance(owner.value, (dict, list)):
+            return
+        for i, node in enumerate(self.children(owner)):
+            if node.start == node.end and node.style == "plain":
+                node.start = node.end = self.after_mark(owner, i)
+            self._settle(node)
+
+    def after_mark(self, owner: Node, i: int) -> int:
+        """The position after the colon of a key or the dash of an item; of a key without a colon, after it."""
+        if isinstance(owner.value, dict):
+            key_end = self.children(owner)[i].key_end
+            colon = self.skip(key_end)
+            return colon + 1 if self.text[colon : colon + 1] == ":" else key_end
+        return self.begin(owner, i) + (owner.style == "block")
 
     def node(self, path: Path) -> Node | None:
         """The node at a path; None if there is none."""
@@ -142,8 +160,3 @@ class Sheet:
         text = self.text[line : self.line_end(line)]
         bare = text.lstrip(" ")
         return len(text) - len(bare) if bare.startswith("#") else None
-
-
-def plain(node: Node) -> Any:
-    """The data of a node."""
-    return node.plain()

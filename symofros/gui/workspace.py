@@ -98,7 +98,7 @@ def read_text(path: Path) -> tuple[str, bytes]:
             data = stream.read(MAX_BYTES + 1)
         if len(data) > MAX_BYTES:
             raise FileError(Problem(f"'{path.name}' is too large", f"more than {MAX_BYTES} bytes",
-                                    "a description is at most 4 MiB long", "check that it is the one you meant"))  # fmt: skip
+                                    "a description is at most 4 MiB long", "check which file it is"))  # fmt: skip
         return data.decode("utf-8-sig"), data
     except OSError as error:
         raise FileError(Problem(f"'{path.name}' can't be read", error.strerror or "unreadable",
