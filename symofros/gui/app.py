@@ -52,7 +52,7 @@ class Editor:
         changes: dict[str, Callable[[Json], None]] = {
             "edit": session.edit, "text": session.set_text, "undo": session.undo, "redo": session.redo,
             "save": session.save, "discard": lambda _: session.discard(), "open": session.open_named,
-            "new": session.create_named,
+            "new": session.create_named, "parts/insert": session.insert_part,
         }  # fmt: skip
         made = [Route(f"/api/{name}", self.changing(action), methods=["POST"]) for name, action in changes.items()]
         return [
@@ -63,6 +63,8 @@ class Editor:
             Route("/api/expression", self.expression, methods=["POST"]),
             Route("/api/shapes", self.shapes, methods=["POST"]),
             Route("/api/files", self.files),
+            Route("/api/parts", self.parts),
+            Route("/api/parts", self.keep_part, methods=["POST"]),
             Route("/api/import", self.import_text, methods=["POST"]),
             Route("/api/jobs", self.start_job, methods=["POST"]),
             Route("/api/jobs/{key}", self.job),
@@ -121,6 +123,15 @@ class Editor:
         """What can be opened."""
         workspace = self.session.workspace
         return JSONResponse({"root": str(workspace.root), "files": await run_sync(workspace.files)})
+
+    async def parts(self, _: Request) -> Response:
+        """Sub-assemblies that were kept."""
+        return JSONResponse({"parts": await self.exclusively(self.session.library.listed)})
+
+    async def keep_part(self, request: Request) -> Response:
+        """Keep one more."""
+        await self.exclusively(partial(self.session.keep_part, await body_of(request)))
+        return await self.parts(request)
 
     async def import_text(self, request: Request) -> Response:
         """Begin a document from a description of another format: its text, or a file of the workspace."""

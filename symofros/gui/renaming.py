@@ -63,7 +63,7 @@ def _body(data: Any, at: Path, new: str) -> list[Edit]:
     ]  # fmt: skip
     joint = _mapping(_mapping(_mapping(data, "bodies"), old), "joint")
     if joint and "name" not in joint:
-        before, after = (_symbols_of(joint, default_joint_name(name)) for name in (old, new))
+        before, after = (symbols_of(joint, default_joint_name(name)) for name in (old, new))
         found += _symbols(data, at, dict(zip(before, after, strict=True)))
     return found
 
@@ -78,12 +78,12 @@ def _bodies_named(data: Any) -> Iterator[tuple[Path, str]]:
         for i, rotor in enumerate(rotors if isinstance(rotors, list) else []):
             if isinstance(rotor, dict) and isinstance(rotor.get("carrier"), str):
                 yield ("bodies", name, "joint", "rotors", i, "carrier"), rotor["carrier"]
-    for path, anchor in _anchors(data):
+    for path, anchor in anchors(data):
         if isinstance(anchor.get("body"), str):
             yield (*path, "body"), anchor["body"]
 
 
-def _anchors(data: Any) -> Iterator[tuple[Path, dict[str, Any]]]:
+def anchors(data: Any) -> Iterator[tuple[Path, dict[str, Any]]]:
     """Every place that names a body with a frame of it."""
     for section, sides in (
         ("connections", ("first", "second")),
@@ -106,7 +106,7 @@ def _frame(data: Any, body: str, old: str, new: str) -> list[Edit]:
         joint = _mapping(entry, "joint")
         if joint.get("frame") == old and joint.get("parent", WORLD) in names:
             found.append(Edit("set", ("bodies", name, "joint", "frame"), new))
-    for path, anchor in _anchors(data):
+    for path, anchor in anchors(data):
         if anchor.get("frame") == old and anchor.get("body") in names:
             found.append(Edit("set", (*path, "frame"), new))
     loads = _mapping(bodies, body).get("loads")
@@ -124,13 +124,13 @@ def _joint(data: Any, path: Path, new: str) -> list[Edit]:
     if not new:
         raise fault(path, "no name", "a joint has a name", "give one")
     old = joint.get("name", default_joint_name(str(path[1])))
-    before, after = _symbols_of(joint, str(old)), _symbols_of(joint, new)
+    before, after = symbols_of(joint, str(old)), symbols_of(joint, new)
     return [*_symbols(data, path, dict(zip(before, after, strict=True))), Edit("set", (*path, "name"), new)]
 
 
-def _symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
+def symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
     """What formulas call the coordinates, speeds and rates of a joint of that name."""
-    kind = joint.get("kind")
+    kind: Any = joint.get("kind")
     if kind not in get_args(JointKind) or kind == "general":
         return ()
     try:
@@ -140,7 +140,7 @@ def _symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
     return (*coordinate_names(stated), *speed_symbols(stated), *rate_symbols(stated))
 
 
-def _taken(data: Any) -> set[str]:
+def taken(data: Any) -> set[str]:
     """The names that formulas could use."""
     names = {TIME, *CONSTANTS, *FUNCTIONS, *_mapping(data, "parameters"), *_mapping(data, "inputs")}
     for body, entry in _mapping(data, "bodies").items():
@@ -151,7 +151,7 @@ def _taken(data: Any) -> set[str]:
         if isinstance(stated, list):
             names.update(f"{rate}{name}" for rate in ("", "d", "dd") for name in stated)
         elif joint:
-            names.update(_symbols_of(joint, str(joint.get("name", default_joint_name(body)))))
+            names.update(symbols_of(joint, str(joint.get("name", default_joint_name(body)))))
     return names
 
 
@@ -161,7 +161,7 @@ def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
     Raises:
         EditError: A new name is taken, and could not be told from the other one afterwards; or none that formulas know.
     """
-    clash = sorted(set(new.values()) & (_taken(data) - new.keys()))
+    clash = sorted(set(new.values()) & (taken(data) - new.keys()))
     if clash:
         raise fault(at, f"'{clash[0][:50]}' is taken", "names that formulas use are unique", "choose another name")
     found = []
@@ -169,19 +169,23 @@ def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
         changed = with_names(text, new)
         if changed != text:
             found.append(Edit("set", path, changed))
-    for section, inner in _BY_SPEED:
-        for name, entry in _mapping(data, section).items():
-            speeds = _mapping(entry, inner) if inner else entry
-            at: Path = (section, name, inner) if inner else (section, name)
-            for speed in speeds if isinstance(speeds, dict) else ():
-                if speed in new:
-                    found.append(Edit("rename", (*at, speed), key=new[speed]))
+    for path, speeds in speed_keys(data):
+        found += [Edit("rename", (*path, speed), key=new[speed]) for speed in speeds if speed in new]
     odd = [name for name in new.values() if not all(map(IDENTIFIER.match, name.split(".")))]
     if odd and (found or at[0] in _BARE):
         raise fault(at, f"'{odd[0][:50]}'", "a letter or underscore, then letters, digits, underscores, where formulas"
                     " use a name", "choose another name")  # fmt: skip
     # A formula within a mapping is changed under its old key, before the key is.
     return found
+
+
+def speed_keys(data: Any) -> Iterator[tuple[Path, list[str]]]:
+    """Every mapping whose keys are speeds: its path, and these."""
+    for section, inner in _BY_SPEED:
+        for name, entry in _mapping(data, section).items():
+            speeds = _mapping(entry, inner) if inner else entry
+            if isinstance(speeds, dict):
+                yield ((section, name, inner) if inner else (section, name)), list(speeds)
 
 
 def _mapping(data: Any, key: str) -> dict[str, Any]:

@@ -10,14 +10,18 @@ from symofros.errors import Problem, SymofrosError
 from symofros.gui.document import BOM, Document, refuse_text
 from symofros.gui.edits import with_references
 from symofros.gui.expressions import check_field
+from symofros.gui.library import Library
+from symofros.gui.parts import insertion
 from symofros.gui.plain import EditError
 from symofros.gui.requests import edits_of, path_of
+from symofros.gui.sheet import Sheet
 from symofros.gui.workspace import (
     READABLE,
     FileError,
     Workspace,
     autosave_of,
     digest,
+    identifier,
     layout_of,
     positions,
     read_layout,
@@ -45,6 +49,7 @@ class Session:
     def __init__(self, workspace: Workspace, file: Path | None = None) -> None:
         """Open a file, or begin an empty document."""
         self.workspace = workspace
+        self.library = Library(workspace)
         self.recovered = False
         self.on_disk = ""  # Digest of the file's bytes when it was last read or written.
         self.layout: dict[str, list[float]] = {}
@@ -76,7 +81,7 @@ class Session:
 
     def begin(self, file: Path) -> None:
         """Begin a file that is not there yet."""
-        self.document = Document(file, EMPTY.format(name=_identifier(file.stem)), None)
+        self.document = Document(file, EMPTY.format(name=identifier(file.stem)), None)
         self.on_disk, self.layout = "", read_layout(file)
         self._recover()
 
@@ -122,7 +127,7 @@ class Session:
 
     def adopt(self, stem: str, text: str) -> None:
         """Begin a new document with a text that came from elsewhere; it takes a free name."""
-        stem = _identifier(Path(stem).stem)
+        stem = identifier(Path(stem).stem)
         self.begin(self.workspace.root / _unused(self.workspace.root, stem))
         self.document.change("import", lambda _: text)
         self._autosave()
@@ -174,6 +179,21 @@ class Session:
 
     def _write_layout(self) -> None:
         write(layout_of(self.document.file), json.dumps({"layout": self.layout}, indent=1, sort_keys=True) + "\n")
+
+    # Parts.
+
+    def keep_part(self, body: Json) -> None:
+        """Keep some bodies of the document as a part."""
+        self.library.keep(str(body.get("name", "")), Sheet(self.document.text).root.plain(), body.get("bodies"))
+
+    def insert_part(self, body: Json) -> None:
+        """Put a part into the document, on a frame of a body."""
+        self.document.expect(body.get("revision"))
+        name = str(body.get("name", ""))
+        parent, frame = (str(body[key]) if body.get(key) else None for key in ("parent", "frame"))
+        edits = insertion(Sheet(self.document.text).root.plain(), self.library.part(name), parent, frame)
+        self.document.change(f"insert {name}"[:200], lambda text: with_references(text, edits))
+        self._autosave()
 
     # Asking.
 
@@ -261,7 +281,3 @@ def _unused(folder: Path, stem: str = "untitled") -> str:
         if not taken:
             return name
     raise EditError(Problem("no free name", f"999 files '{stem}'", "a document has a file name", "give one"))
-
-
-def _identifier(stem: str) -> str:
-    return "".join(sign if sign.isalnum() or sign == "_" else "_" for sign in stem) or "untitled"

@@ -7,7 +7,7 @@ from typing import Any
 from symofros.description.native.yaml_nodes import Node
 from symofros.gui.plain import Path, place
 from symofros.gui.rendering import STEP, block, inline, is_block, scalar
-from symofros.gui.sheet import Sheet
+from symofros.gui.sheet import Sheet, Span
 
 
 def rewritten(sheet: Sheet, value: Any) -> str:
@@ -151,17 +151,17 @@ def moved(sheet: Sheet, owner: Node, at: int, to: int) -> str:
     """The text with an entry at another place of its collection; what separates entries stays where it is."""
     text, nodes, flow = sheet.text, sheet.children(owner), owner.style == "flow"
     if flow:
-        spans = [(sheet.begin(owner, i), _flow_end(sheet, node)) for i, node in enumerate(nodes)]
+        spans = [Span(sheet.begin(owner, i), _flow_end(sheet, node)) for i, node in enumerate(nodes)]
     else:
-        spans = [tuple(sheet.lines_of(owner, i)) for i in range(len(nodes))]
+        spans = [sheet.lines_of(owner, i) for i in range(len(nodes))]
     parts = [text[start:end] for start, end in spans]
-    seams = [text[spans[i][1] : spans[i + 1][0]] for i in range(len(spans) - 1)]
+    seams = [text[spans[i].end : spans[i + 1].start] for i in range(len(spans) - 1)]
     hanging = not flow and not sheet.leads(sheet.begin(owner, 0))  # Its first entry is on the line of a dash.
     if hanging:
-        parts[0] = " " * sheet.column(spans[0][0]) + parts[0]
+        parts[0] = " " * sheet.column(spans[0].start) + parts[0]
     if not flow and not parts[-1].endswith(("\n", "\r")):
         parts[-1] += sheet.newline
     parts.insert(to, parts.pop(at))
     middle = "".join(part + seam for part, seam in zip(parts, [*seams, ""], strict=True))
     middle = middle.lstrip(" ") if hanging else middle
-    return text[: spans[0][0]] + middle + text[spans[-1][1] :]
+    return text[: spans[0].start] + middle + text[spans[-1].end :]

@@ -127,6 +127,11 @@ def digest(data: bytes | None) -> str:
     return hashlib.sha256(data).hexdigest() if data is not None else ""
 
 
+def identifier(stem: str) -> str:
+    """A name for a file or a system made of any text."""
+    return "".join(sign if sign.isalnum() or sign == "_" else "_" for sign in stem)[:100] or "untitled"
+
+
 def autosave_of(path: Path) -> Path:
     """Where unsaved work on a file is kept."""
     return path.with_name(f".{path.stem}.autosave.yaml")

@@ -238,9 +238,9 @@ class _Builder:
 
     def scalar(self, event: ScalarEvent, line: int) -> None:
         if not self.wants_key():
-            node = Node(line, scalar_of(event.value) if event.implicit[0] else event.value, line, event.start_mark.index, event.end_mark.index)
-            node.style = event.style or "plain"
-            self.put(node)
+            value = scalar_of(event.value) if event.implicit[0] else event.value
+            start, end = event.start_mark.index, event.end_mark.index
+            self.put(Node(line, value, line, start, end, style=event.style or "plain"))
             return
         if event.value == "<<":
             raise self.fault("merge keys are refused", "<<", "every value is written where it is used", line,
