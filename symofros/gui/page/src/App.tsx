@@ -11,7 +11,6 @@ import { onKey } from "./shell/shortcuts";
 import { Status } from "./shell/Status";
 import { Toolbar } from "./shell/Toolbar";
 import { importFile } from "./store/files";
-import { begin } from "./store/session";
 import { useStore } from "./store/store";
 import { Dialogs } from "./windows/Dialogs";
 
@@ -60,12 +59,8 @@ function Waiting() {
 export function App() {
   const hasDocument = useStore((state) => state.document !== null);
   useEffect(() => {
-    const listening = begin();
     window.addEventListener("keydown", onKey);
-    return () => {
-      window.removeEventListener("keydown", onKey);
-      void listening.then((stop) => stop());
-    };
+    return () => window.removeEventListener("keydown", onKey);
   }, []);
   return hasDocument ? <Editor /> : <Waiting />;
 }

@@ -8,5 +8,7 @@ import "./style/panels.css";
 import { createRoot } from "react-dom/client";
 
 import { App } from "./App";
+import { begin } from "./store/session";
 
+void begin();
 createRoot(window.document.getElementById("root") as HTMLElement).render(<App />);

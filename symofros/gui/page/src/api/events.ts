@@ -1,22 +1,24 @@
-/** The server's stream of events; the browser connects again by itself when it breaks. */
+/** The server's stream of events. */
 
 import { withToken } from "./client";
 import type { Job } from "./jobs";
 
 export interface Listener {
-  document(revision: number): void;
+  document(revision: number, name: string): void;
   job(job: Job): void;
-  opened(): void;
   lost(): void;
 }
 
-export function listen(listener: Listener): () => void {
+export function listen(listener: Listener): void {
   const source = new EventSource(withToken("api/events"));
-  source.addEventListener("open", () => listener.opened());
-  source.addEventListener("error", () => listener.lost());
+  // The browser would try again by itself, but cannot tell a server that is gone from one that refuses.
+  source.addEventListener("error", () => {
+    source.close();
+    listener.lost();
+  });
   source.addEventListener("document", (event) => {
-    listener.document((JSON.parse(event.data as string) as { revision: number }).revision);
+    const { revision, name } = JSON.parse(event.data as string) as { revision: number; name: string };
+    listener.document(revision, name);
   });
   source.addEventListener("job", (event) => listener.job(JSON.parse(event.data as string) as Job));
-  return () => source.close();
 }

@@ -25,7 +25,7 @@ import { useTheme } from "../store/theme";
 import { Block, type BlockNode, frameOf, JOINT } from "./Block";
 import { Mount, Tie } from "./links";
 import { blocks, links } from "./nodes";
-import { useSight } from "./useSight";
+import { useSight, useWholeView } from "./useSight";
 
 const NODE_TYPES = { block: Block };
 const EDGE_TYPES = { mount: Mount, tie: Tie };
@@ -84,10 +84,7 @@ export function Canvas() {
   const edges = useMemo(() => links(document.graph, selected), [document.graph, selected]);
 
   useEffect(() => setNodes((before) => blocks(document, places, selected, before)), [document, places, selected]);
-  useEffect(() => {
-    const frame = requestAnimationFrame(() => void flow.fitView({ padding: 0.15, maxZoom: 1 }));
-    return () => cancelAnimationFrame(frame);
-  }, [flow, document.path]);
+  useWholeView(document.path);
   useSight(document.graph, places);
 
   const onNodesChange = useCallback((changes: NodeChange<BlockNode>[]) => {

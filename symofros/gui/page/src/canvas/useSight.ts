@@ -13,6 +13,22 @@ function target(graph: Graph, id: string): GraphNode | undefined {
   return graph.nodes.find((node) => node.id === end);
 }
 
+export const WHOLE = { padding: 0.15, maxZoom: 1 };
+
+/** Shows the whole diagram when a file is opened, and when results take some of its room. */
+export function useWholeView(path: string): void {
+  const flow = useReactFlow();
+  const hasResults = useStore((state) => state.bottom !== null);
+  useEffect(() => {
+    const frame = requestAnimationFrame(() => {
+      // An empty model grows to the right.
+      if (flow.getNodes().length > 1) void flow.fitView(WHOLE);
+      else void flow.setViewport({ x: 60, y: 120, zoom: 1 });
+    });
+    return () => cancelAnimationFrame(frame);
+  }, [flow, path, hasResults]);
+}
+
 /** Moves the diagram, if it must, so that what was asked for is seen. */
 export function useSight(graph: Graph, places: Record<string, Point>): void {
   const sight = useStore((state) => state.sight);

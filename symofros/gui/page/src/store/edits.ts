@@ -45,7 +45,22 @@ async function change(address: string, body: () => object, again?: (document: Do
 /** All edits or none, as one step of undo. Made again on a newer document if their places are still there. */
 export async function edit(label: string, edits: Edit[]): Promise<boolean> {
   if (edits.length === 0) return true;
-  return change("api/edit", () => ({ label, edits }), (theirs) => edits.every((each) => applies(each, theirs)));
+  const moved = renamedPlaces(edits);
+  update((state) => ({ places: { ...state.places, ...moved } }));
+  const done = await change("api/edit", () => ({ label, edits }), (theirs) => edits.every((each) => applies(each, theirs)));
+  if (done && Object.keys(moved).length > 0) await place(moved);
+  return done;
+}
+
+/** A block that is renamed stays where it is. */
+function renamedPlaces(edits: readonly Edit[]): Record<string, Point> {
+  const { places } = now();
+  return Object.fromEntries(
+    edits.flatMap((each) => {
+      const place = each.op === "rename" ? places[each.path.join("/")] : undefined;
+      return place === undefined || each.op !== "rename" ? [] : [[`${each.path.slice(0, -1).join("/")}/${each.to}`, place]];
+    }),
+  );
 }
 
 export const setValue = (label: string, path: Path, value: Json): Promise<boolean> =>

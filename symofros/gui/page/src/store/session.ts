@@ -9,23 +9,39 @@ import { hear } from "./jobs";
 import { busy, explain } from "./requests";
 import { now, update } from "./store";
 
-export async function begin(): Promise<() => void> {
+const PAUSE = 1000;
+
+/** Listens to the server until it is gone; then asks until it is back, or another one is there. */
+async function attend(): Promise<void> {
+  for (;;) {
+    await new Promise<void>((lost) => {
+      listen({
+        document: (revision, name) => {
+          const known = now().document;
+          // Our own changes come back here too, and bring nothing new.
+          if (!busy() && (revision !== known?.revision || name !== known.name)) void refresh();
+        },
+        job: hear,
+        lost,
+      });
+    });
+    while (!(await answers())) await new Promise((resume) => window.setTimeout(resume, PAUSE));
+    if (now().link === "expired") return;
+    await refresh();
+  }
+}
+
+/** Whether the server says anything, be it that we are strangers. */
+async function answers(): Promise<boolean> {
+  const answer = await get("api/document").catch(explain);
+  return answer !== undefined || now().link === "expired";
+}
+
+export async function begin(): Promise<void> {
   const catalogue = await get<Catalogue>("api/schema").catch(explain);
   if (catalogue !== undefined) update({ catalogue });
   await refresh();
-  if (now().document === null) return () => undefined;
+  if (now().document === null) return;
   await fetchParts();
-  return listen({
-    document: (revision) => {
-      // Our own changes come back here too, and bring nothing new.
-      if (!busy() && revision !== now().document?.revision) void refresh();
-    },
-    job: hear,
-    opened: () => {
-      if (now().link !== "ok") void refresh();
-    },
-    lost: () => {
-      if (now().link === "ok") void get("api/document").catch(explain);
-    },
-  });
+  await attend();
 }
