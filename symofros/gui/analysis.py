@@ -7,7 +7,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from symofros.description.native.files import MAX_BYTES, read_yaml
+from symofros.description.native.files import read_yaml
 from symofros.description.native.yaml_nodes import YamlFault
 from symofros.description.reading import in_order
 from symofros.description.system import System
@@ -51,10 +51,6 @@ def analyse(file: Path, text: str) -> Analysis:
         text: What it holds.
     """
     shown = file.name
-    if len(text.encode("utf-8", "surrogatepass")) > MAX_BYTES:
-        problem = Problem("the text is too large", f"{len(text)} characters", "a description is at most 4 MiB long",
-                          "check that it is the file you meant", f"{shown}:1")  # fmt: skip
-        return Analysis(False, problems=[placed(problem, None, shown, {})])
     try:
         sheet = Sheet(text, shown)
     except YamlFault as error:

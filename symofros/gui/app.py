@@ -27,11 +27,13 @@ from symofros.gui.events import Events
 from symofros.gui.guard import Guard, error_body
 from symofros.gui.jobs import Jobs
 from symofros.gui.plain import EditError
-from symofros.gui.session import ConflictError, Json, Session
+from symofros.gui.session import Json, Session
 from symofros.gui.shapes import curves
+from symofros.gui.storage import ConflictError
 from symofros.gui.workspace import FileError
 
 IMPORT_SECONDS = 60.0
+WATCH_SECONDS = 2.0
 STATIC = Path(__file__).with_name("static")
 
 Answer = Callable[[Request], Awaitable[Response]]
@@ -51,8 +53,8 @@ class Editor:
         session = self.session
         changes: dict[str, Callable[[Json], None]] = {
             "edit": session.edit, "text": session.set_text, "undo": session.undo, "redo": session.redo,
-            "save": session.save, "discard": lambda _: session.discard(), "open": session.open_named,
-            "new": session.create_named, "parts/insert": session.insert_part,
+            "save": session.save, "discard": session.discard, "reload": session.reload, "open": session.open,
+            "new": session.create, "parts/insert": session.insert_part,
         }  # fmt: skip
         made = [Route(f"/api/{name}", self.changing(action), methods=["POST"]) for name, action in changes.items()]
         return [
@@ -108,7 +110,7 @@ class Editor:
     async def layout(self, request: Request) -> Response:
         """Remember positions."""
         await self.exclusively(partial(self.session.place, await body_of(request)))
-        return JSONResponse({"layout": self.session.layout})
+        return JSONResponse({"layout": self.session.storage.layout})
 
     async def expression(self, request: Request) -> Response:
         """Check one field."""
@@ -145,7 +147,7 @@ class Editor:
             error = job.error or {"object": "the import took too long", "found": f"{IMPORT_SECONDS} s", "rule": "",
                                   "remedy": "import it with `sf.load` and `sf.save`"}  # fmt: skip
             return JSONResponse({"error": error}, 422)
-        adopt = partial(self.session.adopt, file.name, job.result["text"])
+        adopt = partial(self.session.storage.adopt, file.name, job.result["text"])
         found = await self.exclusively(partial(self._changed, lambda _: adopt(), {}))
         self.tell_changed(request)
         return JSONResponse({**found, "notes": job.result["notes"]})
@@ -167,8 +169,17 @@ class Editor:
 
     async def listen(self, _: Request) -> Response:
         """Tell whatever happens, as it happens."""
-        headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-        return StreamingResponse(self.events.join(), media_type="text/event-stream", headers=headers)
+        return StreamingResponse(self.events.join(), media_type="text/event-stream")
+
+    async def watch(self) -> None:
+        """Tell when somebody else has written the file: once a time that it changes."""
+        told = False
+        while True:
+            await anyio.sleep(WATCH_SECONDS)
+            changed = await self.exclusively(self.session.storage.changed_on_disk)
+            if changed and not told:
+                self.events.publish("disk", {"name": self.session.document.file.name})
+            told = changed
 
 
 async def body_of(request: Request) -> Json:
@@ -223,7 +234,10 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
 
     @asynccontextmanager
     async def running(_: Starlette) -> AsyncIterator[None]:
-        yield
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(editor.watch)
+            yield
+            tasks.cancel_scope.cancel()
         await run_sync(editor.jobs.close)
 
     inner = Starlette(

@@ -6,12 +6,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from symofros.description.native.files import MAX_BYTES
 from symofros.errors import Problem, SymofrosError
 from symofros.gui.analysis import Analysis, analyse
 from symofros.gui.plain import EditError
 
 BOM = "\ufeff"
+# What is read again after each edit; a file of a thousand bodies is a third of it.
+MAX_TEXT = 1 << 20
 MAX_STEPS = 500
 MAX_KEPT = 64 << 20  # Characters of the texts that undo and redo keep.
 
@@ -37,10 +38,10 @@ class Document:
         revision: Grows with every change of the text.
     """
 
-    def __init__(self, file: Path, text: str, saved: str | None, *, marked: bool = False) -> None:
+    def __init__(self, file: Path, text: str, saved: str | None, *, marked: bool = False, revision: int = 1) -> None:
         """Begin with a text; `marked`: the file begins with a byte order mark."""
         self.file, self.text, self.saved, self.marked = file, text, saved, marked
-        self.revision = 1
+        self.revision = revision
         self._undo: list[Step] = []
         self._redo: list[Step] = []
         self._analysis: Analysis | None = None
@@ -80,8 +81,7 @@ class Document:
         Raises:
             EditError: The new text is too large, or holds what is not text.
         """
-        text = make(self.text)
-        refuse_text(text)
+        text = refuse_text(make(self.text))
         if text != self.text:
             self._undo.append(Step(label, self.text))
             self._redo.clear()
@@ -95,12 +95,6 @@ class Document:
     def redo(self) -> None:
         """Go one step forth, if there is one."""
         self._swap(self._redo, self._undo)
-
-    def moved(self, file: Path) -> None:
-        """It was saved there, and goes on there."""
-        if file != self.file:
-            self.file, self._analysis = file, None
-        self.saved = self.text
 
     def _swap(self, source: list[Step], target: list[Step]) -> None:
         if source:
@@ -140,8 +134,8 @@ class Document:
         }
 
 
-def refuse_text(text: Any) -> None:
-    """Refuse what can't be a document's text.
+def refuse_text(text: Any) -> str:
+    """The text, if it can be a document's.
 
     Raises:
         EditError: Not a text, too large, or with half a surrogate pair.
@@ -153,6 +147,12 @@ def refuse_text(text: Any) -> None:
     except UnicodeEncodeError:
         raise EditError(Problem("the text holds half a character", "a lone surrogate", "files are in UTF-8",
                                 "remove it")) from None  # fmt: skip
-    if size > MAX_BYTES:
-        raise EditError(Problem("the text is too large", f"{size} bytes", f"at most {MAX_BYTES} bytes",
-                                "split it, and use include"))  # fmt: skip
+    if size > MAX_TEXT:
+        raise EditError(too_large(size))
+    return text.removeprefix(BOM)
+
+
+def too_large(size: int) -> Problem:
+    """What is wrong with a text of more bytes than the editor takes."""
+    return Problem("the text is too large to edit", f"{size} bytes", f"at most {MAX_TEXT} bytes",
+                   "split it, and use include")  # fmt: skip

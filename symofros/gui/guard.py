@@ -12,8 +12,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from symofros.errors import Problem
 
-# A text of 4 MiB, escaped as JSON.
-MAX_BODY = 12 << 20
+# Four times the largest text: JSON escapes some of it.
+MAX_BODY = 4 << 20
 API = "/api/"
 # Only here may the token stand in the address: a browser's event source sends no headers of ours.
 EVENTS = "/api/events"
@@ -32,6 +32,7 @@ HEADERS = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
 }
+_OWN = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
 
 
 class TooLargeError(Exception):
@@ -121,8 +122,8 @@ class Guard:
             nonlocal begun
             if message["type"] == "http.response.start":
                 begun = True
-                own = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
-                message["headers"] = [*message["headers"], *own]
+                fresh = [(b"cache-control", b"no-store")] if scope["path"].startswith(API) else []
+                message["headers"] = [*message["headers"], *_OWN, *fresh]
             await send(message)
 
         try:
@@ -140,7 +141,7 @@ def _headers(raw: Iterable[tuple[bytes, bytes]]) -> dict[str, list[str]]:
 
 
 def _too_large(limit: int) -> Problem:
-    return Problem("the request is too large", f"more than {limit} bytes", "a document is at most 4 MiB long",
+    return Problem("the request is too large", f"more than {limit} bytes", "a text of 1 MiB fits in a request",
                    "open a smaller file")  # fmt: skip
 
 
@@ -155,8 +156,11 @@ def error_body(problem: Problem) -> dict[str, dict[str, str]]:
 
 async def _answer(send: Send, status: int, problem: Problem) -> None:
     body = json.dumps(error_body(problem)).encode()
-    headers = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
-    headers += [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
-    headers += [(b"connection", b"close")]
+    headers = [
+        *_OWN,
+        (b"content-type", b"application/json"),
+        (b"content-length", str(len(body)).encode()),
+        (b"connection", b"close"),
+    ]
     await send({"type": "http.response.start", "status": HTTPStatus(status), "headers": headers})
     await send({"type": "http.response.body", "body": body})

@@ -97,7 +97,8 @@ class Jobs:
         with self._lock:
             if job.state == "running":
                 job.state = "cancelled"
-                _kill(job.process)
+                if job.process is not None and job.process.poll() is None:
+                    _kill(job.process)
         job.over.wait(10.0)
         return job
 

@@ -34,6 +34,18 @@ def path_of(given: Any) -> Path:
     return tuple(given)
 
 
+def text_of(body: dict[str, Any], key: str) -> str:
+    """A text of a request; "" where it has none.
+
+    Raises:
+        EditError: It is something else.
+    """
+    found = body.get(key, "")
+    if found is not None and not isinstance(found, str):
+        raise _malformed(key, found, "a text")
+    return found or ""
+
+
 def _edit(item: Any) -> Edit:
     if not isinstance(item, dict) or item.get("op") not in get_args(Op):
         raise _malformed("an edit", item, f"a mapping whose op is one of {', '.join(get_args(Op))}")

@@ -77,11 +77,18 @@ class Workspace:
             scanned += len(names) + len(folders)
             for name in sorted(names):
                 path = Path(folder) / name
-                if path.suffix.lower() in READABLE and not name.startswith(".") and path.is_file():
+                if path.suffix.lower() in READABLE and not name.startswith(".") and self._is_ours(path):
                     found.append({"path": self.shown(path), "bytes": path.stat().st_size})
             if len(found) >= MAX_LISTED or scanned > MAX_SCANNED:
                 break
         return found[:MAX_LISTED]
+
+    def _is_ours(self, path: Path) -> bool:
+        """Whether it is a file, and in here when links are followed."""
+        try:
+            return path.is_file() and path.resolve().is_relative_to(self.root)
+        except (OSError, RuntimeError):  # A loop of links.
+            return False
 
 
 def read_text(path: Path) -> tuple[str, bytes]:
@@ -122,9 +129,29 @@ def write(path: Path, content: str | bytes) -> None:
                                 "make space, or save it elsewhere")) from None  # fmt: skip
 
 
-def digest(data: bytes | None) -> str:
-    """The identity of a file's content; "" of a file that is not there."""
-    return hashlib.sha256(data).hexdigest() if data is not None else ""
+def read_own(path: Path) -> str:
+    """The text of a file that the editor keeps beside a document; links are not followed, for it makes none.
+
+    Raises:
+        FileError: Not there, a link, or as `read_text`.
+    """
+    if path.is_symlink():
+        raise FileError(Problem(f"'{path.name}' is a link", "a link", "the editor's own files are files", "remove it"))
+    return read_text(path)[0]
+
+
+def signature(path: Path) -> str:
+    """What changes when a file is written; "" where there is none."""
+    try:
+        stat = path.stat()
+    except OSError:
+        return ""
+    return f"{stat.st_mtime_ns} {stat.st_size} {stat.st_ino}"
+
+
+def digest(data: bytes) -> str:
+    """The identity of a file's content."""
+    return hashlib.sha256(data).hexdigest()
 
 
 def identifier(stem: str) -> str:
@@ -145,7 +172,7 @@ def layout_of(path: Path) -> Path:
 def read_layout(path: Path) -> dict[str, list[float]]:
     """The positions beside a file; none where the side file is missing or unusable, because they can be made anew."""
     try:
-        data = json.loads(read_text(layout_of(path))[0])["layout"]
+        data = json.loads(read_own(layout_of(path)))["layout"]
     except (FileError, ValueError, KeyError, TypeError, RecursionError):
         return {}
     return positions(data)
