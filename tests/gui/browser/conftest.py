@@ -11,14 +11,14 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 
+import symofros.gui
+
 TOKEN = "token-of-the-tests"
-START_SECONDS = 30
 # Where pictures for docs/editor.md go, when they are wanted.
 PICTURES = os.environ.get("SYMOFROS_PICTURES")
-
-pytestmark = pytest.mark.browser
 
 
 class Server:
@@ -96,6 +96,17 @@ def _is_ours(kind: str, text: str) -> bool:
     return kind == "error" and "Failed to load resource" not in text and "ERR_" not in text
 
 
+@pytest.fixture(scope="session")
+def node_modules() -> Path:
+    """The page's packages, installed as its lock file says if they are not there."""
+    if shutil.which("npm") is None:
+        pytest.skip("needs Node")
+    folder = Path(symofros.gui.__file__).parent / "page"
+    if not (folder / "node_modules").is_dir():
+        subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=folder, check=True)
+    return folder / "node_modules"
+
+
 @pytest.fixture
 def picture(page: Page) -> Callable[[str], None]:
     """Keeps what the page shows as a picture of the documentation, when SYMOFROS_PICTURES names a folder."""
@@ -103,6 +114,9 @@ def picture(page: Page) -> Callable[[str], None]:
     def shoot(name: str) -> None:
         if PICTURES:
             page.wait_for_timeout(300)  # Movements of the diagram come to rest.
-            page.screenshot(path=Path(PICTURES) / f"editor-{name}.png")
+            file = Path(PICTURES) / f"editor-{name}.png"
+            page.screenshot(path=file)
+            # Few colours are enough for it, and make it small.
+            Image.open(file).convert("RGB").quantize(96, dither=Image.Dither.NONE).save(file, optimize=True)
 
     return shoot

@@ -23,6 +23,8 @@ def port(page: Page, node: str, name: str) -> Locator:
 
 def add(page: Page, name: str, on: str) -> None:
     """Add a rigid body that the block `on` carries, and name it."""
+    page.get_by_role("button", name="Show the whole diagram").click()
+    page.wait_for_timeout(300)  # The diagram moves.
     steps.block(page, on).click()
     page.get_by_role("button", name="Rigid body", exact=True).click()
     steps.open_window(page, "bodies/body")

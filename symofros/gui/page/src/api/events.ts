@@ -5,6 +5,7 @@ import type { Job } from "./jobs";
 
 export interface Listener {
   document(revision: number, name: string): void;
+  disk(): void;
   job(job: Job): void;
   lost(): void;
 }
@@ -20,5 +21,6 @@ export function listen(listener: Listener): void {
     const { revision, name } = JSON.parse(event.data as string) as { revision: number; name: string };
     listener.document(revision, name);
   });
+  source.addEventListener("disk", () => listener.disk());
   source.addEventListener("job", (event) => listener.job(JSON.parse(event.data as string) as Job));
 }

@@ -77,6 +77,8 @@ export interface Document {
   problems: Problem[];
   parameters: Parameter[];
   recovered: boolean;
+  /** Somebody else wrote the file since it was read or saved. */
+  disk_changed: boolean;
 }
 
 export type Edit =
@@ -114,6 +116,14 @@ export interface Catalogue {
   version?: string;
 }
 
+/** Of the user's library. */
+export interface LibraryPart {
+  name: string;
+  path: string;
+  bodies: string[];
+}
+
+/** Bodies with what they use, on their way from one place to another. */
 export interface Part {
   name: string;
   parameters: JsonMap;

@@ -69,7 +69,7 @@ function drop(event: DragEvent, where: Point): void {
   const item = now().catalogue?.palette.find((each) => each.name === word);
   const part = now().parts.find((each) => `part ${each.name}` === word);
   if (item !== undefined) void add(item, where);
-  else if (part !== undefined) void insertPart(part, where);
+  else if (part !== undefined) void insertPart(part.name, where);
 }
 
 /** The diagram. */

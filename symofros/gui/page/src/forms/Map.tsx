@@ -1,7 +1,8 @@
 import { useState } from "react";
 
 import type { Json, JsonMap, Path } from "../api/types";
-import { isMap, replaced } from "../model/paths";
+import { keyOf } from "../model/changes";
+import { at, isMap, replaced } from "../model/paths";
 import { IconButton } from "../shell/IconButton";
 import { useForm } from "./context";
 import { FieldControl } from "./Field";
@@ -57,6 +58,22 @@ function Adder({ label, keys, taken, add }: { label: string; keys: string[] | nu
   );
 }
 
+/** An entry's name; that of a frame that the file has can be changed, and what refers to it follows. */
+function EntryName({ label, name, path }: { label: string; name: string; path: Path }) {
+  const { data, renames, rename, hint } = useForm();
+  if (path.at(-2) !== "frames" || at(data, path) === undefined) return <span className="item-name">{name}</span>;
+  return (
+    <input
+      className="item-name"
+      value={renames[keyOf(path)] ?? name}
+      aria-label={`Name of ${label.toLowerCase()} ${name}`}
+      spellCheck={false}
+      onFocus={() => hint("Renaming it changes all that refers to it.")}
+      onChange={(event) => rename(path, event.target.value)}
+    />
+  );
+}
+
 /** Entries with names. */
 export function MapField({ value, onChange, path, label, entry, keys }: Props) {
   const { root } = useForm();
@@ -66,7 +83,7 @@ export function MapField({ value, onChange, path, label, entry, keys }: Props) {
     <div className="map" role="group" aria-label={label}>
       {Object.entries(map).map(([name, each]) => (
         <div key={name} className="item">
-          <span className="item-name">{name}</span>
+          <EntryName label={label} name={name} path={[...path, name]} />
           <FieldControl
             name=""
             field={described}

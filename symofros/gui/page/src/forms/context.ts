@@ -2,7 +2,8 @@
 
 import { createContext, useContext } from "react";
 
-import type { Json, JsonMap, Path } from "../api/types";
+import type { JsonMap, Path } from "../api/types";
+import type { Renames } from "../model/changes";
 
 export interface FormContext {
   /** The whole JSON Schema. */
@@ -11,15 +12,11 @@ export interface FormContext {
   data: JsonMap;
   /** The body whose window it is, if it is one's. */
   body: string | null;
+  /** New names of entries, made when the window is accepted. */
+  renames: Renames;
+  rename(path: Path, to: string): void;
   hint(text: string): void;
 }
 
-export const Form = createContext<FormContext>({ root: {}, data: {}, body: null, hint: () => undefined });
+export const Form = createContext<FormContext>({ root: {}, data: {}, body: null, renames: {}, rename: () => undefined, hint: () => undefined });
 export const useForm = (): FormContext => useContext(Form);
-
-export interface FieldProps<T = Json | undefined> {
-  value: T;
-  onChange(value: Json | undefined): void;
-  path: Path;
-  label: string;
-}

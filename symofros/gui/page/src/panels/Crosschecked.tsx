@@ -19,7 +19,7 @@ export function Crosschecked({ result }: { result: Result }) {
         <tbody>
           {result.rows.map((row) => (
             <tr key={`${row.quantity} ${row.engine}`}>
-              <th scope="row">{row.quantity}</th>
+              <th scope="row">{row.quantity.replaceAll("_", " ")}</th>
               <td className="word">{row.engine}</td>
               <td>{brief(row.worst)}</td>
               <td>{brief(row.tolerance)}</td>

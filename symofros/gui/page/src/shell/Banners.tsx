@@ -1,5 +1,4 @@
-import { discard, refresh } from "../store/files";
-import { save } from "../store/files";
+import { discard, refresh, reload, save } from "../store/files";
 import { hush, useStore } from "../store/store";
 import { IconButton } from "./IconButton";
 
@@ -7,6 +6,7 @@ import { IconButton } from "./IconButton";
 export function Banners() {
   const link = useStore((state) => state.link);
   const recovered = useStore((state) => state.document?.recovered === true);
+  const changed = useStore((state) => state.document?.disk_changed === true);
   return (
     <>
       {link === "lost" ? (
@@ -20,6 +20,14 @@ export function Banners() {
       {link === "expired" ? (
         <div className="banner bad" role="alert">
           <span>The server was started anew, and gave a new address: open the one that it printed.</span>
+        </div>
+      ) : null}
+      {changed ? (
+        <div className="banner" role="status">
+          <span>Somebody else has written the file. Saving will ask before it is overwritten.</span>
+          <button type="button" className="small" onClick={() => void reload()}>
+            Take the text on disk
+          </button>
         </div>
       ) : null}
       {recovered ? (

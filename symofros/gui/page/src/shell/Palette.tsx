@@ -66,7 +66,7 @@ export function Palette() {
       <section aria-label="My parts">
         <h2>My parts</h2>
         {parts.map((part) => (
-          <Entry key={part.name} glyph="part" title={part.name} help={`bodies: ${Object.keys(part.bodies).join(", ")}`} word={`part ${part.name}`} draggable onAdd={() => void insertPart(part)} />
+          <Entry key={part.name} glyph="part" title={part.name} help={`bodies: ${part.bodies.join(", ")}`} word={`part ${part.name}`} draggable onAdd={() => void insertPart(part.name)} />
         ))}
         <button
           type="button"

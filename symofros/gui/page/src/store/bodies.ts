@@ -10,7 +10,7 @@ import { now, show, update, type Anchor } from "./store";
 const data = (): JsonMap => now().document?.data ?? {};
 
 /** The frame that a new body goes to: the last one of the selected body, else the ground. */
-function carrier(): Anchor | null {
+export function carrier(): Anchor | null {
   const [chosen, ...others] = now().selected;
   if (chosen === undefined || others.length > 0 || !chosen.startsWith("bodies/")) return null;
   const body = chosen.slice("bodies/".length);

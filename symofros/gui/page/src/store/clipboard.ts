@@ -1,10 +1,12 @@
 /** Copy, cut, paste, and parts of the user's library. */
 
 import { get, post } from "../api/client";
-import type { JsonMap, Part, Point } from "../api/types";
+import type { JsonMap, LibraryPart, Part, Point } from "../api/types";
 import { extract, insertion } from "../model/clipboard";
+import { bodyNames } from "../model/names";
 import { isMap } from "../model/paths";
-import { edit, place } from "./edits";
+import { carrier } from "./bodies";
+import { change, edit, place } from "./edits";
 import { ordered } from "./requests";
 import { now, update } from "./store";
 
@@ -43,27 +45,39 @@ function parsed(text: string): Part | null {
 export async function paste(): Promise<void> {
   const text = (await navigator.clipboard?.readText().catch(() => "")) ?? "";
   const part = parsed(text) ?? copied;
-  if (part !== null) await insertPart(part);
+  if (part !== null) await insert(part);
 }
 
-export async function insertPart(part: Part, where?: Point): Promise<void> {
+async function insert(part: Part): Promise<void> {
   const document = now().document;
   if (document === null) return;
   const { edits, bodies } = insertion(document.data, part);
-  const ids = [...bodies.values()].map((name) => `bodies/${name}`);
-  const first = ids[0];
-  if (!(await edit(`insert ${part.name}`, edits))) return;
-  if (where !== undefined && first !== undefined) await place({ [first]: where });
-  update({ selected: ids, sight: first === undefined ? null : { id: first } });
+  if (await edit(`insert ${part.name}`, edits)) choose([...bodies.values()]);
+}
+
+function choose(bodies: readonly string[]): void {
+  const ids = bodies.map((name) => `bodies/${name}`);
+  update({ selected: ids, sight: ids[0] === undefined ? null : { id: ids[0] } });
+}
+
+/** Puts a part of the library on the selected body, or on the ground. */
+export async function insertPart(name: string, where?: Point): Promise<void> {
+  const known = new Set(bodyNames(now().document?.data ?? {}));
+  const on = carrier() ?? { body: "world", frame: "" };
+  const target = { parent: on.body, ...(on.frame === "" ? {} : { frame: on.frame }) };
+  if (!(await change("api/parts/insert", () => ({ name, ...target })))) return;
+  const added = bodyNames(now().document?.data ?? {}).filter((body) => !known.has(body));
+  if (where !== undefined && added[0] !== undefined) await place({ [`bodies/${added[0]}`]: where });
+  choose(added);
 }
 
 export async function fetchParts(): Promise<void> {
-  const answer = await ordered(() => get<{ parts: Part[] }>("api/parts"));
+  const answer = await ordered(() => get<{ parts: LibraryPart[] }>("api/parts"));
   if (answer !== undefined) update({ parts: answer.parts });
 }
 
-export async function savePart(name: string, bodies: string[], overwrite: boolean): Promise<boolean> {
-  const done = await ordered(() => post("api/parts", { name, bodies, overwrite }));
-  await fetchParts();
-  return done !== undefined;
+export async function savePart(name: string, bodies: string[]): Promise<boolean> {
+  const answer = await ordered(() => post<{ parts: LibraryPart[] }>("api/parts", { name, bodies }));
+  if (answer !== undefined) update({ parts: answer.parts });
+  return answer !== undefined;
 }

@@ -14,7 +14,8 @@ function applies(edit: Edit, document: Document): boolean {
   return place.length === 0 || at(document.data, place) !== undefined;
 }
 
-async function change(address: string, body: () => object, again?: (document: Document) => boolean): Promise<boolean> {
+/** A change by request: with the revision it is of; made again on a newer document if it still fits there. */
+export async function change(address: string, body: () => object, again?: (document: Document) => boolean): Promise<boolean> {
   const ask = (): Promise<Document> => post<Document>(address, { revision: revision(), ...body() });
   const stale = async (refusal: Refused): Promise<Document | undefined> => {
     const theirs = refusal.body.document;

@@ -2,6 +2,7 @@
 
 import { get, post, type Refused } from "../api/client";
 import type { Document, FileEntry } from "../api/types";
+import { change } from "./edits";
 import { accept, explain, ordered } from "./requests";
 import { dismiss, now, show, update } from "./store";
 
@@ -48,10 +49,10 @@ export async function save(path: string | null = null, over: string | null = nul
 }
 
 /** Back to the file as it was saved; undo brings back what was given up. */
-export async function discard(): Promise<void> {
-  const document = await ordered(() => post<Document>("api/discard", {}));
-  if (document !== undefined) accept(document);
-}
+export const discard = (): Promise<boolean> => change("api/discard", () => ({}));
+
+/** Takes the file as somebody else wrote it; undo brings back what was here. */
+export const reload = (): Promise<boolean> => change("api/reload", () => ({}));
 
 /** The newest document, after somebody else changed it or the server came back. */
 export async function refresh(): Promise<void> {

@@ -21,6 +21,7 @@ async function attend(): Promise<void> {
           // Our own changes come back here too, and bring nothing new.
           if (!busy() && (revision !== known?.revision || name !== known.name)) void refresh();
         },
+        disk: () => void refresh(),
         job: hear,
         lost,
       });

@@ -3,7 +3,7 @@
 import { create } from "zustand";
 
 import type { Job, JobKind } from "../api/jobs";
-import type { Catalogue, Document, Fault, FileEntry, Part, Path, Point } from "../api/types";
+import type { Catalogue, Document, Fault, FileEntry, LibraryPart, Path, Point } from "../api/types";
 
 export type Link = "ok" | "lost" | "expired";
 export type RightPane = "parameters" | "text" | "view";
@@ -35,7 +35,7 @@ export interface Notice {
 
 export interface State {
   catalogue: Catalogue | null;
-  parts: Part[];
+  parts: LibraryPart[];
   document: Document | null;
   places: Record<string, Point>;
   selected: string[];

@@ -10,7 +10,7 @@ export function PartForm({ bodies }: { bodies: string[] }) {
   const [name, setName] = useState(bodies[0] ?? "part");
   const exists = parts.some((part) => part.name === name.trim());
   const accept = async (): Promise<void> => {
-    if (await savePart(name.trim(), bodies, exists)) dismiss();
+    if (await savePart(name.trim(), bodies)) dismiss();
   };
   return (
     <Window

@@ -1,7 +1,8 @@
-import { useMemo, useState } from "react";
+import { useCallback, useMemo, useState } from "react";
 
-import type { Edit, Json, Path } from "../api/types";
+import type { Json, Path } from "../api/types";
 import { Form, type FormContext } from "../forms/context";
+import { changes, keyOf, type Renames } from "../model/changes";
 import { at, difference } from "../model/paths";
 import { Window } from "../shell/Window";
 import { edit } from "../store/edits";
@@ -17,13 +18,6 @@ const NOUNS: Record<string, string> = {
   nonholonomic: "Condition on speeds",
 };
 
-/** Edits from a window: the new name first, then what differs, at the places under that name. */
-function edits(path: Path, name: string, before: Json | undefined, after: Json | undefined): Edit[] {
-  const old = path.at(-1);
-  const renamed: Edit[] = path.length === 2 && name !== old ? [{ op: "rename", path, to: name }] : [];
-  return [...renamed, ...difference(before, after, renamed.length > 0 ? [...path.slice(0, -1), name] : path)];
-}
-
 /** What the system window shows: all that concerns no single block. */
 const SYSTEM = ["system", "virtual_power", "potentials"] as const;
 
@@ -36,18 +30,20 @@ export function Properties({ path }: { path: Path }) {
   const [data] = useState(document.data);
   const [before] = useState(() => (isSystem ? data : at(data, path)));
   const [draft, setDraft] = useState<Json | undefined>(before);
-  const [name, setName] = useState(String(path.at(-1)));
+  const [renames, setRenames] = useState<Renames>({});
+  const name = renames[keyOf(path)] ?? String(path.at(-1));
   const [hint, setHint] = useState("");
   const section = String(path[0]);
+  const rename = useCallback((place: Path, to: string) => setRenames((all) => ({ ...all, [keyOf(place)]: to.trim() })), []);
   const context = useMemo<FormContext>(
-    () => ({ root: schema ?? {}, data, body: section === "bodies" ? String(path[1]) : null, hint: setHint }),
-    [schema, data, section, path],
+    () => ({ root: schema ?? {}, data, body: section === "bodies" ? String(path[1]) : null, renames, rename, hint: setHint }),
+    [schema, data, section, path, renames, rename],
   );
   const accept = async (): Promise<void> => {
-    const changes = isSystem
+    const edits = isSystem
       ? SYSTEM.flatMap((key) => difference(at(before, [key]), at(draft, [key]), [key]))
-      : edits(path, name.trim(), before, draft);
-    if (await edit(isSystem ? "change the system" : `change ${name}`, changes)) dismiss();
+      : changes(path, before, draft, renames);
+    if (await edit(isSystem ? "change the system" : `change ${name}`, edits)) dismiss();
   };
   const title = isSystem ? "System" : `${NOUNS[section] ?? "Entry"} ${String(path[1])}`;
   return (
@@ -64,7 +60,7 @@ export function Properties({ path }: { path: Path }) {
           <button type="button" onClick={dismiss}>
             Cancel
           </button>
-          <button type="submit" className="primary" disabled={name.trim() === ""}>
+          <button type="submit" className="primary" disabled={Object.values(renames).includes("")}>
             OK
           </button>
         </>
@@ -77,7 +73,7 @@ export function Properties({ path }: { path: Path }) {
               Name
             </label>
             <div className="row-control">
-              <input id="entry-name" value={name} spellCheck={false} onFocus={() => setHint("Renaming it changes all that refers to it.")} onChange={(event) => setName(event.target.value)} />
+              <input id="entry-name" value={name} spellCheck={false} onFocus={() => setHint("Renaming it changes all that refers to it.")} onChange={(event) => rename(path, event.target.value)} />
             </div>
           </div>
         )}

@@ -114,6 +114,19 @@ export function Discard({ proceed }: { proceed(): void }) {
   );
 }
 
+/** A text; lines that the other one lacks are marked. */
+function Marked({ title, text, other }: { title: string; text: string; other: string }) {
+  const known = new Set(other.split("\n"));
+  return (
+    <section aria-label={title}>
+      <h3>{title}</h3>
+      <pre tabIndex={0}>
+        {text.split("\n").map((line, i) => (known.has(line) ? `${line}\n` : <mark key={i}>{`${line}\n`}</mark>))}
+      </pre>
+    </section>
+  );
+}
+
 /** The file is not as it was when it was opened: both texts, and who wins. */
 export function ChangedOnDisk({ disk, over, path }: { disk: string; over: string; path: string | null }) {
   const { text } = useDocument();
@@ -148,14 +161,8 @@ export function ChangedOnDisk({ disk, over, path }: { disk: string; over: string
     >
       <p>Somebody else wrote {path ?? now().document?.path}. Taking that text can be undone; overwriting it cannot.</p>
       <div className="two-texts">
-        <section aria-label="On disk">
-          <h3>On disk</h3>
-          <pre tabIndex={0}>{disk}</pre>
-        </section>
-        <section aria-label="Here">
-          <h3>Here</h3>
-          <pre tabIndex={0}>{shown}</pre>
-        </section>
+        <Marked title="On disk" text={disk} other={shown} />
+        <Marked title="Here" text={shown} other={disk} />
       </div>
     </Window>
   );
