@@ -34,11 +34,11 @@ function Body({ data }: NodeProps<BlockNode>) {
           {summary.joint.sprung ? <span className="block-mark" title="spring, damper, stop or friction"><Glyph name="spring" size={12} /></span> : null}
         </div>
       )}
-      {hasJoint(node) ? <Handle id={JOINT} type="target" position={Position.Left} className="port joint" style={{ top: jointHeight }} aria-label={`joint of ${node.title}`} /> : null}
+      {hasJoint(node) ? <Handle id={JOINT} type="target" position={Position.Left} className="port joint" style={{ top: jointHeight }} role="img" aria-label={`joint of ${node.title}`} /> : null}
       {frames(node).map((frame) => (
         <div key={frame.name} className="block-frame" style={{ top: portHeight(node, frame.name) }}>
           <span className={frame.kind === "origin" ? "quiet" : ""}>{frame.kind === "origin" ? "origin" : frame.name}</span>
-          <Handle id={frameHandle(frame)} type="source" position={Position.Right} className="port frame" aria-label={`frame ${frame.kind === "origin" ? "origin" : frame.name} of ${node.title}`} />
+          <Handle id={frameHandle(frame)} type="source" position={Position.Right} className="port frame" role="img" aria-label={`frame ${frame.kind === "origin" ? "origin" : frame.name} of ${node.title}`} />
         </div>
       ))}
     </div>

@@ -16,7 +16,6 @@ import {
 import { type DragEvent, useCallback, useEffect, useMemo, useState } from "react";
 
 import type { Point } from "../api/types";
-import { completed } from "../model/layout";
 import { add, mount } from "../store/bodies";
 import { place } from "../store/edits";
 import { insertPart } from "../store/clipboard";
@@ -72,14 +71,18 @@ function drop(event: DragEvent, where: Point): void {
   else if (part !== undefined) void insertPart(part.name, where);
 }
 
+function shownPlaces(): Record<string, Point> {
+  const { document, places } = now();
+  return Object.fromEntries(Object.entries(places).filter(([id]) => document?.graph.nodes.some((node) => node.id === id)));
+}
+
 /** The diagram. */
 export function Canvas() {
   const document = useDocument();
-  const known = useStore((state) => state.places);
+  const places = useStore((state) => state.places);
   const selected = useStore((state) => state.selected);
   const theme = useTheme();
   const flow = useReactFlow();
-  const places = useMemo(() => completed(document.graph, known), [document.graph, known]);
   const [nodes, setNodes] = useState<BlockNode[]>([]);
   const edges = useMemo(() => links(document.graph, selected), [document.graph, selected]);
 
@@ -97,8 +100,8 @@ export function Canvas() {
       const at = change.type === "position" ? change.position : undefined;
       return ["id" in change ? change.id : "", [Math.round(at?.x ?? 0), Math.round(at?.y ?? 0)] as const] as const;
     });
-    // The others keep the places they have by now, or they would be laid out anew around the moved one.
-    void place({ ...completed(now().document?.graph ?? { nodes: [], edges: [] }, now().places), ...Object.fromEntries(entries) });
+    // The others are kept where they are shown, too.
+    void place({ ...shownPlaces(), ...Object.fromEntries(entries) });
   }, []);
 
   return (

@@ -1,7 +1,6 @@
 /** The diagram as a file. */
 
 import type { Document } from "../api/types";
-import { completed } from "../model/layout";
 import { drawing } from "../model/drawing";
 import { now } from "../store/store";
 import { offer } from "./choose";
@@ -22,7 +21,7 @@ async function rasterised(svg: string): Promise<Blob> {
 }
 
 export async function savePicture(document: Document, kind: "svg" | "png"): Promise<void> {
-  const svg = drawing(document, completed(document.graph, now().places));
+  const svg = drawing(document, now().places);
   const blob = kind === "svg" ? new Blob([svg], { type: "image/svg+xml" }) : await rasterised(svg);
   offer(blob, `${document.name}.${kind}`);
 }

@@ -20,13 +20,13 @@ export function isReference(name: string, type: string): boolean {
   return type === "text" && (BODY_KEYS.includes(name) || name === "frame" || name === "at");
 }
 
-function Options({ name, siblings }: { name: string; siblings: Json | undefined }) {
+function Options({ name, siblings, without }: { name: string; siblings: Json | undefined; without: string }) {
   const { data, body } = useForm();
   let names: string[];
   if (name === "at") names = ["body", "center_of_mass", ...frameNames(data, body ?? "")];
   else if (name === "frame") names = frameNames(data, textAt(siblings, ["body"]) ?? textAt(siblings, ["parent"]) ?? "world");
   else names = ["world", ...bodyNames(data)].filter((each) => each !== body || name !== "parent");
-  return [...new Set(names)].map((each) => <option key={each}>{each}</option>);
+  return [...new Set(names)].filter((each) => each !== without).map((each) => <option key={each}>{each}</option>);
 }
 
 /** A body or a frame by name. */
@@ -38,7 +38,7 @@ export function Reference({ name, value, onChange, label, help, fallback, siblin
     <select value={current} aria-label={label} aria-description={help} onFocus={() => hint(help)} onChange={(event) => onChange(event.target.value === "" ? undefined : event.target.value)}>
       <option value="">{empty}</option>
       {current === "" ? null : <option hidden>{current}</option>}
-      <Options name={name} siblings={siblings} />
+      <Options name={name} siblings={siblings} without={empty} />
     </select>
   );
 }

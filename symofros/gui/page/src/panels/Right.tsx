@@ -46,25 +46,23 @@ export function Right({ current }: { current: RightPane }) {
     ...(view === null ? [] : [{ key: "view" as const, title: "3-D" }]),
   ];
   return (
-    <>
+    <aside className="side-dock" style={{ width }} aria-label="Side pane">
       <Splitter width={width} onChange={setWidth} />
-      <aside className="side-dock" style={{ width }} aria-label="Side pane">
-        <Tabs tabs={tabs} current={current} onChange={(key) => update({ right: key })} label="Side pane">
-          {current === "parameters" ? (
-            <>
-              <Parameters />
-              <Inputs />
-            </>
-          ) : null}
-          {current === "text" ? (
-            <Suspense fallback={<p className="pane quiet">Loading the text editor…</p>}>
-              <TextPane />
-            </Suspense>
-          ) : null}
-          {current === "view" && view !== null ? <iframe className="view" src={view} title="3-D view" /> : null}
-        </Tabs>
-        <IconButton glyph="close" label="Close the side pane" onClick={() => update({ right: null })} />
-      </aside>
-    </>
+      <Tabs tabs={tabs} current={current} onChange={(key) => update({ right: key })} label="Side pane">
+        {current === "parameters" ? (
+          <>
+            <Parameters />
+            <Inputs />
+          </>
+        ) : null}
+        {current === "text" ? (
+          <Suspense fallback={<p className="pane quiet">Loading the text editor…</p>}>
+            <TextPane />
+          </Suspense>
+        ) : null}
+        {current === "view" && view !== null ? <iframe className="view" src={view} title="3-D view" /> : null}
+      </Tabs>
+      <IconButton glyph="close" label="Close the side pane" onClick={() => update({ right: null })} />
+    </aside>
   );
 }

@@ -1,4 +1,4 @@
-import { type FormEvent, type ReactNode, useEffect, useId, useRef } from "react";
+import { type FormEvent, type ReactNode, useId, useLayoutEffect, useRef } from "react";
 
 import { IconButton } from "./IconButton";
 
@@ -16,11 +16,14 @@ interface Props {
 export function Window({ title, children, foot, onClose, onSubmit, wide = false }: Props) {
   const dialog = useRef<HTMLDialogElement>(null);
   const id = useId();
-  useEffect(() => {
+  // Before it leaves the page: only then the browser knows what had the focus.
+  useLayoutEffect(() => {
     const element = dialog.current;
     element?.showModal();
     // The browser would choose the button that closes it.
-    element?.querySelector<HTMLElement>(".window-body :is(input, select, button)")?.focus();
+    const first = element?.querySelector<HTMLElement>(".window-body :is(input, select, button)");
+    first?.focus();
+    if (first instanceof HTMLInputElement) first.select();
     return () => element?.close();
   }, []);
   const submit = (event: FormEvent): void => {

@@ -2,6 +2,7 @@
 
 import { Refused, Unreachable } from "../api/client";
 import type { Document } from "../api/types";
+import { completed } from "../model/layout";
 import { notify, now, update } from "./store";
 
 let queue: Promise<unknown> = Promise.resolve();
@@ -14,7 +15,8 @@ export function accept(document: Document): void {
   const ids = new Set(document.graph.nodes.map((node) => node.id));
   update((state) => ({
     document,
-    places: fresh ? document.layout : { ...state.places, ...document.layout },
+    // Blocks that nobody has put stay where they were first shown.
+    places: completed(document.graph, fresh ? document.layout : { ...state.places, ...document.layout }),
     selected: fresh ? [] : state.selected.filter((id) => ids.has(id)),
     jobs: fresh ? {} : state.jobs,
   }));

@@ -63,7 +63,7 @@ export default function TextPane() {
       yaml(),
       appearance,
       keymap.of([...defaultKeymap, ...searchKeymap, ...historyKeymap, indentWithTab]),
-      EditorView.contentAttributes.of({ "aria-label": "Text of the file" }),
+      EditorView.contentAttributes.of({ "aria-label": "Text of the file", tabindex: "0" }),
       typed,
     ];
     // In a shadow tree the editor's styles are constructed sheets, which a strict content security policy allows.
