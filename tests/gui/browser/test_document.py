@@ -178,3 +178,36 @@ def test_a_new_token_is_asked_for(serve: Callable[..., Server], page: Page) -> N
     server.kill()
     serve("arm.yaml", port=server.port, token="another")
     expect(page.get_by_text("The server was started anew")).to_be_visible(timeout=20_000)
+
+
+def test_a_problem_leads_to_its_field(
+    serve: Callable[..., Server], page: Page, tmp_path: Path, picture: Callable[[str], None]
+) -> None:
+    source = tmp_path / "wrong.txt"
+    source.write_text(PENDULUM.read_text().replace("mass: m2,", "mass: m3,").replace("frame: elbow", "frame: elbov"))
+    server = serve("arm.yaml", source=source)
+    steps.open_editor(page, server.url)
+    steps.problems(page, 2)
+    expect(page.get_by_role("button", name="Compile")).to_be_disabled()
+    page.get_by_role("button", name="2 problems").click()
+    picture("problems")
+    steps.results(page).get_by_role("button", name="elbov").click()
+    expect(page.get_by_role("dialog", name="Body lower")).to_be_visible()
+    expect(steps.window(page).get_by_role("alert")).to_contain_text("elbow")
+    steps.tab(page, "Inertia")
+    expect(steps.window(page).get_by_role("alert")).to_contain_text("unknown symbol 'm3'")
+
+
+def test_a_frame_and_a_coordinate_are_renamed_everywhere(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    steps.open_window(page, "bodies/upper")
+    steps.window(page).get_by_label("Name", exact=True).nth(1).fill("shoulder")
+    steps.tab(page, "Frames")
+    steps.fill(page, "Name of frames elbow", "joint2")
+    steps.accept(page)
+    expect(steps.block(page, "bodies/upper")).to_contain_text("shoulder")
+    steps.problems(page, 0)
+    steps.saved(page)
+    text = server.file.read_text()
+    assert "frame: joint2" in text and "elbow" not in text and "name: shoulder" in text

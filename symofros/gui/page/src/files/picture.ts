@@ -2,6 +2,7 @@
 
 import type { Document } from "../api/types";
 import { drawing } from "../model/drawing";
+import { stem } from "../model/names";
 import { now } from "../store/store";
 import { offer } from "./choose";
 
@@ -23,5 +24,5 @@ async function rasterised(svg: string): Promise<Blob> {
 export async function savePicture(document: Document, kind: "svg" | "png"): Promise<void> {
   const svg = drawing(document, now().places);
   const blob = kind === "svg" ? new Blob([svg], { type: "image/svg+xml" }) : await rasterised(svg);
-  offer(blob, `${document.name}.${kind}`);
+  offer(blob, `${stem(document.name)}.${kind}`);
 }

@@ -13,6 +13,10 @@ export function typed(text: string): Json | undefined {
   return isNumber(trimmed) ? Number(trimmed) : trimmed;
 }
 
+// Below this a number is shorter with an exponent.
+const SMALL = 1e-3;
+
 export function shown(value: Json | undefined): string {
+  if (typeof value === "number" && value !== 0 && Math.abs(value) < SMALL) return value.toExponential();
   return value === undefined || value === null ? "" : typeof value === "object" ? JSON.stringify(value) : String(value);
 }

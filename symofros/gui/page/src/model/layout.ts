@@ -53,14 +53,12 @@ function inColumns({ nodes, roots, children }: Tree, columns: number): Places {
     floor = Math.max(floor, middle + height / 2 + GAP);
     return middle;
   };
-  let row = roots;
-  while (row.length > 0) {
+  // A loop in a broken document has no root: it is cut where it is met.
+  const unseen = (): string[] => [...nodes.keys()].filter((id) => !seen.has(id)).slice(0, 1);
+  for (let row = roots; row.length > 0 || seen.size < nodes.size; row = next) {
     next = [];
     const top = floor;
-    for (const id of row) if (!seen.has(id)) put(id, 0, top);
-    // A loop in a broken document has no root: it is cut where it is met.
-    const left = [...nodes.keys()].find((id) => !seen.has(id));
-    row = next.length > 0 ? next : left === undefined ? [] : [left];
+    for (const id of row.length > 0 ? row : unseen()) if (!seen.has(id)) put(id, 0, top);
     floor += ROW_GAP - GAP;
   }
   return places;

@@ -28,6 +28,9 @@ export function symbols(data: JsonMap): string[] {
   return [...Object.keys(mapAt(data, ["parameters"])), ...Object.keys(mapAt(data, ["inputs"])), ...joints];
 }
 
+/** A file's name without its suffix. */
+export const stem = (file: string): string => file.replace(/\.[^.]+$/, "");
+
 /** Frames of a body that something can be put on, apart from its own; a beam has one, at its tip. */
 export function frameNames(data: JsonMap, body: string): string[] {
   const frames = Object.keys(mapAt(data, ["bodies", body, "frames"]));

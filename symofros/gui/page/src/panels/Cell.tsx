@@ -13,6 +13,7 @@ export function Cell({ value, label, commit, numeric = false }: { value: string;
       value={text ?? value}
       aria-label={label}
       spellCheck={false}
+      data-settled={text === null}
       onChange={(event) => setText(event.target.value)}
       onBlur={finish}
       onKeyDown={(event) => {

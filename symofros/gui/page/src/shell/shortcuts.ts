@@ -42,11 +42,20 @@ const ALONE: Record<string, () => void> = {
 
 // These are the page's own even while one types in a field; the others are the field's.
 const EVERYWHERE = ["s", "S", "k", "o"];
+// These too, in a field of which all that was typed is in the document.
+const SETTLED = ["z", "y", "Z"];
+
+function isFields(event: KeyboardEvent): boolean {
+  if (!isTyping(event.target)) return false;
+  if (!event.ctrlKey && !event.metaKey) return true;
+  const isSettled = event.target instanceof HTMLElement && event.target.dataset["settled"] === "true";
+  return !EVERYWHERE.includes(event.key) && !(isSettled && SETTLED.includes(event.key));
+}
 
 export function onKey(event: KeyboardEvent): void {
   if (now().dialog !== null || now().document === null) return;
   const control = event.ctrlKey || event.metaKey;
-  if (isTyping(event.target) && !(control && EVERYWHERE.includes(event.key))) return;
+  if (isFields(event)) return;
   if (event.key === "Enter" && !control) {
     const id = focused(event.target);
     if (id !== undefined) {

@@ -48,9 +48,7 @@ export async function edit(label: string, edits: Edit[]): Promise<boolean> {
   if (edits.length === 0) return true;
   const moved = renamedPlaces(edits);
   update((state) => ({ places: { ...state.places, ...moved } }));
-  const done = await change("api/edit", () => ({ label, edits }), (theirs) => edits.every((each) => applies(each, theirs)));
-  if (done && Object.keys(moved).length > 0) await place(moved);
-  return done;
+  return change("api/edit", () => ({ label, edits }), (theirs) => edits.every((each) => applies(each, theirs)));
 }
 
 /** A block that is renamed stays where it is. */

@@ -1,15 +1,26 @@
 import { useState } from "react";
 
+import { stem } from "../model/names";
 import { Window } from "../shell/Window";
 import { run } from "../store/jobs";
 import { dismiss, useDocument, useStore } from "../store/store";
+
+const TITLES: Record<string, string> = {
+  c: "C source package",
+  mex: "MEX function for MATLAB and Octave",
+  sfunction: "S-function for Simulink",
+  fmu2: "FMU 2.0",
+  fmu3: "FMU 3.0",
+  urdf: "URDF",
+  mjcf: "MJCF (MuJoCo)",
+};
 
 /** What to write, and into which folder of the workspace. */
 export function ExportForm() {
   const { name } = useDocument();
   const kinds = useStore((state) => state.catalogue?.targets) ?? [];
   const [kind, setKind] = useState(kinds[0] ?? "");
-  const [folder, setFolder] = useState(`${name}_export`);
+  const [folder, setFolder] = useState(`${stem(name)}_export`);
   const start = (): void => {
     dismiss();
     void run("export", { target: kind, folder });
@@ -35,7 +46,7 @@ export function ExportForm() {
         {kinds.map((each) => (
           <label key={each}>
             <input type="radio" name="kind" checked={kind === each} onChange={() => setKind(each)} />
-            {each}
+            {TITLES[each] ?? each}
           </label>
         ))}
       </fieldset>

@@ -1,61 +1,92 @@
 import { useState } from "react";
 
-import { jointName } from "../model/names";
-import { mapAt } from "../model/paths";
-import { speeds } from "../model/joints";
+import { isNumber } from "../forms/values";
+import { coordinates, inputs } from "../model/motion";
 import { Window } from "../shell/Window";
 import { run } from "../store/jobs";
 import { dismiss, useDocument, useStore } from "../store/store";
 
-/** One-coordinate joints, whose start can be given as a number each; others start neutral and at rest. */
-function starts(document: ReturnType<typeof useDocument>): string[] {
-  return Object.entries(mapAt(document.data, ["bodies"]))
-    .filter(([body]) => speeds(mapAt(document.data, ["bodies", body, "joint"])) === 1)
-    .filter(([body]) => mapAt(document.data, ["bodies", body, "joint"])["kind"] !== "general")
-    .map(([body]) => jointName(document.data, body));
-}
-
-type Numbers = Record<string, string>;
-
-const numbers = (given: Numbers): Record<string, number> =>
-  Object.fromEntries(Object.entries(given).flatMap(([name, text]) => (text.trim() === "" || Number.isNaN(Number(text)) ? [] : [[name, Number(text)]])));
-
-function Column({ title, names, given, onChange }: { title: string; names: string[]; given: Numbers; onChange(given: Numbers): void }) {
-  return names.map((name) => (
-    <td key={name}>
-      <input className="number" value={given[name] ?? ""} placeholder="0" aria-label={`${title} of ${name}`} inputMode="decimal" onChange={(event) => onChange({ ...given, [name]: event.target.value })} />
-    </td>
-  ));
-}
+type Texts = Record<string, string>;
 
 // What was asked last is what is likely to be asked next.
-let last = { end: "5", step: "0.001", method: "rk4", q0: {} as Numbers, v0: {} as Numbers };
+let last = { end: "5", step: "0.001", tolerance: "1e-8", method: "rk4", q0: {} as Texts, v0: {} as Texts, inputs: {} as Texts };
 
-/** What to simulate: from where, how long, by which method. */
-export function SimulateForm() {
-  const document = useDocument();
-  const methods = useStore((state) => state.catalogue?.methods)?.map(({ name }) => name) ?? [];
-  const names = starts(document);
-  const [asked, setAsked] = useState({ ...last, method: methods.includes(last.method) ? last.method : (methods[0] ?? "") });
-  const set = (part: Partial<typeof last>): void => setAsked({ ...asked, ...part });
-  const fine = Number(asked.end) > 0 && Number(asked.step) > 0;
-  const start = (): void => {
-    last = asked;
-    dismiss();
-    const { end, step, method, q0, v0 } = asked;
-    void run("simulate", { t_end: Number(end), dt: Number(step), method, q0: numbers(q0), v0: numbers(v0) });
-  };
-  const number = (key: "end" | "step", title: string) => (
+const given = (texts: Texts): [string, string][] => Object.entries(texts).filter(([, text]) => text.trim() !== "");
+const numbers = (texts: Texts): Record<string, number> => Object.fromEntries(given(texts).map(([name, text]) => [name, Number(text)]));
+const positive = (text: string): boolean => isNumber(text) && Number(text) > 0;
+
+interface ColumnProps {
+  title: string;
+  texts: Texts;
+  isRight(text: string): boolean;
+  onChange(texts: Texts): void;
+}
+
+/** One row a name, one field a column. */
+function Table({ head, names, columns }: { head: string; names: string[]; columns: ColumnProps[] }) {
+  if (names.length === 0) return null;
+  return (
+    <table className="starts">
+      <thead>
+        <tr>
+          <th scope="col">{head}</th>
+          {columns.map(({ title }) => (
+            <th key={title} scope="col">
+              {title}
+            </th>
+          ))}
+        </tr>
+      </thead>
+      <tbody>
+        {names.map((name) => (
+          <tr key={name}>
+            <th scope="row">{name}</th>
+            {columns.map(({ title, texts, isRight, onChange }) => {
+              const text = texts[name] ?? "";
+              return (
+                <td key={title}>
+                  <input className="number" value={text} placeholder="0" aria-label={`${title} of ${name}`} aria-invalid={text.trim() !== "" && !isRight(text)} spellCheck={false} onChange={(event) => onChange({ ...texts, [name]: event.target.value })} />
+                </td>
+              );
+            })}
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function Field({ name, title, unit, text, onChange }: { name: string; title: string; unit: string; text: string; onChange(text: string): void }) {
+  return (
     <div className="row">
-      <label className="row-label" htmlFor={key}>
+      <label className="row-label" htmlFor={name}>
         {title}
       </label>
       <div className="row-control">
-        <input id={key} className="number" value={asked[key]} inputMode="decimal" aria-invalid={!(Number(asked[key]) > 0)} onChange={(event) => set({ [key]: event.target.value })} />
+        <input id={name} className="number" value={text} aria-invalid={!positive(text)} onChange={(event) => onChange(event.target.value)} />
       </div>
-      <span className="row-unit">s</span>
+      <span className="row-unit">{unit}</span>
     </div>
   );
+}
+
+/** What to simulate: from where, driven by what, how long, by which method. */
+export function SimulateForm() {
+  const { data } = useDocument();
+  const methods = useStore((state) => state.catalogue?.methods) ?? [];
+  const [asked, setAsked] = useState(last);
+  const set = (part: Partial<typeof last>): void => setAsked({ ...asked, ...part });
+  const isAdaptive = methods.find(({ name }) => name === asked.method)?.adaptive === true;
+  const starts = [...given(asked.q0), ...given(asked.v0)];
+  const isFine = positive(asked.end) && positive(isAdaptive ? asked.tolerance : asked.step) && starts.every(([, text]) => isNumber(text));
+  const start = (): void => {
+    if (!isFine) return;
+    last = asked;
+    dismiss();
+    const { end, step, tolerance, method, q0, v0 } = asked;
+    const accuracy = isAdaptive ? { rtol: Number(tolerance) } : { dt: Number(step) };
+    void run("simulate", { t_end: Number(end), method, ...accuracy, q0: numbers(q0), v0: numbers(v0), inputs: Object.fromEntries(given(asked.inputs)) });
+  };
   return (
     <Window
       title="Simulate"
@@ -66,52 +97,41 @@ export function SimulateForm() {
           <button type="button" onClick={dismiss}>
             Cancel
           </button>
-          <button type="submit" className="primary" disabled={!fine}>
+          <button type="submit" className="primary" disabled={!isFine}>
             Simulate
           </button>
         </>
       }
     >
-      {number("end", "Duration")}
-      {number("step", "Step")}
+      <Field name="end" title="Duration" unit="s" text={asked.end} onChange={(end) => set({ end })} />
       <div className="row">
         <label className="row-label" htmlFor="method">
           Method
         </label>
         <div className="row-control">
           <select id="method" value={asked.method} onChange={(event) => set({ method: event.target.value })}>
-            {methods.map((method) => (
-              <option key={method}>{method}</option>
+            {methods.map(({ name, help }) => (
+              <option key={name} value={name} title={help}>
+                {name.replaceAll("_", " ")}
+              </option>
             ))}
           </select>
         </div>
       </div>
-      {names.length === 0 ? null : (
-        <div className="scroll">
-          <table className="starts">
-            <thead>
-              <tr>
-                <td />
-                {names.map((name) => (
-                  <th key={name} scope="col">
-                    {name}
-                  </th>
-                ))}
-              </tr>
-            </thead>
-            <tbody>
-              <tr>
-                <th scope="row">Start</th>
-                <Column title="Start" names={names} given={asked.q0} onChange={(q0) => set({ q0 })} />
-              </tr>
-              <tr>
-                <th scope="row">Speed</th>
-                <Column title="Speed" names={names} given={asked.v0} onChange={(v0) => set({ v0 })} />
-              </tr>
-            </tbody>
-          </table>
-        </div>
+      {isAdaptive ? (
+        <Field name="tolerance" title="Tolerance" unit="relative" text={asked.tolerance} onChange={(tolerance) => set({ tolerance })} />
+      ) : (
+        <Field name="step" title="Step" unit="s" text={asked.step} onChange={(step) => set({ step })} />
       )}
+      <Table
+        head="Coordinate"
+        names={coordinates(data)}
+        columns={[
+          { title: "Start", texts: asked.q0, isRight: isNumber, onChange: (q0) => set({ q0 }) },
+          { title: "Speed", texts: asked.v0, isRight: isNumber, onChange: (v0) => set({ v0 }) },
+        ]}
+      />
+      <Table head="Input" names={inputs(data)} columns={[{ title: "Formula of t", texts: asked.inputs, isRight: () => true, onChange: (texts) => set({ inputs: texts }) }]} />
     </Window>
   );
 }
