@@ -128,13 +128,12 @@ def _distinct(data: Any, part: Json) -> Json:
         bodies = {*_mapping(data, "bodies"), *_mapping(part, "bodies")}
         if name in _mapping(data, "bodies"):
             part = _renamed(part, ("bodies", name), _free(name, bodies))
-    joints = {str(_mapping(body, "joint").get("name", default_joint_name(name)))
-              for name, body in _mapping(data, "bodies").items()}  # fmt: skip
+    joints = _joints(data)
     for name, body in list(_mapping(part, "bodies").items()):
         joint = _mapping(body, "joint")
         own = str(joint.get("name", default_joint_name(name)))
         if joint and (own in joints or set(symbols_of(joint, own)) & names):
-            part = _renamed(part, ("bodies", name, "joint"), _free(own, joints | names | taken(part)))
+            part = _renamed(part, ("bodies", name, "joint"), _free(own, joints | _joints(part) | names | taken(part)))
         stated = joint.get("coordinates")
         for i, symbol in enumerate(stated if isinstance(stated, list) else []):
             if symbol in names:
@@ -145,6 +144,12 @@ def _distinct(data: Any, part: Json) -> Json:
                 known = {*_mapping(data, section), *_mapping(part, section)}
                 part = _renamed(part, (section, name), _free(name, known))
     return part
+
+
+def _joints(data: Any) -> set[str]:
+    """Names of joints, those that nothing formulas use follows from included."""
+    bodies = _mapping(data, "bodies").items()
+    return {str(_mapping(body, "joint").get("name", default_joint_name(name))) for name, body in bodies}
 
 
 def _renamed(part: Json, path: Path, new: str) -> Json:
