@@ -117,6 +117,6 @@ def picture(page: Page) -> Callable[[str], None]:
             file = Path(PICTURES) / f"editor-{name}.png"
             page.screenshot(path=file)
             # Few colours are enough for it, and make it small.
-            Image.open(file).convert("RGB").quantize(255, dither=Image.Dither.NONE).save(file, optimize=True)
+            Image.open(file).convert("RGB").quantize(255, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(file, optimize=True)
 
     return shoot

@@ -141,6 +141,13 @@ describe("layout", () => {
     expect(Object.keys(tidy({ ...graph, edges: [...graph.edges, back] }))).toHaveLength(3);
   });
 
+  test("a name that is used again does not put its block onto another", () => {
+    const graph = chain(2);
+    const places = completed(graph, { "bodies/b0": [0, 0] }, { "bodies/b1": [20, 20] });
+    expect(overlapping(graph, places)).toEqual([]);
+    expect(completed(graph, { "bodies/b0": [0, 0] }, { "bodies/b1": [20, 300] })["bodies/b1"]).toEqual([20, 300]);
+  });
+
   test("blocks that have places keep them", () => {
     const graph = chain(4);
     const known = { "bodies/b0": [0, 0], "bodies/b1": [10, 500] } as const;

@@ -88,8 +88,14 @@ function overlaps(a: Point, aSize: Point, b: Point, bSize: Point): boolean {
   return [0, 1].every((i) => (a[i] ?? 0) < (b[i] ?? 0) + (bSize[i] ?? 0) && (b[i] ?? 0) < (a[i] ?? 0) + (aSize[i] ?? 0));
 }
 
-/** Known places, and for each block that has none one beside what it hangs on, clear of all others. */
-export function completed(graph: Graph, known: Places): Places {
+/**
+ * Places of all blocks.
+ *
+ * @param known Where blocks stand; they stay there.
+ * @param remembered Where a block of that name stood once: it goes there again if there is room.
+ * @returns Of a block that has neither, a place beside what it hangs on, clear of all others.
+ */
+export function completed(graph: Graph, known: Places, remembered: Places = {}): Places {
   if (!graph.nodes.some((node) => node.id in known)) return tidy(graph);
   const places: Places = {};
   for (const node of graph.nodes) {
@@ -98,12 +104,14 @@ export function completed(graph: Graph, known: Places): Places {
   }
   const nodes = new Map(graph.nodes.map((node) => [node.id, node]));
   for (const node of graph.nodes.filter((each) => !(each.id in places))) {
+    const isFree = (place: Point): boolean =>
+      Object.entries(places).every(([id, other]) => !overlaps(place, size(node), other, size(nodes.get(id) as GraphNode)));
+    const old = remembered[node.id];
     const parent = graph.edges.find((edge) => edge.target === node.id && places[edge.source] !== undefined);
     const start = parent === undefined ? undefined : places[parent.source];
     let place: Point = start === undefined ? [0, 0] : [start[0] + COLUMN, start[1]];
-    const blocked = (): boolean =>
-      Object.entries(places).some(([id, other]) => overlaps(place, size(node), other, size(nodes.get(id) as GraphNode)));
-    while (blocked()) place = [place[0], place[1] + 24];
+    if (old !== undefined && isFree(old)) place = old;
+    while (!isFree(place)) place = [place[0], place[1] + 24];
     places[node.id] = place;
   }
   return places;

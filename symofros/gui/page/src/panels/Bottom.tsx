@@ -1,6 +1,9 @@
+import { useState } from "react";
+
 import type { Compiled as CompiledResult, Crosschecked as CrosscheckedResult, Exported, Job, JobKind, Simulated } from "../api/jobs";
 import { Glyph } from "../shell/Glyph";
 import { IconButton } from "../shell/IconButton";
+import { Splitter } from "../shell/Splitter";
 import { type Tab, Tabs } from "../shell/Tabs";
 import { cancel } from "../store/jobs";
 import { type BottomPane, update, useDocument, useStore } from "../store/store";
@@ -68,13 +71,15 @@ function Outcome({ job }: { job: Job }) {
 export function Bottom({ current }: { current: BottomPane }) {
   const jobs = useStore((state) => state.jobs);
   const { problems } = useDocument();
+  const [height, setHeight] = useState(() => Math.round(window.innerHeight * 0.42));
   const tabs: Tab<BottomPane>[] = [
     { key: "problems", title: <>Problems{problems.length > 0 ? <span className="count">{problems.length}</span> : null}</> },
     ...(Object.keys(TITLES) as JobKind[]).filter((kind) => jobs[kind] !== undefined).map((kind) => ({ key: kind, title: TITLES[kind] })),
   ];
   const job = current === "problems" ? undefined : jobs[current];
   return (
-    <section className="result-dock" aria-label="Results">
+    <section className="result-dock" style={{ height }} aria-label="Results">
+      <Splitter side="bottom" label="Height of the results" size={height} onChange={setHeight} />
       <Tabs tabs={tabs} current={job === undefined ? "problems" : current} onChange={(key) => update({ bottom: key })} label="Results">
         {job === undefined ? <Problems /> : <Outcome job={job} />}
       </Tabs>

@@ -34,7 +34,7 @@ function Plot({ t, series, unit }: { t: number[]; series: Series[]; unit: string
         {ticks(xs, 8).map((tick) => (
           <g key={tick} className="tick">
             <path d={`M${x(tick)},${BOX.y}v${BOX.height}`} />
-            <text x={x(tick)} y={HEIGHT - 12} textAnchor="middle">
+            <text x={x(tick)} y={HEIGHT - 15} textAnchor="middle">
               {brief(tick)}
             </text>
           </g>
@@ -42,7 +42,7 @@ function Plot({ t, series, unit }: { t: number[]; series: Series[]; unit: string
         <text className="unit" x={BOX.x + 4} y={BOX.y + 10}>
           {unit}
         </text>
-        <text className="unit" x={WIDTH - 8} y={HEIGHT - 1} textAnchor="end">
+        <text className="unit" x={WIDTH - 8} y={HEIGHT - 3} textAnchor="end">
           t [s]
         </text>
         {series.map((each, i) => (

@@ -16,7 +16,7 @@ export function accept(document: Document): void {
   update((state) => ({
     document,
     // Blocks that nobody has put stay where they were first shown.
-    places: completed(document.graph, fresh ? document.layout : { ...state.places, ...document.layout }),
+    places: completed(document.graph, fresh ? document.layout : state.places, document.layout),
     selected: fresh ? [] : state.selected.filter((id) => ids.has(id)),
     jobs: fresh ? {} : state.jobs,
   }));
