@@ -17,6 +17,8 @@ from playwright.sync_api import Browser, Page, sync_playwright
 import symofros.gui
 
 TOKEN = "token-of-the-tests"
+# The oldest that builds the page.
+NODE = (20, 19)
 # Where pictures for docs/editor.md go, when they are wanted.
 PICTURES = os.environ.get("SYMOFROS_PICTURES")
 
@@ -79,7 +81,9 @@ def chromium() -> Iterator[Browser]:
 @pytest.fixture
 def page(chromium: Browser) -> Iterator[Page]:
     """A page whose own errors fail the test."""
-    context = chromium.new_context(viewport={"width": 1280, "height": 760}, color_scheme="light", reduced_motion="reduce")
+    context = chromium.new_context(
+        viewport={"width": 1280, "height": 760}, color_scheme="light", reduced_motion="reduce"
+    )
     context.grant_permissions(["clipboard-read", "clipboard-write"])
     page = context.new_page()
     page.set_default_timeout(15_000)
@@ -96,11 +100,20 @@ def _is_ours(kind: str, text: str) -> bool:
     return kind == "error" and "Failed to load resource" not in text and "ERR_" not in text
 
 
+def _node_version() -> tuple[int, ...]:
+    """Of Node, if it and its package manager are there."""
+    if shutil.which("node") is None or shutil.which("npm") is None:
+        return ()
+    text = subprocess.run(["node", "--version"], capture_output=True, text=True, check=True).stdout
+    return tuple(int(part) for part in text.strip().removeprefix("v").split(".")[:2])
+
+
 @pytest.fixture(scope="session")
 def node_modules() -> Path:
     """The page's packages, installed as its lock file says if they are not there."""
-    if shutil.which("npm") is None:
-        pytest.skip("needs Node")
+    version = _node_version()
+    if version < NODE:
+        pytest.skip(f"needs Node {'.'.join(map(str, NODE))} or newer, found {version or 'none'}")
     folder = Path(symofros.gui.__file__).parent / "page"
     if not (folder / "node_modules").is_dir():
         subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=folder, check=True)
@@ -117,6 +130,8 @@ def picture(page: Page) -> Callable[[str], None]:
             file = Path(PICTURES) / f"editor-{name}.png"
             page.screenshot(path=file)
             # Few colours are enough for it, and make it small.
-            Image.open(file).convert("RGB").quantize(255, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(file, optimize=True)
+            Image.open(file).convert("RGB").quantize(255, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+                file, optimize=True
+            )
 
     return shoot

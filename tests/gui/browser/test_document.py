@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Route, expect
 
 from tests.gui.browser import steps
 from tests.gui.browser.conftest import Server
@@ -116,6 +116,31 @@ def test_a_change_of_another_page_is_seen(serve: Callable[..., Server], page: Pa
     set_parameter(other, "L1", "0.6")
     value(page, "L1")("0.6")
     value(page, "m1")("2.5")
+    other.close()
+
+
+def test_a_stale_change_is_made_again_on_the_newest_document(
+    serve: Callable[..., Server], page: Page, chromium: Browser
+) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    other = chromium.new_page()
+    for each in (page, other):
+        steps.open_editor(each, server.url)
+    stale: list[int] = []
+
+    def overtake(route: Route) -> None:
+        """The other page is quicker: the first request comes too late."""
+        if not stale:
+            set_parameter(other, "m1", "2.5")
+            value(other, "m1")("2.5")
+        stale.append(route.request.post_data_json["revision"])
+        route.continue_()
+
+    page.route("**/api/edit", overtake)
+    set_parameter(page, "L1", "0.6")
+    value(page, "L1")("0.6")
+    value(page, "m1")("2.5")
+    assert len(stale) == 2 and stale[0] < stale[1]
     other.close()
 
 

@@ -17,7 +17,9 @@ pytestmark = pytest.mark.browser
 PENDULUM = Path(__file__).parents[3] / "reference_models" / "rigid" / "double_pendulum.yaml"
 URDF = """<robot name="arm">
   <link name="base"/>
-  <link name="boom"><inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="boom">
+    <inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
   <joint name="slew" type="continuous"><parent link="base"/><child link="boom"/><axis xyz="0 0 1"/></joint>
 </robot>
 """

@@ -6,7 +6,7 @@ import { frames, hasJoint, jointHeight, portHeight, size } from "../model/geomet
 import type { Summary } from "../model/summary";
 import { Glyph } from "../shell/Glyph";
 
-export type BlockNode = Node<{ node: GraphNode; summary: Summary; highlighted: boolean }, "block">;
+export type BlockNode = Node<{ node: GraphNode; summary: Summary}, "block">;
 
 /** Ids of handles; a body's own frame has no name. */
 export const JOINT = "joint";

@@ -57,9 +57,9 @@ function choose(changes: readonly (NodeChange<BlockNode> | EdgeChange)[]): void 
 
 /** Opens the property window of a block or a link. */
 export function openProperties(id: string): void {
-  const [section, name] = id.split("/");
-  if (id === "world") show({ kind: "properties", path: ["system"] });
-  else if (section !== undefined && name !== undefined) show({ kind: "properties", path: [section, name] });
+  const graph = now().document?.graph;
+  const path = graph?.nodes.find((node) => node.id === id)?.path ?? graph?.edges.find((edge) => edge.id === id)?.path;
+  if (path !== undefined) show({ kind: "properties", path: path.slice(0, 2) });
 }
 
 function drop(event: DragEvent, where: Point): void {

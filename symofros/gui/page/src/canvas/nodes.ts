@@ -14,7 +14,7 @@ type Places = Record<string, Point>;
 export function blocks(document: Document, places: Places, selected: readonly string[], before: readonly BlockNode[]): BlockNode[] {
   const old = new Map(before.map((node) => [node.id, node]));
   return document.graph.nodes.map((node) => {
-    const data = { node, summary: summary(node, document.data), highlighted: false };
+    const data = { node, summary: summary(node, document.data) };
     const [x, y] = places[node.id] ?? [0, 0];
     const isSelected = selected.includes(node.id);
     const previous = old.get(node.id);

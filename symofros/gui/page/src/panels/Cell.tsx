@@ -1,7 +1,16 @@
 import { useState } from "react";
 
+interface CellProps {
+  value: string;
+  label: string;
+  commit(text: string): void;
+  numeric?: boolean;
+  /** Id of a list of what is usual. */
+  list?: string;
+}
+
 /** A field that changes the document when it is left, or at Enter; Escape takes it back. */
-export function Cell({ value, label, commit, numeric = false }: { value: string; label: string; commit(text: string): void; numeric?: boolean }) {
+export function Cell({ value, label, commit, numeric = false, list }: CellProps) {
   const [text, setText] = useState<string | null>(null);
   const finish = (): void => {
     if (text !== null && text !== value) commit(text);
@@ -12,6 +21,7 @@ export function Cell({ value, label, commit, numeric = false }: { value: string;
       className={numeric ? "cell number" : "cell"}
       value={text ?? value}
       aria-label={label}
+      list={list}
       spellCheck={false}
       data-settled={text === null}
       onChange={(event) => setText(event.target.value)}

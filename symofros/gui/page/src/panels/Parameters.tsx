@@ -10,6 +10,8 @@ import { edit } from "../store/edits";
 import { useDocument, useStore } from "../store/store";
 import { Cell } from "./Cell";
 
+const UNITS = "units";
+
 /** An entry may be a number alone; then what else is said of it makes it a mapping. */
 function change(data: Json, name: string, key: string, value: Json | undefined): Edit[] {
   const path = ["parameters", name];
@@ -64,7 +66,7 @@ function Row({ parameter }: { parameter: Parameter }) {
         <Cell value={shown(parameter.value)} label={`Value of ${name}`} numeric commit={(text) => set("value", typed(text) ?? 0)} />
       </td>
       <td>
-        <Cell value={parameter.unit} label={`Unit of ${name}`} commit={(text) => set("unit", text === "" ? undefined : text)} />
+        <Cell value={parameter.unit} label={`Unit of ${name}`} list={UNITS} commit={(text) => set("unit", text === "" ? undefined : text)} />
       </td>
       <td className="narrow">
         <input type="checkbox" checked={parameter.constant} aria-label={`${name} is constant`} title="hard-coded in the C code" onChange={(event) => set("constant", event.target.checked ? true : undefined)} />
@@ -82,12 +84,18 @@ function Row({ parameter }: { parameter: Parameter }) {
 /** Names and their numbers: given at run time, or hard-coded. */
 export function Parameters() {
   const { parameters, data } = useDocument();
+  const units = useStore((state) => state.catalogue?.units) ?? [];
   const add = (): void => {
     const name = fresh("p1", symbols(data));
     void edit(`add ${name}`, [{ op: "set", path: ["parameters", name], value: { value: 1 } }]);
   };
   return (
     <div className="pane parameters">
+      <datalist id={UNITS}>
+        {units.map((unit) => (
+          <option key={unit} value={unit} />
+        ))}
+      </datalist>
       <table>
         <thead>
           <tr>

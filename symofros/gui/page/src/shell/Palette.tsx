@@ -2,8 +2,8 @@ import type { DragEvent } from "react";
 
 import type { PaletteItem } from "../api/types";
 import { DRAGGED } from "../canvas/Canvas";
-import { add } from "../store/bodies";
-import { insertPart, selectedBodies } from "../store/clipboard";
+import { add, selectedBodies } from "../store/bodies";
+import { insertPart } from "../store/clipboard";
 import { show, useStore } from "../store/store";
 import { Glyph } from "./Glyph";
 

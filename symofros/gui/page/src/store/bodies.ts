@@ -9,12 +9,33 @@ import { now, show, update, type Anchor } from "./store";
 
 const data = (): JsonMap => now().document?.data ?? {};
 
-/** The frame that a new body goes to: the last one of the selected body, else the ground. */
+export function selectedBodies(): string[] {
+  return now()
+    .selected.filter((id) => id.startsWith("bodies/") && !id.endsWith("/joint"))
+    .map((id) => id.slice("bodies/".length));
+}
+
+/** The last frame of each selected body. */
+function selectedFrames(): Anchor[] {
+  return selectedBodies().map((body) => ({ body, frame: frameNames(data(), body).at(-1) ?? "" }));
+}
+
+/** The frame that a new body goes to: that of the only selected body, else the ground. */
 export function carrier(): Anchor | null {
-  const [chosen, ...others] = now().selected;
-  if (chosen === undefined || others.length > 0 || !chosen.startsWith("bodies/")) return null;
-  const body = chosen.slice("bodies/".length);
-  return { body, frame: frameNames(data(), body).at(-1) ?? "" };
+  const [chosen, ...others] = selectedFrames();
+  return chosen !== undefined && others.length === 0 ? chosen : null;
+}
+
+const anchor = ({ body, frame }: Anchor): JsonMap => (frame === "" ? { body } : { body, frame });
+
+/** A template's ends on the selected bodies: of a link on two, of a condition on one. */
+function aimed(template: Json): Json {
+  if (!isMap(template)) return template;
+  const [first, second, ...more] = selectedFrames();
+  if (first === undefined || more.length > 0) return template;
+  if ("first" in template) return second === undefined ? template : { ...template, first: anchor(first), second: anchor(second) };
+  if (second !== undefined) return template;
+  return Object.fromEntries(Object.entries(template).map(([key, value]) => [key, isMap(value) && "body" in value ? { ...value, body: first.body } : value]));
 }
 
 function attached(template: Json, on: Anchor | null, name: string): Json {
@@ -38,7 +59,7 @@ export async function add(item: PaletteItem, where?: Point): Promise<void> {
   const name = fresh(item.name, taken);
   const id = item.kind === "base" ? "world" : `${item.section}/${name}`;
   if (where !== undefined) update((state) => ({ places: { ...state.places, [id]: where } }));
-  const value = item.section === "bodies" ? attached(item.template, carrier(), name) : item.template;
+  const value = item.section === "bodies" ? attached(item.template, carrier(), name) : aimed(item.template);
   const done = await edit(`add ${name}`, [{ op: "set", path: [item.section, name], value }]);
   if (!done) return;
   if (where !== undefined) await place({ [id]: where });
@@ -66,7 +87,6 @@ export async function join(kind: Join, first: Anchor, second: Anchor): Promise<v
   const section = kind === "spring" ? "connections" : "closures";
   const stem = kind === "spring" ? "spring" : kind === "rod" ? "rod" : "loop";
   const name = fresh(stem, Object.keys(mapAt(data(), [section])));
-  const anchor = ({ body, frame }: Anchor): JsonMap => (frame === "" ? { body } : { body, frame });
   const more: JsonMap = kind === "spring" ? { stiffness: 100, length: 1 } : kind === "rod" ? { length: 1 } : {};
   const value = { first: anchor(first), second: anchor(second), ...more };
   if (await edit(`add ${name}`, [{ op: "set", path: [section, name], value }])) {
@@ -76,14 +96,16 @@ export async function join(kind: Join, first: Anchor, second: Anchor): Promise<v
 
 /** Edits that take an element of the diagram away, with what cannot be without it. */
 function removal(id: string): Edit[] {
-  const path = id.split("/");
-  if (path.length === 3) {
-    const joint = mapAt(data(), path);
-    return ["parent", "frame"].filter((key) => key in joint).map((key) => ({ op: "remove", path: [...path, key] }));
+  const graph = now().document?.graph;
+  const edge = graph?.edges.find((each) => each.id === id);
+  if (edge?.kind === "joint") {
+    const joint = mapAt(data(), edge.path);
+    return ["parent", "frame"].filter((key) => key in joint).map((key) => ({ op: "remove", path: [...edge.path, key] }));
   }
+  const path = edge?.path ?? graph?.nodes.find((node) => node.id === id)?.path ?? [];
   const [section, name] = path;
-  if (section === undefined || name === undefined) return [];
-  const uses = section === "bodies" ? usesOf(data(), name) : [];
+  if (name === undefined) return [];
+  const uses = section === "bodies" ? usesOf(data(), String(name)) : [];
   return [...uses, path].map((each) => ({ op: "remove", path: each }));
 }
 

@@ -5,7 +5,7 @@ import type { JsonMap, LibraryPart, Part, Point } from "../api/types";
 import { extract, insertion } from "../model/clipboard";
 import { bodyNames } from "../model/names";
 import { isMap } from "../model/paths";
-import { carrier } from "./bodies";
+import { carrier, selectedBodies } from "./bodies";
 import { change, edit, place } from "./edits";
 import { ordered } from "./requests";
 import { now, update } from "./store";
@@ -13,12 +13,6 @@ import { now, update } from "./store";
 const KEY = "symofros_part";
 // The system's clipboard can be closed to us; a copy within the page always works.
 let copied: Part | null = null;
-
-export function selectedBodies(): string[] {
-  return now()
-    .selected.filter((id) => id.startsWith("bodies/") && !id.endsWith("/joint"))
-    .map((id) => id.slice("bodies/".length));
-}
 
 export function copy(): void {
   const document = now().document;

@@ -26,7 +26,12 @@ async function attend(): Promise<void> {
         lost,
       });
     });
-    while (!(await answers())) await new Promise((resume) => window.setTimeout(resume, PAUSE));
+    let isBack = false;
+    while (!isBack) {
+      isBack = await answers();
+      // Also when it is there: a stream that breaks again and again must not be asked for without a pause.
+      await new Promise((resume) => window.setTimeout(resume, PAUSE));
+    }
     if (now().link === "expired") return;
     await refresh();
   }
