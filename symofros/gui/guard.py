@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hmac
 import json
+import re
 from collections.abc import Iterable
 from http import HTTPStatus
 from urllib.parse import parse_qs
@@ -18,6 +19,7 @@ API = "/api/"
 # Only here may the token stand in the address: a browser's event source sends no headers of ours.
 EVENTS = "/api/events"
 
+_LENGTH = re.compile(r"[0-9]{1,15}")
 _READING = frozenset({"GET", "HEAD"})
 HEADERS = {
     "Content-Security-Policy": (
@@ -84,7 +86,7 @@ class Guard:
                                 "every request carries the token of this run of the server",
                                 "open the address that `symofros edit` printed last")  # fmt: skip
         length = headers.get("content-length", ["0"])[0]
-        if not length.isdigit() or int(length) > self.max_body:
+        if not _LENGTH.fullmatch(length) or int(length) > self.max_body:
             return 413, _too_large(self.max_body)
         if scope["method"] not in _READING | {"DELETE"}:
             kind = headers.get("content-type", [""])[0].partition(";")[0].strip().lower()
@@ -120,6 +122,8 @@ class Guard:
 
         async def marked(message: Message) -> None:
             nonlocal begun
+            if taken > self.max_body and not begun:
+                return  # What the application makes of the error is not the answer.
             if message["type"] == "http.response.start":
                 begun = True
                 fresh = [(b"cache-control", b"no-store")] if scope["path"].startswith(API) else []

@@ -134,7 +134,9 @@ class Jobs:
     def _take(self, job: Job, line: bytes) -> None:
         try:
             said = json.loads(line)
-        except ValueError:  # Too long, or cut off by a crash; the end of the process says which.
+        except (ValueError, RecursionError):  # Too long, or cut off by a crash; the end of the process says which.
+            return
+        if not isinstance(said, dict):
             return
         if "progress" in said:
             job.progress = said["progress"]

@@ -12,6 +12,7 @@ from symofros.description.native.faults import line_of, path_of, problem_of
 from symofros.description.native.schema import NativeFile, default_joint_name
 from symofros.description.parser import ExpressionError, parse
 from symofros.errors import Problem, first_of
+from symofros.gui.formulas import formulas
 from symofros.gui.plain import Path
 from symofros.gui.sheet import Sheet
 
@@ -80,7 +81,7 @@ def _path_of(problem: Problem, sheet: Sheet, line: int) -> Path:
         return ()
     entry = _named(problem.what, data) or _by_line(sheet, line)
     inner = _at(data, entry)
-    field = _by_formula(problem.found, inner) or _by_name(problem, inner) or _by_word(problem.what, inner)
+    field = _by_formula(problem, data, entry) or _by_name(problem, inner) or _by_word(problem.what, inner)
     return (*entry, *field)
 
 
@@ -125,12 +126,15 @@ def _walk(sheet: Sheet) -> Iterator[tuple[Path, Any]]:
         stack += [((*path, key), child) for key, child in reversed(pairs)]
 
 
-def _by_formula(found: str, data: Any) -> Path:
-    """The first formula within an entry that reads as the one found."""
-    wanted = found.strip("'")
-    if not found.startswith("'") or wanted == "":
+def _by_formula(problem: Problem, data: Any, entry: Path) -> Path:
+    """The formula within an entry that reads as the one found; of several the one that the message's words lead to."""
+    wanted = problem.found.strip("'")
+    if not problem.found.startswith("'") or not wanted:
         return ()
-    return _first(data, lambda _, value: isinstance(value, str) and _canonical(value) == wanted)
+    alike = [path[len(entry) :] for path, text in formulas(data) if path[: len(entry)] == entry
+             and _canonical(text) == wanted]  # fmt: skip
+    words = {_WORDS.get(word, word) for word in re.findall(r"\w+", problem.what.partition(": ")[2])}
+    return next((path for path in alike if words & {*path}), alike[0] if alike else ())
 
 
 def _canonical(text: str) -> str:

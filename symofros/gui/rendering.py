@@ -18,6 +18,18 @@ _FLOW_SIGNS = re.compile(r"[,\[\]{}]|:(?=[,\[\]{}])|:\Z")
 _ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 
+class Typed(float):
+    """A number that is written as somebody typed it: 8.0e-4, not 0.0008."""
+
+    text: str
+
+    def __new__(cls, text: str) -> Typed:
+        """The number of a text that reads as one."""
+        made = super().__new__(cls, float(scalar_of(text)))
+        made.text = text
+        return made
+
+
 def scalar(value: Any, *, flow: bool, quote: str = "", key: bool = False) -> str:
     """A scalar's text.
 
@@ -33,6 +45,8 @@ def scalar(value: Any, *, flow: bool, quote: str = "", key: bool = False) -> str
         return "null"
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, Typed):
+        return value.text
     if isinstance(value, float):
         return {"inf": ".inf", "-inf": "-.inf", "nan": ".nan"}.get(repr(value), repr(value))
     # A whole number of sixteen digits or more is read as a double.

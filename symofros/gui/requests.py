@@ -7,6 +7,7 @@ from typing import Any, get_args
 from symofros.description.native.yaml_nodes import scalar_of
 from symofros.errors import Problem
 from symofros.gui.plain import Edit, EditError, Op, Path
+from symofros.gui.rendering import Typed
 
 MAX_EDITS = 1000
 MAX_PATH = 50
@@ -65,7 +66,8 @@ def _typed(text: Any) -> Any:
     """What somebody who types this into a field means: a number where it is one, otherwise a text."""
     if not isinstance(text, str):
         raise _malformed("text", text, "a text")
-    return scalar_of(text.strip())
+    found = scalar_of(text.strip())
+    return Typed(text.strip()) if type(found) in (int, float) else found
 
 
 def _malformed(what: str, found: Any, rule: str) -> EditError:

@@ -105,7 +105,7 @@ def simulate(request: Json, tell: Tell) -> Json:
     tell(0, 100, "reading")
     system = system_of(request)
     options = request.get("options", {})
-    t_end = _number(options.get("t_end"), "t_end", 1.0)
+    t_end = _number(options.get("t_end", 1.0), "t_end")
     tell(0, 100, "compiling")
     model = compile_system(system)
     par = _vector(model.names.par, options.get("parameters"), model.parameter_values, "parameter")
@@ -117,7 +117,7 @@ def simulate(request: Json, tell: Tell) -> Json:
         q, v = closed.q, closed.v
     points = _whole(options.get("points"), 2, MAX_POINTS, POINTS)
     chosen: Json = {key: options[key] for key in ("method", "stabilisation") if options.get(key)}
-    chosen |= {key: _number(options[key], key, 0.0) for key in ("dt", "rtol", "atol") if options.get(key) is not None}
+    chosen |= {key: _number(options[key], key) for key in ("dt", "rtol", "atol") if options.get(key) is not None}
     inputs = {
         str(name): _formula(text) for name, text in (options.get("inputs") or {}).items() if text not in ("", None)
     }
@@ -193,9 +193,9 @@ def import_model(request: Json, tell: Tell) -> Json:
     return {"text": write_yaml(system), "notes": list(system.notes)}
 
 
-def _number(given: Any, what: str, default: float) -> float:
+def _number(given: Any, what: str) -> float:
     try:
-        number = default if given is None or given == "" else float(given)
+        number = float(given)
     except (TypeError, ValueError):
         number = math.nan
     if not math.isfinite(number):
@@ -219,7 +219,7 @@ def _vector(names: tuple[str, ...], given: Any, default: Any, what: str) -> Any:
         if plain not in names:
             raise UnknownNameError(str(Problem(f"no {what} '{name}'", ", ".join(names[:12]), f"a {what} of the model",
                                                did_you_mean(name, names))))  # fmt: skip
-        values[names.index(plain)] = _number(number, name, 0.0)
+        values[names.index(plain)] = _number(number, name)
     return values
 
 
