@@ -301,7 +301,7 @@ def export_command(
 
 @app.command()
 def edit(
-    model: Annotated[Path | None, typer.Argument(help="A model, .yaml; a new one if not given.")] = None,
+    model: Annotated[Path | None, typer.Argument(help="A model; a new one if not given.")] = None,
     port: Annotated[int, typer.Option(help="Of the local page; any free one by default.")] = 0,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")] = True,
     token: Annotated[str | None, typer.Option(help="A fixed one, for tests; drawn at random by default.")] = None,
@@ -309,7 +309,6 @@ def edit(
     """Draw, edit, check, compile and simulate a model in the browser."""
     try:
         from symofros.gui.command import serve
-        from symofros.gui.workspace import FileError
     except ModuleNotFoundError as error:
         if error.name not in ("starlette", "uvicorn", "anyio"):
             raise
@@ -317,7 +316,7 @@ def edit(
         raise typer.Exit(BAD_INPUT) from None
     try:
         serve(model, port, token, browser, lambda url: _out.print(url, markup=False, highlight=False, soft_wrap=True))
-    except (FileError, OSError) as error:
+    except (sf.SymofrosError, OSError) as error:
         _err.print(str(error), markup=False, highlight=False, soft_wrap=True)
         raise typer.Exit(BAD_INPUT) from None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import symofros
 from symofros.description.native.schema import json_schema
 from symofros.exporting import TARGETS
 from symofros.simulation.methods import METHODS
@@ -93,6 +94,7 @@ def catalogue() -> Json:
         for item in METHODS.values()
     ]
     return {
+        "version": symofros.__version__,
         "schema": json_schema(),
         "palette": list(PALETTE),
         "methods": methods,

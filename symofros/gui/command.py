@@ -10,9 +10,12 @@ from pathlib import Path
 
 import uvicorn
 
+import symofros
+from symofros.description.native.files import SUFFIXES, write_yaml
+from symofros.errors import Problem
 from symofros.gui.app import application
 from symofros.gui.session import Session
-from symofros.gui.workspace import Workspace
+from symofros.gui.workspace import FileError, Workspace
 
 HOST = "127.0.0.1"
 
@@ -29,10 +32,10 @@ def serve(file: Path | None, port: int, token: str | None, browser: bool, tell: 
 
     Raises:
         FileError: The file can't be opened.
+        DescriptionError: A file of another format can't be read.
         OSError: The port is taken.
     """
-    path = file.resolve() if file is not None else None
-    session = Session(Workspace(path.parent if path is not None else Path.cwd()), path)
+    session = _opened(file)
     token = token or secrets.token_urlsafe(32)
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -44,6 +47,22 @@ def serve(file: Path | None, port: int, token: str | None, browser: bool, tell: 
         )  # fmt: skip
         server = _Server(config, lambda: _ready(f"http://{HOST}:{port}/?token={token}", browser, tell))
         server.run(sockets=[listener])
+
+
+def _opened(file: Path | None) -> Session:
+    """A native file as it stands; of another format, a new document that says the same."""
+    if file is None:
+        return Session(Workspace(Path.cwd()))
+    path = file.resolve()
+    if not path.parent.is_dir():
+        raise FileError(Problem(f"'{file}' can't be opened", "no such folder", "its folder exists", "make it first"))
+    workspace = Workspace(path.parent)
+    if path.suffix.lower() in SUFFIXES:
+        return Session(workspace, path)
+    text = write_yaml(symofros.load(path))
+    session = Session(workspace)
+    session.storage.adopt(path.name, text)
+    return session
 
 
 def _ready(url: str, browser: bool, tell: Callable[[str], object]) -> None:

@@ -8,7 +8,8 @@ from symofros.description.native.schema import default_joint_name
 from symofros.description.system import WORLD
 
 GROUND = "world"  # The id of the block of the ground, whatever the body without a joint is called.
-ROOT, ORIGIN = "root", "body"  # Ports of a body that its frames do not name.
+# Ports that no frame names: where a body's joint arrives, and the body frame.
+ROOT, ORIGIN = "/root", ""
 
 Block = dict[str, Any]
 
@@ -70,7 +71,7 @@ class _Diagram:
         self.block(f"bodies/{name}", kind, name, subtitle, ["bodies", name], [ROOT, ORIGIN, *frames])
 
     def block(self, key: str, kind: str, title: str, subtitle: str, path: list[str], ports: list[str]) -> None:
-        kinds = {ROOT: "root", ORIGIN: "origin"}
+        kinds = {ROOT: "root", ORIGIN: "origin"}  # Any other is a frame.
         self.nodes[key] = {
             "id": key, "kind": kind, "title": title, "subtitle": subtitle, "path": path,
             "ports": [{"name": port, "kind": kinds.get(port, "frame")} for port in dict.fromkeys(ports)],

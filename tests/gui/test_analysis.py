@@ -81,7 +81,18 @@ def test_whatever_stands_in_a_document_can_be_drawn(data: object) -> None:
 def test_a_broken_wire_goes_to_the_body_itself_and_one_to_nowhere_is_left_out() -> None:
     body = {"joint": {"kind": "fixed", "parent": "a", "frame": "none"}}
     found = diagram({"bodies": {"a": {"joint": {"kind": "fixed"}}, "b": body, "c": {"joint": {"parent": "zz"}}}})
-    assert [(edge["source"], edge["source_port"]) for edge in found["edges"]] == [("world", "body"), ("bodies/a", "body")]
+    assert [(edge["source"], edge["source_port"]) for edge in found["edges"]] == [("world", ""), ("bodies/a", "")]
+
+
+def test_frames_may_be_called_like_ports() -> None:
+    frames = {"root": {}, "body": {}}
+    found = diagram(
+        {"bodies": {"a": {"joint": {}, "frames": frames}, "b": {"joint": {"parent": "a", "frame": "body"}}}}
+    )
+    assert [(port["name"], port["kind"]) for port in found["nodes"][1]["ports"]] == [
+        ("/root", "root"), ("", "origin"), ("root", "frame"), ("body", "frame")
+    ]  # fmt: skip
+    assert found["edges"][1]["source_port"] == "body"
 
 
 def test_the_body_without_a_joint_is_the_ground() -> None:

@@ -8,11 +8,11 @@ import pytest
 from jsonschema import Draft202012Validator
 from starlette.testclient import TestClient
 
+import symofros as sf
 from symofros.gui.analysis import analyse
 from symofros.gui.catalogue import PALETTE
 from symofros.gui.edits import apply
 from symofros.gui.plain import Edit
-from symofros.gui.session import Session
 from symofros.simulation.methods import METHODS
 from tests.gui.texts import FILES, TEXTS
 
@@ -90,7 +90,7 @@ def test_a_double_pendulum_can_be_drawn_from_nothing(client: TestClient) -> None
         document = client.post("/api/edit", json={"revision": document["revision"], "edits": [edit]}).json()
     assert document["problems"] == []
     joints = [(edge["source"], edge["source_port"], edge["target"]) for edge in document["graph"]["edges"]]
-    assert joints == [("world", "body", "bodies/upper"), ("bodies/upper", "tip", "bodies/lower")]
+    assert joints == [("world", "", "bodies/upper"), ("bodies/upper", "tip", "bodies/lower")]
 
 
 @pytest.mark.parametrize("part", PALETTE, ids=lambda part: f"{part['section']}/{part['name']}")
@@ -99,7 +99,13 @@ def test_every_template_of_the_palette_is_valid_as_it_stands(client: TestClient,
     path = (part["section"], part["name"])
     done = apply(text, Edit("set", path, part["template"]))
     # On the world alone, a massless body has nothing to carry, and constraints nothing to hold.
-    own = {"massless_body": "massless", "closure": "world", "rod": "world", "connection": "world", "nonholonomic": "world"}
+    own = {
+        "massless_body": "massless",
+        "closure": "world",
+        "rod": "world",
+        "connection": "world",
+        "nonholonomic": "world",
+    }
     problems = analyse(FILES["double_pendulum"], done).problems
     assert all(tuple(problem["path"][:2]) == path and part["kind"] in own for problem in problems)
     schema = client.get("/api/schema").json()["schema"]
@@ -109,6 +115,7 @@ def test_every_template_of_the_palette_is_valid_as_it_stands(client: TestClient,
 def test_the_catalogue_names_methods_units_targets(client: TestClient) -> None:
     found = client.get("/api/schema").json()
     assert [method["name"] for method in found["methods"]] == list(METHODS)
+    assert found["version"] == sf.__version__
     assert {"kg", "N m"} <= set(found["units"]) and {"c", "fmu3"} <= set(found["targets"])
 
 
@@ -117,7 +124,11 @@ def test_the_catalogue_names_methods_units_targets(client: TestClient) -> None:
     [
         ([], "2*(1+2)", {"ok": True, "names": [], "value": 6.0}),
         ([], "2*q1 - L", {"ok": True, "names": ["L", "q1"]}),
-        (["bodies", "crank", "inertia", "mass"], "2*L + pi", {"ok": True, "names": ["L"], "value": 2 + 3.141592653589793}),
+        (
+            ["bodies", "crank", "inertia", "mass"],
+            "2*L + pi",
+            {"ok": True, "names": ["L"], "value": 2 + 3.141592653589793},
+        ),
         (["bodies", "crank", "joint", "armature"], "L", {"ok": True, "names": ["L"], "value": 1.0}),
     ],
 )
@@ -170,7 +181,8 @@ def test_parts(client: TestClient) -> None:
     assert client.get("/api/parts").json() == {"parts": []}
     kept = client.post("/api/parts", json={"name": "bar", "bodies": ["rocker"]}).json()
     assert kept["parts"][0]["bodies"] == ["rocker"]
-    put = client.post("/api/parts/insert", json={"revision": 1, "name": "bar", "parent": "crank", "frame": "end"}).json()
+    put = client.post(
+        "/api/parts/insert", json={"revision": 1, "name": "bar", "parent": "crank", "frame": "end"}
+    ).json()
     assert put["data"]["bodies"]["rocker2"]["joint"]["parent"] == "crank" and put["problems"] == []
     assert client.post("/api/parts/insert", json={"revision": put["revision"], "name": "no"}).status_code == 422
-

@@ -137,7 +137,9 @@ EXAMPLES = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize(("change", "old", "new"), EXAMPLES, ids=lambda x: "/".join(map(str, x.path)) if isinstance(x, Edit) else "")
+@pytest.mark.parametrize(
+    ("change", "old", "new"), EXAMPLES, ids=lambda x: "/".join(map(str, x.path)) if isinstance(x, Edit) else ""
+)
 def test_what_is_written(change: Edit, old: str | None, new: str | None) -> None:
     done = apply(ODD, change)
     if old is None or new is None:

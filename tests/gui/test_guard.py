@@ -64,7 +64,9 @@ def test_a_foreign_page_is_refused_though_it_had_the_token(bare: TestClient, met
         refused(bare, method, address, 403, {**GRANTED, "Sec-Fetch-Site": site})
 
 
-@pytest.mark.parametrize("host", ["evil.example", f"evil.example:{PORT}", "127.0.0.1", "127.0.0.1:1", f"[::1]:{PORT}", ""])
+@pytest.mark.parametrize(
+    "host", ["evil.example", f"evil.example:{PORT}", "127.0.0.1", "127.0.0.1:1", f"[::1]:{PORT}", ""]
+)
 def test_another_host_is_refused_also_for_the_page_itself(bare: TestClient, host: str) -> None:
     """A name of somebody else's that resolves to this machine (DNS rebinding)."""
     refused(bare, "GET", "document", 403, {**GRANTED, "Host": host})
@@ -117,7 +119,6 @@ def test_a_body_without_a_length_is_cut_off_at_the_limit() -> None:
 def _asked(headers: list[tuple[bytes, bytes]], receive: Any) -> int:
     """The status of a request whose body is handed over piece by piece."""
     import anyio
-
     from starlette.applications import Starlette
     from starlette.requests import Request
     from starlette.responses import PlainTextResponse
@@ -152,7 +153,9 @@ def test_answers_carry_the_policies(client: TestClient) -> None:
     assert client.get("/api/document").headers["cache-control"] == "no-store"
 
 
-@pytest.mark.parametrize("path", ["/../app.py", "/%2e%2e/app.py", "/..%2fapp.py", "/assets/../../guard.py", "//etc/passwd"])
+@pytest.mark.parametrize(
+    "path", ["/../app.py", "/%2e%2e/app.py", "/..%2fapp.py", "/assets/../../guard.py", "//etc/passwd"]
+)
 def test_the_page_s_folder_is_not_left(client: TestClient, path: str) -> None:
     answer = client.get(path)
     assert answer.status_code in (400, 404, 405) and b"import" not in answer.content
@@ -162,7 +165,9 @@ def test_only_reading_is_allowed_outside_of_the_api(client: TestClient) -> None:
     assert client.post("/", json={}).status_code == 405
 
 
-@pytest.mark.parametrize("body", [b"", b"[]", b"{", b"3", b"[" * 200_000, b'{"revision": NaN, "text": "a"}', b"\xff", b"null"])
+@pytest.mark.parametrize(
+    "body", [b"", b"[]", b"{", b"3", b"[" * 200_000, b'{"revision": NaN, "text": "a"}', b"\xff", b"null"]
+)
 def test_odd_bodies_are_refused_and_the_server_goes_on(client: TestClient, session: Session, body: bytes) -> None:
     answer = client.post("/api/text", content=body, headers={"Content-Type": "application/json"})
     assert answer.status_code in (409, 422) and "error" in answer.json()
@@ -183,7 +188,11 @@ HOSTILE = {
 @pytest.mark.parametrize("name", sorted(HOSTILE))
 def test_hostile_texts_are_told_and_nothing_is_run(client: TestClient, tmp_path: Path, name: str) -> None:
     mark = tmp_path / "mark"
-    text = HOSTILE[name].replace("{mark}", str(mark)).replace("{{", "{").replace("}}", "}") if "mark" in HOSTILE[name] else HOSTILE[name]
+    text = (
+        HOSTILE[name].replace("{mark}", str(mark)).replace("{{", "{").replace("}}", "}")
+        if "mark" in HOSTILE[name]
+        else HOSTILE[name]
+    )
     revision = client.get("/api/document").json()["revision"]
     answer = client.post("/api/text", json={"revision": revision, "text": text})
     assert answer.status_code == 200 and answer.json()["problems"]
@@ -191,7 +200,10 @@ def test_hostile_texts_are_told_and_nothing_is_run(client: TestClient, tmp_path:
     assert client.post("/api/undo", json={"revision": answer.json()["revision"]}).json()["problems"] == []
 
 
-@pytest.mark.parametrize("text", ["__import__('os')", "().__class__", "L.__init__", "open('x')", "1e999", "(" * 999, "a" * 20_000, "9" * 9000])
+@pytest.mark.parametrize(
+    "text",
+    ["__import__('os')", "().__class__", "L.__init__", "open('x')", "1e999", "(" * 999, "a" * 20_000, "9" * 9000],
+)
 def test_hostile_formulas_are_refused(client: TestClient, text: str) -> None:
     for path in ([], ["bodies", "crank", "inertia", "mass"]):
         found = client.post("/api/expression", json={"path": path, "text": text}).json()

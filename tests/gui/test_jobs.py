@@ -163,7 +163,9 @@ def run(monkeypatch: pytest.MonkeyPatch, code: str) -> tuple[Jobs, Any, list[tup
         ("print('{\"progress\"')", "exit code 0"),
     ],
 )
-def test_a_worker_that_crashes_is_told_and_the_next_one_runs(monkeypatch: pytest.MonkeyPatch, code: str, says: str) -> None:
+def test_a_worker_that_crashes_is_told_and_the_next_one_runs(
+    monkeypatch: pytest.MonkeyPatch, code: str, says: str
+) -> None:
     jobs, job, told = run(monkeypatch, code)
     assert job.over.wait(30)
     assert job.state == "failed" and says in job.error["found"] and told[-1][1]["state"] == "failed"
@@ -213,4 +215,9 @@ def test_the_worker_takes_nothing_from_the_folder_it_works_in(client: TestClient
         (folder / f"{name}.py").write_text("raise SystemExit('taken from the workspace')")
     monkeypatch.chdir(folder)
     assert finished(client, "compile")["state"] == "done"
-    assert over(client, client.post("/api/jobs", json={"kind": "crosscheck", "options": {"states": 1}}).json()["id"])["state"] == "done"
+    assert (
+        over(client, client.post("/api/jobs", json={"kind": "crosscheck", "options": {"states": 1}}).json()["id"])[
+            "state"
+        ]
+        == "done"
+    )

@@ -81,7 +81,9 @@ nonholonomic:
 
 def test_a_body_takes_its_references_and_its_coordinate_along() -> None:
     done = renamed(TEXT, ("bodies", "arm"), "boom")
-    expected = TEXT.replace("  arm:\n", "  boom:\n").replace("parent: arm", "parent: boom").replace("body: arm", "body: boom")
+    expected = (
+        TEXT.replace("  arm:\n", "  boom:\n").replace("parent: arm", "parent: boom").replace("body: arm", "body: boom")
+    )
     expected = expected.replace("q_arm", "q_boom").replace("# q_boom", "# q_arm")
     assert done == expected  # The potential that is also called arm, and the comment, stay.
 

@@ -248,7 +248,16 @@ def test_own_files_that_are_links_are_not_followed(file: Path, tmp_path: Path) -
 
 
 def test_files_are_listed_by_path(tmp_path: Path) -> None:
-    for name in ("b.yaml", "sub/a.yml", "sub/robot.urdf", "m.xml", "x.txt", ".h.yaml", ".git/c.yaml", "__pycache__/d.yaml"):
+    for name in (
+        "b.yaml",
+        "sub/a.yml",
+        "sub/robot.urdf",
+        "m.xml",
+        "x.txt",
+        ".h.yaml",
+        ".git/c.yaml",
+        "__pycache__/d.yaml",
+    ):
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
         path.write_text("x")
@@ -290,14 +299,18 @@ def test_a_text_that_is_not_yaml_keeps_the_last_diagram(file: Path) -> None:
 
 def test_positions_are_kept_beside_the_file_and_follow_a_renaming(file: Path) -> None:
     session = opened(file)
-    session.place({"positions": {"bodies/crank": [1, 2.5], "world": [0, 0], "x": ["a", 1], "y": [1], "z": [float("nan"), 0]}})
+    session.place(
+        {"positions": {"bodies/crank": [1, 2.5], "world": [0, 0], "x": ["a", 1], "y": [1], "z": [float("nan"), 0]}}
+    )
     session.place({"positions": {"world": [5, 5]}})
     assert read_layout(file) == {"bodies/crank": [1.0, 2.5], "world": [5.0, 5.0]}
     session.edit({**now(session), "edits": [{"op": "rename", "path": ["bodies", "crank"], "to": "c"}]})
     assert opened(file).storage.layout["bodies/c"] == [1.0, 2.5]
 
 
-@pytest.mark.parametrize("content", ["", "[]", '{"layout": 3}', "[" * 100_000, json.dumps({"layout": {"a": [1e300, 0]}})])
+@pytest.mark.parametrize(
+    "content", ["", "[]", '{"layout": 3}', "[" * 100_000, json.dumps({"layout": {"a": [1e300, 0]}})]
+)
 def test_a_spoilt_side_file_is_as_none(file: Path, content: str) -> None:
     layout_of(file).write_text(content)
     assert opened(file).storage.layout == {}
