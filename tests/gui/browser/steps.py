@@ -29,8 +29,8 @@ def window(page: Page) -> Locator:
 
 
 def open_window(page: Page, node: str) -> Locator:
-    """Open the properties of a block by the keyboard."""
-    block(page, node).focus()
+    """Open the properties of a block or a link by the keyboard."""
+    page.locator(f'.react-flow [data-id="{node}"]').focus()
     page.keyboard.press("Enter")
     expect(window(page)).to_be_visible()
     return window(page)

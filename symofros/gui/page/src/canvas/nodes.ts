@@ -1,12 +1,11 @@
 /** The document's graph as React Flow's nodes and edges. */
 
-import type { Edge } from "@xyflow/react";
-
 import type { Document, Graph, GraphEdge, GraphNode, Point } from "../api/types";
-import { size } from "../model/geometry";
+import { lanes, size } from "../model/geometry";
 import { same } from "../model/paths";
 import { summary } from "../model/summary";
 import { type BlockNode, frameHandle, JOINT } from "./Block";
+import type { Link } from "./links";
 
 type Places = Record<string, Point>;
 
@@ -37,26 +36,27 @@ export function blocks(document: Document, places: Places, selected: readonly st
 
 const port = (node: GraphNode | undefined, name: string): string => frameHandle(node?.ports.find((each) => each.name === name));
 
-function joined(edge: GraphEdge, known: ReadonlyMap<string, GraphNode>, selected: boolean): Edge {
+function joined(edge: GraphEdge, known: ReadonlyMap<string, GraphNode>, lane: number | undefined, selected: boolean): Link {
   const onJoint = edge.kind === "joint" || edge.kind === "constraint";
   return {
     id: edge.id,
-    type: edge.kind === "joint" ? "mount" : "tie",
+    type: onJoint ? "mount" : "tie",
     source: edge.source,
     target: edge.target,
     sourceHandle: port(known.get(edge.source), edge.source_port),
     targetHandle: onJoint ? JOINT : port(known.get(edge.target), edge.target_port),
     className: edge.kind,
     selected,
-    data: { label: edge.kind === "joint" ? "" : edge.label, kind: edge.kind },
+    data: { label: edge.label, lane: lane ?? 0 },
     ariaLabel: `${edge.kind} ${edge.label || edge.id}`,
   };
 }
 
 /** Links between blocks that are there. */
-export function links(graph: Graph, selected: readonly string[]): Edge[] {
+export function links(graph: Graph, selected: readonly string[]): Link[] {
+  const lane = lanes(graph.edges);
   const known = new Map(graph.nodes.map((node) => [node.id, node]));
   return graph.edges
     .filter((edge) => known.has(edge.source) && known.has(edge.target))
-    .map((edge) => joined(edge, known, selected.includes(edge.id)));
+    .map((edge) => joined(edge, known, lane.get(edge.id), selected.includes(edge.id)));
 }

@@ -1,7 +1,7 @@
 /** The diagram as an SVG text of its own, for papers: no foreign objects, no style sheet, black on white. */
 
 import type { Document, GraphEdge, GraphNode, Point } from "../api/types";
-import { ends, frames, hasJoint, HEADER, jointHeight, mountPath, portHeight, size } from "./geometry";
+import { ends, frames, hasJoint, HEADER, jointHeight, lanes, mountPath, portHeight, size, tieMiddle, tiePath } from "./geometry";
 import { GLYPHS } from "./glyphs";
 import { summary } from "./summary";
 
@@ -46,18 +46,16 @@ function block(document: Document, node: GraphNode): string {
   return marks.join("");
 }
 
-function link(edge: GraphEdge, source: GraphNode, target: GraphNode, from: Point, to: Point): string {
+function link(edge: GraphEdge, lane: number | undefined, source: GraphNode, target: GraphNode, at: readonly [Point, Point]): string {
   const end = ends(edge, source, target);
-  const [x0, y0] = [from[0] + end.from[0], from[1] + end.from[1]];
-  const [x1, y1] = [to[0] + end.to[0], to[1] + end.to[1]];
-  const reach = Math.max(28, Math.abs(x1 - x0) / 2);
-  const side = edge.kind === "joint" || edge.kind === "constraint" ? -1 : 1;
-  const dash = DASHES[edge.kind];
-  const curve = edge.kind === "joint" ? mountPath([x0, y0], [x1, y1]) : `M${x0} ${y0}C${x0 + reach} ${y0} ${x1 + side * reach} ${y1} ${x1} ${y1}`;
-  const path = `<path d="${curve}" fill="none" stroke="${INK}"${dash === "" ? "" : ` stroke-dasharray="${dash}"`}/>`;
-  if (edge.kind === "joint") return path;
-  const middle = [(x0 + x1) / 2 + (side === 1 ? reach * 0.75 : 0), (y0 + y1) / 2 - 4] as const;
-  return path + label(middle[0], middle[1], edge.label, `text-anchor="middle" font-size="10" fill="${SOFT}"`);
+  const from: Point = [at[0][0] + end.from[0], at[0][1] + end.from[1]];
+  const to: Point = [at[1][0] + end.to[0], at[1][1] + end.to[1]];
+  const dash = DASHES[edge.kind] === "" ? "" : ` stroke-dasharray="${DASHES[edge.kind]}"`;
+  const path = lane === undefined ? mountPath(from, to) : tiePath(from, to, lane);
+  const line = `<path d="${path}" fill="none" stroke="${INK}"${dash}/>`;
+  if (lane === undefined) return line;
+  const [x, y] = tieMiddle(from, to, lane);
+  return line + label(x + 3, y + 3, edge.label, `font-size="10" fill="${SOFT}"`);
 }
 
 /** The whole diagram, with blocks at the given places. */
@@ -67,12 +65,13 @@ export function drawing(document: Document, places: Record<string, Point>): stri
   const left = Math.min(0, ...placed.map(({ at }) => at[0])) - MARGIN;
   const top = Math.min(0, ...placed.map(({ at }) => at[1])) - MARGIN;
   // Ties swing out to the right of the blocks that they join.
-  const width = Math.max(0, ...placed.map(({ at, size: [w] }) => at[0] + w)) - left + 3 * MARGIN;
+  const width = Math.max(0, ...placed.map(({ at, size: [w] }) => at[0] + w)) - left + 5 * MARGIN;
   const height = Math.max(0, ...placed.map(({ at, size: [, h] }) => at[1] + h)) - top + MARGIN;
+  const lane = lanes(edges);
   const byId = new Map(placed.map((each) => [each.node.id, each]));
   const drawn = edges.flatMap((edge) => {
     const [source, target] = [byId.get(edge.source), byId.get(edge.target)];
-    return source === undefined || target === undefined ? [] : [link(edge, source.node, target.node, source.at, target.at)];
+    return source === undefined || target === undefined ? [] : [link(edge, lane.get(edge.id), source.node, target.node, [source.at, target.at])];
   });
   const blocks = placed.map(({ node, at }) => `<g transform="translate(${at[0]} ${at[1]})">${block(document, node)}</g>`);
   return [

@@ -41,6 +41,26 @@ export function mountPath([x0, y0]: Point, [x1, y1]: Point): string {
   return `M${x0},${y0}H${x0 + 18}V${lane}H${x1 - 18}V${y1}H${x1}`;
 }
 
+/** How far a tie swings out: further for the later ones, so that they do not lie on each other. */
+const reachOf = ([, y0]: Point, [, y1]: Point, lane: number): number => 34 + 0.16 * Math.abs(y1 - y0) + 12 * lane;
+
+/** The line from a frame to a frame, both on the right of their blocks. */
+export function tiePath(from: Point, to: Point, lane: number): string {
+  const reach = reachOf(from, to, lane);
+  return `M${from[0]},${from[1]}C${from[0] + reach},${from[1]} ${to[0] + reach},${to[1]} ${to[0]},${to[1]}`;
+}
+
+/** The middle of that line, for its name. */
+export function tieMiddle(from: Point, to: Point, lane: number): Point {
+  return [(from[0] + to[0]) / 2 + 0.75 * reachOf(from, to, lane), (from[1] + to[1]) / 2];
+}
+
+/** Which of the ties each edge is. */
+export function lanes(edges: readonly GraphEdge[]): Map<string, number> {
+  const ties = edges.filter((edge) => edge.kind === "closure" || edge.kind === "connection");
+  return new Map(ties.map((edge, i) => [edge.id, i]));
+}
+
 /** Where an edge starts and ends, relative to its blocks; joints are on the left, frames on the right. */
 export function ends(edge: GraphEdge, source: GraphNode, target: GraphNode): { from: Point; to: Point } {
   const right = (node: GraphNode): number => size(node)[0];

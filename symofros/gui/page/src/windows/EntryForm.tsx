@@ -63,7 +63,7 @@ export function EntryForm({ section, value, onChange, path }: Props) {
   return (
     <>
       <ConditionKind value={value} onChange={onChange} />
-      <RecordField shape={shape} value={value} onChange={onChange} path={path} only={only} />
+      <RecordField shape={{ ...shape, required: only }} value={value} onChange={onChange} path={path} only={only} />
     </>
   );
 }

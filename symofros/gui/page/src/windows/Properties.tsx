@@ -15,7 +15,7 @@ const NOUNS: Record<string, string> = {
   bodies: "Body",
   closures: "Closure",
   connections: "Connection",
-  nonholonomic: "Condition on speeds",
+  nonholonomic: "Condition",
 };
 
 /** What the system window shows: all that concerns no single block. */
