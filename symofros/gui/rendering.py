@@ -10,10 +10,12 @@ from symofros.gui.plain import Path
 
 WIDTH = 110
 STEP = 2
+# A whole number from here on is read as a double.
+WHOLE = 10**15
 
 # What may begin a plain scalar here; YAML allows more, and means something else by most of it.
-_PLAIN = re.compile(r"[A-Za-z_0-9.(/+\-]([^\x00-\x1f\x7f-\x9f\u2028\u2029\ufeff]*[^\s:#])?\Z|[A-Za-z_0-9]\Z")
-_NOT_PLAIN = re.compile(r":\s|\s#|\A(---|\.\.\.)|\A-(\s|\Z)|[\ud800-\udfff\ufffe\uffff]")
+_PLAIN = re.compile(r"[A-Za-z_0-9.(/+\-](.*[^\s:#])?\Z")
+_NOT_PLAIN = re.compile(r":\s|\s#|\A(---|\.\.\.)|\A-(\s|\Z)|\A\(?[:#]")
 _FLOW_SIGNS = re.compile(r"[,\[\]{}]|:(?=[,\[\]{}])|:\Z")
 _ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
@@ -49,12 +51,16 @@ def scalar(value: Any, *, flow: bool, quote: str = "", key: bool = False) -> str
         return value.text
     if isinstance(value, float):
         return {"inf": ".inf", "-inf": "-.inf", "nan": ".nan"}.get(repr(value), repr(value))
-    # A whole number of sixteen digits or more is read as a double.
-    return repr(value) if abs(value) < 10**15 else scalar(float(value), flow=flow)
+    return repr(value) if abs(value) < WHOLE else scalar(float(value), flow=flow)
 
 
 def _text(text: str, flow: bool, quote: str, key: bool) -> str:
-    plain = _PLAIN.match(text) and not _NOT_PLAIN.search(text) and not (flow and _FLOW_SIGNS.search(text))
+    plain = (
+        text.isprintable()
+        and _PLAIN.match(text)
+        and not _NOT_PLAIN.search(text)
+        and not (flow and _FLOW_SIGNS.search(text))
+    )
     if quote not in ("'", '"') and plain and (key or scalar_of(text) == text) and text != "<<":
         return text
     if quote != '"' and text.isprintable():

@@ -7,7 +7,7 @@ from typing import Any, get_args
 from symofros.description.native.yaml_nodes import scalar_of
 from symofros.errors import Problem
 from symofros.gui.plain import Edit, EditError, Op, Path
-from symofros.gui.rendering import Typed
+from symofros.gui.rendering import WHOLE, Typed
 
 MAX_EDITS = 1000
 MAX_PATH = 50
@@ -56,10 +56,24 @@ def _edit(item: Any) -> Edit:
     key = item.get("to" if op == "rename" else "key", "")
     if not isinstance(key, str):
         raise _malformed("key", key, "a text")
-    value = item.get("value")
+    value = _clean(item.get("value"))
     if "text" in item:
         value = _typed(item["text"])
     return Edit(op, path, value, key, index)
+
+
+def _clean(value: Any) -> Any:
+    """A value as the format holds it: whole numbers of sixteen digits and more are doubles."""
+    if isinstance(value, dict):
+        return {key: _clean(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_clean(inner) for inner in value]
+    if isinstance(value, int) and abs(value) >= WHOLE:
+        try:
+            return float(value)
+        except OverflowError:
+            raise _malformed("value", "a number of hundreds of digits", "numbers are doubles") from None
+    return value
 
 
 def _typed(text: Any) -> Any:

@@ -12,7 +12,12 @@ from tests.gui.texts import DATA, FILES, ODD, TEXTS
 
 # A change of the four-bar, the path of the problem that follows, its block.
 FAULTS = (
-    ("parent: crank, frame: end", "parent: crank, frame: ennd", ["bodies", "coupler", "joint", "frame"], "bodies/coupler"),
+    (
+        "parent: crank, frame: end",
+        "parent: crank, frame: ennd",
+        ["bodies", "coupler", "joint", "frame"],
+        "bodies/coupler",
+    ),
     ("parent: crank, frame", "parent: cra, frame", ["bodies", "coupler", "joint", "parent"], "bodies/coupler"),
     ("[L/2, 0, 0]", "[K/2, 0, 0]", ["bodies", "crank", "inertia", "center_of_mass", 0], "bodies/crank"),
     ("{mass: m,", "{mass: m+,", ["bodies", "crank", "inertia", "mass"], "bodies/crank"),
@@ -26,7 +31,7 @@ FAULTS = (
     ("rocker, frame: end}, s", "rock, frame: end}, s", ["closures", "loop", "first", "body"], ""),
     ("L: {value: 1.0", "L: {value: abc", ["parameters", "L", "value"], ""),
     ("system: {name", "system: {gravity: [0, 0, g], name", ["system", "gravity", 2], "world"),
-)  # fmt: skip
+)
 
 
 @pytest.mark.parametrize(("old", "new", "path", "node"), FAULTS, ids=[fault[1] for fault in FAULTS])
@@ -70,9 +75,18 @@ def test_every_reference_model_is_drawn_whole(name: str) -> None:
     assert len({edge["id"] for edge in graph["edges"]}) == len(graph["edges"])
 
 
-@pytest.mark.parametrize("data", [None, 3, [], {"bodies": 1}, {"bodies": {"a": None, "b": [], "c": {"joint": 1}}},
-                                  {"bodies": {"a": {"joint": {"parent": ["x"], "frame": {}}}}},
-                                  {"closures": {"c": {"first": {"body": {}}, "second": 4}}, "nonholonomic": {"n": {"rolling": 1}}}])  # fmt: skip
+NO_DOCUMENTS = (
+    None,
+    3,
+    [],
+    {"bodies": 1},
+    {"bodies": {"a": None, "b": [], "c": {"joint": 1}}},
+    {"bodies": {"a": {"joint": {"parent": ["x"], "frame": {}}}}},
+    {"closures": {"c": {"first": {"body": {}}, "second": 4}}, "nonholonomic": {"n": {"rolling": 1}}},
+)
+
+
+@pytest.mark.parametrize("data", NO_DOCUMENTS)
 def test_whatever_stands_in_a_document_can_be_drawn(data: object) -> None:
     found = diagram(data)
     assert found["nodes"][0]["id"] == "world" and found["nodes"][0]["kind"] == "base"

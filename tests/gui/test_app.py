@@ -163,9 +163,18 @@ def test_shape_functions(client: TestClient) -> None:
     assert client.post("/api/shapes", json=user).json()["curves"][0]["values"][0] == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("wrong", [{"family": "fourier"}, {"direction": "x"}, {"modes": 41}, {"modes": "2"},
-                                   {"family": "hermite", "modes": 5}, {"family": "user", "modes": 1, "shapes": ["1/xi"]},
-                                   {"family": "user", "modes": 1, "shapes": [{"xi": 3}]}])  # fmt: skip
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"family": "fourier"},
+        {"direction": "x"},
+        {"modes": 41},
+        {"modes": "2"},
+        {"family": "hermite", "modes": 5},
+        {"family": "user", "modes": 1, "shapes": ["1/xi"]},
+        {"family": "user", "modes": 1, "shapes": [{"xi": 3}]},
+    ],
+)
 def test_shape_functions_that_there_are_not(client: TestClient, wrong: dict) -> None:
     answer = client.post("/api/shapes", json=wrong)
     assert answer.status_code == 422 and answer.json()["error"]["remedy"]

@@ -18,6 +18,16 @@ from symofros.gui.plain import EditError
 from symofros.gui.tasks import error_of
 from tests.gui.conftest import finished, over
 
+SLIDER = """\
+symofros: 1
+system: {gravity: [0, 0, 0]}
+inputs: {f: {unit: N}}
+bodies:
+  a:
+    joint: {name: x, kind: prismatic, effort: [f]}
+    inertia: {mass: 2}
+"""
+
 
 def test_compile(client: TestClient) -> None:
     job = finished(client, "compile")
@@ -47,8 +57,7 @@ def test_simulate(client: TestClient) -> None:
 
 
 def test_simulate_with_inputs_on_prismatic_and_revolute_joints(client: TestClient, folder: Path) -> None:
-    text = "symofros: 1\ninputs: {f: {unit: N}}\nbodies:\n  a:\n    joint: {name: x, kind: prismatic, effort: [f]}\n    inertia: {mass: 2}\n"
-    client.post("/api/text", json={"revision": 1, "text": text + "system: {gravity: [0, 0, 0]}\n"})
+    client.post("/api/text", json={"revision": 1, "text": SLIDER})
     job = finished(client, "simulate", t_end=1, v0={"dx": 1.0}, inputs={"f": "4*t"}, points=10)
     x = job["result"]["series"][0]
     assert x["unit"] == "m" and x["values"][-1] == pytest.approx(1 + 2 / 6)  # x = t + (4/2) t^3/6.
@@ -94,7 +103,8 @@ def test_an_unknown_job_is_refused(client: TestClient) -> None:
 
 
 def test_import(client: TestClient, folder: Path) -> None:
-    link = '<link name="{}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    inertia = '<mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    link = f'<link name="{{}}"><inertial>{inertia}</inertial></link>'
     joint = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>'
     urdf = f'<robot name="r">{link.format("a")}{link.format("b")}{joint}</robot>'
     answer = client.post("/api/import", json={"name": "my robot.urdf", "text": urdf})
@@ -173,7 +183,12 @@ def test_a_worker_that_crashes_is_told_and_the_next_one_runs(
 
 
 def test_progress_is_told_as_it_comes(monkeypatch: pytest.MonkeyPatch) -> None:
-    code = "import json\nfor i in range(3): print(json.dumps({'progress': {'done': i, 'total': 2, 'text': 'x'}}), flush=True)\nprint(json.dumps({'result': {'a': 1}}))"  # fmt: skip
+    code = """if True:
+        import json
+        for i in range(3):
+            print(json.dumps({"progress": {"done": i, "total": 2, "text": "x"}}), flush=True)
+        print(json.dumps({"result": {"a": 1}}))
+    """
     _, job, told = run(monkeypatch, code)
     assert job.over.wait(30) and job.state == "done" and job.result == {"a": 1}
     assert [data["progress"]["done"] for _, data in told] == [0, 1, 2, 2] and "result" not in told[-1][1]
@@ -181,7 +196,12 @@ def test_progress_is_told_as_it_comes(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_children_of_a_worker_end_with_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     mark = tmp_path / "pid"
-    code = f"import subprocess, time; p = subprocess.Popen(['sleep', '600']); open({str(mark)!r}, 'w').write(str(p.pid)); time.sleep(600)"
+    code = f"""if True:
+        import subprocess, time
+        child = subprocess.Popen(['sleep', '600'])
+        open({str(mark)!r}, 'w').write(str(child.pid))
+        time.sleep(600)
+    """
     jobs, job, _ = run(monkeypatch, code)
     while not mark.exists() or not mark.read_text():
         time.sleep(0.02)
@@ -209,7 +229,9 @@ def test_few_jobs_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
         jobs.get(first.key)
 
 
-def test_the_worker_takes_nothing_from_the_folder_it_works_in(client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
+def test_the_worker_takes_nothing_from_the_folder_it_works_in(
+    client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:  # fmt: skip
     """A module beside a model is not imported, however it is called."""
     for name in ("numpy", "json", "sympy", "validation"):
         (folder / f"{name}.py").write_text("raise SystemExit('taken from the workspace')")

@@ -316,9 +316,22 @@ def test_a_spoilt_side_file_is_as_none(file: Path, content: str) -> None:
     assert opened(file).storage.layout == {}
 
 
-@pytest.mark.parametrize("edits", [None, {}, [3], [{"op": "eval"}], [{"op": "set", "path": "a"}], [{"op": "set", "path": [1.5]}],
-                                   [{"op": "insert", "path": [], "key": 3}], [{"op": "move", "path": ["a"], "index": -1}],
-                                   [{"op": "set", "path": ["a"] * 60}], [{"op": "set", "path": ["a"], "text": 3}]])  # fmt: skip
+@pytest.mark.parametrize(
+    "edits",
+    [
+        None,
+        {},
+        [3],
+        [{"op": "eval"}],
+        [{"op": "set", "path": "a"}],
+        [{"op": "set", "path": [1.5]}],
+        [{"op": "insert", "path": [], "key": 3}],
+        [{"op": "move", "path": ["a"], "index": -1}],
+        [{"op": "set", "path": ["a"] * 60}],
+        [{"op": "set", "path": ["a"], "text": 3}],
+        [{"op": "set", "path": ["a"], "value": {"b": [10**400]}}],
+    ],
+)
 def test_malformed_edits_are_refused(file: Path, edits: object) -> None:
     session = opened(file)
     with pytest.raises(EditError, match="malformed"):
