@@ -119,8 +119,9 @@ def test_a_change_of_another_page_is_seen(serve: Callable[..., Server], page: Pa
     other.close()
 
 
+@pytest.mark.parametrize("how", ["edit", "text"])
 def test_a_stale_change_is_made_again_on_the_newest_document(
-    serve: Callable[..., Server], page: Page, chromium: Browser
+    serve: Callable[..., Server], page: Page, chromium: Browser, how: str
 ) -> None:
     server = serve("arm.yaml", source=PENDULUM)
     other = chromium.new_page()
@@ -136,9 +137,17 @@ def test_a_stale_change_is_made_again_on_the_newest_document(
         stale.append(route.request.post_data_json["revision"])
         route.continue_()
 
-    page.route("**/api/edit", overtake)
-    set_parameter(page, "L1", "0.6")
-    value(page, "L1")("0.6")
+    page.route(f"**/api/{how}", overtake)
+    if how == "edit":
+        set_parameter(page, "L1", "0.6")
+    else:
+        page.get_by_role("tab", name="YAML").click()
+        page.get_by_label("Text of the file").locator(".cm-line", has_text="unit: m, description").click()
+        page.keyboard.press("Home")
+        page.keyboard.type("L3: 0.6\n")  # The next line is indented by itself.
+        expect(page.get_by_label("Text of the file")).to_contain_text("value: 2.5, unit: kg")
+        page.get_by_role("tab", name="Parameters").click()
+    value(page, "L1" if how == "edit" else "L3")("0.6")
     value(page, "m1")("2.5")
     assert len(stale) == 2 and stale[0] < stale[1]
     other.close()

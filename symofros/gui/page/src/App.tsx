@@ -11,7 +11,7 @@ import { onKey } from "./shell/shortcuts";
 import { Status } from "./shell/Status";
 import { Toolbar } from "./shell/Toolbar";
 import { importFile } from "./store/files";
-import { useStore } from "./store/store";
+import { useDocument, useStore } from "./store/store";
 import { Dialogs } from "./windows/Dialogs";
 
 /** Files dropped anywhere are imported. */
@@ -22,6 +22,10 @@ function dropFile(event: DragEvent): void {
 }
 
 function Editor() {
+  const { name, dirty } = useDocument();
+  useEffect(() => {
+    window.document.title = `${dirty ? "• " : ""}${name} - SYMOFROS`;
+  }, [name, dirty]);
   const right = useStore((state) => state.right);
   const bottom = useStore((state) => state.bottom);
   return (

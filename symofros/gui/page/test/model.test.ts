@@ -8,6 +8,7 @@ import { changes, keyOf } from "../src/model/changes";
 import { extract, insertion } from "../src/model/clipboard";
 import { size } from "../src/model/geometry";
 import { completed, tidy } from "../src/model/layout";
+import { merged } from "../src/model/merge";
 import { fresh } from "../src/model/names";
 import { difference, isMap } from "../src/model/paths";
 import { line, span, ticks } from "../src/model/plot";
@@ -196,6 +197,21 @@ test.each([
   ["L1", "L1"],
 ])("%j is shown as %j", (value, text) => {
   expect(shown(value)).toBe(text);
+});
+
+describe("texts changed at two places", () => {
+  test.each([
+    ["a b c", "a B c", "a b C", "a B C"],
+    ["a b c", "a b C", "A b c", "A b C"],
+    ["a b c", "a b cc", "aaa b c", "aaa b cc"],
+    ["a b c", "a c", "a b c d", "a c d"],
+    ["a b c", "a X c", "a Y c", "a X c"],
+    ["a b c", "a b c", "a Y c", "a Y c"],
+    ["a b c", "a X c", "a b c", "a X c"],
+    ["a b c", "a b c", "a b c", "a b c"],
+  ])("%j: mine %j and theirs %j is %j", (base, mine, theirs, expected) => {
+    expect(merged(base, mine, theirs)).toBe(expected);
+  });
 });
 
 describe("plots", () => {

@@ -10,6 +10,7 @@ import {
   type EdgeChange,
   MiniMap,
   type NodeChange,
+  Panel,
   ReactFlow,
   useReactFlow,
 } from "@xyflow/react";
@@ -138,6 +139,11 @@ export function Canvas() {
     >
       <Background variant={BackgroundVariant.Dots} gap={20} size={1} />
       <Controls showInteractive={false} position="bottom-left" />
+      {nodes.length === 1 ? (
+        <Panel position="top-center" className="quiet">
+          Drag a body from the left onto the canvas, or click it there.
+        </Panel>
+      ) : null}
       {nodes.length > 12 ? <MiniMap pannable zoomable ariaLabel="overview of the diagram" /> : null}
     </ReactFlow>
   );

@@ -2,10 +2,11 @@ import { useReactFlow, useStoreApi } from "@xyflow/react";
 import { useEffect, useRef } from "react";
 
 import type { Graph, GraphNode, Point } from "../api/types";
-import { size } from "../model/geometry";
-import { useStore } from "../store/store";
+import { lanes, size } from "../model/geometry";
+import { now, useStore } from "../store/store";
 
 const MARGIN = 20;
+const NOTHING: Graph = { nodes: [], edges: [] };
 
 /** The block that an id means: itself, or one end of a link. */
 function target(graph: Graph, id: string): GraphNode | undefined {
@@ -13,7 +14,16 @@ function target(graph: Graph, id: string): GraphNode | undefined {
   return graph.nodes.find((node) => node.id === end);
 }
 
-export const WHOLE = { padding: 0.15, maxZoom: 1 };
+const isCalm = window.matchMedia("(prefers-reduced-motion: reduce)");
+
+/** How long the diagram takes to move [ms]. */
+export const pace = (): number => (isCalm.matches ? 0 : 200);
+
+/** Options of a view of the whole diagram; ties swing out on the right. */
+export function whole(graph: Graph) {
+  const right = lanes(graph.edges).size > 0 ? "96px" : "40px";
+  return { padding: { top: "32px", bottom: "32px", left: "40px", right }, maxZoom: 1 } as const;
+}
 
 /** Shows the whole diagram when a file is opened, and when results take some of its room. */
 export function useWholeView(path: string): void {
@@ -22,7 +32,7 @@ export function useWholeView(path: string): void {
   useEffect(() => {
     const frame = requestAnimationFrame(() => {
       // An empty model grows to the right.
-      if (flow.getNodes().length > 1) void flow.fitView(WHOLE);
+      if (flow.getNodes().length > 1) void flow.fitView(whole(now().document?.graph ?? NOTHING));
       else void flow.setViewport({ x: 60, y: 120, zoom: 1 });
     });
     return () => cancelAnimationFrame(frame);
@@ -45,6 +55,6 @@ export function useSight(graph: Graph, places: Record<string, Point>): void {
     const [w, h] = size(node);
     const isInside = (from: number, extent: number, room: number): boolean => from >= MARGIN && from + extent <= room - MARGIN;
     if (zoom >= 0.5 && isInside(place[0] * zoom + x, w * zoom, width) && isInside(place[1] * zoom + y, h * zoom, height)) return;
-    void flow.setCenter(place[0] + w / 2, place[1] + h / 2, { zoom: Math.min(1, Math.max(0.7, zoom)), duration: 200 });
+    void flow.setCenter(place[0] + w / 2, place[1] + h / 2, { zoom: Math.min(1, Math.max(0.7, zoom)), duration: pace() });
   }, [sight, graph, places, flow, store]);
 }

@@ -55,7 +55,7 @@ function link(edge: GraphEdge, lane: number | undefined, source: GraphNode, targ
   const line = `<path d="${path}" fill="none" stroke="${INK}"${dash}/>`;
   if (lane === undefined) return line;
   const [x, y] = tieMiddle(from, to, lane);
-  return line + label(x + 3, y + 3, edge.label, `font-size="10" fill="${SOFT}"`);
+  return line + label(x + 3, y + 3, edge.label, `font-size="10" fill="${SOFT}" stroke="#ffffff" stroke-width="3" paint-order="stroke"`);
 }
 
 /** The whole diagram, with blocks at the given places. */

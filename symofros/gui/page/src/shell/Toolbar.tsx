@@ -1,7 +1,7 @@
 import { useReactFlow } from "@xyflow/react";
 
 import type { JobKind } from "../api/jobs";
-import { WHOLE } from "../canvas/useSight";
+import { pace, whole } from "../canvas/useSight";
 import { chooseImport } from "../files/choose";
 import { savePicture } from "../files/picture";
 import { tidy } from "../model/layout";
@@ -79,7 +79,7 @@ export function Toolbar() {
   const right = useStore((state) => state.right);
   const arrange = async (): Promise<void> => {
     await place(tidy(document.graph));
-    requestAnimationFrame(() => void flow.fitView({ ...WHOLE, duration: 200 }));
+    requestAnimationFrame(() => void flow.fitView({ ...whole(document.graph), duration: pace() }));
   };
   return (
     <header className="toolbar">
@@ -89,7 +89,7 @@ export function Toolbar() {
         <IconButton glyph="undo" label={document.can_undo ? `Undo: ${document.undo_label ?? ""} (Ctrl Z)` : "Undo"} disabled={!document.can_undo} onClick={() => void undo()} />
         <IconButton glyph="redo" label={document.can_redo ? `Redo: ${document.redo_label ?? ""} (Ctrl Y)` : "Redo"} disabled={!document.can_redo} onClick={() => void redo()} />
         <IconButton glyph="layout" label="Arrange the blocks" onClick={() => void arrange()} />
-        <IconButton glyph="fit" label="Show the whole diagram" onClick={() => void flow.fitView({ ...WHOLE, duration: 200 })} />
+        <IconButton glyph="fit" label="Show the whole diagram" onClick={() => void flow.fitView({ ...whole(document.graph), duration: pace() })} />
         <IconButton glyph="search" label="Find (Ctrl K)" onClick={() => show({ kind: "search" })} />
       </div>
       <h1 className="file-name" title={document.path}>

@@ -52,10 +52,18 @@ function isFields(event: KeyboardEvent): boolean {
   return !EVERYWHERE.includes(event.key) && !(isSettled && SETTLED.includes(event.key));
 }
 
+// What these mean elsewhere, such as copying text out of a table, is the browser's.
+const DIAGRAMS = ["c", "x", "v", "a", "Delete", "Backspace"];
+
+function isElsewhere(event: KeyboardEvent): boolean {
+  const isDiagram = event.target === window.document.body || (event.target instanceof Element && event.target.closest(".canvas") !== null);
+  return DIAGRAMS.includes(event.key) && (!isDiagram || window.getSelection()?.isCollapsed === false);
+}
+
 export function onKey(event: KeyboardEvent): void {
   if (now().dialog !== null || now().document === null) return;
   const control = event.ctrlKey || event.metaKey;
-  if (isFields(event)) return;
+  if (isFields(event) || isElsewhere(event)) return;
   if (event.key === "Enter" && !control) {
     const id = focused(event.target);
     if (id !== undefined) {

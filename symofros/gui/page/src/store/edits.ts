@@ -2,6 +2,7 @@
 
 import { post, type Refused } from "../api/client";
 import type { Document, Edit, Json, Path, Point } from "../api/types";
+import { merged } from "../model/merge";
 import { at } from "../model/paths";
 import { accept, explain, ordered } from "./requests";
 import { notify, now, update } from "./store";
@@ -65,7 +66,9 @@ function renamedPlaces(edits: readonly Edit[]): Record<string, Point> {
 export const setValue = (label: string, path: Path, value: Json): Promise<boolean> =>
   edit(label, [{ op: "set", path, value }]);
 
-export const setText = (text: string): Promise<boolean> => change("api/text", () => ({ text }));
+/** The whole text, made from `base`; what somebody else changed in it meanwhile is kept. */
+export const setText = (text: string, base: string): Promise<boolean> =>
+  change("api/text", () => ({ text: merged(base, text, now().document?.text ?? base) }), () => true);
 export const undo = (): Promise<boolean> => change("api/undo", () => ({}), () => true);
 export const redo = (): Promise<boolean> => change("api/redo", () => ({}), () => true);
 

@@ -8,21 +8,12 @@ import { drawSelection, EditorView, highlightActiveLine, keymap, lineNumbers } f
 import { useEffect, useRef } from "react";
 
 import type { Problem } from "../api/types";
+import { replacement } from "../model/merge";
 import { setText } from "../store/edits";
 import { useDocument } from "../store/store";
 import { appearance } from "./appearance";
 
 const PAUSE = 400;
-
-/** The smallest replacement that turns one text into the other, so that the cursor stays where it is. */
-function change(before: string, after: string): { from: number; to: number; insert: string } {
-  let from = 0;
-  while (from < before.length && from < after.length && before[from] === after[from]) from += 1;
-  let tail = 0;
-  const most = Math.min(before.length, after.length) - from;
-  while (tail < most && before[before.length - 1 - tail] === after[after.length - 1 - tail]) tail += 1;
-  return { from, to: before.length - tail, insert: after.slice(from, after.length - tail) };
-}
 
 function diagnostics(problems: readonly Problem[], text: Text): Diagnostic[] {
   return problems
@@ -39,6 +30,8 @@ export default function TextPane() {
   const host = useRef<HTMLDivElement>(null);
   const view = useRef<EditorView | null>(null);
   const timer = useRef(0);
+  // What the typed text was made from.
+  const base = useRef(document.text);
 
   useEffect(() => {
     // What the person types goes to the server after a pause; what comes from there is marked by `remote`.
@@ -47,7 +40,7 @@ export default function TextPane() {
       window.clearTimeout(timer.current);
       timer.current = window.setTimeout(() => {
         timer.current = 0;
-        void setText(change.view.state.doc.toString());
+        void setText(change.view.state.doc.toString(), base.current);
       }, PAUSE);
     });
     const extensions = [
@@ -73,7 +66,7 @@ export default function TextPane() {
     return () => {
       if (timer.current !== 0) {
         window.clearTimeout(timer.current);
-        void setText(editor.state.doc.toString());
+        void setText(editor.state.doc.toString(), base.current);
       }
       editor.destroy();
     };
@@ -83,9 +76,10 @@ export default function TextPane() {
     const editor = view.current;
     // While there is something typed that the server has not seen, its older text must not come over it.
     if (editor === null || timer.current !== 0) return;
+    base.current = document.text;
     const shown = editor.state.doc.toString();
     if (shown !== document.text) {
-      editor.dispatch({ changes: change(shown, document.text), userEvent: "remote", annotations: Transaction.addToHistory.of(false) });
+      editor.dispatch({ changes: replacement(shown, document.text), userEvent: "remote", annotations: Transaction.addToHistory.of(false) });
     }
     editor.dispatch(setDiagnostics(editor.state, diagnostics(document.problems, editor.state.doc)));
   }, [document]);

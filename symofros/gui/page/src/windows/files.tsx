@@ -135,7 +135,7 @@ export function ChangedOnDisk({ disk, over, path }: { disk: string; over: string
     if (await save(path, over)) dismiss();
   };
   const takeTheirs = async (): Promise<void> => {
-    if (await setText(disk)) dismiss();
+    if (await setText(disk, shown)) dismiss();
   };
   return (
     <Window
