@@ -14,7 +14,7 @@ from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem
 from symofros.gui.diagram import diagram
 from symofros.gui.problems import placed, schema_problems
-from symofros.gui.sheet import Sheet
+from symofros.gui.sheet import sheet_of
 from symofros.topology.graph import find_problems
 
 Json = dict[str, Any]
@@ -50,11 +50,10 @@ def analyse(file: Path, text: str) -> Analysis:
         file: Where it is, or will be; what it includes is found from there.
         text: What it holds.
     """
-    shown = file.name
     try:
-        sheet = Sheet(text, shown)
+        sheet = sheet_of(text)
     except YamlFault as error:
-        return Analysis(False, problems=[placed(error.problem, None, shown, {})])
+        return Analysis(False, problems=[placed(error.problem, None, "", {})])
     found, system = _checked(file, text)
     exact = schema_problems(sheet, str(file))
     shown_problems = [placed(problem, sheet, str(file), exact) for problem in found]

@@ -12,8 +12,8 @@ from typing import Any
 from symofros.description.native.yaml_nodes import Node, YamlFault
 from symofros.gui.plain import Edit, Path, edited, fault, same
 from symofros.gui.renaming import renaming
-from symofros.gui.sheet import Sheet
-from symofros.gui.surgery import moved, put, removed, renamed, replaced, rewritten
+from symofros.gui.sheet import Sheet, sheet_of
+from symofros.gui.surgery import moved, patch, put, removed, renamed, replaced, rewritten
 
 
 def apply(text: str, edit: Edit) -> str:
@@ -34,15 +34,38 @@ def with_references(text: str, edits: list[Edit]) -> str:
         YamlFault: The text is not YAML to begin with.
     """
     for edit in edits:
-        parts = renaming(Sheet(text).root.plain(), edit) if edit.op == "rename" else [edit]
-        for part in parts:
-            text = apply(text, part)
+        if edit.op == "rename":
+            text = _together(text, renaming(sheet_of(text).root.plain(), edit))
+        else:
+            text = apply(text, edit)
+    return text
+
+
+def _together(text: str, edits: list[Edit]) -> str:
+    """The text after edits apart from each other, read once: a parameter may be used in hundreds of formulas."""
+    sheet = sheet_of(text)
+    done, after, rest = text, sheet.root.plain(), []
+    patches = [(patch(sheet, edit), edit) for edit in edits]
+    # From the end of the text, so that positions and paths stay valid: a key stands before what is in it.
+    for found, edit in sorted(patches, key=lambda pair: pair[0][:2], reverse=True):
+        start, end, new = found
+        if start < 0:
+            rest.append(edit)
+        else:
+            done, after = done[:start] + new + done[end:], edited(after, edit)
+    meant = _meaning(done, after)
+    return _one_by_one(text, edits) if meant is None else _one_by_one(meant, rest)
+
+
+def _one_by_one(text: str, edits: list[Edit]) -> str:
+    for edit in edits:
+        text = apply(text, edit)
     return text
 
 
 def trace(text: str, edit: Edit) -> tuple[str, Path | None]:
     """As `apply`, and the path of the entry that had to be written anew, if one had to."""
-    sheet = Sheet(text)
+    sheet = sheet_of(text)
     before = sheet.root.plain()
     after = edited(before, edit)
     if same(before, after):
@@ -66,7 +89,7 @@ def _meaning(text: str | None, wanted: Any) -> str | None:
     if text is None:
         return None
     try:
-        return text if same(Sheet(text).root.plain(), wanted) else None
+        return text if same(sheet_of(text).root.plain(), wanted) else None
     except YamlFault:
         return None
 

@@ -9,7 +9,7 @@ from symofros.errors import Problem
 from symofros.gui.parts import extracted
 from symofros.gui.plain import EditError
 from symofros.gui.rendering import block
-from symofros.gui.sheet import Sheet
+from symofros.gui.sheet import sheet_of
 from symofros.gui.workspace import FileError, Workspace, identifier, read_text, write
 
 Json = dict[str, Any]
@@ -44,7 +44,7 @@ class Library:
             EditError: It has no bodies.
         """
         text, _ = read_text(self.workspace.inside(f"{FOLDER}/{name}.yaml"))
-        data = Sheet(text, name).root.plain()
+        data = sheet_of(text).root.plain()
         if not isinstance(data, dict) or not isinstance(data.get("bodies"), dict):
             raise EditError(Problem(f"'{name[:50]}' is not a part", "no bodies", "a part has bodies", "choose another"))
         return data

@@ -13,7 +13,7 @@ from symofros.gui.library import Library
 from symofros.gui.parts import insertion
 from symofros.gui.plain import EditError
 from symofros.gui.requests import edits_of, path_of, text_of
-from symofros.gui.sheet import Sheet
+from symofros.gui.sheet import sheet_of
 from symofros.gui.storage import Storage
 from symofros.gui.workspace import READABLE, Workspace, write
 
@@ -108,7 +108,7 @@ class Session:
         self.document.expect(body.get("revision"))
         name = text_of(body, "name")
         parent, frame = text_of(body, "parent") or None, text_of(body, "frame") or None
-        edits = insertion(Sheet(self.document.text).root.plain(), self.library.part(name), parent, frame)
+        edits = insertion(sheet_of(self.document.text).root.plain(), self.library.part(name), parent, frame)
         self.document.change(f"insert {name}"[:200], lambda text: with_references(text, edits))
         self.storage.autosave()
 
@@ -120,7 +120,7 @@ class Session:
 
     def keep_part(self, body: Json) -> None:
         """Keep some bodies of the document as a part."""
-        self.library.keep(text_of(body, "name"), Sheet(self.document.text).root.plain(), body.get("bodies"))
+        self.library.keep(text_of(body, "name"), sheet_of(self.document.text).root.plain(), body.get("bodies"))
 
     # Asking.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import NamedTuple
 
 from symofros.description.native.yaml_nodes import Node, compose_text
@@ -18,6 +19,16 @@ class Span(NamedTuple):
     end: int
 
 
+@lru_cache(maxsize=8)
+def sheet_of(text: str) -> Sheet:
+    """The sheet of a text; reading takes longer than anything that is done with it, and sheets do not change.
+
+    Raises:
+        YamlFault: It is not a YAML document that the format accepts; the problem's `where` is ":line".
+    """
+    return Sheet(text)
+
+
 class Sheet:
     """A text and its tree of nodes.
 
@@ -27,14 +38,10 @@ class Sheet:
         newline: How its lines end.
     """
 
-    def __init__(self, text: str, file: str = "") -> None:
-        """Read the text.
-
-        Raises:
-            YamlFault: It is not a YAML document that the format accepts.
-        """
+    def __init__(self, text: str) -> None:
+        """Read the text; see `sheet_of`."""
         self.text = text
-        self.root, self.problems = compose_text(text, file)
+        self.root, _ = compose_text(text, "")
         first = _BREAK.search(text)
         self.newline = first.group() if first else "\n"
         self._settle(self.root)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from symofros.description.native.yaml_nodes import Node
-from symofros.gui.plain import Path, place
+from symofros.gui.plain import Edit, Path, place
 from symofros.gui.rendering import STEP, block, inline, is_block, scalar
 from symofros.gui.sheet import Sheet, Span
 
@@ -107,9 +107,25 @@ def _blank_before(sheet: Sheet, line: int) -> bool:
 
 def renamed(sheet: Sheet, owner: Node, at: int, key: str) -> str:
     """The text with another key of an entry."""
-    node = sheet.children(owner)[at]
-    new = scalar(key, flow=owner.style == "flow", quote=sheet.text[node.key_start], key=True)
-    return sheet.text[: node.key_start] + new + sheet.text[node.key_end :]
+    start, end, new = _new_key(sheet, owner, sheet.children(owner)[at], key)
+    return sheet.text[:start] + new + sheet.text[end:]
+
+
+def _new_key(sheet: Sheet, owner: Node, node: Node, key: str) -> tuple[int, int, str]:
+    quote = sheet.text[node.key_start]
+    return node.key_start, node.key_end, scalar(key, flow=owner.style == "flow", quote=quote, key=True)
+
+
+def patch(sheet: Sheet, edit: Edit) -> tuple[int, int, str]:
+    """The piece of text that another scalar or key is put in place of, and its text; (-1, -1, "") if there is none."""
+    node, owner = sheet.node(edit.path), sheet.node(edit.path[:-1])
+    if node is None or owner is None or not edit.path:
+        return -1, -1, ""
+    if edit.op == "rename":
+        return _new_key(sheet, owner, node, edit.key)
+    if isinstance(node.value, (dict, list)) or node.start == node.end:
+        return -1, -1, ""
+    return node.start, sheet.end(node), inline(edit.value, node.style, flow=_in_flow(sheet, edit.path))
 
 
 def removed(sheet: Sheet, owner: Node, at: int) -> str:
