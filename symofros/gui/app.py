@@ -147,8 +147,8 @@ class Editor:
             error = job.error or {"object": "the import took too long", "found": f"{IMPORT_SECONDS} s", "rule": "",
                                   "remedy": "import it with `sf.load` and `sf.save`"}  # fmt: skip
             return JSONResponse({"error": error}, 422)
-        adopt = partial(self.session.storage.adopt, file.name, job.result["text"])
-        found = await self.exclusively(partial(self._changed, lambda _: adopt(), {}))
+        adopt = partial(self.session.adopt, name=file.name, text=job.result["text"])
+        found = await self.exclusively(partial(self._changed, adopt, body))
         self.tell_changed(request)
         return JSONResponse({**found, "notes": job.result["notes"]})
 

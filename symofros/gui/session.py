@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from symofros.gui.plain import EditError
 from symofros.gui.requests import edits_of, path_of, text_of
 from symofros.gui.sheet import sheet_of
 from symofros.gui.storage import Storage
-from symofros.gui.workspace import READABLE, Workspace, write
+from symofros.gui.workspace import READABLE, FileError, Workspace, write
 
 Json = dict[str, Any]
 
@@ -96,12 +97,30 @@ class Session:
         self.storage.save(text_of(body, "path"), text_of(body, "over"))
 
     def open(self, body: Json) -> None:
-        """Open a file of the workspace."""
-        self.storage.open(self.workspace.inside(text_of(body, "path")))
+        """Open a file of the workspace; `discard`: the user gave up what is unsaved of the present one."""
+        file = self.workspace.inside(text_of(body, "path"))
+        self._leave(body, lambda: self.storage.open(file))
 
     def create(self, body: Json) -> None:
-        """Begin a file of the workspace."""
-        self.storage.create(self.workspace.inside(text_of(body, "path")))
+        """Begin a file of the workspace, alike."""
+        file = self.workspace.inside(text_of(body, "path"))
+        self._leave(body, lambda: self.storage.create(file))
+
+    def adopt(self, body: Json, name: str, text: str) -> None:
+        """Begin a document with a text that came from elsewhere, alike."""
+        self._leave(body, lambda: self.storage.adopt(name, text))
+
+    def _leave(self, body: Json, enter: Callable[[], None]) -> None:
+        """Go to another document; what is unsaved stays beside its file, unless it was given up."""
+        if body.get("discard") is not True:
+            enter()
+            return
+        self.storage.forget()
+        try:
+            enter()
+        except FileError:
+            self.storage.autosave()  # The user is still here.
+            raise
 
     def insert_part(self, body: Json) -> None:
         """Put a part into the document, on a frame of a body."""

@@ -176,8 +176,12 @@ class Storage:
         empty = EMPTY.format(name=identifier(self.document.file.stem))
         self.document.change("discard", lambda _: empty if saved is None else saved)
         self.recovered = False
-        autosave_of(self.document.file).unlink(missing_ok=True)
+        self.forget()
         self.note_revision()
+
+    def forget(self) -> None:
+        """Drop what is kept of unsaved work."""
+        autosave_of(self.document.file).unlink(missing_ok=True)
 
     # Saving.
 

@@ -148,6 +148,23 @@ def test_a_new_document_is_recovered_too(tmp_path: Path) -> None:
     assert "k" not in again.document.text
 
 
+def test_unsaved_work_waits_while_another_file_is_open_unless_it_was_given_up(file: Path) -> None:
+    (file.parent / "other.yaml").write_text(TEXT)
+    session = opened(file)
+    change(session)
+    session.open({"path": "other.yaml"})
+    session.open({"path": file.name})
+    assert session.as_json()["recovered"]
+    with pytest.raises(FileError):
+        session.open({"path": "nothing.yaml", "discard": True})
+    assert autosave_of(file).exists() and session.document.dirty
+    session.open({"path": file.name, "discard": True})
+    assert not session.as_json()["recovered"] and session.document.text == TEXT
+    change(session)
+    session.create({"path": "new.yaml", "discard": True})
+    assert not opened(file).as_json()["recovered"]
+
+
 def test_undoing_everything_removes_what_was_kept(file: Path) -> None:
     session = opened(file)
     change(session)
