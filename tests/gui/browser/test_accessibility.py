@@ -51,6 +51,12 @@ def test_the_page_and_its_windows(
     page.get_by_role("tab", name="YAML").click()
     page.get_by_label("Text of the file").wait_for()
     assert faults() == []
+    steps.run(page, "Simulate")
+    steps.fill(page, "Duration", "0.1")
+    assert faults() == []
+    steps.window(page).get_by_role("button", name="Simulate").click()
+    expect(steps.results(page).get_by_role("img").first).to_be_visible(timeout=60_000)
+    assert faults() == []
 
 
 def test_a_window_holds_the_focus_and_gives_it_back(serve: Callable[..., Server], page: Page) -> None:

@@ -43,6 +43,40 @@ def test_only_what_was_changed_is_changed_in_the_file(serve: Callable[..., Serve
     assert server.file.read_bytes() == before
 
 
+def test_a_slider_changes_the_document_when_it_is_let_go(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    slider = page.get_by_role("slider", name="m1, slider")
+    slider.press("ArrowRight")
+    value(page, "m1")("1.01")
+    box = slider.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] + 20, box["y"], steps=4)
+    value(page, "m1")("1.01")
+    page.mouse.up()
+    value(page, "m1")("2.02")
+    assert "value: 1.0," in server.file.read_text()
+
+
+def test_a_dropped_file_is_imported(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    text = PENDULUM.read_text().replace("upper", "boom")
+    files = page.evaluate_handle(
+        """text => {
+            const given = new DataTransfer();
+            given.items.add(new File([text], "dropped.yaml"));
+            return given;
+        }""",
+        text,
+    )
+    page.dispatch_event(".react-flow__pane", "drop", {"dataTransfer": files})
+    expect(steps.block(page, "bodies/boom")).to_be_visible()
+    expect(page.get_by_role("heading", level=1)).to_contain_text("unsaved")
+
+
 def test_undo_and_redo(serve: Callable[..., Server], page: Page) -> None:
     server = serve("arm.yaml", source=PENDULUM)
     steps.open_editor(page, server.url)

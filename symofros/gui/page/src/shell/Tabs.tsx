@@ -43,7 +43,7 @@ export function Tabs<K extends string>({ tabs, current, onChange, label, childre
           </button>
         ))}
       </div>
-      <div id={`${id}-panel`} className="tab-panel" role="tabpanel" aria-labelledby={`${id}-${current}`}>
+      <div id={`${id}-panel`} className="tab-panel" role="tabpanel" tabIndex={0} aria-labelledby={`${id}-${current}`}>
         {children}
       </div>
     </div>
