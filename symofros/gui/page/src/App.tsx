@@ -16,7 +16,9 @@ import { Dialogs } from "./windows/Dialogs";
 
 /** Files dropped anywhere are imported. */
 function dropFile(event: DragEvent): void {
-  const file = [...event.dataTransfer.files].find(({ name }) => IMPORTED.some((suffix) => name.toLowerCase().endsWith(suffix)));
+  const file = [...event.dataTransfer.files].find(({ name }) =>
+    IMPORTED.some((suffix) => name.toLowerCase().endsWith(suffix)),
+  );
   if (event.dataTransfer.files.length > 0) event.preventDefault();
   if (file !== undefined) void importFile(file);
 }

@@ -9,7 +9,15 @@ const ports = [
   { name: "body", kind: "origin" as const },
   { name: "tip", kind: "frame" as const },
 ];
-const block = (name: string): GraphNode => ({ id: `bodies/${name}`, kind: "rigid_body", title: name, subtitle: "", path: ["bodies", name], ports, problems: 0 });
+const block = (name: string): GraphNode => ({
+  id: `bodies/${name}`,
+  kind: "rigid_body",
+  title: name,
+  subtitle: "",
+  path: ["bodies", name],
+  ports,
+  problems: 0,
+});
 
 const document: Document = {
   path: "a.yaml",
@@ -31,7 +39,18 @@ const document: Document = {
   layout: {},
   graph: {
     nodes: [block("a<b"), block("boom")],
-    edges: [{ id: "closures/x", kind: "closure", source: "bodies/a<b", source_port: "tip", target: "bodies/boom", target_port: "body", path: ["closures", "x"], label: "x & y" }],
+    edges: [
+      {
+        id: "closures/x",
+        kind: "closure",
+        source: "bodies/a<b",
+        source_port: "tip",
+        target: "bodies/boom",
+        target_port: "body",
+        path: ["closures", "x"],
+        label: "x & y",
+      },
+    ],
   },
   problems: [],
   parameters: [],
@@ -50,7 +69,12 @@ describe("the picture", () => {
   });
 
   test("holds all of it", () => {
-    const [left, top, width, height] = (/viewBox="([^"]+)"/.exec(svg)?.[1] ?? "").split(" ").map(Number) as [number, number, number, number];
+    const [left, top, width, height] = (/viewBox="([^"]+)"/.exec(svg)?.[1] ?? "").split(" ").map(Number) as [
+      number,
+      number,
+      number,
+      number,
+    ];
     expect(left).toBeLessThan(0);
     expect(top).toBeLessThan(-40);
     expect(left + width).toBeGreaterThan(300 + 196);
@@ -60,7 +84,11 @@ describe("the picture", () => {
 
 test("finding goes by all words, names that begin so first", () => {
   const hits = everything(document);
-  expect(search(hits, "tip").map(({ name, what }) => `${what} ${name}`)).toEqual(["frame of a<b tip", "frame of boom tip", "parameter tipmass"]);
+  expect(search(hits, "tip").map(({ name, what }) => `${what} ${name}`)).toEqual([
+    "frame of a<b tip",
+    "frame of boom tip",
+    "parameter tipmass",
+  ]);
   expect(search(hits, "frame boom")).toHaveLength(1);
   expect(search(hits, "nothing")).toEqual([]);
 });

@@ -16,8 +16,15 @@ import { line, span, ticks } from "../src/model/plot";
 const arm: JsonMap = {
   parameters: { m: { value: 1 }, L: 2, unused: 3 },
   bodies: {
-    upper: { joint: { name: "q1", kind: "revolute" }, inertia: { mass: "m" }, frames: { tip: { position: ["L", 0, 0] } } },
-    lower: { joint: { name: "q2", kind: "revolute", parent: "upper", frame: "tip", effort: ["-m*dq2"] }, inertia: { mass: "m" } },
+    upper: {
+      joint: { name: "q1", kind: "revolute" },
+      inertia: { mass: "m" },
+      frames: { tip: { position: ["L", 0, 0] } },
+    },
+    lower: {
+      joint: { name: "q2", kind: "revolute", parent: "upper", frame: "tip", effort: ["-m*dq2"] },
+      inertia: { mass: "m" },
+    },
   },
   closures: { loop: { first: { body: "upper", frame: "tip" }, second: { body: "lower" } } },
 };
@@ -81,9 +88,19 @@ describe("copies", () => {
   test("have bodies, coordinates and links of their own", () => {
     const { edits, bodies } = insertion(arm, extract(arm, ["upper", "lower"]));
     expect([...bodies.values()]).toEqual(["upper2", "lower2"]);
-    const made = applied(arm, edits) as { bodies: Record<string, { joint: JsonMap }>; closures: JsonMap; parameters: Json };
+    const made = applied(arm, edits) as {
+      bodies: Record<string, { joint: JsonMap }>;
+      closures: JsonMap;
+      parameters: Json;
+    };
     expect(made.parameters).toEqual(arm["parameters"]);
-    expect(made.bodies["lower2"]?.joint).toEqual({ name: "q4", kind: "revolute", parent: "upper2", frame: "tip", effort: ["-m*dq4"] });
+    expect(made.bodies["lower2"]?.joint).toEqual({
+      name: "q4",
+      kind: "revolute",
+      parent: "upper2",
+      frame: "tip",
+      effort: ["-m*dq4"],
+    });
     expect(made.closures["loop2"]).toEqual({ first: { body: "upper2", frame: "tip" }, second: { body: "lower2" } });
   });
 });
@@ -103,7 +120,15 @@ function chain(count: number, fan = 1): Graph {
     { name: "body", kind: "origin" },
     { name: "tip", kind: "frame" },
   ];
-  const nodes = Array.from({ length: count }, (_, i): GraphNode => ({ id: `bodies/b${i}`, kind: "rigid_body", title: `b${i}`, subtitle: "", path: ["bodies", `b${i}`], ports, problems: 0 }));
+  const nodes = Array.from({ length: count }, (_, i): GraphNode => ({
+    id: `bodies/b${i}`,
+    kind: "rigid_body",
+    title: `b${i}`,
+    subtitle: "",
+    path: ["bodies", `b${i}`],
+    ports,
+    problems: 0,
+  }));
   const edges = nodes.slice(1).map((node, i) => ({
     id: `${node.id}/joint`,
     kind: "joint" as const,
@@ -120,16 +145,29 @@ function chain(count: number, fan = 1): Graph {
 function overlapping(graph: Graph, places: Record<string, readonly [number, number]>): string[] {
   const boxes = graph.nodes.map((node) => ({ id: node.id, at: places[node.id] ?? [NaN, NaN], size: size(node) }));
   return boxes.flatMap((a, i) =>
-    boxes.slice(i + 1).filter((b) => [0, 1].every((k) => !((a.at[k] ?? 0) + (a.size[k] ?? 0) <= (b.at[k] ?? 0) || (b.at[k] ?? 0) + (b.size[k] ?? 0) <= (a.at[k] ?? 0)))).map((b) => `${a.id} ${b.id}`),
+    boxes
+      .slice(i + 1)
+      .filter((b) =>
+        [0, 1].every(
+          (k) =>
+            !(
+              (a.at[k] ?? 0) + (a.size[k] ?? 0) <= (b.at[k] ?? 0) || (b.at[k] ?? 0) + (b.size[k] ?? 0) <= (a.at[k] ?? 0)
+            ),
+        ),
+      )
+      .map((b) => `${a.id} ${b.id}`),
   );
 }
 
 describe("layout", () => {
-  test.each([[chain(1)], [chain(3)], [chain(30)], [chain(40, 3)], [chain(25, 24)]])("puts every block clear of the others", (graph) => {
-    const places = tidy(graph);
-    expect(Object.keys(places)).toHaveLength(graph.nodes.length);
-    expect(overlapping(graph, places)).toEqual([]);
-  });
+  test.each([[chain(1)], [chain(3)], [chain(30)], [chain(40, 3)], [chain(25, 24)]])(
+    "puts every block clear of the others",
+    (graph) => {
+      const places = tidy(graph);
+      expect(Object.keys(places)).toHaveLength(graph.nodes.length);
+      expect(overlapping(graph, places)).toEqual([]);
+    },
+  );
 
   test("a long chain is as wide as a screen, not a line", () => {
     const places = Object.values(tidy(chain(30)));
@@ -169,14 +207,24 @@ describe("schema", () => {
     for (const [key, schema] of Object.entries(shape.properties)) {
       const described = field(root, schema as JsonMap);
       // A text is the last resort: only properties that are names or words may end there.
-      if (described.shape.kind === "text") expect(`${name}.${key}`).toMatch(/\.(name|parent|frame|body|carrier|at|unit|description)$/);
+      if (described.shape.kind === "text")
+        expect(`${name}.${key}`).toMatch(/\.(name|parent|frame|body|carrier|at|unit|description)$/);
     }
   });
 
   test("units come out of the descriptions", () => {
     const { shape } = definition(root, "BeamEntry");
-    const units = shape.kind === "record" ? Object.entries(shape.properties).map(([key, schema]) => [key, isMap(schema) ? field(root, schema).unit : ""]) : [];
-    expect(Object.fromEntries(units)).toMatchObject({ length: "m", rhoA: "kg/m", EI_z: "N m^2", damping: "s", family: "" });
+    const units =
+      shape.kind === "record"
+        ? Object.entries(shape.properties).map(([key, schema]) => [key, isMap(schema) ? field(root, schema).unit : ""])
+        : [];
+    expect(Object.fromEntries(units)).toMatchObject({
+      length: "m",
+      rhoA: "kg/m",
+      EI_z: "N m^2",
+      damping: "s",
+      family: "",
+    });
   });
 });
 

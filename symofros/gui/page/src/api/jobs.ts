@@ -27,7 +27,15 @@ export interface Compiled {
 
 export interface Crosschecked {
   ok: boolean;
-  rows: { quantity: string; engine: string; worst: number; tolerance: number; states: number; passed: boolean; note: string }[];
+  rows: {
+    quantity: string;
+    engine: string;
+    worst: number;
+    tolerance: number;
+    states: number;
+    passed: boolean;
+    note: string;
+  }[];
   unsupported: { engine: string; quantity: string; reason: string }[];
 }
 

@@ -6,7 +6,7 @@ import { frames, hasJoint, jointHeight, portHeight, size } from "../model/geomet
 import type { Summary } from "../model/summary";
 import { Glyph } from "../shell/Glyph";
 
-export type BlockNode = Node<{ node: GraphNode; summary: Summary}, "block">;
+export type BlockNode = Node<{ node: GraphNode; summary: Summary }, "block">;
 
 /** Ids of handles; a body's own frame has no name. */
 export const JOINT = "joint";
@@ -30,15 +30,42 @@ function Body({ data }: NodeProps<BlockNode>) {
           <Glyph name={summary.joint.kind} />
           <span className="block-joint-name">{summary.joint.name}</span>
           <span className="block-joint-kind">{summary.joint.kind}</span>
-          {summary.joint.actuated ? <span className="block-mark" title="driven by a motor or an effort"><Glyph name="motor" size={12} /></span> : null}
-          {summary.joint.sprung ? <span className="block-mark" title="spring, damper, stop or friction"><Glyph name="spring" size={12} /></span> : null}
+          {summary.joint.actuated ? (
+            <span className="block-mark" title="driven by a motor or an effort">
+              <Glyph name="motor" size={12} />
+            </span>
+          ) : null}
+          {summary.joint.sprung ? (
+            <span className="block-mark" title="spring, damper, stop or friction">
+              <Glyph name="spring" size={12} />
+            </span>
+          ) : null}
         </div>
       )}
-      {hasJoint(node) ? <Handle id={JOINT} type="target" position={Position.Left} className="port joint" style={{ top: jointHeight }} role="img" aria-label={`joint of ${node.title}`} /> : null}
+      {hasJoint(node) ? (
+        <Handle
+          id={JOINT}
+          type="target"
+          position={Position.Left}
+          className="port joint"
+          style={{ top: jointHeight }}
+          role="img"
+          aria-label={`joint of ${node.title}`}
+        />
+      ) : null}
       {frames(node).map((frame) => (
         <div key={frame.name} className="block-frame" style={{ top: portHeight(node, frame.name) }}>
-          <span className={frame.kind === "origin" ? "quiet" : ""}>{frame.kind === "origin" ? "origin" : frame.name}</span>
-          <Handle id={frameHandle(frame)} type="source" position={Position.Right} className="port frame" role="img" aria-label={`frame ${frame.kind === "origin" ? "origin" : frame.name} of ${node.title}`} />
+          <span className={frame.kind === "origin" ? "quiet" : ""}>
+            {frame.kind === "origin" ? "origin" : frame.name}
+          </span>
+          <Handle
+            id={frameHandle(frame)}
+            type="source"
+            position={Position.Right}
+            className="port frame"
+            role="img"
+            aria-label={`frame ${frame.kind === "origin" ? "origin" : frame.name} of ${node.title}`}
+          />
         </div>
       ))}
     </div>
@@ -57,7 +84,14 @@ function Condition({ data }: NodeProps<BlockNode>) {
         {node.problems > 0 ? <span className="block-problems">{node.problems}</span> : null}
       </div>
       <div className="block-kind">{summary.note}</div>
-      <Handle id={JOINT} type="target" position={Position.Left} className="port constraint" isConnectable={false} style={{ top: portHeight(node, "") }} />
+      <Handle
+        id={JOINT}
+        type="target"
+        position={Position.Left}
+        className="port constraint"
+        isConnectable={false}
+        style={{ top: portHeight(node, "") }}
+      />
     </div>
   );
 }

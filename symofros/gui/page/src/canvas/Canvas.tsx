@@ -74,7 +74,9 @@ function drop(event: DragEvent, where: Point): void {
 
 function shownPlaces(): Record<string, Point> {
   const { document, places } = now();
-  return Object.fromEntries(Object.entries(places).filter(([id]) => document?.graph.nodes.some((node) => node.id === id)));
+  return Object.fromEntries(
+    Object.entries(places).filter(([id]) => document?.graph.nodes.some((node) => node.id === id)),
+  );
 }
 
 /** The diagram. */
@@ -95,7 +97,9 @@ export function Canvas() {
     choose(changes);
     const others = changes.filter((change) => change.type !== "select");
     if (others.length > 0) setNodes((before) => applyNodeChanges(others, before));
-    const moved = changes.filter((change) => change.type === "position" && change.dragging !== true && change.position !== undefined);
+    const moved = changes.filter(
+      (change) => change.type === "position" && change.dragging !== true && change.position !== undefined,
+    );
     if (moved.length === 0) return;
     const entries = moved.map((change) => {
       const at = change.type === "position" ? change.position : undefined;

@@ -10,15 +10,22 @@ import type { Link } from "./links";
 type Places = Record<string, Point>;
 
 /** Blocks; those that look as before stay the same object, so that they are not drawn again. */
-export function blocks(document: Document, places: Places, selected: readonly string[], before: readonly BlockNode[]): BlockNode[] {
+export function blocks(
+  document: Document,
+  places: Places,
+  selected: readonly string[],
+  before: readonly BlockNode[],
+): BlockNode[] {
   const old = new Map(before.map((node) => [node.id, node]));
   return document.graph.nodes.map((node) => {
     const data = { node, summary: summary(node, document.data) };
     const [x, y] = places[node.id] ?? [0, 0];
     const isSelected = selected.includes(node.id);
     const previous = old.get(node.id);
-    const alike = previous !== undefined && same(JSON.parse(JSON.stringify(previous.data)), JSON.parse(JSON.stringify(data)));
-    if (alike && previous.position.x === x && previous.position.y === y && previous.selected === isSelected) return previous;
+    const alike =
+      previous !== undefined && same(JSON.parse(JSON.stringify(previous.data)), JSON.parse(JSON.stringify(data)));
+    if (alike && previous.position.x === x && previous.position.y === y && previous.selected === isSelected)
+      return previous;
     const [width, height] = size(node);
     return {
       ...previous,
@@ -34,9 +41,15 @@ export function blocks(document: Document, places: Places, selected: readonly st
   });
 }
 
-const port = (node: GraphNode | undefined, name: string): string => frameHandle(node?.ports.find((each) => each.name === name));
+const port = (node: GraphNode | undefined, name: string): string =>
+  frameHandle(node?.ports.find((each) => each.name === name));
 
-function joined(edge: GraphEdge, known: ReadonlyMap<string, GraphNode>, lane: number | undefined, selected: boolean): Link {
+function joined(
+  edge: GraphEdge,
+  known: ReadonlyMap<string, GraphNode>,
+  lane: number | undefined,
+  selected: boolean,
+): Link {
   const onJoint = edge.kind === "joint" || edge.kind === "constraint";
   return {
     id: edge.id,

@@ -53,8 +53,17 @@ export function useSight(graph: Graph, places: Record<string, Point>): void {
     const { x, y, zoom } = flow.getViewport();
     const { width, height } = store.getState();
     const [w, h] = size(node);
-    const isInside = (from: number, extent: number, room: number): boolean => from >= MARGIN && from + extent <= room - MARGIN;
-    if (zoom >= 0.5 && isInside(place[0] * zoom + x, w * zoom, width) && isInside(place[1] * zoom + y, h * zoom, height)) return;
-    void flow.setCenter(place[0] + w / 2, place[1] + h / 2, { zoom: Math.min(1, Math.max(0.7, zoom)), duration: pace() });
+    const isInside = (from: number, extent: number, room: number): boolean =>
+      from >= MARGIN && from + extent <= room - MARGIN;
+    if (
+      zoom >= 0.5 &&
+      isInside(place[0] * zoom + x, w * zoom, width) &&
+      isInside(place[1] * zoom + y, h * zoom, height)
+    )
+      return;
+    void flow.setCenter(place[0] + w / 2, place[1] + h / 2, {
+      zoom: Math.min(1, Math.max(0.7, zoom)),
+      duration: pace(),
+    });
   }, [sight, graph, places, flow, store]);
 }

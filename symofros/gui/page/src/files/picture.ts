@@ -17,7 +17,10 @@ async function rasterised(svg: string): Promise<Blob> {
   canvas.height = image.height * SCALE;
   canvas.getContext("2d")?.drawImage(image, 0, 0, canvas.width, canvas.height);
   return new Promise((resolve, reject) => {
-    canvas.toBlob((blob) => (blob === null ? reject(new Error("the browser can't write PNG")) : resolve(blob)), "image/png");
+    canvas.toBlob(
+      (blob) => (blob === null ? reject(new Error("the browser can't write PNG")) : resolve(blob)),
+      "image/png",
+    );
   });
 }
 

@@ -27,7 +27,15 @@ export function Effort({ value, onChange, path, label, help, joint }: Props) {
   return (
     <div className="stack" role="group" aria-label={label}>
       {Array.from({ length: count }, (_, i) => (
-        <Expression key={i} value={given[i]} onChange={(next) => change(i, next)} path={isList || value === undefined ? [...path, i] : path} label={count === 1 ? label : `${label} ${i + 1}`} help={help} fallback={0} />
+        <Expression
+          key={i}
+          value={given[i]}
+          onChange={(next) => change(i, next)}
+          path={isList || value === undefined ? [...path, i] : path}
+          label={count === 1 ? label : `${label} ${i + 1}`}
+          help={help}
+          fallback={0}
+        />
       ))}
     </div>
   );

@@ -32,7 +32,11 @@ function Complaint({ id, checked }: { id: string; checked: Checked }) {
       <span>{checked.error?.found}</span>
       {checked.error?.remedy ? <span className="remedy">{checked.error.remedy}</span> : null}
       {name === null ? null : (
-        <button type="button" className="small" onClick={() => void setValue(`add ${name}`, ["parameters", name], { value: 1 })}>
+        <button
+          type="button"
+          className="small"
+          onClick={() => void setValue(`add ${name}`, ["parameters", name], { value: 1 })}
+        >
           Add parameter {name}
         </button>
       )}

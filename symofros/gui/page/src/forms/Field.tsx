@@ -24,11 +24,6 @@ export interface ControlProps {
   siblings: Json | undefined;
 }
 
-/** Whether a control fills the width, under its label. */
-export function isWide(name: string, { shape }: Field): boolean {
-  return ["record", "list", "map", "matrix"].includes(shape.kind) && name !== "effort" && name !== "moments";
-}
-
 /** The control that suits a property's shape. */
 export function FieldControl({ name, field, value, onChange, path, label, siblings }: ControlProps) {
   const { shape, help, fallback } = field;

@@ -26,7 +26,10 @@ function Adders({ described, add }: { described: Field; add(item: Json): void })
   const { root } = useForm();
   if (described.shape.kind !== "one of") {
     const { shape } = described;
-    const fresh = shape.kind === "record" ? Object.fromEntries(shape.required.map((key) => [key, start(root, shape.properties[key] as JsonMap)])) : 0;
+    const fresh =
+      shape.kind === "record"
+        ? Object.fromEntries(shape.required.map((key) => [key, start(root, shape.properties[key] as JsonMap)]))
+        : 0;
     return (
       <button type="button" className="small" onClick={() => add(fresh)}>
         Add
@@ -60,8 +63,18 @@ export function ListField({ value, onChange, path, label, item }: Props) {
             siblings={undefined}
           />
           <div className="item-tools">
-            {i > 0 ? <IconButton glyph="up" label={`Move ${label.toLowerCase()} ${i + 1} up`} onClick={() => change(swapped(list, i))} /> : null}
-            <IconButton glyph="close" label={`Remove ${label.toLowerCase()} ${i + 1}`} onClick={() => change(replaced(list, i, undefined) as Json[])} />
+            {i > 0 ? (
+              <IconButton
+                glyph="up"
+                label={`Move ${label.toLowerCase()} ${i + 1} up`}
+                onClick={() => change(swapped(list, i))}
+              />
+            ) : null}
+            <IconButton
+              glyph="close"
+              label={`Remove ${label.toLowerCase()} ${i + 1}`}
+              onClick={() => change(replaced(list, i, undefined) as Json[])}
+            />
           </div>
         </div>
       ))}

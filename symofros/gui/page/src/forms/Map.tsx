@@ -19,7 +19,17 @@ interface Props {
 }
 
 /** A field for the name of a new entry. */
-function Adder({ label, keys, taken, add }: { label: string; keys: string[] | null; taken: string[]; add(name: string): void }) {
+function Adder({
+  label,
+  keys,
+  taken,
+  add,
+}: {
+  label: string;
+  keys: string[] | null;
+  taken: string[];
+  add(name: string): void;
+}) {
   const [name, setName] = useState("");
   const usable = name.trim() !== "" && !taken.includes(name.trim());
   const commit = (): void => {
@@ -44,7 +54,11 @@ function Adder({ label, keys, taken, add }: { label: string; keys: string[] | nu
           }}
         />
       ) : (
-        <select value={name} aria-label={`New entry of ${label.toLowerCase()}`} onChange={(event) => setName(event.target.value)}>
+        <select
+          value={name}
+          aria-label={`New entry of ${label.toLowerCase()}`}
+          onChange={(event) => setName(event.target.value)}
+        >
           <option value="">-</option>
           {free.map((key) => (
             <option key={key}>{key}</option>
@@ -94,11 +108,20 @@ export function MapField({ value, onChange, path, label, entry, keys }: Props) {
             siblings={undefined}
           />
           <div className="item-tools">
-            <IconButton glyph="close" label={`Remove ${name}`} onClick={() => onChange(replaced(map, name, undefined))} />
+            <IconButton
+              glyph="close"
+              label={`Remove ${name}`}
+              onClick={() => onChange(replaced(map, name, undefined))}
+            />
           </div>
         </div>
       ))}
-      <Adder label={label} keys={keys} taken={Object.keys(map)} add={(name) => onChange({ ...map, [name]: start(root, entry) })} />
+      <Adder
+        label={label}
+        keys={keys}
+        taken={Object.keys(map)}
+        add={(name) => onChange({ ...map, [name]: start(root, entry) })}
+      />
     </div>
   );
 }

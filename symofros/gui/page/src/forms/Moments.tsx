@@ -34,7 +34,14 @@ export function Moments({ value, onChange, path, help }: Props) {
           <span className="part-name" aria-hidden="true">
             {name}
           </span>
-          <Expression value={part(i)} onChange={(next) => change(i, next)} path={[...path, byName ? name.toLowerCase() : i]} label={name} help={help} fallback={0} />
+          <Expression
+            value={part(i)}
+            onChange={(next) => change(i, next)}
+            path={[...path, byName ? name.toLowerCase() : i]}
+            label={name}
+            help={help}
+            fallback={0}
+          />
         </label>
       ))}
     </div>

@@ -22,7 +22,9 @@ export function start(root: JsonMap, schema: JsonMap): Json {
     case "vector":
       return Array.from({ length: shape.size }, () => 0);
     case "matrix":
-      return Array.from({ length: shape.rows }, (_, i) => Array.from({ length: shape.columns }, (_, j) => (i === j ? 1 : 0)));
+      return Array.from({ length: shape.rows }, (_, i) =>
+        Array.from({ length: shape.columns }, (_, j) => (i === j ? 1 : 0)),
+      );
     case "record":
       return Object.fromEntries(shape.required.map((key) => [key, start(root, shape.properties[key] as JsonMap)]));
     case "list":

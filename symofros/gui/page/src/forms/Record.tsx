@@ -1,9 +1,8 @@
 import type { Json, Path } from "../api/types";
-import { isMap, replaced, same } from "../model/paths";
-import { at } from "../model/paths";
+import { at, isMap, replaced, same } from "../model/paths";
 import { useStore } from "../store/store";
 import { useForm } from "./context";
-import { FieldControl, isWide } from "./Field";
+import { FieldControl } from "./Field";
 import { field, label, type Shape } from "./schema";
 
 interface Props {
@@ -19,11 +18,25 @@ interface Props {
 function useComplaint(path: Path, value: Json | undefined): string | null {
   const { data } = useForm();
   const problems = useStore((state) => state.document?.problems);
-  const problem = problems?.find((each) => each.path.length === path.length && each.path.every((key, i) => key === path[i]));
+  const problem = problems?.find(
+    (each) => each.path.length === path.length && each.path.every((key, i) => key === path[i]),
+  );
   return problem !== undefined && same(at(data, path), value) ? `${problem.found}. ${problem.remedy}` : null;
 }
 
-function Row({ name, record, onChange, path, shape }: { name: string; record: Json | undefined; onChange: Props["onChange"]; path: Path; shape: Props["shape"] }) {
+function Row({
+  name,
+  record,
+  onChange,
+  path,
+  shape,
+}: {
+  name: string;
+  record: Json | undefined;
+  onChange: Props["onChange"];
+  path: Path;
+  shape: Props["shape"];
+}) {
   const { root } = useForm();
   const schema = shape.properties[name];
   const value = isMap(record) ? record[name] : undefined;
@@ -34,7 +47,7 @@ function Row({ name, record, onChange, path, shape }: { name: string; record: Js
   const words = label(name);
   const isFormula = described.shape.kind === "formula" || described.shape.kind === "vector";
   return (
-    <div className={`row${isWide(name, described) ? " wide" : ""}`}>
+    <div className="row">
       <span className="row-label" aria-hidden="true" title={described.help}>
         {words}
       </span>

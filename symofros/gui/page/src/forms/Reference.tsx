@@ -24,7 +24,8 @@ function Options({ name, siblings, without }: { name: string; siblings: Json | u
   const { data, body } = useForm();
   let names: string[];
   if (name === "at") names = ["body", "center_of_mass", ...frameNames(data, body ?? "")];
-  else if (name === "frame") names = frameNames(data, textAt(siblings, ["body"]) ?? textAt(siblings, ["parent"]) ?? "world");
+  else if (name === "frame")
+    names = frameNames(data, textAt(siblings, ["body"]) ?? textAt(siblings, ["parent"]) ?? "world");
   else names = ["world", ...bodyNames(data)].filter((each) => each !== body || name !== "parent");
   return [...new Set(names)].filter((each) => each !== without).map((each) => <option key={each}>{each}</option>);
 }
@@ -32,10 +33,23 @@ function Options({ name, siblings, without }: { name: string; siblings: Json | u
 /** A body or a frame by name. */
 export function Reference({ name, value, onChange, label, help, fallback, siblings }: Props) {
   const { hint } = useForm();
-  const empty = name === "frame" ? "(body frame)" : name === "carrier" ? "(the parent)" : typeof fallback === "string" ? fallback : "-";
+  const empty =
+    name === "frame"
+      ? "(body frame)"
+      : name === "carrier"
+        ? "(the parent)"
+        : typeof fallback === "string"
+          ? fallback
+          : "-";
   const current = typeof value === "string" ? value : "";
   return (
-    <select value={current} aria-label={label} aria-description={help} onFocus={() => hint(help)} onChange={(event) => onChange(event.target.value === "" ? undefined : event.target.value)}>
+    <select
+      value={current}
+      aria-label={label}
+      aria-description={help}
+      onFocus={() => hint(help)}
+      onChange={(event) => onChange(event.target.value === "" ? undefined : event.target.value)}
+    >
       <option value="">{empty}</option>
       {current === "" ? null : <option hidden>{current}</option>}
       <Options name={name} siblings={siblings} without={empty} />

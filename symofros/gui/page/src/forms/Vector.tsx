@@ -27,7 +27,14 @@ export function Vector({ value, onChange, path, label, help, names, fallback }: 
           <span className="part-name" aria-hidden="true">
             {name}
           </span>
-          <Expression value={parts[i]} onChange={(part) => change(i, part)} path={[...path, i]} label={`${label} ${name}`} help={help} fallback={Array.isArray(fallback) ? fallback[i] : undefined} />
+          <Expression
+            value={parts[i]}
+            onChange={(part) => change(i, part)}
+            path={[...path, i]}
+            label={`${label} ${name}`}
+            help={help}
+            fallback={Array.isArray(fallback) ? fallback[i] : undefined}
+          />
         </label>
       ))}
     </div>

@@ -18,5 +18,12 @@ export interface FormContext {
   hint(text: string): void;
 }
 
-export const Form = createContext<FormContext>({ root: {}, data: {}, body: null, renames: {}, rename: () => undefined, hint: () => undefined });
+export const Form = createContext<FormContext>({
+  root: {},
+  data: {},
+  body: null,
+  renames: {},
+  rename: () => undefined,
+  hint: () => undefined,
+});
 export const useForm = (): FormContext => useContext(Form);

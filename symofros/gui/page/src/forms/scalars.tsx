@@ -29,10 +29,20 @@ export function TextField({ value, onChange, label, help, fallback }: Props) {
 }
 
 /** A plain number; empty means: left out. */
-export function NumberField({ value, onChange, label, help, fallback, integer, minimum, maximum }: Props & { integer: boolean; minimum: number | null; maximum: number | null }) {
+export function NumberField({
+  value,
+  onChange,
+  label,
+  help,
+  fallback,
+  integer,
+  minimum,
+  maximum,
+}: Props & { integer: boolean; minimum: number | null; maximum: number | null }) {
   const { hint } = useForm();
   const [text, setText] = useState(shown(value));
-  const parse = (each: string): Json | undefined => (each.trim() === "" || Number.isNaN(Number(each)) ? undefined : Number(each));
+  const parse = (each: string): Json | undefined =>
+    each.trim() === "" || Number.isNaN(Number(each)) ? undefined : Number(each);
   return (
     <input
       className="number"
@@ -67,13 +77,26 @@ export function FlagField({ value, onChange, label, help, fallback }: Props) {
   );
 }
 
-export function ChoiceField({ value, onChange, label, help, fallback, options }: Props & { options: readonly string[] }) {
+export function ChoiceField({
+  value,
+  onChange,
+  label,
+  help,
+  fallback,
+  options,
+}: Props & { options: readonly string[] }) {
   const { hint } = useForm();
   const current = typeof value === "string" ? value : shown(fallback);
   // What the file says is shown even if it is none of the choices; it has a complaint then.
   const all = options.includes(current) ? options : [current, ...options];
   return (
-    <select value={current} aria-label={label} aria-description={help} onFocus={() => hint(help)} onChange={(event) => onChange(event.target.value === fallback ? undefined : event.target.value)}>
+    <select
+      value={current}
+      aria-label={label}
+      aria-description={help}
+      onFocus={() => hint(help)}
+      onChange={(event) => onChange(event.target.value === fallback ? undefined : event.target.value)}
+    >
       {all.map((option) => (
         <option key={option} value={option}>
           {option === "" ? "-" : option.replaceAll("_", " ")}

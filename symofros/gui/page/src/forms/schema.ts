@@ -30,7 +30,7 @@ const strings = (value: Json | undefined): string[] => (Array.isArray(value) ? v
 const numberOf = (value: Json | undefined): number | null => (typeof value === "number" ? value : null);
 
 /** A schema with its reference followed; words beside the reference stand before those behind it. */
-export function resolved(root: JsonMap, schema: JsonMap): JsonMap {
+function resolved(root: JsonMap, schema: JsonMap): JsonMap {
   const reference = textAt(schema, ["$ref"]);
   if (reference === undefined) return schema;
   const name = reference.replace("#/$defs/", "");
@@ -54,7 +54,8 @@ function arrayShape(root: JsonMap, schema: JsonMap): Shape {
   const size = numberOf(schema["minItems"]);
   const fixed = size !== null && size === schema["maxItems"];
   if (fixed && items["$ref"] === "#/$defs/Formula") return { kind: "vector", size };
-  if (fixed && items["type"] === "array") return { kind: "matrix", rows: size, columns: numberOf(items["minItems"]) ?? size };
+  if (fixed && items["type"] === "array")
+    return { kind: "matrix", rows: size, columns: numberOf(items["minItems"]) ?? size };
   const options = strings(resolved(root, items)["enum"]);
   return options.length > 0 ? { kind: "set", options } : { kind: "list", item: items };
 }
@@ -97,9 +98,16 @@ function unitOf(help: string): string {
 export function field(root: JsonMap, schema: JsonMap, optional = true): Field {
   const outer = resolved(root, schema);
   const inner = outer["$name"] === "Formula" ? outer : given(root, outer);
-  const help = textAt(schema, ["description"]) ?? (inner["$name"] === "Formula" ? "" : (textAt(inner, ["description"]) ?? ""));
+  const help =
+    textAt(schema, ["description"]) ?? (inner["$name"] === "Formula" ? "" : (textAt(inner, ["description"]) ?? ""));
   const unit = unitOf(help);
-  return { shape: shapeOf(root, inner), help: help === `[${unit}]` ? "" : help, unit, fallback: schema["default"], optional };
+  return {
+    shape: shapeOf(root, inner),
+    help: help === `[${unit}]` ? "" : help,
+    unit,
+    fallback: schema["default"],
+    optional,
+  };
 }
 
 /** A definition by its name. */

@@ -39,7 +39,10 @@ export function changes(path: Path, before: Json | undefined, after: Json | unde
     .map((key) => JSON.parse(key) as Path)
     .filter((each) => each.length > path.length);
   const joint = jointRenaming(path, before, after);
-  const named = joint.length === 0 ? before : replaced(before, "joint", replaced(at(before, ["joint"]), "name", at(after, ["joint", "name"])));
+  const named =
+    joint.length === 0
+      ? before
+      : replaced(before, "joint", replaced(at(before, ["joint"]), "name", at(after, ["joint", "name"])));
   // From the inside out: each path holds while what it goes through has its old name.
   const names = [...inner.flatMap((each) => renaming(each, renames)), ...joint, ...renaming(path, renames)];
   const rest = difference(named, after, path).map((edit) => ({ ...edit, path: renamedPath(edit.path, renames) }));

@@ -24,7 +24,13 @@ export function extract(data: JsonMap, names: string[]): Part {
   const closures = chosen(mapAt(data, ["closures"]), (_, value) => within(value, wanted));
   const used = new Set([...usedNames(bodies), ...usedNames(closures)]);
   const ofSection = (section: string): JsonMap => chosen(mapAt(data, [section]), (name) => used.has(name));
-  return { name: names[0] ?? "part", bodies, closures, parameters: ofSection("parameters"), inputs: ofSection("inputs") };
+  return {
+    name: names[0] ?? "part",
+    bodies,
+    closures,
+    parameters: ofSection("parameters"),
+    inputs: ofSection("inputs"),
+  };
 }
 
 /** Names of joints in a part that every part gives, so that two copies do not share a coordinate. */

@@ -1,13 +1,31 @@
 /** The diagram as an SVG text of its own, for papers: no foreign objects, no style sheet, black on white. */
 
 import type { Document, GraphEdge, GraphNode, Point } from "../api/types";
-import { ends, frames, hasJoint, HEADER, jointHeight, lanes, mountPath, portHeight, size, tieMiddle, tiePath } from "./geometry";
+import {
+  ends,
+  frames,
+  hasJoint,
+  HEADER,
+  jointHeight,
+  lanes,
+  mountPath,
+  portHeight,
+  size,
+  tieMiddle,
+  tiePath,
+} from "./geometry";
 import { GLYPHS } from "./glyphs";
 import { summary } from "./summary";
 
 const INK = "#1b2430";
 const SOFT = "#5d6875";
-const FILLS = { base: "#eef0f2", rigid_body: "#ffffff", massless_body: "#ffffff", beam: "#f0f6ee", nonholonomic: "#f7f1fa" };
+const FILLS = {
+  base: "#eef0f2",
+  rigid_body: "#ffffff",
+  massless_body: "#ffffff",
+  beam: "#f0f6ee",
+  nonholonomic: "#f7f1fa",
+};
 const DASHES = { joint: "", closure: "6 4", connection: "2 3", constraint: "6 2" };
 const MARGIN = 24;
 
@@ -33,7 +51,10 @@ function block(document: Document, node: GraphNode): string {
   if (node.kind === "nonholonomic") return [...marks, label(8, HEADER + 14, note, `fill="${SOFT}"`)].join("");
   marks.push(label(width - 8, 17, note, `text-anchor="end" fill="${SOFT}" font-size="10"`));
   if (joint !== null) {
-    marks.push(glyph(8, jointHeight - 8, joint.kind), label(28, jointHeight + 4, joint.name, 'font-family="monospace"'));
+    marks.push(
+      glyph(8, jointHeight - 8, joint.kind),
+      label(28, jointHeight + 4, joint.name, 'font-family="monospace"'),
+    );
     marks.push(label(28, jointHeight + 18, joint.kind, `fill="${SOFT}" font-size="10"`));
   }
   if (hasJoint(node)) marks.push(`<rect x="-4" y="${jointHeight - 4}" width="8" height="8" fill="${INK}"/>`);
@@ -46,7 +67,13 @@ function block(document: Document, node: GraphNode): string {
   return marks.join("");
 }
 
-function link(edge: GraphEdge, lane: number | undefined, source: GraphNode, target: GraphNode, at: readonly [Point, Point]): string {
+function link(
+  edge: GraphEdge,
+  lane: number | undefined,
+  source: GraphNode,
+  target: GraphNode,
+  at: readonly [Point, Point],
+): string {
   const end = ends(edge, source, target);
   const from: Point = [at[0][0] + end.from[0], at[0][1] + end.from[1]];
   const to: Point = [at[1][0] + end.to[0], at[1][1] + end.to[1]];
@@ -55,7 +82,15 @@ function link(edge: GraphEdge, lane: number | undefined, source: GraphNode, targ
   const line = `<path d="${path}" fill="none" stroke="${INK}"${dash}/>`;
   if (lane === undefined) return line;
   const [x, y] = tieMiddle(from, to, lane);
-  return line + label(x + 3, y + 3, edge.label, `font-size="10" fill="${SOFT}" stroke="#ffffff" stroke-width="3" paint-order="stroke"`);
+  return (
+    line +
+    label(
+      x + 3,
+      y + 3,
+      edge.label,
+      `font-size="10" fill="${SOFT}" stroke="#ffffff" stroke-width="3" paint-order="stroke"`,
+    )
+  );
 }
 
 /** The whole diagram, with blocks at the given places. */
@@ -71,9 +106,13 @@ export function drawing(document: Document, places: Record<string, Point>): stri
   const byId = new Map(placed.map((each) => [each.node.id, each]));
   const drawn = edges.flatMap((edge) => {
     const [source, target] = [byId.get(edge.source), byId.get(edge.target)];
-    return source === undefined || target === undefined ? [] : [link(edge, lane.get(edge.id), source.node, target.node, [source.at, target.at])];
+    return source === undefined || target === undefined
+      ? []
+      : [link(edge, lane.get(edge.id), source.node, target.node, [source.at, target.at])];
   });
-  const blocks = placed.map(({ node, at }) => `<g transform="translate(${at[0]} ${at[1]})">${block(document, node)}</g>`);
+  const blocks = placed.map(
+    ({ node, at }) => `<g transform="translate(${at[0]} ${at[1]})">${block(document, node)}</g>`,
+  );
   return [
     `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="${left} ${top} ${width} ${height}" font-family="sans-serif" font-size="11" fill="${INK}">`,
     `<title>${escaped(document.name)}</title>`,

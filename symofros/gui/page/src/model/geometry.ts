@@ -4,9 +4,9 @@ import type { GraphEdge, GraphNode, Point, Port } from "../api/types";
 
 export const WIDTH = 196;
 export const HEADER = 26;
-export const ROW = 20;
-export const PAD = 6;
-export const SMALL_WIDTH = 132;
+const ROW = 20;
+const PAD = 6;
+const SMALL_WIDTH = 132;
 
 /** Ports that others can be put on: the body's own frame, then those with names. */
 export function frames(node: GraphNode): Port[] {

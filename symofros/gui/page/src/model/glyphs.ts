@@ -35,8 +35,6 @@ export const GLYPHS: Record<string, string> = {
   remove: "M3.5 8h9",
   plus: "M8 3.5v9M3.5 8h9",
   up: "M4 9.5 8 5.5l4 4",
-  down: "M4 6.5l4 4 4-4",
   warning: "M8 2 1.5 13.5h13zM8 6.5v3.5M8 11.800h.01",
   motor: "M8 3.5a4.5 4.5 0 1 0 0 9 4.5 4.5 0 1 0 0-9M6 10V6l2 2.5L10 6v4",
-  help: "M5.5 6a2.5 2.5 0 1 1 3.5 2.300c-.7.4-1 .8-1 1.700M8 12.5h.01",
 };

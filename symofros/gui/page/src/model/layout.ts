@@ -44,7 +44,8 @@ function inColumns({ nodes, roots, children }: Tree, columns: number): Places {
     const height = size(nodes.get(id) as GraphNode)[1];
     const below = (children.get(id) ?? []).filter((child) => !seen.has(child));
     if (depth === columns - 1) next.push(...below);
-    const middles = depth === columns - 1 ? [] : below.filter((child) => !seen.has(child)).map((child) => put(child, depth + 1, top));
+    const middles =
+      depth === columns - 1 ? [] : below.filter((child) => !seen.has(child)).map((child) => put(child, depth + 1, top));
     const first = middles[0];
     const last = middles[middles.length - 1];
     const wanted = first === undefined || last === undefined ? floor + height / 2 : (first + last) / 2;
@@ -85,7 +86,9 @@ export function tidy(graph: Graph): Places {
 }
 
 function overlaps(a: Point, aSize: Point, b: Point, bSize: Point): boolean {
-  return [0, 1].every((i) => (a[i] ?? 0) < (b[i] ?? 0) + (bSize[i] ?? 0) && (b[i] ?? 0) < (a[i] ?? 0) + (aSize[i] ?? 0));
+  return [0, 1].every(
+    (i) => (a[i] ?? 0) < (b[i] ?? 0) + (bSize[i] ?? 0) && (b[i] ?? 0) < (a[i] ?? 0) + (aSize[i] ?? 0),
+  );
 }
 
 /**
@@ -105,7 +108,9 @@ export function completed(graph: Graph, known: Places, remembered: Places = {}):
   const nodes = new Map(graph.nodes.map((node) => [node.id, node]));
   for (const node of graph.nodes.filter((each) => !(each.id in places))) {
     const isFree = (place: Point): boolean =>
-      Object.entries(places).every(([id, other]) => !overlaps(place, size(node), other, size(nodes.get(id) as GraphNode)));
+      Object.entries(places).every(
+        ([id, other]) => !overlaps(place, size(node), other, size(nodes.get(id) as GraphNode)),
+      );
     const old = remembered[node.id];
     const parent = graph.edges.find((edge) => edge.target === node.id && places[edge.source] !== undefined);
     const start = parent === undefined ? undefined : places[parent.source];

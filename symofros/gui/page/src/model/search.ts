@@ -23,10 +23,12 @@ export function everything(document: Document): Hit[] {
     for (const frame of frameNames(data, body)) hits.push({ what: `frame of ${body}`, name: frame, id });
   }
   for (const section of ["closures", "connections", "nonholonomic"] as const) {
-    for (const name of Object.keys(mapAt(data, [section]))) hits.push({ what: section.replace(/s$/, ""), name, id: `${section}/${name}` });
+    for (const name of Object.keys(mapAt(data, [section])))
+      hits.push({ what: section.replace(/s$/, ""), name, id: `${section}/${name}` });
   }
   for (const section of ["parameters", "inputs"] as const) {
-    for (const name of Object.keys(mapAt(data, [section]))) hits.push({ what: section.replace(/s$/, ""), name, id: "" });
+    for (const name of Object.keys(mapAt(data, [section])))
+      hits.push({ what: section.replace(/s$/, ""), name, id: "" });
   }
   return hits;
 }

@@ -16,7 +16,11 @@ function count(beam: JsonMap, key: string): number {
 
 /** Such as `3y 2z`: how many shape functions a beam has in each direction. */
 export function modes(beam: JsonMap): string {
-  const directions = [["bend_y", "y"], ["bend_z", "z"], ["twist", "twist"]] as const;
+  const directions = [
+    ["bend_y", "y"],
+    ["bend_z", "z"],
+    ["twist", "twist"],
+  ] as const;
   const present = directions.filter(([key]) => count(beam, key) > 0);
   return present.length === 0 ? "rigid" : present.map(([key, word]) => `${count(beam, key)} ${word}`).join(" · ");
 }

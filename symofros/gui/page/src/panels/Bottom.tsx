@@ -1,6 +1,13 @@
 import { useState } from "react";
 
-import type { Compiled as CompiledResult, Crosschecked as CrosscheckedResult, Exported, Job, JobKind, Simulated } from "../api/jobs";
+import type {
+  Compiled as CompiledResult,
+  Crosschecked as CrosscheckedResult,
+  Exported,
+  Job,
+  JobKind,
+  Simulated,
+} from "../api/jobs";
 import { Glyph } from "../shell/Glyph";
 import { IconButton } from "../shell/IconButton";
 import { Splitter } from "../shell/Splitter";
@@ -12,7 +19,12 @@ import { Crosschecked } from "./Crosschecked";
 import { Problems } from "./Problems";
 import { Simulation } from "./Simulation";
 
-const TITLES: Record<JobKind, string> = { compile: "Operations", crosscheck: "Cross-check", simulate: "Simulation", export: "Export" };
+const TITLES: Record<JobKind, string> = {
+  compile: "Operations",
+  crosscheck: "Cross-check",
+  simulate: "Simulation",
+  export: "Export",
+};
 
 function Running({ job }: { job: Job }) {
   const { done, total, text } = job.progress;
@@ -38,7 +50,10 @@ function Result({ job }: { job: Job }) {
     case "export":
       return (
         <ul className="results">
-          {[...(job.result as Exported).files.map((file) => <code key={file}>{file}</code>), ...(job.result as Exported).notes].map((line, i) => (
+          {[
+            ...(job.result as Exported).files.map((file) => <code key={file}>{file}</code>),
+            ...(job.result as Exported).notes,
+          ].map((line, i) => (
             <li key={i}>{line}</li>
           ))}
         </ul>
@@ -73,14 +88,24 @@ export function Bottom({ current }: { current: BottomPane }) {
   const { problems } = useDocument();
   const [height, setHeight] = useState(() => Math.round(window.innerHeight * 0.42));
   const tabs: Tab<BottomPane>[] = [
-    { key: "problems", title: <>Problems{problems.length > 0 ? <span className="count">{problems.length}</span> : null}</> },
-    ...(Object.keys(TITLES) as JobKind[]).filter((kind) => jobs[kind] !== undefined).map((kind) => ({ key: kind, title: TITLES[kind] })),
+    {
+      key: "problems",
+      title: <>Problems{problems.length > 0 ? <span className="count">{problems.length}</span> : null}</>,
+    },
+    ...(Object.keys(TITLES) as JobKind[])
+      .filter((kind) => jobs[kind] !== undefined)
+      .map((kind) => ({ key: kind, title: TITLES[kind] })),
   ];
   const job = current === "problems" ? undefined : jobs[current];
   return (
     <section className="result-dock" style={{ height }} aria-label="Results">
       <Splitter side="bottom" label="Height of the results" size={height} onChange={setHeight} />
-      <Tabs tabs={tabs} current={job === undefined ? "problems" : current} onChange={(key) => update({ bottom: key })} label="Results">
+      <Tabs
+        tabs={tabs}
+        current={job === undefined ? "problems" : current}
+        onChange={(key) => update({ bottom: key })}
+        label="Results"
+      >
         {job === undefined ? <Problems /> : <Outcome job={job} />}
       </Tabs>
       <IconButton glyph="close" label="Close the results" onClick={() => update({ bottom: null })} />

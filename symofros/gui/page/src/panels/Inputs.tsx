@@ -29,15 +29,31 @@ export function Inputs() {
           {Object.keys(inputs).map((name) => (
             <tr key={name}>
               <th scope="row">
-                <Cell value={name} label={`Name of ${name}`} commit={(to) => void edit(`rename ${name}`, [{ op: "rename", path: ["inputs", name], to: to.trim() }])} />
+                <Cell
+                  value={name}
+                  label={`Name of ${name}`}
+                  commit={(to) =>
+                    void edit(`rename ${name}`, [{ op: "rename", path: ["inputs", name], to: to.trim() }])
+                  }
+                />
               </th>
               {["unit", "description"].map((key) => (
                 <td key={key}>
-                  <Cell value={textAt(inputs, [name, key]) ?? ""} label={`${key} of ${name}`} commit={(text) => void edit(`change ${name}`, [{ op: "set", path: ["inputs", name, key], value: text }])} />
+                  <Cell
+                    value={textAt(inputs, [name, key]) ?? ""}
+                    label={`${key} of ${name}`}
+                    commit={(text) =>
+                      void edit(`change ${name}`, [{ op: "set", path: ["inputs", name, key], value: text }])
+                    }
+                  />
                 </td>
               ))}
               <td className="narrow">
-                <IconButton glyph="close" label={`Remove ${name}`} onClick={() => void edit(`remove ${name}`, [{ op: "remove", path: ["inputs", name] }])} />
+                <IconButton
+                  glyph="close"
+                  label={`Remove ${name}`}
+                  onClick={() => void edit(`remove ${name}`, [{ op: "remove", path: ["inputs", name] }])}
+                />
               </td>
             </tr>
           ))}

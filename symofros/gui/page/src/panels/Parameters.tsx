@@ -16,7 +16,8 @@ const UNITS = "units";
 function change(data: Json, name: string, key: string, value: Json | undefined): Edit[] {
   const path = ["parameters", name];
   const entry = at(data, path);
-  if (!isMap(entry)) return [{ op: "set", path, value: key === "value" ? (value ?? 0) : { value: entry ?? 0, [key]: value ?? "" } }];
+  if (!isMap(entry))
+    return [{ op: "set", path, value: key === "value" ? (value ?? 0) : { value: entry ?? 0, [key]: value ?? "" } }];
   if (value === undefined) return key in entry ? [{ op: "remove", path: [...path, key] }] : [];
   return [{ op: "set", path: [...path, key], value }];
 }
@@ -56,26 +57,51 @@ function Slider({ parameter, commit }: { parameter: Parameter; commit(value: num
 function Row({ parameter }: { parameter: Parameter }) {
   const { data } = useDocument();
   const { name } = parameter;
-  const set = (key: string, value: Json | undefined): void => void edit(`change ${name}`, change(data, name, key, value));
+  const set = (key: string, value: Json | undefined): void =>
+    void edit(`change ${name}`, change(data, name, key, value));
   return (
     <tr>
       <th scope="row">
-        <Cell value={name} label={`Name of ${name}`} commit={(to) => void edit(`rename ${name}`, [{ op: "rename", path: ["parameters", name], to: to.trim() }])} />
+        <Cell
+          value={name}
+          label={`Name of ${name}`}
+          commit={(to) => void edit(`rename ${name}`, [{ op: "rename", path: ["parameters", name], to: to.trim() }])}
+        />
       </th>
       <td>
-        <Cell value={shown(parameter.value)} label={`Value of ${name}`} numeric commit={(text) => set("value", typed(text) ?? 0)} />
+        <Cell
+          value={shown(parameter.value)}
+          label={`Value of ${name}`}
+          numeric
+          commit={(text) => set("value", typed(text) ?? 0)}
+        />
       </td>
       <td>
-        <Cell value={parameter.unit} label={`Unit of ${name}`} list={UNITS} commit={(text) => set("unit", text === "" ? undefined : text)} />
+        <Cell
+          value={parameter.unit}
+          label={`Unit of ${name}`}
+          list={UNITS}
+          commit={(text) => set("unit", text === "" ? undefined : text)}
+        />
       </td>
       <td className="narrow">
-        <input type="checkbox" checked={parameter.constant} aria-label={`${name} is constant`} title="hard-coded in the C code" onChange={(event) => set("constant", event.target.checked ? true : undefined)} />
+        <input
+          type="checkbox"
+          checked={parameter.constant}
+          aria-label={`${name} is constant`}
+          title="hard-coded in the C code"
+          onChange={(event) => set("constant", event.target.checked ? true : undefined)}
+        />
       </td>
       <td>
         <Slider parameter={parameter} commit={(value) => set("value", value)} />
       </td>
       <td className="narrow">
-        <IconButton glyph="close" label={`Remove ${name}`} onClick={() => void edit(`remove ${name}`, [{ op: "remove", path: ["parameters", name] }])} />
+        <IconButton
+          glyph="close"
+          label={`Remove ${name}`}
+          onClick={() => void edit(`remove ${name}`, [{ op: "remove", path: ["parameters", name] }])}
+        />
       </td>
     </tr>
   );

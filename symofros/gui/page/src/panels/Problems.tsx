@@ -7,7 +7,8 @@ function go({ node, path }: Problem): void {
   if (node !== "") update({ selected: [node], sight: { id: node } });
   const [section, name] = path;
   if (section === "parameters" || section === "inputs") update({ right: "parameters" });
-  else if (path.length >= 2 && section !== undefined && name !== undefined && section !== "system") show({ kind: "properties", path: [section, name] });
+  else if (path.length >= 2 && section !== undefined && name !== undefined && section !== "system")
+    show({ kind: "properties", path: [section, name] });
   else if (section === "system") show({ kind: "properties", path: ["system"] });
   else update({ right: "text" });
 }

@@ -22,7 +22,13 @@ function Plot({ t, series, unit }: { t: number[]; series: Series[]; unit: string
   };
   return (
     <figure className="plot">
-      <svg viewBox={`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-label={`${series.map((each) => each.name).join(", ")} over time`} onPointerMove={follow} onPointerLeave={() => setCursor(null)}>
+      <svg
+        viewBox={`0 0 ${WIDTH} ${HEIGHT}`}
+        role="img"
+        aria-label={`${series.map((each) => each.name).join(", ")} over time`}
+        onPointerMove={follow}
+        onPointerLeave={() => setCursor(null)}
+      >
         {ticks(ys, 5).map((tick) => (
           <g key={tick} className="tick">
             <path d={`M${BOX.x},${y(tick)}h${BOX.width}`} />
@@ -66,7 +72,12 @@ function Plot({ t, series, unit }: { t: number[]; series: Series[]; unit: string
 
 /** Results of a simulation: curves of one unit share a plot. */
 export function Simulation({ result }: { result: Simulated }) {
-  const energies = Object.entries(result.energy).map(([name, values]): Series => ({ name, kind: "energy", unit: "J", values }));
+  const energies = Object.entries(result.energy).map(([name, values]): Series => ({
+    name,
+    kind: "energy",
+    unit: "J",
+    values,
+  }));
   const all = [...result.series, ...energies];
   const units = [...new Set(all.map((each) => each.unit))];
   const { ok, reason, advice } = result.outcome;

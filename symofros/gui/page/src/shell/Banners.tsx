@@ -11,7 +11,10 @@ export function Banners() {
     <>
       {link === "lost" ? (
         <div className="banner bad" role="alert">
-          <span>The server does not answer. Changes up to the last one are kept on disk; start it again with `symofros edit`.</span>
+          <span>
+            The server does not answer. Changes up to the last one are kept on disk; start it again with `symofros
+            edit`.
+          </span>
           <button type="button" className="small" onClick={() => void refresh()}>
             Try again
           </button>

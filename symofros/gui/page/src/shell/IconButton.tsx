@@ -10,7 +10,15 @@ interface Props {
 
 export function IconButton({ glyph, label, onClick, disabled = false, pressed }: Props) {
   return (
-    <button type="button" className="icon" aria-label={label} title={label} disabled={disabled} aria-pressed={pressed} onClick={onClick}>
+    <button
+      type="button"
+      className="icon"
+      aria-label={label}
+      title={label}
+      disabled={disabled}
+      aria-pressed={pressed}
+      onClick={onClick}
+    >
       <Glyph name={glyph} />
     </button>
   );

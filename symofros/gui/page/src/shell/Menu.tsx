@@ -36,7 +36,13 @@ export function Menu({ title, items }: { title: string; items: readonly MenuItem
   };
   return (
     <div ref={box} className="menu" onKeyDown={go}>
-      <button type="button" aria-haspopup="menu" aria-expanded={open} aria-controls={open ? id : undefined} onClick={() => setOpen(!open)}>
+      <button
+        type="button"
+        aria-haspopup="menu"
+        aria-expanded={open}
+        aria-controls={open ? id : undefined}
+        onClick={() => setOpen(!open)}
+      >
         {title}
       </button>
       {open ? (

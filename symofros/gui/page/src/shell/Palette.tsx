@@ -66,7 +66,15 @@ export function Palette() {
       <section aria-label="My parts">
         <h2>My parts</h2>
         {parts.map((part) => (
-          <Entry key={part.name} glyph="part" title={part.name} help={`bodies: ${part.bodies.join(", ")}`} word={`part ${part.name}`} draggable onAdd={() => void insertPart(part.name)} />
+          <Entry
+            key={part.name}
+            glyph="part"
+            title={part.name}
+            help={`bodies: ${part.bodies.join(", ")}`}
+            word={`part ${part.name}`}
+            draggable
+            onAdd={() => void insertPart(part.name)}
+          />
         ))}
         <button
           type="button"

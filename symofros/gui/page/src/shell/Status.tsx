@@ -16,7 +16,11 @@ export function Status() {
       </span>
       {running === undefined ? null : (
         <span className="working">
-          <progress max={running.progress.total || 1} value={running.progress.total > 0 ? running.progress.done : undefined} aria-label={`${running.kind}: progress`} />
+          <progress
+            max={running.progress.total || 1}
+            value={running.progress.total > 0 ? running.progress.done : undefined}
+            aria-label={`${running.kind}: progress`}
+          />
           {running.progress.text || running.kind}
           <button type="button" className="small" onClick={() => void cancel(running.kind)}>
             Cancel

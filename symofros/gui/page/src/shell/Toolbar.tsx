@@ -48,10 +48,25 @@ function EditMenu() {
 }
 
 const WORK: readonly { kind: JobKind; title: string; help: string; start(): void }[] = [
-  { kind: "compile", title: "Compile", help: "Derive the equations, generate and compile C", start: () => void run("compile") },
-  { kind: "crosscheck", title: "Cross-check", help: "Compare the model with independent engines", start: () => void run("crosscheck") },
+  {
+    kind: "compile",
+    title: "Compile",
+    help: "Derive the equations, generate and compile C",
+    start: () => void run("compile"),
+  },
+  {
+    kind: "crosscheck",
+    title: "Cross-check",
+    help: "Compare the model with independent engines",
+    start: () => void run("crosscheck"),
+  },
   { kind: "simulate", title: "Simulate…", help: "Integrate the motion", start: () => show({ kind: "simulate" }) },
-  { kind: "export", title: "Export…", help: "C package, FMU, MEX and other formats", start: () => show({ kind: "export" }) },
+  {
+    kind: "export",
+    title: "Export…",
+    help: "C package, FMU, MEX and other formats",
+    start: () => show({ kind: "export" }),
+  },
 ];
 
 function Work() {
@@ -60,11 +75,21 @@ function Work() {
   const count = problems.length;
   return (
     <div className="cluster" role="group" aria-label="Model">
-      <button type="button" className={count > 0 ? "check bad" : "check good"} onClick={() => update({ bottom: now().bottom === "problems" ? null : "problems" })}>
+      <button
+        type="button"
+        className={count > 0 ? "check bad" : "check good"}
+        onClick={() => update({ bottom: now().bottom === "problems" ? null : "problems" })}
+      >
         {count === 0 ? "No problems" : `${count} problem${count > 1 ? "s" : ""}`}
       </button>
       {WORK.map(({ kind, title, help, start }) => (
-        <button key={kind} type="button" title={help} disabled={count > 0 || jobs[kind]?.state === "running"} onClick={start}>
+        <button
+          key={kind}
+          type="button"
+          title={help}
+          disabled={count > 0 || jobs[kind]?.state === "running"}
+          onClick={start}
+        >
           {title}
         </button>
       ))}
@@ -86,10 +111,24 @@ export function Toolbar() {
       <FileMenu />
       <EditMenu />
       <div className="cluster" role="group" aria-label="Diagram">
-        <IconButton glyph="undo" label={document.can_undo ? `Undo: ${document.undo_label ?? ""} (Ctrl Z)` : "Undo"} disabled={!document.can_undo} onClick={() => void undo()} />
-        <IconButton glyph="redo" label={document.can_redo ? `Redo: ${document.redo_label ?? ""} (Ctrl Y)` : "Redo"} disabled={!document.can_redo} onClick={() => void redo()} />
+        <IconButton
+          glyph="undo"
+          label={document.can_undo ? `Undo: ${document.undo_label ?? ""} (Ctrl Z)` : "Undo"}
+          disabled={!document.can_undo}
+          onClick={() => void undo()}
+        />
+        <IconButton
+          glyph="redo"
+          label={document.can_redo ? `Redo: ${document.redo_label ?? ""} (Ctrl Y)` : "Redo"}
+          disabled={!document.can_redo}
+          onClick={() => void redo()}
+        />
         <IconButton glyph="layout" label="Arrange the blocks" onClick={() => void arrange()} />
-        <IconButton glyph="fit" label="Show the whole diagram" onClick={() => void flow.fitView({ ...whole(document.graph), duration: pace() })} />
+        <IconButton
+          glyph="fit"
+          label="Show the whole diagram"
+          onClick={() => void flow.fitView({ ...whole(document.graph), duration: pace() })}
+        />
         <IconButton glyph="search" label="Find (Ctrl K)" onClick={() => show({ kind: "search" })} />
       </div>
       <h1 className="file-name" title={document.path}>
@@ -98,7 +137,11 @@ export function Toolbar() {
       </h1>
       <Work />
       <div className="cluster">
-        <button type="button" aria-pressed={right === "text"} onClick={() => update({ right: right === "text" ? "parameters" : "text" })}>
+        <button
+          type="button"
+          aria-pressed={right === "text"}
+          onClick={() => update({ right: right === "text" ? "parameters" : "text" })}
+        >
           YAML
         </button>
         <IconButton glyph="theme" label="Dark or light" onClick={toggleTheme} />

@@ -7,7 +7,8 @@ import { redo, undo } from "../store/edits";
 import { browse, save } from "../store/files";
 import { now, show, update } from "../store/store";
 
-const isTyping = (target: EventTarget | null): boolean => target instanceof HTMLElement && target.closest("input, select, textarea, dialog, .text-pane") !== null;
+const isTyping = (target: EventTarget | null): boolean =>
+  target instanceof HTMLElement && target.closest("input, select, textarea, dialog, .text-pane") !== null;
 
 /** The block or link that has the focus, else the only chosen one. */
 function focused(target: EventTarget | null): string | undefined {
@@ -56,7 +57,9 @@ function isFields(event: KeyboardEvent): boolean {
 const DIAGRAMS = ["c", "x", "v", "a", "Delete", "Backspace"];
 
 function isElsewhere(event: KeyboardEvent): boolean {
-  const isDiagram = event.target === window.document.body || (event.target instanceof Element && event.target.closest(".canvas") !== null);
+  const isDiagram =
+    event.target === window.document.body ||
+    (event.target instanceof Element && event.target.closest(".canvas") !== null);
   return DIAGRAMS.includes(event.key) && (!isDiagram || window.getSelection()?.isCollapsed === false);
 }
 

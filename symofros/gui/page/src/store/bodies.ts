@@ -33,9 +33,15 @@ function aimed(template: Json): Json {
   if (!isMap(template)) return template;
   const [first, second, ...more] = selectedFrames();
   if (first === undefined || more.length > 0) return template;
-  if ("first" in template) return second === undefined ? template : { ...template, first: anchor(first), second: anchor(second) };
+  if ("first" in template)
+    return second === undefined ? template : { ...template, first: anchor(first), second: anchor(second) };
   if (second !== undefined) return template;
-  return Object.fromEntries(Object.entries(template).map(([key, value]) => [key, isMap(value) && "body" in value ? { ...value, body: first.body } : value]));
+  return Object.fromEntries(
+    Object.entries(template).map(([key, value]) => [
+      key,
+      isMap(value) && "body" in value ? { ...value, body: first.body } : value,
+    ]),
+  );
 }
 
 function attached(template: Json, on: Anchor | null, name: string): Json {
@@ -100,7 +106,9 @@ function removal(id: string): Edit[] {
   const edge = graph?.edges.find((each) => each.id === id);
   if (edge?.kind === "joint") {
     const joint = mapAt(data(), edge.path);
-    return ["parent", "frame"].filter((key) => key in joint).map((key) => ({ op: "remove", path: [...edge.path, key] }));
+    return ["parent", "frame"]
+      .filter((key) => key in joint)
+      .map((key) => ({ op: "remove", path: [...edge.path, key] }));
   }
   const path = edge?.path ?? graph?.nodes.find((node) => node.id === id)?.path ?? [];
   const [section, name] = path;

@@ -16,7 +16,11 @@ function applies(edit: Edit, document: Document): boolean {
 }
 
 /** A change by request: with the revision it is of; made again on a newer document if it still fits there. */
-export async function change(address: string, body: () => object, again?: (document: Document) => boolean): Promise<boolean> {
+export async function change(
+  address: string,
+  body: () => object,
+  again?: (document: Document) => boolean,
+): Promise<boolean> {
   const ask = (): Promise<Document> => post<Document>(address, { revision: revision(), ...body() });
   const stale = async (refusal: Refused): Promise<Document | undefined> => {
     const theirs = refusal.body.document;
@@ -49,7 +53,11 @@ export async function edit(label: string, edits: Edit[]): Promise<boolean> {
   if (edits.length === 0) return true;
   const moved = renamedPlaces(edits);
   update((state) => ({ places: { ...state.places, ...moved } }));
-  return change("api/edit", () => ({ label, edits }), (theirs) => edits.every((each) => applies(each, theirs)));
+  return change(
+    "api/edit",
+    () => ({ label, edits }),
+    (theirs) => edits.every((each) => applies(each, theirs)),
+  );
 }
 
 /** A block that is renamed stays where it is. */
@@ -58,7 +66,9 @@ function renamedPlaces(edits: readonly Edit[]): Record<string, Point> {
   return Object.fromEntries(
     edits.flatMap((each) => {
       const place = each.op === "rename" ? places[each.path.join("/")] : undefined;
-      return place === undefined || each.op !== "rename" ? [] : [[`${each.path.slice(0, -1).join("/")}/${each.to}`, place]];
+      return place === undefined || each.op !== "rename"
+        ? []
+        : [[`${each.path.slice(0, -1).join("/")}/${each.to}`, place]];
     }),
   );
 }
@@ -68,9 +78,23 @@ export const setValue = (label: string, path: Path, value: Json): Promise<boolea
 
 /** The whole text, made from `base`; what somebody else changed in it meanwhile is kept. */
 export const setText = (text: string, base: string): Promise<boolean> =>
-  change("api/text", () => ({ text: merged(base, text, now().document?.text ?? base) }), () => true);
-export const undo = (): Promise<boolean> => change("api/undo", () => ({}), () => true);
-export const redo = (): Promise<boolean> => change("api/redo", () => ({}), () => true);
+  change(
+    "api/text",
+    () => ({ text: merged(base, text, now().document?.text ?? base) }),
+    () => true,
+  );
+export const undo = (): Promise<boolean> =>
+  change(
+    "api/undo",
+    () => ({}),
+    () => true,
+  );
+export const redo = (): Promise<boolean> =>
+  change(
+    "api/redo",
+    () => ({}),
+    () => true,
+  );
 
 /** Puts blocks; not part of undo. */
 export async function place(places: Record<string, Point>): Promise<void> {

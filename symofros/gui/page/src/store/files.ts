@@ -20,7 +20,7 @@ async function replace(address: string, body: object): Promise<void> {
 
 export const open = (path: string): Promise<void> => replace("api/open", { path });
 export const begin = (path: string): Promise<void> => replace("api/new", { path });
-export const importText = (name: string, text: string): Promise<void> => replace("api/import", { name, text });
+const importText = (name: string, text: string): Promise<void> => replace("api/import", { name, text });
 
 export const importPath = (path: string): Promise<void> => replace("api/import", { path });
 
@@ -38,7 +38,8 @@ export async function save(path: string | null = null, over: string | null = nul
   const ask = (): Promise<Document> => post("api/save", { revision: now().document?.revision ?? 0, path, over });
   const conflict = async (refusal: Refused): Promise<undefined> => {
     const { disk, over: state } = refusal.body;
-    if (refusal.status === 409 && disk !== undefined && state !== undefined) show({ kind: "changed on disk", disk, over: state, path });
+    if (refusal.status === 409 && disk !== undefined && state !== undefined)
+      show({ kind: "changed on disk", disk, over: state, path });
     else explain(refusal);
     return undefined;
   };

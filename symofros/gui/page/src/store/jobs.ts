@@ -37,7 +37,14 @@ async function follow(kind: JobKind, id: string): Promise<void> {
 export async function run(kind: JobKind, options: object = {}): Promise<void> {
   const started = await ordered(() => post<{ id: string }>("api/jobs", { kind, options }));
   if (started === undefined) return;
-  take({ id: started.id, kind, state: "running", progress: { done: 0, total: 0, text: "" }, result: null, error: null });
+  take({
+    id: started.id,
+    kind,
+    state: "running",
+    progress: { done: 0, total: 0, text: "" },
+    result: null,
+    error: null,
+  });
   update({ bottom: kind });
   await follow(kind, started.id);
 }

@@ -33,7 +33,10 @@ export function explain(reason: unknown): void {
 }
 
 /** Runs `ask` when all earlier ones are answered. Undefined if it was refused and `refused` did not help. */
-export function ordered<T>(ask: () => Promise<T>, refused?: (refusal: Refused) => Promise<T | undefined>): Promise<T | undefined> {
+export function ordered<T>(
+  ask: () => Promise<T>,
+  refused?: (refusal: Refused) => Promise<T | undefined>,
+): Promise<T | undefined> {
   const attempt = async (): Promise<T | undefined> => {
     try {
       return await ask();

@@ -20,7 +20,12 @@ function diagnostics(problems: readonly Problem[], text: Text): Diagnostic[] {
     .filter((problem) => problem.line > 0 && problem.line <= text.lines)
     .map((problem) => {
       const line = text.line(problem.line);
-      return { from: line.from, to: line.to, severity: "error", message: `${problem.object}: ${problem.found}. ${problem.remedy}` };
+      return {
+        from: line.from,
+        to: line.to,
+        severity: "error",
+        message: `${problem.object}: ${problem.found}. ${problem.remedy}`,
+      };
     });
 }
 
@@ -79,7 +84,11 @@ export default function TextPane() {
     base.current = document.text;
     const shown = editor.state.doc.toString();
     if (shown !== document.text) {
-      editor.dispatch({ changes: replacement(shown, document.text), userEvent: "remote", annotations: Transaction.addToHistory.of(false) });
+      editor.dispatch({
+        changes: replacement(shown, document.text),
+        userEvent: "remote",
+        annotations: Transaction.addToHistory.of(false),
+      });
     }
     editor.dispatch(setDiagnostics(editor.state, diagnostics(document.problems, editor.state.doc)));
   }, [document]);

@@ -17,7 +17,12 @@ const DIRECTIONS = ["bend_y", "bend_z", "twist"] as const;
 function Shapes({ beam, direction }: { beam: JsonMap; direction: string }) {
   const [curves, setCurves] = useState<Curves | null>(null);
   const modes = beam[direction];
-  const question = JSON.stringify({ family: beam["family"] ?? "spline", modes, direction, shapes: mapAt(beam, ["shapes"])[direction] ?? [] });
+  const question = JSON.stringify({
+    family: beam["family"] ?? "spline",
+    modes,
+    direction,
+    shapes: mapAt(beam, ["shapes"])[direction] ?? [],
+  });
   useEffect(() => {
     let wanted = true;
     // While a number is typed it may be out of range; then the last drawing stays.
@@ -31,7 +36,13 @@ function Shapes({ beam, direction }: { beam: JsonMap; direction: string }) {
   if (curves === null || typeof modes !== "number") return null;
   return (
     <figure className="shapes">
-      <Curve x={curves.xi} series={curves.curves.map(({ values }) => values)} width={190} height={72} label={`${modes} shape functions: ${label(direction)}`} />
+      <Curve
+        x={curves.xi}
+        series={curves.curves.map(({ values }) => values)}
+        width={190}
+        height={72}
+        label={`${modes} shape functions: ${label(direction)}`}
+      />
       <figcaption>{label(direction)}, over x/L</figcaption>
     </figure>
   );

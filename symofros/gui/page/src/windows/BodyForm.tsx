@@ -39,7 +39,9 @@ function JointPage({ value, onChange, path }: Props) {
       </p>
     );
   }
-  return <RecordField shape={shape} value={joint} onChange={set} path={[...path, "joint"]} only={motionEntries(joint)} />;
+  return (
+    <RecordField shape={shape} value={joint} onChange={set} path={[...path, "joint"]} only={motionEntries(joint)} />
+  );
 }
 
 function ForcesPage({ value, onChange, path }: Props) {
@@ -51,7 +53,15 @@ function ForcesPage({ value, onChange, path }: Props) {
   return (
     <>
       {has ? <h3>On the joint</h3> : null}
-      {has ? <RecordField shape={joint} value={mapAt(value, ["joint"])} onChange={set} path={[...path, "joint"]} only={forceEntries} /> : null}
+      {has ? (
+        <RecordField
+          shape={joint}
+          value={mapAt(value, ["joint"])}
+          onChange={set}
+          path={[...path, "joint"]}
+          only={forceEntries}
+        />
+      ) : null}
       {isBeam ? null : (
         <>
           <h3>On the body</h3>
@@ -67,7 +77,15 @@ function FramesPage({ value, onChange, path }: Props) {
   const described = field(root, mapAt(root, ["$defs", "BodyEntry", "properties", "frames"]));
   const frames = isMap(value) ? value["frames"] : undefined;
   return (
-    <FieldControl name="frames" field={described} value={frames} onChange={(next) => onChange(replaced(value, "frames", next))} path={[...path, "frames"]} label="Frames" siblings={value} />
+    <FieldControl
+      name="frames"
+      field={described}
+      value={frames}
+      onChange={(next) => onChange(replaced(value, "frames", next))}
+      path={[...path, "frames"]}
+      label="Frames"
+      siblings={value}
+    />
   );
 }
 
@@ -87,9 +105,15 @@ export function BodyForm({ value, onChange, path }: Props) {
     <Tabs<Page> tabs={tabs} current={page} onChange={setPage} label="Properties of the body">
       {page === "joint" ? <JointPage {...props} /> : null}
       {page === "matter" && isBeam ? (
-        <BeamForm value={mapAt(value, ["beam"])} onChange={(next) => onChange(replaced(value, "beam", next))} path={[...path, "beam"]} />
+        <BeamForm
+          value={mapAt(value, ["beam"])}
+          onChange={(next) => onChange(replaced(value, "beam", next))}
+          path={[...path, "beam"]}
+        />
       ) : null}
-      {page === "matter" && !isBeam ? <RecordField shape={body} value={value} onChange={onChange} path={path} only={["inertia", "waive"]} /> : null}
+      {page === "matter" && !isBeam ? (
+        <RecordField shape={body} value={value} onChange={onChange} path={path} only={["inertia", "waive"]} />
+      ) : null}
       {page === "frames" ? <FramesPage {...props} /> : null}
       {page === "forces" ? <ForcesPage {...props} /> : null}
     </Tabs>

@@ -29,7 +29,8 @@ export function Keys() {
         ))}
       </dl>
       <p className="quiet">
-        Drag from a frame (circle) to a joint (square) to mount a body; from a frame to a frame to close a loop or to put a spring between.
+        Drag from a frame (circle) to a joint (square) to mount a body; from a frame to a frame to close a loop or to
+        put a spring between.
       </p>
     </Window>
   );

@@ -34,9 +34,19 @@ export function Properties({ path }: { path: Path }) {
   const name = renames[keyOf(path)] ?? String(path.at(-1));
   const [hint, setHint] = useState("");
   const section = String(path[0]);
-  const rename = useCallback((place: Path, to: string) => setRenames((all) => ({ ...all, [keyOf(place)]: to.trim() })), []);
+  const rename = useCallback(
+    (place: Path, to: string) => setRenames((all) => ({ ...all, [keyOf(place)]: to.trim() })),
+    [],
+  );
   const context = useMemo<FormContext>(
-    () => ({ root: schema ?? {}, data, body: section === "bodies" ? String(path[1]) : null, renames, rename, hint: setHint }),
+    () => ({
+      root: schema ?? {},
+      data,
+      body: section === "bodies" ? String(path[1]) : null,
+      renames,
+      rename,
+      hint: setHint,
+    }),
     [schema, data, section, path, renames, rename],
   );
   const accept = async (): Promise<void> => {
@@ -73,13 +83,21 @@ export function Properties({ path }: { path: Path }) {
               Name
             </label>
             <div className="row-control">
-              <input id="entry-name" value={name} spellCheck={false} onFocus={() => setHint("Renaming it changes all that refers to it.")} onChange={(event) => rename(path, event.target.value)} />
+              <input
+                id="entry-name"
+                value={name}
+                spellCheck={false}
+                onFocus={() => setHint("Renaming it changes all that refers to it.")}
+                onChange={(event) => rename(path, event.target.value)}
+              />
             </div>
           </div>
         )}
         {isSystem ? <SystemForm value={draft} onChange={setDraft} /> : null}
         {section === "bodies" ? <BodyForm value={draft} onChange={setDraft} path={path} /> : null}
-        {isSystem || section === "bodies" ? null : <EntryForm section={section} value={draft} onChange={setDraft} path={path} />}
+        {isSystem || section === "bodies" ? null : (
+          <EntryForm section={section} value={draft} onChange={setDraft} path={path} />
+        )}
       </Form.Provider>
     </Window>
   );

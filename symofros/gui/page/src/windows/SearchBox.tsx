@@ -33,7 +33,7 @@ export function SearchBox() {
       <input
         value={text}
         placeholder="body, joint, frame, parameter…"
-       
+
         role="combobox"
         aria-label="Find by name"
         aria-expanded
@@ -48,7 +48,13 @@ export function SearchBox() {
       />
       <ul id="hits" className="files" role="listbox" aria-label="Found">
         {hits.map((hit, i) => (
-          <li key={`${hit.what} ${hit.name}`} id={`hit-${i}`} role="option" aria-selected={i === current} onClick={() => go(hit)}>
+          <li
+            key={`${hit.what} ${hit.name}`}
+            id={`hit-${i}`}
+            role="option"
+            aria-selected={i === current}
+            onClick={() => go(hit)}
+          >
             <span>{hit.name}</span>
             <span className="quiet">{hit.what}</span>
           </li>

@@ -9,10 +9,19 @@ import { dismiss, useDocument, useStore } from "../store/store";
 type Texts = Record<string, string>;
 
 // What was asked last is what is likely to be asked next.
-let last = { end: "5", step: "0.001", tolerance: "1e-8", method: "rk4", q0: {} as Texts, v0: {} as Texts, inputs: {} as Texts };
+let last = {
+  end: "5",
+  step: "0.001",
+  tolerance: "1e-8",
+  method: "rk4",
+  q0: {} as Texts,
+  v0: {} as Texts,
+  inputs: {} as Texts,
+};
 
 const given = (texts: Texts): [string, string][] => Object.entries(texts).filter(([, text]) => text.trim() !== "");
-const numbers = (texts: Texts): Record<string, number> => Object.fromEntries(given(texts).map(([name, text]) => [name, Number(text)]));
+const numbers = (texts: Texts): Record<string, number> =>
+  Object.fromEntries(given(texts).map(([name, text]) => [name, Number(text)]));
 const positive = (text: string): boolean => isNumber(text) && Number(text) > 0;
 
 interface ColumnProps {
@@ -45,7 +54,15 @@ function Table({ head, names, columns }: { head: string; names: string[]; column
               const text = texts[name] ?? "";
               return (
                 <td key={title}>
-                  <input className="number" value={text} placeholder="0" aria-label={`${title} of ${name}`} aria-invalid={text.trim() !== "" && !isRight(text)} spellCheck={false} onChange={(event) => onChange({ ...texts, [name]: event.target.value })} />
+                  <input
+                    className="number"
+                    value={text}
+                    placeholder="0"
+                    aria-label={`${title} of ${name}`}
+                    aria-invalid={text.trim() !== "" && !isRight(text)}
+                    spellCheck={false}
+                    onChange={(event) => onChange({ ...texts, [name]: event.target.value })}
+                  />
                 </td>
               );
             })}
@@ -56,14 +73,32 @@ function Table({ head, names, columns }: { head: string; names: string[]; column
   );
 }
 
-function Field({ name, title, unit, text, onChange }: { name: string; title: string; unit: string; text: string; onChange(text: string): void }) {
+function Field({
+  name,
+  title,
+  unit,
+  text,
+  onChange,
+}: {
+  name: string;
+  title: string;
+  unit: string;
+  text: string;
+  onChange(text: string): void;
+}) {
   return (
     <div className="row">
       <label className="row-label" htmlFor={name}>
         {title}
       </label>
       <div className="row-control">
-        <input id={name} className="number" value={text} aria-invalid={!positive(text)} onChange={(event) => onChange(event.target.value)} />
+        <input
+          id={name}
+          className="number"
+          value={text}
+          aria-invalid={!positive(text)}
+          onChange={(event) => onChange(event.target.value)}
+        />
       </div>
       <span className="row-unit">{unit}</span>
     </div>
@@ -78,14 +113,24 @@ export function SimulateForm() {
   const set = (part: Partial<typeof last>): void => setAsked({ ...asked, ...part });
   const isAdaptive = methods.find(({ name }) => name === asked.method)?.adaptive === true;
   const starts = [...given(asked.q0), ...given(asked.v0)];
-  const isFine = positive(asked.end) && positive(isAdaptive ? asked.tolerance : asked.step) && starts.every(([, text]) => isNumber(text));
+  const isFine =
+    positive(asked.end) &&
+    positive(isAdaptive ? asked.tolerance : asked.step) &&
+    starts.every(([, text]) => isNumber(text));
   const start = (): void => {
     if (!isFine) return;
     last = asked;
     dismiss();
     const { end, step, tolerance, method, q0, v0 } = asked;
     const accuracy = isAdaptive ? { rtol: Number(tolerance) } : { dt: Number(step) };
-    void run("simulate", { t_end: Number(end), method, ...accuracy, q0: numbers(q0), v0: numbers(v0), inputs: Object.fromEntries(given(asked.inputs)) });
+    void run("simulate", {
+      t_end: Number(end),
+      method,
+      ...accuracy,
+      q0: numbers(q0),
+      v0: numbers(v0),
+      inputs: Object.fromEntries(given(asked.inputs)),
+    });
   };
   return (
     <Window
@@ -119,7 +164,13 @@ export function SimulateForm() {
         </div>
       </div>
       {isAdaptive ? (
-        <Field name="tolerance" title="Tolerance" unit="relative" text={asked.tolerance} onChange={(tolerance) => set({ tolerance })} />
+        <Field
+          name="tolerance"
+          title="Tolerance"
+          unit="relative"
+          text={asked.tolerance}
+          onChange={(tolerance) => set({ tolerance })}
+        />
       ) : (
         <Field name="step" title="Step" unit="s" text={asked.step} onChange={(step) => set({ step })} />
       )}
@@ -131,7 +182,18 @@ export function SimulateForm() {
           { title: "Speed", texts: asked.v0, isRight: isNumber, onChange: (v0) => set({ v0 }) },
         ]}
       />
-      <Table head="Input" names={inputs(data)} columns={[{ title: "Formula of t", texts: asked.inputs, isRight: () => true, onChange: (texts) => set({ inputs: texts }) }]} />
+      <Table
+        head="Input"
+        names={inputs(data)}
+        columns={[
+          {
+            title: "Formula of t",
+            texts: asked.inputs,
+            isRight: () => true,
+            onChange: (texts) => set({ inputs: texts }),
+          },
+        ]}
+      />
     </Window>
   );
 }

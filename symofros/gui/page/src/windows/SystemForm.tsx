@@ -23,7 +23,12 @@ export function SystemForm({ value, onChange }: Props) {
   return (
     <>
       {shape.kind === "record" ? (
-        <RecordField shape={shape} value={mapAt(value, ["system"])} onChange={(next) => onChange(replaced(value, "system", next))} path={["system"]} />
+        <RecordField
+          shape={shape}
+          value={mapAt(value, ["system"])}
+          onChange={(next) => onChange(replaced(value, "system", next))}
+          path={["system"]}
+        />
       ) : null}
       {SECTIONS.map(({ key, title, help }) => (
         <section key={key}>

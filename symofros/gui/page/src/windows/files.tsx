@@ -25,7 +25,12 @@ export function OpenFile({ files }: { files: FileEntry[] }) {
         if (first !== undefined) take(first.path);
       }}
     >
-      <input value={filter} placeholder="filter" aria-label="Filter files" onChange={(event) => setFilter(event.target.value)} />
+      <input
+        value={filter}
+        placeholder="filter"
+        aria-label="Filter files"
+        onChange={(event) => setFilter(event.target.value)}
+      />
       <ul className="files">
         {found.map(({ path, bytes }) => (
           <li key={path}>
@@ -42,7 +47,17 @@ export function OpenFile({ files }: { files: FileEntry[] }) {
 }
 
 /** Asks for the name of a file in the workspace. */
-function AskPath({ title, word, start, onDone }: { title: string; word: string; start: string; onDone(path: string): void }) {
+function AskPath({
+  title,
+  word,
+  start,
+  onDone,
+}: {
+  title: string;
+  word: string;
+  start: string;
+  onDone(path: string): void;
+}) {
   const [path, setPath] = useState(start);
   const full = isModel(path.trim()) ? path.trim() : `${path.trim()}.yaml`;
   return (
