@@ -13,6 +13,7 @@ from typing import Any
 import anyio
 from anyio.to_thread import run_sync
 from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Mount, Route
@@ -223,7 +224,19 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
         both = {"disk": error.disk, "over": error.over, "text": session.document.text}
         return JSONResponse({**error_body(error.problem), **both, "document": session.as_json()}, 409)
 
+    async def no_such(_: Request, error: Exception) -> Response:
+        assert isinstance(error, HTTPException)
+        problem = Problem("no such address", str(error.detail), "addresses are those of the page", "reload the page")
+        return JSONResponse(error_body(problem), error.status_code)
+
+    async def unforeseen(_: Request, error: Exception) -> Response:
+        problem = Problem("the server met a fault of its own", type(error).__name__, "this should not happen",
+                          "please report it, with what the terminal shows; the document is as it was")  # fmt: skip
+        return JSONResponse(error_body(problem), 500)
+
     handlers: dict[Any, Any] = {
+        HTTPException: no_such,
+        Exception: unforeseen,
         EditError: refused,
         FileError: refused,
         YamlFault: refused,

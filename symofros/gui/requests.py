@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, get_args
 
-from symofros.description.native.yaml_nodes import scalar_of
+from symofros.description.native.yaml_nodes import MAX_DEPTH, scalar_of
 from symofros.errors import Problem
 from symofros.gui.plain import Edit, EditError, Op, Path
 from symofros.gui.rendering import WHOLE, Typed
@@ -62,12 +62,14 @@ def _edit(item: Any) -> Edit:
     return Edit(op, path, value, key, index)
 
 
-def _clean(value: Any) -> Any:
+def _clean(value: Any, depth: int = 0) -> Any:
     """A value as the format holds it: whole numbers of sixteen digits and more are doubles."""
+    if depth > MAX_DEPTH:
+        raise _malformed("value", f"more than {MAX_DEPTH} levels", "the format needs fewer than ten")
     if isinstance(value, dict):
-        return {key: _clean(inner) for key, inner in value.items()}
+        return {key: _clean(inner, depth + 1) for key, inner in value.items()}
     if isinstance(value, list):
-        return [_clean(inner) for inner in value]
+        return [_clean(inner, depth + 1) for inner in value]
     if isinstance(value, int) and abs(value) >= WHOLE:
         try:
             return float(value)

@@ -10,10 +10,13 @@ from starlette.testclient import TestClient
 
 import symofros as sf
 from symofros.gui.analysis import analyse
+from symofros.gui.app import application
 from symofros.gui.catalogue import PALETTE
 from symofros.gui.edits import apply
 from symofros.gui.plain import Edit
+from symofros.gui.session import Session
 from symofros.simulation.methods import METHODS
+from tests.gui.conftest import BASE, GRANTED, PORT, TOKEN
 from tests.gui.texts import FILES, TEXTS
 
 KEYS = {
@@ -195,3 +198,13 @@ def test_parts(client: TestClient) -> None:
     ).json()
     assert put["data"]["bodies"]["rocker2"]["joint"]["parent"] == "crank" and put["problems"] == []
     assert client.post("/api/parts/insert", json={"revision": put["revision"], "name": "no"}).status_code == 422
+
+
+def test_a_fault_of_the_server_s_own_is_told_and_it_goes_on(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    with TestClient(application(session, TOKEN, PORT), BASE, raise_server_exceptions=False, headers=GRANTED) as client:
+        with monkeypatch.context() as broken:
+            broken.setattr(session.storage, "place", lambda _: 1 // 0)
+            answer = client.post("/api/layout", json={})
+        assert answer.status_code == 500 and answer.json()["error"]["found"] == "ZeroDivisionError"
+        assert client.post("/api/layout", json={}).status_code == 200
+        assert client.get("/api/nothing").json()["error"]["object"] == "no such address"

@@ -333,6 +333,11 @@ def test_a_spoilt_side_file_is_as_none(file: Path, content: str) -> None:
     assert opened(file).storage.layout == {}
 
 
+DEEP: list[object] = []
+for _ in range(100):
+    DEEP = [DEEP]
+
+
 @pytest.mark.parametrize(
     "edits",
     [
@@ -347,6 +352,7 @@ def test_a_spoilt_side_file_is_as_none(file: Path, content: str) -> None:
         [{"op": "set", "path": ["a"] * 60}],
         [{"op": "set", "path": ["a"], "text": 3}],
         [{"op": "set", "path": ["a"], "value": {"b": [10**400]}}],
+        [{"op": "set", "path": ["a"], "value": DEEP}],
     ],
 )
 def test_malformed_edits_are_refused(file: Path, edits: object) -> None:

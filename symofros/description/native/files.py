@@ -17,7 +17,7 @@ from symofros.description.native.schema import BodyEntry, InputEntry, NativeFile
 from symofros.description.native.yaml_nodes import Node, YamlFault, compose
 from symofros.description.native.yaml_writer import write_yaml as write_yaml
 from symofros.description.reading import Reading as Reading
-from symofros.description.reading import in_order, read_bytes
+from symofros.description.reading import in_order, read_bytes, refuse_size
 from symofros.description.system import Body, Input, Parameter, System
 from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 
@@ -115,6 +115,7 @@ class _Merger:
         data = self.unwritten.get(path.resolve())
         if data is None:
             data = read_bytes(path, self.bytes_left)
+        refuse_size(path, data, self.bytes_left)
         self.bytes_left -= len(data)
         return data
 
