@@ -1,5 +1,5 @@
 import { Handle, type Node, type NodeProps, Position } from "@xyflow/react";
-import { memo } from "react";
+import { memo, type ReactNode } from "react";
 
 import type { GraphNode, Port } from "../api/types";
 import { frames, hasJoint, jointHeight, portHeight, size } from "../model/geometry";
@@ -13,9 +13,10 @@ export const JOINT = "joint";
 export const frameHandle = (port: Port | undefined): string => `frame ${port?.kind === "frame" ? port.name : ""}`;
 export const frameOf = (handle: string): string => handle.slice("frame ".length);
 
-/** A body: its joint on the left, the frames that others can be put on at the right. */
-function Body({ data }: NodeProps<BlockNode>) {
-  const { node, summary } = data;
+type Props = NodeProps<BlockNode>["data"];
+
+/** What all blocks have: outline and head. */
+function Outline({ node, note, children }: { node: GraphNode; note: string; children: ReactNode }) {
   const [width, height] = size(node);
   return (
     <div className={`block ${node.kind}${node.problems > 0 ? " wrong" : ""}`} style={{ width, height }}>
@@ -23,25 +24,55 @@ function Body({ data }: NodeProps<BlockNode>) {
         <Glyph name={node.kind} size={14} />
         <span className="block-title">{node.title}</span>
         {node.problems > 0 ? <span className="block-problems">{node.problems}</span> : null}
-        <span className="block-note">{summary.note}</span>
+        <span className="block-note">{note}</span>
       </div>
-      {summary.joint === null ? null : (
-        <div className="block-joint">
-          <Glyph name={summary.joint.kind} />
-          <span className="block-joint-name">{summary.joint.name}</span>
-          <span className="block-joint-kind">{summary.joint.kind}</span>
-          {summary.joint.actuated ? (
-            <span className="block-mark" title="driven by a motor or an effort">
-              <Glyph name="motor" size={12} />
-            </span>
-          ) : null}
-          {summary.joint.sprung ? (
-            <span className="block-mark" title="spring, damper, stop or friction">
-              <Glyph name="spring" size={12} />
-            </span>
-          ) : null}
-        </div>
-      )}
+      {children}
+    </div>
+  );
+}
+
+function Mark({ glyph, title }: { glyph: string; title: string }) {
+  return (
+    <span className="block-mark" title={title}>
+      <Glyph name={glyph} size={12} />
+    </span>
+  );
+}
+
+function JointWords({ joint }: { joint: NonNullable<Summary["joint"]> }) {
+  return (
+    <div className="block-joint">
+      <Glyph name={joint.kind} />
+      <span className="block-joint-name">{joint.name}</span>
+      <span className="block-joint-kind">{joint.kind}</span>
+      {joint.actuated ? <Mark glyph="motor" title="driven by a motor or an effort" /> : null}
+      {joint.sprung ? <Mark glyph="spring" title="spring, damper, stop or friction" /> : null}
+    </div>
+  );
+}
+
+function FramePort({ node, frame }: { node: GraphNode; frame: Port }) {
+  const name = frame.kind === "origin" ? "origin" : frame.name;
+  return (
+    <div className="block-frame" style={{ top: portHeight(node, frame.name) }}>
+      <span className={frame.kind === "origin" ? "quiet" : ""}>{name}</span>
+      <Handle
+        id={frameHandle(frame)}
+        type="source"
+        position={Position.Right}
+        className="port frame"
+        role="img"
+        aria-label={`frame ${name} of ${node.title}`}
+      />
+    </div>
+  );
+}
+
+/** A body: its joint on the left, the frames that others can be put on at the right. */
+function Body({ node, summary }: Props) {
+  return (
+    <Outline node={node} note={summary.note}>
+      {summary.joint === null ? null : <JointWords joint={summary.joint} />}
       {hasJoint(node) ? (
         <Handle
           id={JOINT}
@@ -54,35 +85,17 @@ function Body({ data }: NodeProps<BlockNode>) {
         />
       ) : null}
       {frames(node).map((frame) => (
-        <div key={frame.name} className="block-frame" style={{ top: portHeight(node, frame.name) }}>
-          <span className={frame.kind === "origin" ? "quiet" : ""}>
-            {frame.kind === "origin" ? "origin" : frame.name}
-          </span>
-          <Handle
-            id={frameHandle(frame)}
-            type="source"
-            position={Position.Right}
-            className="port frame"
-            role="img"
-            aria-label={`frame ${frame.kind === "origin" ? "origin" : frame.name} of ${node.title}`}
-          />
-        </div>
+        <FramePort key={frameHandle(frame)} node={node} frame={frame} />
       ))}
-    </div>
+    </Outline>
   );
 }
 
 /** A condition on speeds. */
-function Condition({ data }: NodeProps<BlockNode>) {
-  const { node, summary } = data;
-  const [width, height] = size(node);
+function Condition({ node, summary }: Props) {
+  const top = portHeight(node, "");
   return (
-    <div className={`block ${node.kind}${node.problems > 0 ? " wrong" : ""}`} style={{ width, height }}>
-      <div className="block-head">
-        <Glyph name={node.kind} size={14} />
-        <span className="block-title">{node.title}</span>
-        {node.problems > 0 ? <span className="block-problems">{node.problems}</span> : null}
-      </div>
+    <Outline node={node} note="">
       <div className="block-kind">{summary.note}</div>
       <Handle
         id={JOINT}
@@ -90,12 +103,12 @@ function Condition({ data }: NodeProps<BlockNode>) {
         position={Position.Left}
         className="port constraint"
         isConnectable={false}
-        style={{ top: portHeight(node, "") }}
+        style={{ top }}
       />
-    </div>
+    </Outline>
   );
 }
 
-export const Block = memo(function Block(props: NodeProps<BlockNode>) {
-  return props.data.node.kind === "nonholonomic" ? <Condition {...props} /> : <Body {...props} />;
+export const Block = memo(function Block({ data }: NodeProps<BlockNode>) {
+  return data.node.kind === "nonholonomic" ? <Condition {...data} /> : <Body {...data} />;
 });

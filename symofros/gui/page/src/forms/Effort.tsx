@@ -1,19 +1,11 @@
-import type { Json, Path } from "../api/types";
+import type { Json } from "../api/types";
 import { speeds } from "../model/joints";
 import { isMap } from "../model/paths";
+import type { ControlProps } from "./context";
 import { Expression } from "./Expression";
 
-interface Props {
-  value: Json | undefined;
-  onChange(value: Json | undefined): void;
-  path: Path;
-  label: string;
-  help: string;
-  joint: Json | undefined;
-}
-
 /** The joint's virtual power: a formula for each of its speeds. A single one keeps the form it has in the file. */
-export function Effort({ value, onChange, path, label, help, joint }: Props) {
+export function Effort({ value, onChange, path, label, help, joint }: ControlProps & { joint: Json | undefined }) {
   const isList = Array.isArray(value);
   const given = isList ? value : value === undefined ? [] : [value];
   const count = Math.max(isMap(joint) ? speeds(joint) : 0, given.length);

@@ -1,19 +1,14 @@
 import { useId, useState } from "react";
 
-import type { Checked, Json, Path } from "../api/types";
+import type { Checked, Json } from "../api/types";
 import { same } from "../model/paths";
 import { setValue } from "../store/edits";
 import { useStore } from "../store/store";
-import { useForm } from "./context";
+import { type ControlProps, useForm } from "./context";
 import { useChecked } from "./useChecked";
 import { shown, typed } from "./values";
 
-export interface ExpressionProps {
-  value: Json | undefined;
-  onChange(value: Json | undefined): void;
-  path: Path;
-  label: string;
-  help: string;
+interface ExpressionProps extends ControlProps {
   fallback?: Json | undefined;
   required?: boolean;
 }

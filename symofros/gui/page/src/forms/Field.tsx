@@ -12,7 +12,7 @@ import type { Field } from "./schema";
 import { ChoiceField, FlagField, NumberField, SetField, TextField } from "./scalars";
 import { Matrix, partNames, Vector } from "./Vector";
 
-export interface ControlProps {
+interface FieldProps {
   /** The property's key: some have a widget of their own. */
   name: string;
   field: Field;
@@ -25,7 +25,7 @@ export interface ControlProps {
 }
 
 /** The control that suits a property's shape. */
-export function FieldControl({ name, field, value, onChange, path, label, siblings }: ControlProps) {
+export function FieldControl({ name, field, value, onChange, path, label, siblings }: FieldProps) {
   const { shape, help, fallback } = field;
   const common = { value: value === null ? undefined : value, onChange, label, help, fallback };
   if (name === "moments") return <Moments {...common} path={path} />;
@@ -60,7 +60,7 @@ export function FieldControl({ name, field, value, onChange, path, label, siblin
 }
 
 /** A record that may be left out is added and removed as a whole. */
-function OptionalRecord({ value, onChange, path, label, field }: Omit<ControlProps, "name" | "siblings">) {
+function OptionalRecord({ value, onChange, path, label, field }: Omit<FieldProps, "name" | "siblings">) {
   const { shape, optional } = field;
   if (shape.kind !== "record") return null;
   if (!isMap(value) && optional) {

@@ -1,19 +1,12 @@
-import type { Json, Path } from "../api/types";
+import type { Json } from "../api/types";
 import { isMap, replaced } from "../model/paths";
+import type { ControlProps } from "./context";
 import { Expression } from "./Expression";
-
-interface Props {
-  value: Json | undefined;
-  onChange(value: Json | undefined): void;
-  path: Path;
-  label: string;
-  help: string;
-}
 
 const NAMES = ["Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"] as const;
 
 /** Moments and products of inertia, kept in the form that the file has them in: a list of three or six, or by name. */
-export function Moments({ value, onChange, path, help }: Props) {
+export function Moments({ value, onChange, path, help }: ControlProps) {
   const list = Array.isArray(value) ? value : [];
   const byName = isMap(value);
   const part = (i: number): Json | undefined => (byName ? value[(NAMES[i] ?? "").toLowerCase()] : list[i]);

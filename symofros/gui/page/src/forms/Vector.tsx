@@ -1,12 +1,8 @@
-import type { Json, Path } from "../api/types";
+import type { Json } from "../api/types";
+import type { ControlProps } from "./context";
 import { Expression } from "./Expression";
 
-interface Props {
-  value: Json | undefined;
-  onChange(value: Json | undefined): void;
-  path: Path;
-  label: string;
-  help: string;
+interface Props extends ControlProps {
   names: readonly string[];
   fallback: Json | undefined;
 }

@@ -2,7 +2,7 @@
 
 import { createContext, useContext } from "react";
 
-import type { JsonMap, Path } from "../api/types";
+import type { Json, JsonMap, Path } from "../api/types";
 import type { Renames } from "../model/changes";
 
 export interface FormContext {
@@ -27,3 +27,12 @@ export const Form = createContext<FormContext>({
   hint: () => undefined,
 });
 export const useForm = (): FormContext => useContext(Form);
+
+/** What a control of one property gets. */
+export interface ControlProps {
+  value: Json | undefined;
+  onChange(value: Json | undefined): void;
+  path: Path;
+  label: string;
+  help: string;
+}

@@ -1,6 +1,8 @@
 import { useState } from "react";
 
 import { stem } from "../model/names";
+import { Foot } from "../shell/Foot";
+import { TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { run } from "../store/jobs";
 import { dismiss, useDocument, useStore } from "../store/store";
@@ -30,16 +32,7 @@ export function ExportForm() {
       title="Export"
       onClose={dismiss}
       onSubmit={start}
-      foot={
-        <>
-          <button type="button" onClick={dismiss}>
-            Cancel
-          </button>
-          <button type="submit" className="primary" disabled={kind === "" || folder.trim() === ""}>
-            Export
-          </button>
-        </>
-      }
+      foot={<Foot word="Export" disabled={kind === "" || folder.trim() === ""} />}
     >
       <fieldset className="kinds">
         <legend>Format</legend>
@@ -50,14 +43,7 @@ export function ExportForm() {
           </label>
         ))}
       </fieldset>
-      <div className="row">
-        <label className="row-label" htmlFor="folder">
-          Folder
-        </label>
-        <div className="row-control">
-          <input id="folder" value={folder} spellCheck={false} onChange={(event) => setFolder(event.target.value)} />
-        </div>
-      </div>
+      <TextRow title="Folder" text={folder} onChange={setFolder} />
     </Window>
   );
 }

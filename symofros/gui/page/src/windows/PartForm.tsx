@@ -1,5 +1,7 @@
 import { useState } from "react";
 
+import { Foot } from "../shell/Foot";
+import { TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { savePart } from "../store/clipboard";
 import { dismiss, useStore } from "../store/store";
@@ -17,26 +19,10 @@ export function PartForm({ bodies }: { bodies: string[] }) {
       title="Save as a part"
       onClose={dismiss}
       onSubmit={() => void accept()}
-      foot={
-        <>
-          <button type="button" onClick={dismiss}>
-            Cancel
-          </button>
-          <button type="submit" className="primary" disabled={name.trim() === ""}>
-            {exists ? "Replace" : "Save"}
-          </button>
-        </>
-      }
+      foot={<Foot word={exists ? "Replace" : "Save"} disabled={name.trim() === ""} />}
     >
       <p className="quiet">{bodies.join(", ")}, with the parameters and inputs that they use</p>
-      <div className="row">
-        <label className="row-label" htmlFor="part">
-          Name
-        </label>
-        <div className="row-control">
-          <input id="part" value={name} spellCheck={false} onChange={(event) => setName(event.target.value)} />
-        </div>
-      </div>
+      <TextRow title="Name" text={name} onChange={setName} />
     </Window>
   );
 }

@@ -4,6 +4,8 @@ import type { Json, Path } from "../api/types";
 import { Form, type FormContext } from "../forms/context";
 import { changes, keyOf, type Renames } from "../model/changes";
 import { at, difference } from "../model/paths";
+import { Foot } from "../shell/Foot";
+import { TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { edit } from "../store/edits";
 import { dismiss, useDocument, useStore } from "../store/store";
@@ -67,31 +69,18 @@ export function Properties({ path }: { path: Path }) {
           <span className="hint" aria-hidden="true">
             {hint}
           </span>
-          <button type="button" onClick={dismiss}>
-            Cancel
-          </button>
-          <button type="submit" className="primary" disabled={Object.values(renames).includes("")}>
-            OK
-          </button>
+          <Foot word="OK" disabled={Object.values(renames).includes("")} />
         </>
       }
     >
       <Form.Provider value={context}>
         {isSystem ? null : (
-          <div className="row">
-            <label className="row-label" htmlFor="entry-name">
-              Name
-            </label>
-            <div className="row-control">
-              <input
-                id="entry-name"
-                value={name}
-                spellCheck={false}
-                onFocus={() => setHint("Renaming it changes all that refers to it.")}
-                onChange={(event) => rename(path, event.target.value)}
-              />
-            </div>
-          </div>
+          <TextRow
+            title="Name"
+            text={name}
+            onFocus={() => setHint("Renaming it changes all that refers to it.")}
+            onChange={(text) => rename(path, text)}
+          />
         )}
         {isSystem ? <SystemForm value={draft} onChange={setDraft} /> : null}
         {section === "bodies" ? <BodyForm value={draft} onChange={setDraft} path={path} /> : null}

@@ -2,6 +2,8 @@ import { useState } from "react";
 
 import { isNumber } from "../forms/values";
 import { coordinates, inputs } from "../model/motion";
+import { Foot } from "../shell/Foot";
+import { Row } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { run } from "../store/jobs";
 import { dismiss, useDocument, useStore } from "../store/store";
@@ -73,35 +75,29 @@ function Table({ head, names, columns }: { head: string; names: string[]; column
   );
 }
 
-function Field({
-  name,
+function NumberRow({
   title,
   unit,
   text,
   onChange,
 }: {
-  name: string;
   title: string;
   unit: string;
   text: string;
   onChange(text: string): void;
 }) {
   return (
-    <div className="row">
-      <label className="row-label" htmlFor={name}>
-        {title}
-      </label>
-      <div className="row-control">
+    <Row title={title} unit={unit}>
+      {(id) => (
         <input
-          id={name}
+          id={id}
           className="number"
           value={text}
           aria-invalid={!positive(text)}
           onChange={(event) => onChange(event.target.value)}
         />
-      </div>
-      <span className="row-unit">{unit}</span>
-    </div>
+      )}
+    </Row>
   );
 }
 
@@ -133,46 +129,28 @@ export function SimulateForm() {
     });
   };
   return (
-    <Window
-      title="Simulate"
-      onClose={dismiss}
-      onSubmit={start}
-      foot={
-        <>
-          <button type="button" onClick={dismiss}>
-            Cancel
-          </button>
-          <button type="submit" className="primary" disabled={!isFine}>
-            Simulate
-          </button>
-        </>
-      }
-    >
-      <Field name="end" title="Duration" unit="s" text={asked.end} onChange={(end) => set({ end })} />
-      <div className="row">
-        <label className="row-label" htmlFor="method">
-          Method
-        </label>
-        <div className="row-control">
-          <select id="method" value={asked.method} onChange={(event) => set({ method: event.target.value })}>
+    <Window title="Simulate" onClose={dismiss} onSubmit={start} foot={<Foot word="Simulate" disabled={!isFine} />}>
+      <NumberRow title="Duration" unit="s" text={asked.end} onChange={(end) => set({ end })} />
+      <Row title="Method">
+        {(id) => (
+          <select id={id} value={asked.method} onChange={(event) => set({ method: event.target.value })}>
             {methods.map(({ name, help }) => (
               <option key={name} value={name} title={help}>
                 {name.replaceAll("_", " ")}
               </option>
             ))}
           </select>
-        </div>
-      </div>
+        )}
+      </Row>
       {isAdaptive ? (
-        <Field
-          name="tolerance"
+        <NumberRow
           title="Tolerance"
           unit="relative"
           text={asked.tolerance}
           onChange={(tolerance) => set({ tolerance })}
         />
       ) : (
-        <Field name="step" title="Step" unit="s" text={asked.step} onChange={(step) => set({ step })} />
+        <NumberRow title="Step" unit="s" text={asked.step} onChange={(step) => set({ step })} />
       )}
       <Table
         head="Coordinate"

@@ -1,6 +1,8 @@
 import { useState } from "react";
 
 import type { FileEntry } from "../api/types";
+import { Foot } from "../shell/Foot";
+import { TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { setText } from "../store/edits";
 import { begin, importPath, open, save } from "../store/files";
@@ -65,25 +67,9 @@ function AskPath({
       title={title}
       onClose={dismiss}
       onSubmit={() => onDone(full)}
-      foot={
-        <>
-          <button type="button" onClick={dismiss}>
-            Cancel
-          </button>
-          <button type="submit" className="primary" disabled={path.trim() === ""}>
-            {word}
-          </button>
-        </>
-      }
+      foot={<Foot word={word} disabled={path.trim() === ""} />}
     >
-      <div className="row">
-        <label className="row-label" htmlFor="path">
-          File
-        </label>
-        <div className="row-control">
-          <input id="path" value={path} spellCheck={false} onChange={(event) => setPath(event.target.value)} />
-        </div>
-      </div>
+      <TextRow title="File" text={path} onChange={setPath} />
     </Window>
   );
 }
