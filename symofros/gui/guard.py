@@ -12,6 +12,7 @@ from urllib.parse import parse_qs
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from symofros.errors import Problem
+from symofros.gui.plain import four_parts
 
 # Four times the largest text: JSON escapes some of it.
 MAX_BODY = 4 << 20
@@ -155,7 +156,7 @@ def _method(method: str) -> Problem:
 
 def error_body(problem: Problem) -> dict[str, dict[str, str]]:
     """A problem as answers carry it."""
-    return {"error": {"object": problem.what, "found": problem.found, "rule": problem.rule, "remedy": problem.remedy}}
+    return {"error": four_parts(problem)}
 
 
 async def _answer(send: Send, status: int, problem: Problem) -> None:

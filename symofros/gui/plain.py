@@ -110,6 +110,11 @@ def fault(path: Path, found: str, rule: str, remedy: str) -> EditError:
     return EditError(Problem(f"{shown}: the edit can't be applied", found, rule, remedy))
 
 
+def four_parts(problem: Problem) -> dict[str, str]:
+    """A problem as the page gets it."""
+    return {"object": problem.what, "found": problem.found, "rule": problem.rule, "remedy": problem.remedy}
+
+
 def _at(data: Any, path: Path, whole: Path, change: Any) -> Any:
     """The data with what stands at a path changed."""
     if not path:

@@ -12,7 +12,7 @@ from symofros.gui.edits import with_references
 from symofros.gui.expressions import check_field
 from symofros.gui.library import Library
 from symofros.gui.parts import insertion
-from symofros.gui.plain import EditError
+from symofros.gui.plain import EditError, four_parts
 from symofros.gui.requests import edits_of, path_of, text_of
 from symofros.gui.sheet import sheet_of
 from symofros.gui.storage import Storage
@@ -48,6 +48,7 @@ class Session:
             **self.document.as_json(),
             "layout": self.storage.layout,
             "recovered": self.storage.recovered,
+            "unkept": four_parts(self.storage.unkept) if self.storage.unkept else None,
             "disk_changed": self.storage.changed_on_disk(),
         }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +47,7 @@ class Storage:
         document: The one that is open.
         layout: Positions of its blocks.
         recovered: Whether it is unsaved work of a server that was killed.
+        unkept: Why unsaved work could not be kept; None where it is.
     """
 
     def __init__(self, workspace: Workspace, file: Path | None) -> None:
@@ -58,6 +60,7 @@ class Storage:
         self.document: Document
         self.layout: dict[str, list[float]] = {}
         self.recovered = False
+        self.unkept: Problem | None = None
         self._on_disk = ""  # Digest of the file when it was last read or written; "" where there was none.
         self._signature = ""
         self._revision = 1
@@ -130,12 +133,18 @@ class Storage:
     # While it is open.
 
     def autosave(self) -> None:
-        """Keep what is unsaved, for the case that the server is killed; nothing once it is saved."""
-        file = autosave_of(self.document.file)
-        if self.document.dirty:
-            write(file, self.document.text)
-        else:
-            file.unlink(missing_ok=True)
+        """Keep what is unsaved, for the case that the server is killed; nothing once it is saved.
+
+        Where that fails (a full disk, a folder that is gone) the edit stands nevertheless, and the page says so.
+        """
+        self.unkept = None
+        try:
+            if self.document.dirty:
+                write(autosave_of(self.document.file), self.document.text)
+            else:
+                self.forget()
+        except FileError as error:
+            self.unkept = error.problem
         self.note_revision()
 
     def place(self, data: Any) -> None:
@@ -144,7 +153,10 @@ class Storage:
         self._write_layout()
 
     def _write_layout(self) -> None:
-        write(layout_of(self.document.file), json.dumps({"layout": self.layout}, indent=1, sort_keys=True) + "\n")
+        try:
+            write(layout_of(self.document.file), json.dumps({"layout": self.layout}, indent=1, sort_keys=True) + "\n")
+        except FileError as error:
+            self.unkept = error.problem
 
     def changed_on_disk(self) -> bool:
         """Whether somebody else has written the file since it was read or written here."""
@@ -154,7 +166,7 @@ class Storage:
         try:
             same = digest(read_text(self.document.file)[1]) == self._on_disk
         except FileError:
-            same = not self.document.file.exists()  # What was removed can't be in conflict.
+            same = now == ""  # What was removed can't be in conflict.
         if same:
             self._signature = now
         return not same
@@ -181,7 +193,8 @@ class Storage:
 
     def forget(self) -> None:
         """Drop what is kept of unsaved work."""
-        autosave_of(self.document.file).unlink(missing_ok=True)
+        with suppress(OSError):  # It is not there, or can't be removed; then it is offered again, and can be discarded.
+            autosave_of(self.document.file).unlink()
 
     # Saving.
 
@@ -201,7 +214,7 @@ class Storage:
         self._refuse_conflict(file, self._on_disk if file == before else "", over)
         content = self.document.content
         write(file, content)
-        autosave_of(before).unlink(missing_ok=True)
+        self.forget()
         self.document.file = file
         self._saved(content)
         if self.layout:

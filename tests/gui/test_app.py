@@ -21,7 +21,7 @@ from tests.gui.texts import FILES, TEXTS
 
 KEYS = {
     "path", "name", "revision", "dirty", "can_undo", "can_redo", "undo_label", "redo_label", "text", "data", "layout",
-    "graph", "problems", "parameters", "inputs", "recovered", "disk_changed",
+    "graph", "problems", "parameters", "inputs", "recovered", "disk_changed", "unkept",
 }  # fmt: skip
 
 

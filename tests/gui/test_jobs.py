@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
+from symofros.errors import DescriptionError, Problem, SymofrosError
 from symofros.gui import jobs as module
 from symofros.gui.jobs import Jobs
 from symofros.gui.plain import EditError
@@ -147,6 +148,20 @@ def test_a_job_is_cancelled_with_all_that_it_started(client: TestClient) -> None
     assert job["state"] == "cancelled" and time.monotonic() - began < 10
     assert finished(client, "simulate", t_end=0.01)["state"] == "done"
     assert client.delete(f"/api/jobs/{key}").json()["state"] == "cancelled"
+
+
+@pytest.mark.parametrize(
+    ("error", "expected"),
+    [
+        (DescriptionError(Problem("a", "b", "c", "d", "x:1")), ("a", "b", "c", "d")),
+        (DescriptionError([Problem("a"), Problem("b"), Problem("c")]), ("a (and 2 more)", "", "", "")),
+        (SymofrosError(str(Problem("a", "b: b", "", "d"))), ("a", "b: b", "", "d")),
+        (ValueError("plain: words\n  and more"), ("plain: words\n  and more", "", "", "")),
+        (ValueError(), ("ValueError", "", "", "")),
+    ],
+)
+def test_an_error_is_taken_apart(error: Exception, expected: tuple[str, ...]) -> None:
+    assert tuple(error_of(error).values()) == expected
 
 
 # The machinery by itself, with workers that misbehave.

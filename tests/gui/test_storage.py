@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -171,6 +172,18 @@ def test_undoing_everything_removes_what_was_kept(file: Path) -> None:
     assert autosave_of(file).read_text() == session.document.text
     session.undo(now(session))
     assert not autosave_of(file).exists()
+
+
+def test_an_edit_stands_though_it_could_not_be_kept(file: Path) -> None:
+    session = opened(file)
+    shutil.rmtree(file.parent)
+    change(session)
+    found = session.as_json()
+    assert "m: {value: 2.5" in found["text"] and "can't be written" in found["unkept"]["object"]
+    assert not found["disk_changed"]
+    file.parent.mkdir()
+    change(session, 3.0)
+    assert session.as_json()["unkept"] is None and autosave_of(file).exists()
 
 
 # Others who write.
