@@ -56,6 +56,7 @@ const document: Document = {
   parameters: [],
   recovered: false,
   disk_changed: false,
+  unkept: null,
 };
 
 describe("the picture", () => {

@@ -36,7 +36,7 @@ function applied(data: Json, edits: readonly Edit[]): Json {
     let place: Json = copy;
     for (const key of edit.path.slice(0, -1)) place = (place as JsonMap)[String(key)] as Json;
     const last = String(edit.path.at(-1));
-    if (edit.op === "set") (place as JsonMap)[last] = edit.value;
+    if (edit.op === "set" && "value" in edit) (place as JsonMap)[last] = edit.value;
     else if (edit.op === "remove") delete (place as JsonMap)[last];
   }
   return copy;
@@ -70,6 +70,14 @@ describe("changes of a window", () => {
       { op: "rename", path, to: "boom" },
       { op: "set", path: ["bodies", "boom", "frames", "end", "position", 0], value: 1 },
     ]);
+  });
+
+  test("a number keeps the figures that it was typed with, as long as it is that number", () => {
+    const place = ["bodies", "upper", "inertia", "mass"];
+    const after = { ...before, inertia: { mass: 0.0008 } };
+    const as = (text: string): Edit[] => changes(path, before, after, {}, new Map([[keyOf(place), text]]));
+    expect(as("8.0e-4")).toEqual([{ op: "set", path: place, text: "8.0e-4" }]);
+    expect(as("8.0e-5")).toEqual([{ op: "set", path: place, value: 0.0008 }]);
   });
 
   test("a name that was typed back is no change", () => {

@@ -79,10 +79,14 @@ export interface Document {
   recovered: boolean;
   /** Somebody else wrote the file since it was read or saved. */
   disk_changed: boolean;
+  /** Why unsaved work could not be kept beside the file, if it could not. */
+  unkept: Fault | null;
 }
 
 export type Edit =
   | { op: "set"; path: Path; value: Json }
+  /** As somebody typed it: a number keeps its figures, such as 8.0e-4. */
+  | { op: "set"; path: Path; text: string }
   | { op: "remove"; path: Path }
   | { op: "insert"; path: Path; key: string; value: Json }
   | { op: "insert"; path: Path; index: number; value: Json }

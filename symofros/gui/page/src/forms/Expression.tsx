@@ -42,7 +42,7 @@ function Complaint({ id, checked }: { id: string; checked: Checked }) {
 /** One formula, checked by the server while it is typed. */
 export function Expression({ value, onChange, path, label, help, fallback, required = false }: ExpressionProps) {
   const id = useId();
-  const { hint } = useForm();
+  const { hint, type } = useForm();
   const [text, setText] = useState(shown(value));
   const current = same(typed(text), value) ? text : shown(value);
   // A name that was just added makes a formula right: what is known is part of the question.
@@ -66,6 +66,7 @@ export function Expression({ value, onChange, path, label, help, fallback, requi
         onFocus={() => hint(help)}
         onChange={(event) => {
           setText(event.target.value);
+          type(path, event.target.value);
           onChange(typed(event.target.value));
         }}
       />

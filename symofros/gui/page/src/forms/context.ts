@@ -15,6 +15,8 @@ export interface FormContext {
   /** New names of entries, made when the window is accepted. */
   renames: Renames;
   rename(path: Path, to: string): void;
+  /** Told of each number as it is typed, so that it can be written so. */
+  type(path: Path, text: string): void;
   hint(text: string): void;
 }
 
@@ -24,6 +26,7 @@ export const Form = createContext<FormContext>({
   body: null,
   renames: {},
   rename: () => undefined,
+  type: () => undefined,
   hint: () => undefined,
 });
 export const useForm = (): FormContext => useContext(Form);

@@ -26,6 +26,13 @@ function jointRenaming(path: Path, before: Json | undefined, after: Json | undef
   return isKept ? [{ op: "rename", path: place, to }] : [];
 }
 
+/** A number with the figures that it was typed with, if it is still that number. */
+export function asTyped(edit: Edit, typed: ReadonlyMap<string, string>): Edit {
+  const text = typed.get(keyOf(edit.path));
+  const isIt = text !== undefined && edit.op === "set" && "value" in edit && edit.value === Number(text);
+  return isIt ? { op: "set", path: edit.path, text } : edit;
+}
+
 /**
  * Edits that turn an entry into what its window says.
  *
@@ -33,8 +40,15 @@ function jointRenaming(path: Path, before: Json | undefined, after: Json | undef
  * @param before The entry when the window was opened.
  * @param after The entry now, with the keys that it had.
  * @param renames New names of the entry and of frames in it.
+ * @param typed Numbers as they were typed, by path as text.
  */
-export function changes(path: Path, before: Json | undefined, after: Json | undefined, renames: Renames): Edit[] {
+export function changes(
+  path: Path,
+  before: Json | undefined,
+  after: Json | undefined,
+  renames: Renames,
+  typed: ReadonlyMap<string, string> = new Map(),
+): Edit[] {
   const inner = Object.keys(renames)
     .map((key) => JSON.parse(key) as Path)
     .filter((each) => each.length > path.length);
@@ -45,6 +59,8 @@ export function changes(path: Path, before: Json | undefined, after: Json | unde
       : replaced(before, "joint", replaced(at(before, ["joint"]), "name", at(after, ["joint", "name"])));
   // From the inside out: each path holds while what it goes through has its old name.
   const names = [...inner.flatMap((each) => renaming(each, renames)), ...joint, ...renaming(path, renames)];
-  const rest = difference(named, after, path).map((edit) => ({ ...edit, path: renamedPath(edit.path, renames) }));
+  const rest = difference(named, after, path)
+    .map((edit) => asTyped(edit, typed))
+    .map((edit) => ({ ...edit, path: renamedPath(edit.path, renames) }));
   return [...names, ...rest];
 }

@@ -3,6 +3,7 @@ import { useState } from "react";
 import { post } from "../api/client";
 import type { Edit, Json, Parameter } from "../api/types";
 import { shown, typed } from "../forms/values";
+import { asTyped, keyOf } from "../model/changes";
 import { fresh, symbols } from "../model/names";
 import { at, isMap } from "../model/paths";
 import { IconButton } from "../shell/IconButton";
@@ -59,6 +60,13 @@ function Row({ parameter }: { parameter: Parameter }) {
   const { name } = parameter;
   const set = (key: string, value: Json | undefined): void =>
     void edit(`change ${name}`, change(data, name, key, value));
+  const setNumber = (text: string): void => {
+    const edits = change(data, name, "value", typed(text) ?? 0);
+    void edit(
+      `change ${name}`,
+      edits.map((each) => asTyped(each, new Map([[keyOf(each.path), text.trim()]]))),
+    );
+  };
   return (
     <tr>
       <th scope="row">
@@ -69,12 +77,7 @@ function Row({ parameter }: { parameter: Parameter }) {
         />
       </th>
       <td>
-        <Cell
-          value={shown(parameter.value)}
-          label={`Value of ${name}`}
-          numeric
-          commit={(text) => set("value", typed(text) ?? 0)}
-        />
+        <Cell value={shown(parameter.value)} label={`Value of ${name}`} numeric commit={setNumber} />
       </td>
       <td>
         <Cell

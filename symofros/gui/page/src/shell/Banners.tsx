@@ -6,6 +6,7 @@ import { IconButton } from "./IconButton";
 export function Banners() {
   const link = useStore((state) => state.link);
   const recovered = useStore((state) => state.document?.recovered === true);
+  const unkept = useStore((state) => state.document?.unkept ?? null);
   const changed = useStore((state) => state.document?.disk_changed === true);
   return (
     <>
@@ -25,6 +26,13 @@ export function Banners() {
           <span>The server was started anew, and gave a new address: open the one that it printed.</span>
         </div>
       ) : null}
+      {unkept === null ? null : (
+        <div className="banner bad" role="alert">
+          <span>
+            Unsaved work cannot be kept beside the file: {unkept.found}. {unkept.remedy}
+          </span>
+        </div>
+      )}
       {changed ? (
         <div className="banner" role="status">
           <span>Somebody else has written the file. Saving will ask before it is overwritten.</span>

@@ -1,8 +1,8 @@
-import { useCallback, useMemo, useState } from "react";
+import { useCallback, useMemo, useRef, useState } from "react";
 
 import type { Json, Path } from "../api/types";
 import { Form, type FormContext } from "../forms/context";
-import { changes, keyOf, type Renames } from "../model/changes";
+import { asTyped, changes, keyOf, type Renames } from "../model/changes";
 import { at, difference } from "../model/paths";
 import { Foot } from "../shell/Foot";
 import { TextRow } from "../shell/Row";
@@ -36,6 +36,8 @@ export function Properties({ path }: { path: Path }) {
   const name = renames[keyOf(path)] ?? String(path.at(-1));
   const [hint, setHint] = useState("");
   const section = String(path[0]);
+  const typed = useRef(new Map<string, string>());
+  const type = useCallback((place: Path, text: string) => void typed.current.set(keyOf(place), text.trim()), []);
   const rename = useCallback(
     (place: Path, to: string) => setRenames((all) => ({ ...all, [keyOf(place)]: to.trim() })),
     [],
@@ -47,14 +49,17 @@ export function Properties({ path }: { path: Path }) {
       body: section === "bodies" ? String(path[1]) : null,
       renames,
       rename,
+      type,
       hint: setHint,
     }),
-    [schema, data, section, path, renames, rename],
+    [schema, data, section, path, renames, rename, type],
   );
   const accept = async (): Promise<void> => {
     const edits = isSystem
-      ? SYSTEM.flatMap((key) => difference(at(before, [key]), at(draft, [key]), [key]))
-      : changes(path, before, draft, renames);
+      ? SYSTEM.flatMap((key) => difference(at(before, [key]), at(draft, [key]), [key])).map((each) =>
+          asTyped(each, typed.current),
+        )
+      : changes(path, before, draft, renames, typed.current);
     if (await edit(isSystem ? "change the system" : `change ${name}`, edits)) dismiss();
   };
   const title = isSystem ? "System" : `${NOUNS[section] ?? "Entry"} ${String(path[1])}`;
