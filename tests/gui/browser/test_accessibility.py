@@ -32,7 +32,11 @@ def faults(page: Page, node_modules: Path) -> Callable[[], list[str]]:
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_the_page_and_its_windows(
-    serve: Callable[..., Server], page: Page, faults: Callable[[], list[str]], theme: str
+    serve: Callable[..., Server],
+    page: Page,
+    faults: Callable[[], list[str]],
+    picture: Callable[[str], None],
+    theme: str,
 ) -> None:
     page.emulate_media(color_scheme=theme)
     server = serve("robot.yaml", source=MODELS / "flexible" / "planar_robot.yaml")
@@ -57,6 +61,8 @@ def test_the_page_and_its_windows(
     steps.window(page).get_by_role("button", name="Simulate").click()
     expect(steps.results(page).get_by_role("img").first).to_be_visible(timeout=60_000)
     assert faults() == []
+    if theme == "dark":
+        picture("dark")
 
 
 def test_a_window_holds_the_focus_and_gives_it_back(serve: Callable[..., Server], page: Page) -> None:

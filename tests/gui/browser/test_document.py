@@ -286,3 +286,22 @@ def test_a_frame_and_a_coordinate_are_renamed_everywhere(serve: Callable[..., Se
     steps.saved(page)
     text = server.file.read_text()
     assert "frame: joint2" in text and "elbow" not in text and "name: shoulder" in text
+
+
+def test_a_file_that_changes_on_disk_is_told_and_taken(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    server.file.write_text(server.file.read_text().replace("value: 0.5, unit: m", "value: 0.8, unit: m"))
+    page.get_by_role("button", name="Take the text on disk").click()
+    value(page, "L1")("0.8")
+    expect(page.get_by_text("Somebody else has written the file")).to_have_count(0)
+    page.locator("body").press("Control+z")
+    value(page, "L1")("0.5")
+
+
+def test_work_that_cannot_be_kept_is_told(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    fault = {"object": "autosave", "found": "the disk is full", "rule": "it is kept", "remedy": "make room"}
+    page.route("**/api/document", lambda route: route.fulfill(json={**route.fetch().json(), "unkept": fault}))
+    steps.open_editor(page, server.url)
+    expect(page.get_by_role("alert")).to_contain_text("the disk is full. make room")
