@@ -56,7 +56,8 @@ def test_the_page_and_its_windows(
     page.get_by_label("Text of the file").wait_for()
     assert faults() == []
     steps.run(page, "Simulate")
-    steps.fill(page, "Duration", "0.1")
+    steps.fill(page, "Duration", "0.3")
+    steps.fill(page, "Speed of q1", "2")
     assert faults() == []
     steps.window(page).get_by_role("button", name="Simulate").click()
     expect(steps.results(page).get_by_role("img").first).to_be_visible(timeout=60_000)

@@ -137,6 +137,8 @@ def test_text_and_diagram_stay_in_step(
     page.keyboard.press("End")
     page.keyboard.press("Backspace")
     steps.problems(page, 1)
+    page.keyboard.press("Home")
+    page.keyboard.press("Home")
     picture("text")
     page.get_by_role("banner").get_by_role("button", name="1 problem").click()
     expect(steps.results(page)).to_contain_text("the text is not YAML")
