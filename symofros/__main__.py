@@ -1,4 +1,4 @@
-"""Command line: symofros info | compile | simulate | advise | export | view; info and simulate take diagrams, too."""
+"""Command line: symofros info | compile | simulate | advise | export | view | edit; info and simulate take diagrams."""
 
 from __future__ import annotations
 
@@ -356,6 +356,28 @@ def export_command(
         _out.print(f"wrote {file}", markup=False, highlight=False, soft_wrap=True)
     for note in done.notes:
         _out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+
+
+@app.command()
+def edit(
+    model: Annotated[Path | None, typer.Argument(help="A model; a new one if not given.")] = None,
+    port: Annotated[int, typer.Option(help="Of the local page; any free one by default.")] = 0,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")] = True,
+    token: Annotated[str | None, typer.Option(help="A fixed one, for tests; drawn at random by default.")] = None,
+) -> None:
+    """Draw, edit, check, compile and simulate a model in the browser."""
+    try:
+        from symofros.gui.command import serve
+    except ModuleNotFoundError as error:
+        if error.name not in ("starlette", "uvicorn", "anyio"):
+            raise
+        _err.print(f"the editor needs the package '{error.name}'\n  remedy: pip install 'symofros\\[gui]'")
+        raise typer.Exit(BAD_INPUT) from None
+    try:
+        serve(model, port, token, browser, lambda url: _out.print(url, markup=False, highlight=False, soft_wrap=True))
+    except (sf.SymofrosError, OSError) as error:
+        _err.print(str(error), markup=False, highlight=False, soft_wrap=True)
+        raise typer.Exit(BAD_INPUT) from None
 
 
 add_view(app, _load, BAD_INPUT)

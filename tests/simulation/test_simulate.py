@@ -406,3 +406,9 @@ def test_a_passage_close_to_a_singular_posture_is_noted() -> None:
     # It is flat at 0.70845 s.
     assert len(notes) == 1 and "t = 0.708" in notes[0]
     assert sf.simulate(model, np.pi / 2 * upright, -upright, 0.3, dt=2e-3).outcome.notes == ()
+
+
+def test_progress_is_told_to_a_function(pendulum: sf.Model) -> None:
+    told: list[float] = []
+    sf.simulate(pendulum, [0.5], t_end=2.0, dt=1e-4, progress=told.append)
+    assert told == sorted(told) and told[-1] == pytest.approx(2.0)
