@@ -21,8 +21,9 @@ def refused(text: str, base: Path, folder: Path, suffixes: tuple[str, ...]) -> P
     """
     try:
         target = (base / text).resolve()
+        exists = target.is_file()
         is_inside = not Path(text).is_absolute() and target.is_relative_to(folder)
-    except (OSError, ValueError, RuntimeError) as error:  # A NUL character, or a loop of links.
+    except (OSError, ValueError, RuntimeError) as error:  # A NUL character, a loop of links, too long a name.
         return Problem(f"file '{text:.80}' is no path", str(error), "a relative path", "name a file of this folder")
     if not is_inside:
         return Problem(f"file '{text:.80}' leaves the diagram's folder", f"{text:.80}",
@@ -31,7 +32,7 @@ def refused(text: str, base: Path, folder: Path, suffixes: tuple[str, ...]) -> P
     if target.suffix.lower() not in suffixes:
         return Problem(f"file '{text:.80}' is of another kind", target.suffix or "no suffix",
                        f"it ends in one of {', '.join(suffixes)}", "name another")  # fmt: skip
-    if not target.is_file():
+    if not exists:
         there = sorted(file.name for file in target.parent.glob("*") if file.suffix.lower() in suffixes)
         return Problem(f"file '{text:.80}' does not exist", f"in its folder: {', '.join(there[:8]) or 'none such'}",
                        "a file that is referred to exists", did_you_mean(target.name, there) or "check the path"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -32,6 +33,8 @@ SECTIONS = (HEAD, "name", "models", "simulation", "blocks", "parts", "inlets", "
 MODEL = ("file", "functions", "floating_base", "start", "parameters")
 PART = ("file", "diagram", "models", "inputs")
 COMMON = ("kind", "period", "offset", "inputs")
+
+_ARGUMENTS = frozenset(inspect.signature(Diagram.include).parameters) - {"inputs"}
 
 
 def load_diagram(path: str | os.PathLike[str], *, blocks: Iterable[type[Block]] = (), network: bool = False) -> Diagram:
@@ -261,6 +264,10 @@ class _Reader(Entries):
         if len(found.blocks) + len(inner.blocks) > MAX_BLOCKS:
             self.fault(node, "too many blocks", f"more than {MAX_BLOCKS}", f"at most {MAX_BLOCKS}", "drop parts")
             return
+        for reserved in inputs.keys() & _ARGUMENTS:
+            self.fault(entries["inputs"], f"{what}: no inlet can be called '{reserved}'", f"'{reserved}'",
+                       "the name is one of Diagram.include's own", "rename the inlet")  # fmt: skip
+            del inputs[reserved]
         try:
             found.include(name, inner, models, **inputs)
         except DescriptionError as error:

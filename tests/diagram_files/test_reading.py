@@ -77,6 +77,7 @@ def test_it_runs_as_the_same_diagram_from_python(tmp_path: Path) -> None:
         ("file: arm.yaml", "file: ../arm.yaml", "arm: {", ("leaves the diagram's folder",)),
         ("file: arm.yaml", "file: /etc/passwd", "arm: {", ("leaves the diagram's folder",)),
         ("file: arm.yaml", "file: amr.yaml", "arm: {", ("does not exist", "did you mean 'arm.yaml'?")),
+        ("file: arm.yaml", f"file: {'a' * 500}.yaml", "arm: {", ("is no path", "name too long")),
         ("file: arm.yaml", "file: diagram.yaml", "symofros_diagram", ("symofros_diagram",)),
         ("t_end: 0.2", "t_end: 0", "t_end", ("simulation: t_end", "above zero")),
         ("dt: 1.0e-3", "step: 1.0e-3", "step:", ("unknown entry 'step'",)),
@@ -165,6 +166,8 @@ def test_parts_from_files(tmp_path: Path) -> None:
     assert sf.Simulation(d).run(0.05).outcome.ok
     (one,) = problems(tmp_path, text.replace("{q: plant.q, v", "{p: plant.q, v"), blocks=[UnitGain])
     assert "no inlet 'p'" in one.what and one.where.endswith(f":{line_of(text, 'file: part')}")
+    found = problems(tmp_path, text.replace("{q: plant.q, v", "{q: plant.q, models: plant.q, v"), blocks=[UnitGain])
+    assert any("no inlet can be called 'models'" in one.what for one in found)
     (tmp_path / "part.yaml").write_text(PART.replace("kp: 5", "kp: {}"))
     (one,) = (one for one in problems(tmp_path, text, blocks=[UnitGain]) if "kp" in one.what)
     assert one.where.endswith("part.yaml:4")
