@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from tests.diagram_files.cases import TEXT, folder_with, line_of
 class UnitGain(Block):
     """Multiplies; its ports have units."""
 
-    gain: float = 1.0
+    gain: Any = 1.0
     takes: str = ""
 
     def ports(self, known: Known) -> Ports:
@@ -27,7 +28,7 @@ class UnitGain(Block):
         return Ports((Port("u", shape, self.takes),), (Port("y", shape),))
 
     def compute(self, at: At) -> Values:
-        return {"y": self.gain * at.inputs["u"]}
+        return {"y": at.numbers(self.gain) * at.inputs["u"]}
 
 
 def problems(path: Path, text: str, **options: object) -> list[sf.Problem]:
@@ -70,7 +71,6 @@ def test_it_runs_as_the_same_diagram_from_python(tmp_path: Path) -> None:
         ("q_desired: plant.q", "q_wanted: plant.q", "q_wanted", ("no input 'q_wanted'", "use one of: q_desired")),
         ("{u: pd.effort}", "{u: pid.effort}", "u: pid", ("no block 'pid'", "did you mean 'pd'?")),
         ("model: arm", "model: leg", "  plant:", ("no model 'leg'", "models: arm")),
-        ("kp: [40, 20]", "kp: [40, 20, 10]", "  pd:", ("its fields do not fit its inputs", "q (2,)")),
         ("period: 0.01", "period: -1", "  pd:", ("has no sample time", "a period above zero")),
         ("{q1: 0.5, dq2", "{q9: 0.5, dq2", "arm: {", ("no coordinate or speed 'q9'",)),
         ("m2: 0.9", "m2: heavy", "arm: {", ("parameters: 'm2' is not a number",)),
@@ -120,6 +120,13 @@ def test_shapes_and_units_must_fit(tmp_path: Path) -> None:
     (one,) = problems(tmp_path, text)
     assert "s.signal -> plant.u: shapes differ" in one.what and one.found == "(3,)" and "(2,)" in one.rule
     assert one.where.endswith(f":{line_of(text, 's.signal')}")
+
+
+def test_fields_must_fit_what_is_connected(tmp_path: Path) -> None:
+    text = TEXT.replace("outlets:", "  g: {kind: unit_gain, gain: [1, 2, 3], inputs: {u: plant.q}}\noutlets:")
+    (one,) = problems(tmp_path, text, blocks=[UnitGain])
+    assert "block 'g': its fields do not fit its inputs" in one.what and "u (2,)" in one.rule
+    assert one.where.endswith(f":{line_of(text, 'unit_gain')}")
 
 
 def test_an_algebraic_loop_is_named_along_its_path(tmp_path: Path) -> None:
