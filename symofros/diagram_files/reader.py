@@ -15,7 +15,7 @@ from symofros.description.system import System
 from symofros.diagram_files.entries import Entries
 from symofros.diagram_files.fields import Misfit, read, required, types_of
 from symofros.diagram_files.paths import DIAGRAMS, MODELS, refused
-from symofros.diagram_files.registry import kinds
+from symofros.diagram_files.registry import INPUTS, KIND, entry_of, kinds
 from symofros.diagram_files.run_settings import read_settings
 from symofros.diagrams.block import Block, ModelFile
 from symofros.diagrams.diagram import Diagram
@@ -206,21 +206,22 @@ class _Reader(Entries):
         self, what: str, kind: str, owner: type[Block], name: str, node: Node, entries: Mapping[str, Node]
     ) -> Block | None:
         """The block, if its fields are of their types and all there."""
+        names = {entry_of(name): name for name in types_of(owner) if name != "name"}
         types = types_of(owner)
-        known = [*COMMON, *owner.form()]
+        known = list(dict.fromkeys([*COMMON, *names]))
         before = len(self.problems)
         values: dict[str, Any] = {}
         for key, item in self.mapping(node, f"{what} ({kind})", known).items():
-            if key in ("kind", "inputs"):
+            if key in (KIND, INPUTS):
                 continue
             try:
-                values[key] = read(types[key], item)
+                values[names[key]] = read(types[names[key]], item)
             except Misfit as error:
                 self.fault(error.node, f"{what}: {key} does not fit", error.node.plain(), error.rule,
                            f"see the fields of {kind}")  # fmt: skip
             except (SymofrosError, ValueError, TypeError) as error:
                 self.fault(item, f"{what}: {key} does not fit", f"{error}", f"as {kind} takes it", "mend it")
-        for key in sorted(required(owner) - {"name"} - entries.keys()):
+        for key in sorted({entry_of(name) for name in required(owner) - {"name"}} - entries.keys()):
             self.missing(node, what, key, entries, f"{kind} needs {key}")
         if len(self.problems) > before:
             return None

@@ -17,7 +17,7 @@ from symofros.description.native.yaml_writer import LINE_WIDTH
 from symofros.diagram_files.fields import MISSING, same, write
 from symofros.diagram_files.paths import DIAGRAMS
 from symofros.diagram_files.reader import HEAD, VERSION, load_diagram
-from symofros.diagram_files.registry import kind_of
+from symofros.diagram_files.registry import entry_of, kind_of
 from symofros.diagrams.block import Block, ModelSetup
 from symofros.diagrams.diagram import INSIDE, Diagram, Part
 from symofros.diagrams.settings import RunSettings
@@ -186,7 +186,7 @@ def _block(diagram: Diagram, block: Block) -> Plain:
         if item.name == "name" or not item.init or (has_default and same(value, default)):
             continue
         try:
-            entries[item.name] = write(value)
+            entries[entry_of(item.name)] = write(value)
         except TypeError as error:
             raise DescriptionError(Problem(
                 f"diagram '{diagram.name}': block '{block.name}' can't be written: {item.name}", f"{error}",

@@ -11,7 +11,9 @@ import pytest
 
 import symofros as sf
 from symofros.blocks import UdpTransmitter
+from symofros.diagram_files.fields import types_of, words_for
 from symofros.diagram_files.registry import kind_of, kinds
+from symofros.diagram_files.schema import of_type
 from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
 from tests.diagram_files.cases import TEXT, folder_with, line_of
 
@@ -203,15 +205,30 @@ def test_other_machines_are_reached_only_if_that_is_wished(tmp_path: Path) -> No
     assert isinstance(sf.load_diagram(folder_with(tmp_path, text), network=True).blocks["tx"], UdpTransmitter)
 
 
-@pytest.mark.parametrize("kind", sorted(kinds()))
-def test_every_kind_can_be_stated(kind: str) -> None:
-    """Fields have types that files know, and none bears the name of an entry that all blocks have."""
-    from symofros.diagram_files.fields import types_of, words_for
+@dataclass(frozen=True, kw_only=True)
+class Named(Block):
+    """Its fields bear the names of entries that every block has."""
 
+    kind: str
+    inputs: tuple[str, ...] = ()
+
+
+def test_fields_that_are_called_as_entries_have_an_underscore(tmp_path: Path) -> None:
+    text = TEXT.replace("outlets:", "  n: {kind: named, kind_: odd, inputs_: [a, b]}\noutlets:")
+    d = sf.load_diagram(folder_with(tmp_path, text), blocks=[Named])
+    assert d.blocks["n"] == Named(name="n", kind="odd", inputs=("a", "b"))
+    sf.save_diagram(d, tmp_path / "again.yaml")
+    assert sf.load_diagram(tmp_path / "again.yaml", blocks=[Named]) == d
+    (one,) = problems(tmp_path, text.replace("kind_: odd, ", ""), blocks=[Named])
+    assert "'kind_' is missing" in one.what
+
+
+@pytest.mark.parametrize("kind", sorted(kinds()))
+def test_every_kind_has_fields_of_types_that_are_known(kind: str) -> None:
     owner = kinds()[kind]
-    assert kind == kind_of(owner) and not {"kind", "inputs"} & set(owner.form())
+    assert kind == kind_of(owner)
     for name, of in types_of(owner).items():
-        assert words_for(of), name
+        assert words_for(of) and of_type(of), name
 
 
 def test_hostile_bytes_are_refused(tmp_path: Path, rng: np.random.Generator) -> None:
