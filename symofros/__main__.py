@@ -259,6 +259,8 @@ def simulate(
             diagrams.tell_run(found, diagrams.write_files(found, wishes), pace, as_json, _out)
             ok = found.outcome.ok
         else:
+            if picture == diagrams.WINDOW:
+                raise sf.SymofrosError("--plot window: of diagrams only\n  remedy: write a picture: --plot run.png")
             run = _simulated(_load(model, floating_base), t_end, given, inputs, every, pace, stated, wanted)
             files = [str(run.save(output))] if output else []
             if picture:
