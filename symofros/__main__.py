@@ -256,7 +256,7 @@ def simulate(
             names = tuple(_names(signals) or ())
             wishes = diagrams.Wishes(t_end, stated, pace, names, output, picture, jitter)
             found = diagrams.run_diagram(sf.load_diagram(model, network=network), wishes, wanted)
-            diagrams.tell_run(found, diagrams.write_files(found, wishes), pace, as_json, _out)
+            diagrams.tell_run(found, diagrams.write_files(found, wishes), as_json, _out)
             ok = found.outcome.ok
         else:
             if picture == diagrams.WINDOW:
