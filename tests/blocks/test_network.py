@@ -219,6 +219,13 @@ def test_what_does_not_fit_is_told(block: Block, words: str) -> None:
         loop_of(block)
 
 
+def test_a_key_that_is_none_is_told_before_the_run() -> None:
+    address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
+    block = ZenohSubscriber(name="rx", key="a/**b", address=address, size=2, period=0.01)
+    with pytest.raises(sf.SymofrosError, match=r"block 'rx': no key 'a/\*\*b'"):
+        loop_of(block).run(0.1, dt=1e-2)
+
+
 def test_zenoh_missing_is_told_with_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "zenoh", None)
     d = sf.Diagram("d")
