@@ -215,7 +215,8 @@ class _Reader(Entries):
             if key in (KIND, INPUTS):
                 continue
             try:
-                values[names[key]] = read(types[names[key]], item)
+                value = read(types[names[key]], item)
+                values[names[key]] = self.inside(value, item) if names[key] in owner.paths else value
             except Misfit as error:
                 self.fault(error.node, f"{what}: {key} does not fit", error.node.plain(), error.rule,
                            f"see the fields of {kind}")  # fmt: skip
@@ -232,6 +233,14 @@ class _Reader(Entries):
         except (SymofrosError, ValueError, TypeError) as error:
             self.fault(node, f"{what} ({kind}) can't be made", f"{error}", "its fields fit each other", "mend them")
         return None
+
+    def inside(self, value: Any, node: Node) -> Any:
+        """The whole path of a file that a block names; nothing is read from elsewhere than the diagram's folder."""
+        if not isinstance(value, str) or not value:
+            return value
+        problem = refused(value, self.base, self.shared.folder)
+        self.take(node, [problem] if problem else [])
+        return str((self.base / value).resolve()) if not problem else value
 
     def wire(self, found: Diagram, block: str, port: str, node: Node) -> None:
         """An input and its source."""

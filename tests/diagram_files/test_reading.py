@@ -64,7 +64,7 @@ def test_it_runs_as_the_same_diagram_from_python(tmp_path: Path) -> None:
     ("old", "new", "line", "words"),
     [
         ("kind: joint_pd", "kind: joint_pdd", "joint_pdd", ("no kind of blocks", "did you mean 'joint_pd'")),
-        ("kp: [40, 20]", "kp: [40, {a: 1}]", "kp:", ("kp does not fit", "lists of numbers")),
+        ("kp: [40, 20]", "kp: [40, {a: 1}]", "kp:", ("kp does not fit", "lists of them")),
         ("period: 0.01", "period: soon", "period:", ("period does not fit", "a number or null")),
         ("kd: 2", "gain: 2", "gain:", ("unknown entry 'gain'", "kp, kd")),
         ("    kd: 2\n", "", "kind: joint_pd", ("'kd' is missing", "joint_pd needs kd")),
@@ -102,9 +102,8 @@ def test_faults_say_where_they_are(tmp_path: Path, old: str, new: str, line: str
 
 
 def test_all_faults_are_told_at_once(tmp_path: Path) -> None:
-    text = (
-        TEXT.replace("kd: 2", "kd: {}").replace("t_end: 0.2", "t_end: x").replace("kind: forward_d", "kind: froward_d")
-    )
+    text = TEXT.replace("kd: 2", "kd: [{}]").replace("t_end: 0.2", "t_end: x")
+    text = text.replace("kind: forward_d", "kind: froward_d")
     found = problems(tmp_path, text.replace("m2: 0.9", "m2: a"))
     assert [one.where.rpartition(":")[2] for one in found] == ["4", "6", "15", "21"]
     loose = TEXT.replace("      q: plant.q\n", "").replace("      v: plant.v\n", "")
@@ -122,6 +121,37 @@ def test_shapes_and_units_must_fit(tmp_path: Path) -> None:
     (one,) = problems(tmp_path, text)
     assert "s.signal -> plant.u: shapes differ" in one.what and one.found == "(3,)" and "(2,)" in one.rule
     assert one.where.endswith(f":{line_of(text, 's.signal')}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class FromFile(Block):
+    """Reads a file when it is made."""
+
+    file: str = ""
+    units: Any = None
+
+    def __post_init__(self) -> None:
+        Path(self.file).read_text()
+
+
+def test_files_of_blocks_lie_in_the_diagrams_folder(tmp_path: Path) -> None:
+    text = TEXT.replace("outlets:", "  f: {kind: from_file, file: data/x.csv, units: {y: [N m, s]}}\noutlets:")
+    (found,) = problems(tmp_path, text, blocks=[FromFile])
+    assert "'data/x.csv' does not exist" in found.what and found.where.endswith(f":{line_of(text, 'from_file')}")
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "x.csv").write_text("t,y\n")
+    d = sf.load_diagram(folder_with(tmp_path, text), blocks=[FromFile])
+    assert d.blocks["f"] == FromFile(name="f", file=str(tmp_path / "data" / "x.csv"), units={"y": ("N m", "s")})
+    sf.save_diagram(d, tmp_path / "again.yaml")
+    assert "file: data/x.csv" in (tmp_path / "again.yaml").read_text()
+    assert sf.load_diagram(tmp_path / "again.yaml", blocks=[FromFile]).blocks == d.blocks
+    for outside in ("/etc/hostname", "../x.csv", "data/../../x.csv"):
+        (found,) = problems(tmp_path, text.replace("data/x.csv", outside), blocks=[FromFile])
+        assert "leaves the diagram's folder" in found.what
+    (tmp_path / "other").mkdir()
+    with pytest.raises(sf.DescriptionError, match="outside the diagram's folder"):
+        sf.save_diagram(d, tmp_path / "other" / "again.yaml")
+    assert not list((tmp_path / "other").iterdir())
 
 
 def test_fields_must_fit_what_is_connected(tmp_path: Path) -> None:
@@ -177,7 +207,7 @@ def test_parts_from_files(tmp_path: Path) -> None:
     assert "no inlet 'p'" in one.what and one.where.endswith(f":{line_of(text, 'file: part')}")
     found = problems(tmp_path, text.replace("{q: plant.q, v", "{q: plant.q, models: plant.q, v"), blocks=[UnitGain])
     assert any("no inlet can be called 'models'" in one.what for one in found)
-    (tmp_path / "part.yaml").write_text(PART.replace("kp: 5", "kp: {}"))
+    (tmp_path / "part.yaml").write_text(PART.replace("kp: 5", "kp: [{}]"))
     (one,) = (one for one in problems(tmp_path, text, blocks=[UnitGain]) if "kp" in one.what)
     assert one.where.endswith("part.yaml:4")
 
