@@ -65,6 +65,7 @@ def test_it_runs_as_the_same_diagram_from_python(tmp_path: Path) -> None:
     [
         ("kind: joint_pd", "kind: joint_pdd", "joint_pdd", ("no kind of blocks", "did you mean 'joint_pd'")),
         ("kp: [40, 20]", "kp: [40, {a: 1}]", "kp:", ("kp does not fit", "lists of them")),
+        ("kd: 2", "kd: null", "  pd:", ("block 'pd': kd",)),
         ("period: 0.01", "period: soon", "period:", ("period does not fit", "a number or null")),
         ("kd: 2", "gain: 2", "gain:", ("unknown entry 'gain'", "kp, kd")),
         ("    kd: 2\n", "", "kind: joint_pd", ("'kd' is missing", "joint_pd needs kd")),
