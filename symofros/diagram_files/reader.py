@@ -229,9 +229,12 @@ class _Reader(Entries):
         try:
             return owner(name=name, **values)
         except DescriptionError as error:
-            self.take(node, error.problems)
+            self.take(node, error.problems, key=True)
         except (SymofrosError, ValueError, TypeError) as error:
-            self.fault(node, f"{what} ({kind}) can't be made", f"{error}", "its fields fit each other", "mend them")
+            problem = Problem(
+                f"{what} ({kind}) can't be made", f"{error}"[:200], "its fields fit each other", "mend them"
+            )
+            self.take(node, [problem], key=True)
         return None
 
     def inside(self, value: Any, node: Node) -> Any:
