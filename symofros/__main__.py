@@ -257,9 +257,11 @@ def simulate(
             names = tuple(_names(signals) or ())
             wishes = diagrams.Wishes(t_end, stated, pace, names, output, picture, jitter)
             found = diagrams.run_diagram(sf.load_diagram(model, network=network), wishes, wanted)
-            diagrams.tell_run(found, diagrams.write_files(found, wishes), pace, as_json, _out)
+            diagrams.tell_run(found, diagrams.write_files(found, wishes), as_json, _out)
             ok = found.outcome.ok
         else:
+            if picture == diagrams.WINDOW:
+                raise sf.SymofrosError("--plot window: of diagrams only\n  remedy: write a picture: --plot run.png")
             run = _simulated(_load(model, floating_base), t_end, given, inputs, every, pace, stated, wanted)
             files = [str(run.save(output))] if output else []
             if picture:

@@ -177,7 +177,8 @@ def _drive(
     watched = _watched(compiled)
     crossings = tuple(Crossed(*watched[which], when) for when, which in met)
     d = loop.d
-    cost = Cost(int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, loop.late, plan.spacing)
+    cost = Cost(int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, loop.late,
+                plan.spacing / (realtime or 1.0))  # fmt: skip
     return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost)
 
 
