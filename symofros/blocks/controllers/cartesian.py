@@ -90,7 +90,7 @@ class CartesianFeedback(_Cartesian):
         kd: Likewise [1/s].
         idle: Damping of motion that the task leaves free [1/s].
         regular: Added to L^-1 where J is nearly singular, relative to its mean diagonal.
-        near: Smallest pivot of J J^T, as a root, below which a posture is nearly singular [m/rad, or 1].
+        near: Below which least singular value of J, about, a posture is nearly singular [m/rad, or 1].
     """
 
     kp: Any

@@ -32,7 +32,7 @@ class InverseKinematics(Block):
         steps: Newton steps at a sample.
         gain: K, of the continuous form [1/s].
         damping: Of the rates near singular postures [m/rad, or 1].
-        near: Smallest pivot of J J^T, as a root, below which a posture is nearly singular [m/rad, or 1].
+        near: Below which least singular value of J, about, a posture is nearly singular [m/rad, or 1].
         stride: Most that a joint moves in a Newton step, in proportion with the others [rad or m].
     """
 
