@@ -20,6 +20,7 @@ from symofros.blocks import (
     FrictionCompensation,
     GravityCompensation,
     InverseDynamics,
+    InverseKinematics,
     Jacobian,
 )
 from symofros.description.forces import Friction
@@ -172,3 +173,29 @@ def test_cartesian_control(name: str) -> None:
     wanted = a_desired + 8.0 * lag + 30.0 * missing
     A = m.frame_acceleration(at, q, v, motion)[:, rows]
     np.testing.assert_allclose(A[regular], wanted[regular], rtol=1e-6, atol=1e-6)
+
+
+def test_inverse_kinematics(name: str) -> None:
+    m, at = model(name), frame(name)
+    q0 = states(name)[0][0]
+    if m.nc:
+        q0 = sf.assemble(m, q0).q
+    joints = [item for item in m.names.v if item in m.names.q and "[" not in item]
+    columns = [m.names.v.index(item) for item in joints]
+    J = m.frame_jacobian(at, q0)[:3, columns]
+    rows = [row for row in range(3) if np.abs(J[row]).max() > 0.05]
+    # Where the joints may take it; of a closed mechanism where it is.
+    step = np.zeros(m.nv)
+    step[columns] = 0.0 if m.nc else 0.1
+    p = m.frame_pose(at, m.integrate(q0, step))[0][rows]
+    block = InverseKinematics(
+        name="b", model="m", frame=at, rows=tuple("xyz"[row] for row in rows), joints=joints, period=0.01
+    )
+    start = dict(zip(m.names.q, q0, strict=True))
+    found = run(block, {"p": np.tile(p, (8, 1))}, models={"m": (MODELS[name], start)}, compare=1e-8)
+    np.testing.assert_allclose(m.frame_pose(at, found["q"][-1])[0][rows], p, atol=1e-9)
+    np.testing.assert_allclose(found["error"][-1], 0.0, atol=1e-9)
+    if m.nc:
+        np.testing.assert_allclose(m.constraint(found["q"][-1]), 0.0, atol=1e-9)
+    still = np.setdiff1d(np.arange(m.nq), [m.names.q.index(item) for item in joints])
+    np.testing.assert_array_equal(found["q"][-1][still], q0[still])

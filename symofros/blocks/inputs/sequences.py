@@ -108,7 +108,7 @@ class Sequence(Block):
 
 def _early(t: Array) -> Array:
     """Times a billionth of the shortest interval earlier: 35 * 0.01 is above 0.35, yet the same instant is meant."""
-    return t - 1e-9 * np.diff(t).min(initial=1.0)
+    return np.asarray(t - 1e-9 * np.diff(t).min(initial=1.0), dtype=np.float64)
 
 
 def _read(block: str, path: Path) -> dict[str, Any]:

@@ -191,4 +191,3 @@ def resolved(system: tuple[Tensor, Tensor], rates: Tensor) -> Tensor:
     gram, J = system
     m, n = J.shape
     return J.T @ solved(gram, rates) if m <= n else solved(gram, J.T @ rates)
-

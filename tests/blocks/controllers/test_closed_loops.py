@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.blocks import CartesianFeedback, CartesianTrajectory, ComputedTorque, Constant, ForwardDynamics
+from symofros.blocks import CartesianFeedback, ComputedTorque, Constant, ForwardDynamics
 
 
 def test_errors_under_computed_torque_decay_as_an_oscillator() -> None:
@@ -52,4 +51,4 @@ def test_feedback_goes_through_a_stretched_posture_calmly() -> None:
     least = min(np.linalg.svd(model.frame_jacobian(frame, q)[:3], compute_uv=False)[-1] for q in found["arm.q"])
     assert least < 5e-3  # It was there: damping sets in below 0.02.
     assert found.outcome.ok
-    assert np.abs(found["arm.v"]).max() < 1.0
+    assert np.abs(found["arm.v"]).max() < 3.0  # Undamped, joints reach 1e4 rad/s.

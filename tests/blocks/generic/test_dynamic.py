@@ -34,13 +34,16 @@ def test_sampled_state_space_follows_its_recursion(rng: np.random.Generator) -> 
 
 
 @pytest.mark.parametrize(
-    ("num", "den"), [([1.0], [1.0, 0.6, 4.0]), ([2.0, 0.0, 1.0], [2.0, 1.0, 8.0]), ([3.0], [2.0]), ([1.0, 2.0], [1.0, 1.0])]
+    ("num", "den"),
+    [([1.0], [1.0, 0.6, 4.0]), ([2.0, 0.0, 1.0], [2.0, 1.0, 8.0]), ([3.0], [2.0]), ([1.0, 2.0], [1.0, 1.0])],
 )
 def test_transfer_function_follows_scipy(num: list[float], den: list[float]) -> None:
     t = STEP * np.arange(300)
     u = np.sin(3 * t)
     y = signal.lsim((num, den), u, t)[1] if len(den) > 1 else u * num[0] / den[0]
-    np.testing.assert_allclose(run(TransferFunction(name="f", num=num, den=den), {"u": u}, kind="linear")["y"], y, atol=1e-6)
+    np.testing.assert_allclose(
+        run(TransferFunction(name="f", num=num, den=den), {"u": u}, kind="linear")["y"], y, atol=1e-6
+    )
     sampled = run(TransferFunction(name="f", num=num, den=[8.0 * den[0], *den[1:]], period=STEP), {"u": u})["y"]
     padded = [0.0] * (len(den) - len(num)) + num
     np.testing.assert_allclose(sampled, signal.lfilter(padded, [8.0 * den[0], *den[1:]], u), atol=1e-12)

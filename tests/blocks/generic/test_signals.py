@@ -30,7 +30,13 @@ def test_gain(gain: object, rng: np.random.Generator) -> None:
 
 @pytest.mark.parametrize(
     ("unit_in", "unit_out", "factor"),
-    [("deg", "rad", np.pi / 180), ("mm", "m", 1e-3), ("m", "N", 1.0), ("", "rad", 1.0), ("rev/min", "rad/s", np.pi / 30)],
+    [
+        ("deg", "rad", np.pi / 180),
+        ("mm", "m", 1e-3),
+        ("m", "N", 1.0),
+        ("", "rad", 1.0),
+        ("rev/min", "rad/s", np.pi / 30),
+    ],
 )
 def test_units_convert_where_they_measure_the_same(unit_in: str, unit_out: str, factor: float) -> None:
     found = run(Gain(name="g", gain=3.0, unit_in=unit_in, unit_out=unit_out), {"u": [2.0, 5.0]})["y"]

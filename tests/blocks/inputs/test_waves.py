@@ -32,7 +32,9 @@ def test_a_sine_has_its_rates() -> None:
     angle = 3 * np.pi * T[:, None] + [0.0, 1.0]
     np.testing.assert_allclose(found["y"], 0.5 + [1.0, 2.0] * np.sin(angle), atol=1e-13)
     np.testing.assert_allclose(found["rate"], 3 * np.pi * np.array([1.0, 2.0]) * np.cos(angle), atol=1e-12)
-    np.testing.assert_allclose(found["acceleration"], -((3 * np.pi) ** 2) * np.array([1.0, 2.0]) * np.sin(angle), atol=1e-11)
+    np.testing.assert_allclose(
+        found["acceleration"], -((3 * np.pi) ** 2) * np.array([1.0, 2.0]) * np.sin(angle), atol=1e-11
+    )
 
 
 @pytest.mark.parametrize(("sweep", "method"), [("linear", "linear"), ("exponential", "logarithmic")])
