@@ -86,7 +86,11 @@ def test_frames_turn_as_they_should(law: str) -> None:
 def test_orientation_compiled_and_interpreted_agree() -> None:
     points = np.hstack([POINTS, POINTS[:, :1]])
     for law in ("trapezoidal", "spline"):
-        run(CartesianTrajectory(name="c", points=points, times=TIMES, quaternions=QUATERNIONS, law=law), t_end=1.8)
+        run(
+            CartesianTrajectory(name="c", points=points, times=TIMES, quaternions=QUATERNIONS, law=law),
+            t_end=1.8,
+            dt=0.06,
+        )
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -94,7 +98,7 @@ def test_a_square_stops_at_its_corners(law: str) -> None:
     square = Square(name="s", start=(0.0, 0.1), corner=(0.3, 0.3), first=(0.6, 0), second=(0, -0.6), law=law,
                     leave=0.1, approach=1.0, side=0.5, laps=2)  # fmt: skip
     assert square.finish == pytest.approx(0.1 + 1.0 + 8 * 0.5)
-    found = run(square, t_end=5.3)
+    found = run(square, t_end=5.3, dt=0.05)
     corners = np.array([[0.3, 0.3], [0.9, 0.3], [0.9, -0.3], [0.3, -0.3]])
     t, p = found["t"], found["p"]
     for k in range(9):
