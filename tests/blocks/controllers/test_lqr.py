@@ -84,12 +84,12 @@ def test_the_gain_in_a_closed_loop_is_that_of_its_independent_coordinates() -> N
     diagram.add_model("m", system, dict(zip(("q1", "q2", "q3"), q0, strict=True)))
     for name, size in (("q", 3), ("v", 3)):
         diagram.add(Constant(name=name, value=np.zeros(size)))
-    block = LQR(name="lqr", model="m", input_weights=0.5)
+    block = LQR(name="lqr", model="m", state_weights=[1, 2, 3, 4, 5, 6], input_weights=0.5)
     diagram.add(block, q="q.y", v="v.y")
     wired = resolve(diagram).wired
     K = block.gain(surroundings(wired, "lqr"))
     linear = sf.state_space(sf.compile(system), q0)
-    X = linalg.solve_continuous_are(linear.A, linear.B, linear.basis.T @ linear.basis, [[0.5]])
+    X = linalg.solve_continuous_are(linear.A, linear.B, linear.basis.T @ np.diag(range(1, 7)) @ linear.basis, [[0.5]])
     np.testing.assert_allclose(K @ linear.basis, linear.B.T @ X / 0.5, rtol=1e-7)
     assert K.shape == (1, 6)
 

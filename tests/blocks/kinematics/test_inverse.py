@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -62,6 +63,31 @@ def test_an_arm_follows_a_pose(period: float | None) -> None:
     assert np.abs(found["ik.error"]).max() < close
     # Speeds are the rates of the joints: second differences of q are of order PERIOD^2.
     np.testing.assert_allclose((q[2:] - q[:-2]) / (2 * PERIOD), v[1:-1], atol=5e-3 * np.abs(v).max())
+
+
+def test_off_its_path_the_continuous_form_returns() -> None:
+    diagram, model, q0 = arm_diagram(None, gain=8.0)
+    away = dict(zip(model.names.q, q0 + [0.05, -0.04, 0.06, 0.1, -0.08, 0.05], strict=True))
+    diagram.models["m"] = replace(diagram.models["m"], start=away)
+    found = sf.Simulation(diagram).run(0.5, dt=1e-3, record=1e-3)
+    # Positions: e' = -gain e. Of orientations the path turns the axis, and the angle does likewise.
+    decay, e = np.exp(-8.0 * found.t[:, None]), found["ik.error"]
+    np.testing.assert_allclose(e[:, :3], e[0, :3] * decay, atol=1e-9)
+    angle = np.linalg.norm(e[:, 3:], axis=1, keepdims=True)
+    np.testing.assert_allclose(angle, angle[0] * decay, atol=1e-9)
+
+
+def test_off_its_path_accelerations_are_still_rates_of_the_speeds() -> None:
+    diagram = sf.Diagram("back")
+    diagram.add_model("control", MODELS["planar_robot"], {"q1": 0.3, "q2": 0.7, "q3": 0.4}, functions=0)
+    diagram.add(CartesianTrajectory(name="path", points=[[0.7, 0.5], [0.5, 0.6]], times=[0.0, 0.5]))
+    block = InverseKinematics(name="ik", model="control", frame="tool", rows=("x", "y"), joints=("q1", "q2"), gain=8.0)
+    diagram.add(block, p="path.p", v="path.v", a="path.a")
+    found = sf.Simulation(diagram).run(0.5, dt=2e-4, record=2e-4)
+    assert np.linalg.norm(found["ik.error"][0]) > 0.1
+    v, a = found["ik.v"], found["ik.a"]
+    # Central differences of v err by h^2/6 times its third derivative.
+    np.testing.assert_allclose((v[2:] - v[:-2]) / 4e-4, a[1:-1], atol=1e-4 * np.abs(a).max())
 
 
 def test_a_redundant_arm_moves_least() -> None:
