@@ -9,11 +9,12 @@ import numpy as np
 
 import symofros as sf
 from reference_models import MODELS
-from reference_models.diagrams.square import ALONG, APPROACH, CORNER, SIDE, T_END, square
+from reference_models.diagrams.square import square
 from validation.findings import Chart, Check, Curve, Figure, Mark, Study
 from validation.geometry import Array
 
-DT, RECORD = 1e-3, 0.005
+DT, RECORD, T_END = 1e-3, 0.005, 12.0
+APPROACH, ALONG, CORNER, SIDE = 3.0, 2.0, (0.3, 0.3), 0.6  # As the diagram's file has them.
 MOST = 5
 MOTORS = ("q1", "q2", "q3")
 
@@ -27,9 +28,9 @@ def softened(foreshortening: bool) -> sf.System:
     return system.with_bodies(*changed)
 
 
-def traced(diagram: sf.Diagram, t_end: float = T_END) -> sf.DiagramRun:
+def traced(diagram: sf.Diagram) -> sf.DiagramRun:
     """One run."""
-    return sf.Simulation(diagram).run(t_end, dt=DT, record=RECORD)
+    return sf.Simulation(diagram).run(T_END, dt=DT, record=RECORD)
 
 
 def off(run: sf.DiagramRun) -> Array:
@@ -58,7 +59,7 @@ def study(quick: bool) -> Study:
     distances = {n: float(np.abs(run["tip.p"] - finest["tip.p"]).max()) for n, run in runs.items() if n < counts[-1]}
     plain = traced(square(robot=softened(False)))
     shortened = float(np.abs(plain["tip.p"] - traced(square(robot=softened(True)))["tip.p"]).max())
-    bare = traced(square(compensated=0.0))
+    bare = simulation.run(T_END, dt=DT, record=RECORD, parameters={"friction.factor": 0.0})
     speed, ratio, agreement = _speed(simulation, 0.5 if quick else 2.0)
     joints = np.abs(flexible["q_desired"] - flexible["q"])
     worst, stiff = float(off(flexible).max()), float(off(rigid).max())
