@@ -194,7 +194,7 @@ def test_scenes_that_do_not_fit(changed: dict[str, object], words: str) -> None:
 def test_the_station() -> None:
     """Fifty-seven coordinates; one boom may be rigid in a slow motion, most elastic joints may be locked."""
     advice = advised("flexible_mss")
-    # By articulated bodies an evaluation costs what its coordinates do, 57 or 25; the rest of the gain is fewer of them.
+    # By articulated bodies an evaluation costs what its coordinates do, 57 or 25; the rest is fewer evaluations.
     assert advice.ok and advice.gain >= 3.0 and 2 * operations(advice.system) <= operations(advice.full)
     assert advice.choice("rigid", "ssrms_link4").verdict == "taken"
     assert advice.choice("elastic joint", "ssrms_q3").verdict == "refused"
