@@ -8,13 +8,13 @@ from collections.abc import Iterable, Mapping
 import symofros.blocks
 from symofros.diagrams.block import Block
 
-_WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_WORD = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
 
 Kinds = Mapping[str, type[Block]]
 
 
 def kind_of(block: type[Block]) -> str:
-    """What a class of blocks is called in files: JointPD is joint_pd."""
+    """What a class of blocks is called in files: JointPD is joint_pd, View3D view3d."""
     return _WORD.sub("_", block.__name__).lower()
 
 

@@ -16,6 +16,7 @@ from symofros.diagrams.layout import Place
 from symofros.diagrams.loop import RECORD, Loop, Stage
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import Cost, Crossed, DiagramRun
+from symofros.diagrams.wiring import surroundings
 from symofros.errors import AssemblyError, Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.kernel import Array
 from symofros.runtime.library import CompiledKernel
@@ -125,6 +126,7 @@ def run_compiled(
     opened = []
     try:
         for block in blocks:
+            block.learn(surroundings(resolved.wired, block.name))
             block.begin()
             opened.append(block)
         for stepper, q, v in steppers:

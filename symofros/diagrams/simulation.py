@@ -16,6 +16,7 @@ from symofros.diagrams.loop import RECORD
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.simulate import kept_by, parameter_values, record_interval, run_compiled
+from symofros.diagrams.wiring import surroundings
 from symofros.errors import Problem, SymofrosError
 from symofros.options import Options
 from symofros.runtime.toolchain import find_toolchain
@@ -93,6 +94,7 @@ class Simulation:
         opened = []
         try:
             for block in resolved.wired.blocks.values():
+                block.learn(surroundings(resolved.wired, block.name))
                 block.begin()
                 opened.append(block)
             with bar(progress, t0, t_end) as show:
