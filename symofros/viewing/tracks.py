@@ -30,8 +30,8 @@ def tracks_of(given: Sequence[Sequence[Any]]) -> tuple[Track, ...]:
     """Tracks stated as (name, points) or (name, points, color); points (n, 2) lie in the plane z = 0.
 
     Raises:
-        ShapeError: Points are not (n, 3) or (n, 2) finite numbers, n at least 2; a color is not three of 0 to 255; or two tracks
-            have one name.
+        ShapeError: Points are not (n, 3) or (n, 2) finite numbers, n at least 2; a color is not three of 0 to 255; two
+            tracks have one name.
     """
     found: list[Track] = []
     for i, item in enumerate(given):
