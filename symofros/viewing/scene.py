@@ -26,7 +26,8 @@ _TRIAD = 0.05  # Length of a frame's axes, of the mechanism's size.
 
 def shown_at_first(drawing: Drawing) -> frozenset[str]:
     """The layers of a drawing that are not in the way of others."""
-    hidden = {"frames", "labels"} if drawing.inertias_fit else {"frames", "labels", "inertias"}
+    looks = any(part.kind == "visuals" for part in drawing.parts)
+    hidden = {"frames", "labels"} | ({"inertias"} if looks or not drawing.inertias_fit else set())
     return frozenset(LAYERS) - hidden
 
 

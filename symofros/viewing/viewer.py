@@ -239,7 +239,7 @@ class Viewer:
         """Show or hide a layer.
 
         Args:
-            layer: "bodies", "inertias", "joints", "constraints", "paths", "frames", "labels" or "ground".
+            layer: "bodies", "inertias", "joints", "constraints", "paths", "visuals", "frames", "labels" or "ground".
             visible: Whether it is to be seen.
 
         Raises:
