@@ -11,11 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from symofros.description.visual import Visual
+from symofros.viewing.collada import read_collada
 from symofros.viewing.shapes import Array, Mesh, box, cylinder, merged, sphere
 
 MOST_BYTES = 64 << 20
 MOST_FACES = 500_000
-SUFFIXES = (".stl", ".obj", ".ply", ".off")
+SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".off")
 
 
 def visual_mesh(visual: Visual) -> Mesh | None:
@@ -59,20 +60,30 @@ def _read(file: Path, changed: int) -> Mesh:  # A file that was changed since is
         raise ValueError(f"{file.suffix or 'no suffix'} is none of {', '.join(SUFFIXES)}; convert it")
     if file.stat().st_size > MOST_BYTES:
         raise ValueError(f"{file.stat().st_size} bytes, {MOST_BYTES} at most")
+    data = file.read_bytes()
+    vertices, faces = read_collada(data, MOST_FACES) if file.suffix.lower() == ".dae" else _loaded(file.suffix, data)
+    if not 0 < len(faces) <= MOST_FACES or not np.all(np.isfinite(vertices)):
+        raise ValueError(f"{len(faces)} triangles; 1 to {MOST_FACES} with finite corners")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise ValueError("a triangle without a corner")
+    return Mesh(vertices, faces)
+
+
+def _loaded(suffix: str, data: bytes) -> Mesh:
+    """Of all formats but COLLADA, for which trimesh needs more packages.
+
+    Raises:
+        ValueError: It is no such mesh, or trimesh is not installed.
+    """
     try:
         trimesh = import_module("trimesh")
     except ImportError:
         raise ValueError("trimesh is not installed; pip install 'symofros[view]'") from None
     try:
         # Of bytes, without a resolver: nothing that the file refers to is opened.
-        found = trimesh.load(io.BytesIO(file.read_bytes()), file_type=file.suffix.lower()[1:], force="mesh",
-                             process=False, skip_materials=True)  # fmt: skip
-        vertices = np.array(found.vertices, dtype=np.float64).reshape(-1, 3)
-        faces = np.array(found.faces, dtype=np.int64).reshape(-1, 3)
+        found = trimesh.load(io.BytesIO(data), file_type=suffix.lower()[1:], force="mesh", process=False,
+                             skip_materials=True)  # fmt: skip
+        return Mesh(np.array(found.vertices, dtype=np.float64).reshape(-1, 3),
+                    np.array(found.faces, dtype=np.int64).reshape(-1, 3))  # fmt: skip
     except Exception as error:  # noqa: BLE001 - its readers raise whatever a bad file makes them stumble over.
-        raise ValueError(f"not a {file.suffix} file: {error}") from None
-    if not 0 < len(faces) <= MOST_FACES or not np.all(np.isfinite(vertices)):
-        raise ValueError(f"{len(faces)} triangles; 1 to {MOST_FACES} with finite corners")
-    if faces.min() < 0 or faces.max() >= len(vertices):
-        raise ValueError("a triangle without a corner")
-    return Mesh(vertices, faces)
+        raise ValueError(f"not a {suffix} file: {error}") from None

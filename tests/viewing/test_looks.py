@@ -87,11 +87,12 @@ def test_a_file_that_was_changed_is_read_again(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "expected"),
     [
-        ("m.fbx", b"x", "'.fbx' is none of|.fbx is none of"),
+        ("m.fbx", b"x", ".fbx is none of"),
         ("m.stl", b"", "not a .stl file|0 triangles"),
         ("m.stl", bytes(80) + b"\xff\xff\xff\x7f", "not a .stl file|0 triangles"),
         ("m.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "not a .obj file|0 triangles|without a corner"),
         ("m.obj", b"v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n", "finite corners"),
+        ("m.dae", b"<COLLADA/>", "no triangles"),
         ("m.ply", b"ply\nformat ascii 1.0\nelement vertex 99999999\nend_header\n", "not a .ply file|0 triangles"),
     ],
 )
@@ -120,3 +121,7 @@ def test_bodies_look_as_their_file_says() -> None:
     # Boxes of inertia would hide in them.
     assert "inertias" not in shown_at_first(drawing) and "visuals" in shown_at_first(drawing)
     assert "inertias" in shown_at_first(Mechanism(MODELS["double_pendulum"]).drawing())
+    # The skeleton stays until every link has a look of its own.
+    assert "bodies" in shown_at_first(drawing)
+    whole = Mechanism(replace(system, visuals={"upper": (box,), "lower": (box,)})).drawing()
+    assert not {"bodies", "joints"} & shown_at_first(whole)
