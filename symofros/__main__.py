@@ -1,4 +1,4 @@
-"""Command line: symofros info | compile | simulate | advise | export | view; info and simulate take diagrams, too."""
+"""Command line: symofros info | compile | simulate | advise | export | view | edit; info and simulate take diagrams."""
 
 from __future__ import annotations
 
@@ -271,10 +271,12 @@ def simulate(
             diagram, live = watching.prepared(diagram, look, bool(pace or diagram.simulation.realtime))
             found = diagrams.run_diagram(diagram, wishes, wanted)
             files = diagrams.write_files(found, wishes) + watching.recorded(found, look)
-            diagrams.tell_run(found, files, pace, as_json, _out)
+            diagrams.tell_run(found, files, as_json, _out)
             watching.shown(found, look, live=live)
             ok = found.outcome.ok
         else:
+            if picture == diagrams.WINDOW:
+                raise sf.SymofrosError("--plot window: of diagrams only\n  remedy: write a picture: --plot run.png")
             look.check()
             system = _load(model, floating_base)
             run = _simulated(system, t_end, given, inputs, every, pace, stated, wanted)
@@ -374,6 +376,28 @@ def export_command(
         _out.print(f"wrote {file}", markup=False, highlight=False, soft_wrap=True)
     for note in done.notes:
         _out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+
+
+@app.command()
+def edit(
+    model: Annotated[Path | None, typer.Argument(help="A model; a new one if not given.")] = None,
+    port: Annotated[int, typer.Option(help="Of the local page; any free one by default.")] = 0,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")] = True,
+    token: Annotated[str | None, typer.Option(help="A fixed one, for tests; drawn at random by default.")] = None,
+) -> None:
+    """Draw, edit, check, compile and simulate a model in the browser."""
+    try:
+        from symofros.gui.command import serve
+    except ModuleNotFoundError as error:
+        if error.name not in ("starlette", "uvicorn", "anyio"):
+            raise
+        _err.print(f"the editor needs the package '{error.name}'\n  remedy: pip install 'symofros\\[gui]'")
+        raise typer.Exit(BAD_INPUT) from None
+    try:
+        serve(model, port, token, browser, lambda url: _out.print(url, markup=False, highlight=False, soft_wrap=True))
+    except (sf.SymofrosError, OSError) as error:
+        _err.print(str(error), markup=False, highlight=False, soft_wrap=True)
+        raise typer.Exit(BAD_INPUT) from None
 
 
 add_view(app, _load, BAD_INPUT)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import hashlib
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
@@ -24,8 +24,9 @@ from typing import Any
 
 from symofros.beams.deformation import small_coordinates
 from symofros.codegen.dispatch import dispatch_source
+from symofros.codegen.effort import cheapest
 from symofros.codegen.interpreted import InterpretedUnit
-from symofros.codegen.model import Lanes, model_source
+from symofros.codegen.model import model_source
 from symofros.codegen.names import identifier
 from symofros.codegen.templates import template
 from symofros.description.beam import Beam
@@ -33,7 +34,7 @@ from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
 from symofros.description.values import as_value
 from symofros.dynamics.formulas import formula_program
-from symofros.dynamics.functions import Request, write_program
+from symofros.dynamics.functions import Request, methods, write_program
 from symofros.dynamics.wrenches import acts_on_bodies
 from symofros.errors import (
     CompileError,
@@ -51,8 +52,8 @@ from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS, Options
 from symofros.passes import run_passes
 from symofros.runtime.build import build_library, recall_library
 from symofros.runtime.functions import Rate
-from symofros.runtime.kernel import Kernel, Unit
-from symofros.runtime.library import CompiledUnit
+from symofros.runtime.kernel import Lanes, Precision, Unit
+from symofros.runtime.library import CompiledKernel, CompiledUnit
 from symofros.runtime.model import Key, Model
 from symofros.runtime.record import ClosureRecord, ModelRecord, Segment, SegmentKind
 from symofros.runtime.toolchain import Toolchain, find_toolchain
@@ -97,12 +98,15 @@ def plan(system: System) -> SpanningTree:
     return build_tree(system)
 
 
-def compile_library(system: System, options: Options | None = None) -> tuple[Path, str]:
+def compile_library(
+    system: System, options: Options | None = None, precision: Precision = "double"
+) -> tuple[Path, str]:
     """The shared library of a system, for programs that call C themselves.
 
     Args:
         system: What the user stated.
         options: What to generate; backend "c".
+        precision: Of the lanes of functions by vectors (`sym_lanes`); "single": of batches by rows, too.
 
     Returns:
         Path of the library in the cache, and the name of its exported function (see symofros_model.h).
@@ -117,9 +121,9 @@ def compile_library(system: System, options: Options | None = None) -> tuple[Pat
         raise CompileError("no C compiler was found\n  remedy: install gcc or clang, or `pip install ziglang`")
     tree = plan(system)
     record = describe(tree, options)
-    program, _ = generate(tree, requested(tree, options), record, options.constraints)
+    program, _ = generate(tree, requested(tree, options), record, options.constraints, options.forward_dynamics)
     symbol = f"{identifier(record.name)}_model"
-    lanes: Lanes = "shared" if options.batch == "vector" else "none"
+    lanes = Lanes(precision=precision) if options.batch == "vector" else None
 
     def made(build: Build) -> Path:
         source = model_source(program, record, GENERATOR, lanes, packs=build.packs)
@@ -159,7 +163,8 @@ def program_of(system: System, functions: Iterable[str], frames: Iterable[str] =
         UnknownNameError: No such function or frame.
     """
     tree = plan(system)
-    return run_passes(write_program(tree, requested(tree, Options(tuple(functions), tuple(frames)))))
+    options = Options(tuple(functions), tuple(frames))
+    return _written(tree, requested(tree, options), options.constraints, options.forward_dynamics)
 
 
 def generate(
@@ -167,14 +172,25 @@ def generate(
     requests: Iterable[Key],
     record: ModelRecord,
     form: str = "multipliers",
+    method: str = "auto",
     c_name: str | None = None,
 ) -> tuple[Program, Callable[[], str]]:
-    """Requests -> optimised Program, and its C text on demand; form as in `Options.constraints`.
+    """Requests -> optimised Program, and its C text on demand.
 
-    c_name is what the C symbols begin with; made of the model's name by default.
+    form and method are as in `Options.constraints` and `Options.forward_dynamics`; c_name is what the C symbols begin
+    with, made of the model's name by default.
     """
-    program = run_passes(write_program(tree, [Request(*key) for key in requests], form))
+    program = _written(tree, [Request(*key) for key in requests], form, method)
     return program, lambda: model_source(program, record, GENERATOR, c_name=c_name)
+
+
+def _written(tree: SpanningTree, requests: Sequence[Request], form: str, method: str) -> Program:
+    """The optimised program, its forward dynamics by the cheaper method where that is left to us."""
+    asked = [request for request in requests if request.name == "forward_dynamics"]
+    if method == "auto" and asked:
+        ways = methods(tree)
+        method = cheapest({way: run_passes(write_program(tree, asked, form, way)) for way in ways})
+    return run_passes(write_program(tree, requests, form, method))
 
 
 def _warn_inconsistent(system: System) -> None:
@@ -199,8 +215,9 @@ class _Builder:
 
     def functions(self, requests: tuple[Key, ...]) -> Unit:
         """Functions of the model."""
-        form = self._options.constraints
-        return self._unit(requests, lambda: generate(self._tree, requests, self._record, form)[0])
+        stated = [Request(*key) for key in requests]
+        how = self._options.constraints, self._options.forward_dynamics
+        return self._unit(requests, lambda: _written(self._tree, stated, *how))
 
     def formulas(self, formulas: tuple[Any, ...], derivatives: bool) -> Unit:
         """Numbers, formula texts or SymPy expressions over the model's names."""
@@ -215,11 +232,11 @@ class _Builder:
         if self._toolchain is None:
             return InterpretedUnit(program())
         in_lanes = self._in_lanes(what, program) if self._options.batch == "vector" else None
-        return self._compiled((what, "one by one"), program, self._toolchain, "none", in_lanes)
+        return self._compiled((what, "one by one"), program, self._toolchain, None, in_lanes)
 
     def _compiled(
-        self, what: object, program: Callable[[], Program], toolchain: Toolchain, vectors: Lanes,
-        in_lanes: Callable[[Key, bool], Kernel | None] | None = None,
+        self, what: object, program: Callable[[], Program], toolchain: Toolchain, vectors: Lanes | None,
+        in_lanes: Callable[[Key, Lanes], CompiledKernel | None] | None = None,
     ) -> CompiledUnit:  # fmt: skip
         header = template("symofros_model.h")
         symbol = f"{identifier(self._record.name)}_model"
@@ -234,19 +251,18 @@ class _Builder:
         path = _chosen(made, self._options, toolchain, symbol, self._record.hash)
         return CompiledUnit(path, symbol, header, self._record.hash, in_lanes)
 
-    def _in_lanes(self, what: object, program: Callable[[], Program]) -> Callable[[Key, bool], Kernel | None]:
-        """Function, and whether states have parameters of their own -> the same by vectors, compiled when asked for.
+    def _in_lanes(self, what: object, program: Callable[[], Program]) -> Callable[[Key, Lanes], CompiledKernel | None]:
+        """Function, and how to use vectors -> the same by vectors, compiled when asked for.
 
         None for a function that a solver finishes.
         """
 
-        def compiled(key: Key, own: bool) -> Kernel | None:
+        def compiled(key: Key, lanes: Lanes) -> CompiledKernel | None:
             function = next(f for f in program().functions if (f.name, f.frame) == key)
             if function.solver is not None or self._toolchain is None:
                 return None
             one = replace(program(), functions=(function,))
-            lanes: Lanes = "own" if own else "shared"
-            return self._compiled((what, lanes, key), lambda: one, self._toolchain, lanes).kernels[key]
+            return self._compiled((what, lanes, key), lambda: one, self._toolchain, lanes).compiled[key]
 
         return compiled
 

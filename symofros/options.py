@@ -56,6 +56,9 @@ class Options:
         constraints: How forward dynamics keeps them: "multipliers" solves for the forces first, by M^-1;
             "null_space" for the accelerations that are left free, without M^-1: more accurate where M is nearly
             singular, and usually slower (docs/theory/constraints.md, section 8).
+        forward_dynamics: Of trees: "factors" of the mass matrix; "articulated" bodies, which lose hundreds of times
+            fewer digits where light links carry heavy loads; "auto", the cheaper by count (docs/theory/rigid.md,
+            section 7).
         batch: How large batches are evaluated: "vector", several states at once, by code that is compiled for each
             function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
         packs: Whether values of one state that are computed alike, such as entries of a row of M, share vectors.
@@ -73,6 +76,7 @@ class Options:
     flags: tuple[str, ...] | None = None
     compiler: str | None = None
     constraints: Literal["multipliers", "null_space"] = "multipliers"
+    forward_dynamics: Literal["auto", "articulated", "factors"] = "auto"
     batch: Literal["vector", "loop"] = "vector"
     packs: bool = True
     tune: bool = False

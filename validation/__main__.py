@@ -31,7 +31,15 @@ from validation.record import Record, make_record, summary
 from validation.report import write_report
 from validation.sampling import DEFAULT_STATES
 from validation.stability import command as stability
-from validation.studies import exports_report, fuzz_report, mutation_report, oracle, rollouts_report, simulation_report
+from validation.studies import (
+    exports_report,
+    fuzz_report,
+    mutation_report,
+    oracle,
+    realtime_report,
+    rollouts_report,
+    simulation_report,
+)
 from validation.timing import command as timing
 
 
@@ -169,6 +177,7 @@ stability.register(app)
 timing.register(app)
 simulation_report.register(app)
 rollouts_report.register(app)
+realtime_report.register(app)
 
 if __name__ == "__main__":
     app()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symofros.blocks.rotations import matrix_of_quaternion, quaternion_product, vector_of_quaternion
+from symofros.blocks.rotations import matrix_of_quaternion, position_of_step, quaternion_product, vector_of_quaternion
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.runtime.record import ModelRecord
 
@@ -14,10 +14,12 @@ def difference(record: ModelRecord, q0: Tensor, q1: Tensor) -> Tensor:
         if kind == "linear":
             parts.append(q1[i : i + size] - q0[i : i + size])
             continue
+        at = i + 3 if kind == "pose" else i
+        turn = vector_of_quaternion(quaternion_product(_conjugate(q0[at : at + 4]), q1[at : at + 4]))
         if kind == "pose":
-            parts.append(matrix_of_quaternion(q0[i + 3 : i + 7]).T @ (q1[i : i + 3] - q0[i : i + 3]))
-            i += 3
-        parts.append(vector_of_quaternion(quaternion_product(_conjugate(q0[i : i + 4]), q1[i : i + 4])))
+            shift = matrix_of_quaternion(q0[at : at + 4]).T @ (q1[i : i + 3] - q0[i : i + 3])
+            parts.append(position_of_step(turn, shift))
+        parts.append(turn)
     return joined(parts)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import secrets
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, ClassVar
@@ -58,8 +58,8 @@ class ZenohPublisher(Block):
         Raises:
             SymofrosError: Zenoh is not installed, or the address is taken.
         """
-        session = _session(self.name, self.address, self.listens)
-        object.__setattr__(self, "_open", (session, session.declare_publisher(self.key), secrets.randbits(32)))
+        session, publisher = _opened(self, lambda session: session.declare_publisher(self.key))
+        object.__setattr__(self, "_open", (session, publisher, secrets.randbits(32)))
         object.__setattr__(self, "_sent", 0)
 
     def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
@@ -120,9 +120,12 @@ class ZenohSubscriber(Block):
         Raises:
             SymofrosError: Zenoh is not installed, or the address is taken.
         """
-        session = _session(self.name, self.address, self.listens)
         waiting: deque[bytes] = deque(maxlen=MAX_TAKEN)
-        subscriber = session.declare_subscriber(self.key, lambda sample: waiting.append(bytes(sample.payload)))
+
+        def heard(sample: Any) -> None:
+            waiting.append(bytes(sample.payload))
+
+        session, subscriber = _opened(self, lambda session: session.declare_subscriber(self.key, heard))
         object.__setattr__(self, "_open", (session, subscriber, waiting, Reception(self.size, self.timeout)))
         object.__setattr__(self, "_began", None)
 
@@ -158,12 +161,13 @@ def _check(name: str, key: str, address: str) -> None:
                                        "names joined by '/', none of them empty", "for example arm/state"))  # fmt: skip
 
 
-def _session(name: str, address: str, listens: bool) -> Any:
-    """A peer that talks by one address only.
+def _opened(block: ZenohPublisher | ZenohSubscriber, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
+    """A peer that talks by one address only, and what it declares.
 
     Raises:
-        SymofrosError: Zenoh is not installed, or the address is taken.
+        SymofrosError: Zenoh is not installed, the address is taken, or the key is none.
     """
+    name, address = block.name, block.address
     try:
         zenoh = import_module("zenoh")
     except ImportError:
@@ -171,16 +175,22 @@ def _session(name: str, address: str, listens: bool) -> Any:
                                         "network blocks of middleware are an extra", "pip install 'symofros[network]'")
                                 )) from None  # fmt: skip
     config = zenoh.Config()
-    ends = [f"tcp/{address}"]
+    ends, listens = [f"tcp/{address}"], block.listens
     for key, value in (
         ("mode", "peer"), ("scouting/multicast/enabled", False), ("scouting/gossip/enabled", False),
         ("listen/endpoints", ends if listens else []), ("connect/endpoints", [] if listens else ends),
     ):  # fmt: skip
         config.insert_json5(key, json.dumps(value))
     try:
-        return zenoh.open(config)
+        session = zenoh.open(config)
     except zenoh.ZError as error:
         raise SymofrosError(str(Problem(f"block '{name}': can't open {address}", f"{error}".split(" at /")[0][:200],
                                         "one program listens at an address of this machine",
                                         "choose another port, or let one side listen and the other connect")
                                 )) from None  # fmt: skip
+    try:
+        return session, declare(session)
+    except zenoh.ZError as error:
+        session.close()
+        raise SymofrosError(str(Problem(f"block '{name}': no key '{block.key:.60}'", f"{error}".split(" at /")[0][:200],
+                                        "a key as Zenoh has them", "for example arm/state"))) from None  # fmt: skip

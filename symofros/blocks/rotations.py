@@ -12,6 +12,8 @@ from symofros.diagrams.tensor import Tensor, joined, stacked
 
 # Its root is 1e-150: lost beside any length that is not zero itself.
 _TINY = 1e-300
+# Square of the angle below which a series of four terms is exact to rounding [rad^2].
+_SERIES = 0.01
 # Axes of the three turns, applied left to right as matrices: R = R_a(x1) R_b(x2) R_c(x3).
 EULER = tuple(a + b + c for a in "xyz" for b in "xyz" for c in "xyz" if b not in (a, c))
 
@@ -156,3 +158,19 @@ def _pair(a: Tensor, b: Tensor) -> Tensor:
 def error_vector(R_desired: Tensor, R: Tensor) -> Tensor:
     """The rotation vector (3) that takes R to R_desired, in world axes [rad]."""
     return vector_of_matrix(R_desired @ R.T)
+
+
+def position_of_step(w: Tensor, shift: Tensor) -> Tensor:
+    """The linear part (3) of the step that turns by w (3) and leads to a position (3): the inverse left Jacobian.
+
+    J^-1 p = p - w x p / 2 + c w x (w x p), c = (1 - (a/2) cot(a/2)) / a^2, a = |w|, by its series where a is small.
+    """
+    angle = length(w)
+    half, a2 = 0.5 * angle, angle * angle
+    series = 1.0 / 12.0 + a2 * (1.0 / 720.0 + a2 * (1.0 / 30240.0 + a2 / 1209600.0))
+    # Where the series holds, the other formula must still be finite: it is at one radian.
+    large = (a2 - _SERIES).apply("step")
+    safe = half * large + 0.5 * (1.0 - large)
+    closed = (1.0 - safe * safe.apply("cos") / safe.apply("sin")) / (4.0 * safe * safe)
+    once = w.cross(shift)
+    return shift - 0.5 * once + (large * closed + (1.0 - large) * series) * w.cross(once)

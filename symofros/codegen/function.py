@@ -15,12 +15,13 @@ from symofros.codegen.trigonometry import block_lines
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.packs import WIDTH
 from symofros.expr.program import Output, Program
+from symofros.runtime.kernel import Lanes
 
 MAX_STATEMENTS = 1000
 # Past this length, shorter chunks compile twice as fast and run as fast (measured on a 52-link chain, gcc 12); below
 # it, long chunks run faster, because fewer values pass through memory.
 _LONG, _LONG_CHUNK = 6000, 300
-_ARRAY = re.compile(r"\b(\w+)\[")
+_ARRAY = re.compile(r"\b(\w+)\[|SYM_(?:AT|PUT)\((\w+),")
 # Clear an output at once when at least this share of its entries is zero.
 _SPARSE = 0.25
 
@@ -33,11 +34,13 @@ class FunctionText:
         code: Definitions of its chunks and of the function that calls them.
         work: Doubles of scratch it needs.
         lanes: The same on vectors, one state a lane; none where it is not asked for.
+        in_chunks: Whether there are several.
     """
 
     code: str
     work: int
     lanes: str = ""
+    in_chunks: bool = False
 
 
 class FunctionWriter:
@@ -71,38 +74,39 @@ class FunctionWriter:
         self.slots = _allocate(self.chunks)
         self.work = max((slot + _doubles(key) for key, slot in self.slots.items()), default=0)
 
-    def text(self, lanes: bool = False) -> FunctionText:
+    def text(self, lanes: Lanes | None = None) -> FunctionText:
         """The C text: chunk functions, then the function that unpacks pointers and calls them.
 
         Args:
-            lanes: Whether to write it on vectors, too.
+            lanes: How to write it on vectors, too.
         """
-        parts = [self._chunk(i, self.writer) for i in range(len(self.chunks))]
+        parts = [self._chunk(i) for i in range(len(self.chunks))]
         body = [f"    const double *restrict {name} = in[{i}];" for i, name in enumerate(self.inputs)]
         body += [f"    double *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
         body += [line for output in self.outputs for line in self._clear(output)]
-        body += self._calls(self.c_name)
+        arguments = ", ".join([*self.inputs, *(output.name for output in self.outputs), "work"])
+        body += [f"    {self.c_name}_{i}({arguments});" for i in range(len(self.chunks))]
         head = f"static void {self.c_name}(const double *const *in, double *const *out, double *restrict work) {{"
         code = "\n".join([*parts, head, *body, "}"])
-        return FunctionText(code, self.work, self._lanes() if lanes else "")
+        return FunctionText(code, self.work, self._lanes(lanes.single) if lanes is not None else "",
+                            len(self.chunks) > 1)  # fmt: skip
 
-    def _lanes(self) -> str:
-        """On vectors: the parameters' part is one for all lanes or one for each, outputs are cleared beforehand."""
-        writer = self.writer.in_lanes()
-        parts = [self._chunk(i, writer) for i in range(len(self.chunks))]
-        pre, *others = self.inputs
-        body = [f"    const sym_v *restrict {name} = in[{i}];" for i, name in enumerate(others, 1)]
-        body += [f"    sym_v *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
-        body += self._calls(f"{self.c_name}_v")
-        head = (
-            f"static void {self.c_name}_v(const sym_p *restrict {pre}, const sym_v *const *in, sym_v *const *out,\n"
-            "    sym_v *restrict work) {"
-        )
-        return "\n".join([*parts, head, *body, "}"])
+    def _lanes(self, single: bool) -> str:
+        """On vectors: chunk by chunk, each for all vectors at hand; entries that are always zero are left out.
 
-    def _calls(self, c_name: str) -> list[str]:
-        arguments = ", ".join([*self.inputs, *(output.name for output in self.outputs), "work"])
-        return [f"    {c_name}_{i}({arguments});" for i in range(len(self.chunks))]
+        The chunks stay apart from the loops around them, out of which compilers would carry their constants.
+        """
+        writer = self.writer.in_lanes(single)
+        parts = [self._chunk_in_lanes(i, writer) for i in range(len(self.chunks))]
+        columns = [f"in[{i}]" for i in range(1, len(self.inputs))] + [f"out[{i}]" for i in range(len(self.outputs))]
+        arguments = ["(const sym_p *)(in[0].at + i * in[0].next)"]
+        arguments += [*(f"{x}.at + i * {x}.next, {x}.step" for x in columns), f"work + i * {self.work}"]
+        calls = [
+            f"    for (i = 0; i < count; ++i)\n        {self.c_name}_v_{k}({', '.join(arguments)});"
+            for k in range(len(self.chunks))
+        ]
+        head = f"static void {self.c_name}_v(int count, const sym_column *in, const sym_column *out, sym_v *work) {{"
+        return "\n".join([*parts, head, "    int i;", *calls, "}"])
 
     def _clear(self, output: Output) -> list[str]:
         zeros = [i for i, edge in enumerate(output.edges) if edge == 0]
@@ -112,24 +116,41 @@ class FunctionWriter:
             return [f"    memset({output.name}, 0, {len(output.edges)} * sizeof *{output.name});"]
         return [f"    {output.name}[{i}] = 0.0;" for i in zeros]
 
-    def _chunk(self, index: int, writer: StatementWriter) -> str:
-        real, suffix = ("sym_v", "_v") if writer.lanes else ("double", "")
+    def _chunk(self, index: int) -> str:
+        lines, used = self._body(index, self.writer, "double")
+        names = [*self.inputs, *(output.name for output in self.outputs), "work"]
+        lines = [f"    (void){name};" for name in names if name not in used] + lines
+        arguments = [f"const double *restrict {name}" for name in self.inputs]
+        arguments += [f"double *restrict {output.name}" for output in self.outputs] + ["double *restrict work"]
+        # A single chunk may be inlined into its caller; several must stay apart.
+        kind = "static SYM_NOINLINE" if len(self.chunks) > 1 else "static"
+        return "\n".join([f"{kind} void {self.c_name}_{index}({', '.join(arguments)}) {{", *lines, "}"])
+
+    def _chunk_in_lanes(self, index: int, writer: StatementWriter) -> str:
+        lines, used = self._body(index, writer, "sym_v")
+        pre, *inputs = self.inputs
+        arguments = [f"const sym_p *restrict {pre}"]
+        arguments += [f"const sym_number *restrict {name}_at, ptrdiff_t {name}_step" for name in inputs]
+        arguments += [f"sym_number *restrict {o.name}_at, ptrdiff_t {o.name}_step" for o in self.outputs]
+        unused = [
+            f"    (void){name}_at, (void){name}_step;"
+            for name in (*inputs, *(o.name for o in self.outputs))
+            if name not in used
+        ]
+        unused += [f"    (void){name};" for name in (pre, "work") if name not in used]
+        head = f"static SYM_NOINLINE void {self.c_name}_v_{index}({', '.join([*arguments, 'sym_v *restrict work'])}) {{"
+        return "\n".join([head, *unused, *lines, "}"])
+
+    def _body(self, index: int, writer: StatementWriter, real: str) -> tuple[list[str], set[str]]:
+        """Lines of a chunk, and the arrays that they mention."""
         statements = self.chunks[index]
         local = {key for statement in statements for key in statement.keys}
         crossing = dict.fromkeys(n for statement in statements for n in statement.reads if n not in local)
         lines = [self._load(key, writer, real) for key in crossing]
         for statement in statements:
             lines += self._lines(statement, writer, real)
-        names = [*self.inputs, *(output.name for output in self.outputs), "work"]
-        text = "\n".join(lines)
-        used = set(_ARRAY.findall(text))
-        lines = [f"    (void){name};" for name in names if name not in used] + ([text] if text else [])
-        given = "sym_p" if writer.lanes else real
-        arguments = [f"const {real if i else given} *restrict {name}" for i, name in enumerate(self.inputs)]
-        arguments += [f"{real} *restrict {output.name}" for output in self.outputs] + [f"{real} *restrict work"]
-        # A single chunk may be inlined into its caller; several must stay apart.
-        kind = "static SYM_NOINLINE" if len(self.chunks) > 1 else "static"
-        return "\n".join([f"{kind} void {self.c_name}{suffix}_{index}({', '.join(arguments)}) {{", *lines, "}"])
+        used = {a or b for line in lines for a, b in _ARRAY.findall(line)}
+        return lines, used
 
     def _load(self, key: int, writer: StatementWriter, real: str) -> str:
         slot = self.slots[key]
@@ -153,7 +174,7 @@ class FunctionWriter:
         if statement.vector is not None:
             runs, stores = runs_of_lanes(statement.vector, stores)
             lines += runs
-        return lines + [f"    {store.array}[{store.index}] = {writer.whole(store.edge)};" for store in stores]
+        return lines + [f"    {writer.store(store)}" for store in stores]
 
 
 def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:

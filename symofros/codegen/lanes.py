@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from itertools import groupby
 from math import prod
 from string import Template
 
+from symofros.codegen import trigonometry
 from symofros.codegen.templates import template
+from symofros.expr.graph import Edge
 from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
 from symofros.expr.program import Function, Program
+from symofros.runtime.kernel import Lanes
 
-# The widest vectors, in doubles: scratch is laid out for them.
+# Doubles of the widest vectors: scratch is laid out for them. As many lanes of floats as of doubles take half of that.
 _WIDEST = 8
+_MOST_LANES = 2 * _WIDEST
+# Vectors of states that a function of several chunks takes at a time, so that each chunk's code is fetched once for
+# all of them; as many as keep what they compute within so much of the second cache [bytes].
+_MOST, _CACHE = 8, 1 << 19
 
 
-def batch(c_name: str, program: Program, function: Function, in_lanes: bool) -> str:
-    """The C function that evaluates many states.
+def batch(c_name: str, function: Function, lanes: Lanes | None) -> str:
+    """The C function that evaluates many states, row by row.
 
     Args:
         c_name: Of the function that evaluates one.
-        program: Of the function.
         function: Of one state.
-        in_lanes: Whether there is such a function on vectors, too.
+        lanes: Of the function on vectors, if there is one.
     """
     n_in, n_out = len(function.inputs) + 1, len(function.returns)
     lines = [
@@ -29,7 +37,7 @@ def batch(c_name: str, program: Program, function: Function, in_lanes: bool) -> 
         f"    const double *x[{n_in}];",
         f"    double *y[{n_out}];",
         "    size_t i;",
-        *(_call(c_name, program, function) if in_lanes else ()),
+        *(_rows(c_name, function, lanes) if lanes is not None else ()),
         f"    memcpy(x, in, {n_in} * sizeof *x);",
         f"    memcpy(y, out, {n_out} * sizeof *y);",
         "    for (i = 0; i < n; ++i) {",
@@ -42,22 +50,72 @@ def batch(c_name: str, program: Program, function: Function, in_lanes: bool) -> 
     return "\n".join(lines)
 
 
-def _call(c_name: str, program: Program, function: Function) -> list[str]:
+def _rows(c_name: str, function: Function, lanes: Lanes) -> list[str]:
     """The way to the vectors, unless they share one set of parameters and are given several."""
-    inputs = [len(program.init), *(program.sizes[name] for name in function.inputs)]
-    outputs = [prod(shape) for _, shape in function.returns]
+    n_in, n_out = len(function.inputs) + 1, len(function.returns)
     return [
         "#if SYM_LANES > 1",
-        "    if (n > 1 && (SYM_OWN || in_stride[0] == 0)) {",
-        f"        static const size_t in_size[] = {{{', '.join(map(str, inputs))}}};",
-        f"        static const size_t out_size[] = {{{', '.join(map(str, outputs))}}};",
-        f"        sym_v *from[{len(inputs)}], *to[{len(outputs)}];",
-        f"        sym_batch_lanes(n, {len(inputs)}, in_size, in, in_stride, {len(outputs)}, out_size, out, {c_name}_v,",
-        "                        from, to, work);",
+        # One state alone is evaluated as the others are where that is less precise.
+        f"    if (n > {0 if lanes.single else 1} && (SYM_OWN || in_stride[0] == 0)) {{",
+        f"        sym_strided from[{n_in}], to[{n_out}];",
+        f"        sym_way way[{n_in + n_out}];",
+        f"        sym_column columns[{n_in + n_out}];",
+        f"        sym_rows(&{c_name}_vectors, in, in_stride, out, from, to);",
+        f"        sym_batch_lanes(&{c_name}_vectors, n, from, to, {int(lanes.single)}, way, columns, work);",
         "        return;",
         "    }",
         "#endif",
     ]
+
+
+def strided(c_name: str, program: Program, function: Function, work: int) -> str:
+    """What the C file says of a function on vectors, and its batch in any layout.
+
+    Args:
+        c_name: Of the function that evaluates one state.
+        program: Of the function.
+        function: Of one state.
+        work: Scratch of one vector.
+    """
+    inputs = [len(program.init), *(program.sizes[name] for name in function.inputs)]
+    outputs = [prod(shape) for _, shape in function.returns]
+    zeros = [(k, *run) for k, output in enumerate(function.outputs) for run in _runs(output.edges)]
+    most = vectors_at_once(program, function, work)
+    n = len(inputs) + len(outputs)
+    return "\n".join([
+        f"static const int {c_name}_in_size[] = {{{', '.join(map(str, inputs))}}};",
+        f"static const int {c_name}_out_size[] = {{{', '.join(map(str, outputs))}}};",
+        f"static const int {c_name}_zero[] = {{{''.join(f'{k}, {first}, {count}, ' for k, first, count in zeros)}-1}};",
+        f"static const sym_vectors {c_name}_vectors = {{{len(inputs)}, {len(outputs)}, {most}, {c_name}_in_size,",
+        f"    {c_name}_out_size, {c_name}_zero, {c_name}_v}};",
+        f"static void {c_name}_lanes(size_t n, const sym_strided *in, const sym_strided *out, double *work) {{",
+        f"    sym_way way[{n}];",
+        f"    sym_column columns[{n}];",
+        f"    sym_batch_lanes(&{c_name}_vectors, n, in, out, 0, way, columns, work);",
+        "}",
+    ])  # fmt: skip
+
+
+def _runs(edges: Sequence[Edge]) -> Iterator[tuple[int, int]]:
+    """Where entries that are always zero begin, and how many there are."""
+    first = 0
+    for is_zero, group in groupby(edge == 0 for edge in edges):
+        count = sum(1 for _ in group)
+        if is_zero:
+            yield first, count
+        first += count
+
+
+def vectors_at_once(program: Program, function: Function, work: int) -> int:
+    """Of states, which a function on vectors takes.
+
+    Args:
+        program: Of the function.
+        function: Of one state.
+        work: Scratch of one vector; none of a function of one chunk.
+    """
+    bytes_each = 8 * _WIDEST * (work + sum(_sizes(program, function)))
+    return max(1, min(_MOST, _CACHE // bytes_each)) if work else 1
 
 
 def scratch(program: Program, function: Function, work: int) -> int:
@@ -66,26 +124,31 @@ def scratch(program: Program, function: Function, work: int) -> int:
     Args:
         program: Of the function.
         function: Whose inputs and outputs are kept in lanes.
-        work: Scratch of one state.
+        work: Scratch of one vector.
     """
-    sizes = [
+    most = vectors_at_once(program, function, work)
+    return _WIDEST * (
+        1 + most * work + sum(most * size + max(0, _MOST_LANES - size) for size in _sizes(program, function))
+    )
+
+
+def _sizes(program: Program, function: Function) -> list[int]:
+    return [
         len(program.init),
         *(program.sizes[name] for name in function.inputs),
         *(prod(shape) for _, shape in function.returns),
     ]
-    return _WIDEST * (1 + work + sum(max(size, _WIDEST) for size in sizes))
 
 
-def routines(own: bool) -> str:
-    """The hand-written routines that batches in lanes call.
-
-    Args:
-        own: Whether each state may have parameters of its own.
-    """
+def routines(lanes: Lanes) -> str:
+    """The hand-written routines that batches in lanes call."""
     makers = {1: "SYM_BY_LANE", 2: "SYM_BY_LANES"}
     functions = [
         f"{makers[op.arity]}({op.name}, {op.c.partition('(')[0]})"
         for op in OPS.values()
         if op.name not in (ADD, MUL, DIV, HELD)
     ]
-    return Template(template("lanes.c.in")).substitute(functions="\n".join(functions), own=int(own))
+    return Template(template("lanes.c.in")).substitute(
+        functions="\n".join(functions), own=int(lanes.own), single=int(lanes.single),
+        sines=trigonometry.of_lanes(lanes.single),
+    )  # fmt: skip

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from string import Template
-from typing import Literal
 
 from symofros.codegen import lanes, trigonometry
 from symofros.codegen.function import FunctionWriter
@@ -13,14 +13,14 @@ from symofros.codegen.solvers import ROUTINES, with_solver
 from symofros.codegen.templates import template
 from symofros.expr.program import Function, Output, Program
 from symofros.passes.count import count_program
+from symofros.runtime.kernel import Lanes
 from symofros.runtime.record import ModelRecord
 
 _INIT = "init_par"
-Lanes = Literal["none", "shared", "own"]
 
 
 def model_source(
-    program: Program, record: ModelRecord, generator: str, in_lanes: Lanes = "none", c_name: str | None = None,
+    program: Program, record: ModelRecord, generator: str, in_lanes: Lanes | None = None, c_name: str | None = None,
     packs: bool = False,
 ) -> str:  # fmt: skip
     """The C file of a program.
@@ -29,15 +29,15 @@ def model_source(
         program: Staged.
         record: Names and defaults.
         generator: Name and version of what wrote it.
-        in_lanes: Whether batches take several states at once that share parameters, or that each have their own;
-            functions with a solver never do: it takes the time, and it pivots (docs/theory/code.md).
+        in_lanes: How batches take several states at once, if they do; functions with a solver never do: it takes the
+            time, and it pivots (docs/theory/code.md).
         c_name: What symbols begin with; made of the record's name by default.
         packs: Whether values that are computed alike share vectors, which takes a compiler of GNU C; not in lanes,
             where every value is a vector already.
     """
     name = c_name or identifier(record.name)
-    vectors = in_lanes != "none" and any(function.solver is None for function in program.functions)
-    packs = packs and not vectors
+    vectors = in_lanes if any(function.solver is None for function in program.functions) else None
+    packs = packs and vectors is None
     texts = [_init_function(program, name)]
     rows = []
     for i, function in enumerate(program.functions):
@@ -53,15 +53,18 @@ def model_source(
         operations=_comment("\n".join(lines)),
         functions="\n\n".join(
             [
-                *trigonometry.routines(texts, vectors),
-                *([lanes.routines(in_lanes == "own")] if vectors else []),
+                *trigonometry.routines(texts, vectors is not None),
+                *([lanes.routines(vectors)] if vectors is not None else []),
                 *([template("pack.c.in")] if packs and any("sym_pack " in text for text in texts) else []),
                 *_routines(program),
                 *texts,
             ]
         ),
-        tables="\n".join([*(table for table, _ in rows), _function_table(name, [row for _, row in rows])]),
+        tables="\n".join(
+            [*(row.tables for row in rows), _function_table(name, rows), *_lane_table(name, rows, vectors)]
+        ),
         n_functions=len(rows),
+        lanes="NULL" if vectors is None else f"SYM_LANE_TABLE({name})",
         c_name=name,
         name=c_string(record.name),
         nq=len(record.q_names),
@@ -104,26 +107,44 @@ def _init_function(program: Program, name: str) -> str:
     return "\n".join([text.code, *lines])
 
 
+@dataclass(frozen=True)
+class _Row:
+    """A function in the tables of a C file.
+
+    Attributes:
+        tables: Of its arrays.
+        row: Of the table of functions.
+        lanes: Of the table of functions on vectors.
+    """
+
+    tables: str
+    row: str
+    lanes: str
+
+
 def _one_function(
-    program: Program, function: Function, c_name: str, in_lanes: bool, packs: bool
-) -> tuple[str, tuple[str, str]]:
-    """Code, and (tables of its arrays, row of the function table)."""
+    program: Program, function: Function, c_name: str, in_lanes: Lanes | None, packs: bool
+) -> tuple[str, _Row]:
+    """Code, and what tables say of it."""
     inputs = ["pre", *function.inputs]
     if function.solver is None:
         text = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs).text(in_lanes)
-        work = lanes.scratch(program, function, text.work) if in_lanes else text.work
     else:
         text = with_solver(program, c_name, function, function.solver, packs)
-        work = text.work
-    vectors = ["#if SYM_LANES > 1", text.lanes, "#endif"] if text.lanes else []
-    code = "\n".join([text.code, *vectors, lanes.batch(c_name, program, function, bool(text.lanes))])
+    vectors, work = [], text.work
+    if text.lanes:
+        each = text.work if text.in_chunks else 0
+        vectors = ["#if SYM_LANES > 1", text.lanes, lanes.strided(c_name, program, function, each), "#endif"]
+        work = max(work, lanes.scratch(program, function, each))
+    code = "\n".join([text.code, *vectors, lanes.batch(c_name, function, in_lanes if text.lanes else None)])
     arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)
     arrays_out = ", ".join(f'{{"{name}", {len(s)}, {_rows(s)}, {_columns(s)}}}' for name, s in function.returns)
     tables = (
         f"static const sym_array {c_name}_in[] = {{{arrays_in}}};\n"
         f"static const sym_array {c_name}_out[] = {{{arrays_out}}};"
     )
-    return code, (tables, _row(function, c_name, len(inputs), work))
+    of_lanes = f"    {{sizeof(sym_number), SYM_OWN, {work}, {c_name}_lanes}}" if text.lanes else "    {0, 0, 0, NULL}"
+    return code, _Row(tables, _row(function, c_name, len(inputs), work), of_lanes)
 
 
 def _row(function: Function, c_name: str, n_in: int, work: int) -> str:
@@ -134,8 +155,17 @@ def _row(function: Function, c_name: str, n_in: int, work: int) -> str:
     )
 
 
-def _function_table(name: str, rows: Sequence[str]) -> str:
-    return f"static const sym_function {name}_functions[] = {{\n" + ",\n".join(rows) + "\n};"
+def _function_table(name: str, rows: Sequence[_Row]) -> str:
+    return f"static const sym_function {name}_functions[] = {{\n" + ",\n".join(row.row for row in rows) + "\n};"
+
+
+def _lane_table(name: str, rows: Sequence[_Row], vectors: Lanes | None) -> list[str]:
+    """Where the compiler has vectors."""
+    if vectors is None:
+        return []
+    table = f"static const sym_lanes {name}_lanes[] = {{\n" + ",\n".join(row.lanes for row in rows) + "\n};"
+    return ["#if SYM_LANES > 1", table, "#define SYM_LANE_TABLE(name) name##_lanes", "#else",
+            "#define SYM_LANE_TABLE(name) NULL", "#endif"]  # fmt: skip
 
 
 def _rows(shape: tuple[int, ...]) -> int:

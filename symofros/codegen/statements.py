@@ -76,12 +76,16 @@ class StatementWriter:
         self._nodes = nodes
         self._own = [node for node in nodes if node not in self._inlined]
         self._names: dict[int, str] = {}
-        self.lanes = False
+        self.lanes, self._suffix = False, ""
 
-    def in_lanes(self) -> StatementWriter:
-        """The same statements on vectors, one state a lane; numbers stay single, and so may given values."""
+    def in_lanes(self, single: bool = False) -> StatementWriter:
+        """The same statements on vectors, one state a lane; numbers are one for all lanes, and so may given values be.
+
+        Args:
+            single: Whether lanes hold floats.
+        """
         twin = copy(self)
-        twin.lanes = True
+        twin.lanes, twin._suffix = True, "f" if single else ""
         return twin
 
     def _choose_inlined(self, nodes: Sequence[int], stores: Sequence[Store]) -> set[int]:
@@ -234,6 +238,12 @@ class StatementWriter:
             return f"sym_set({text})"
         return f"SYM_WHOLE({text})" if self.lanes and abs(edge) in self.given else text
 
+    def store(self, store: Store) -> str:
+        """The statement that fills an output's entry."""
+        if self.lanes:
+            return f"SYM_PUT({store.array}, {store.index}, {self.whole(store.edge)});"
+        return f"{store.array}[{store.index}] = {self.whole(store.edge)};"
+
     def _operand(self, node: int, is_factor: bool = False, is_right: bool = False) -> str:
         """An operand's text, in parentheses where C would otherwise group or associate differently."""
         if node not in self._inlined:
@@ -247,10 +257,11 @@ class StatementWriter:
         node, is_negative = abs(edge), edge < 0
         number = self.graph.number(edge)
         if number is not None:
-            return repr(number)
+            return f"{number!r}{self._suffix}"
         slot = self.given.get(node) or self.graph.slot.get(node)
         if slot is not None:
-            text = f"{slot.group}[{slot.index}]"
+            in_columns = self.lanes and node not in self.given
+            text = f"SYM_AT({slot.group}, {slot.index})" if in_columns else f"{slot.group}[{slot.index}]"
         else:
             text = f"({self.operation(node)})" if node in self._inlined else self.name(node)
             is_negative ^= node in self._home and self._home[node].nodes[node][1]

@@ -7,7 +7,16 @@ from string import Template
 
 from symofros.codegen.statements import WIDEST, Statement, StatementWriter
 from symofros.codegen.templates import template
-from symofros.expr.trigonometry import COSINE, FAR, HALF_PI, ROUNDER, SINE, TWO_BY_PI
+from symofros.expr.trigonometry import (
+    COSINE,
+    COSINE_SINGLE,
+    FAR,
+    HALF_PI,
+    ROUNDER,
+    SINE,
+    SINE_SINGLE,
+    TWO_BY_PI,
+)
 
 # A block of angles is padded to one of these.
 WIDTHS = (1, 2, 4, WIDEST)
@@ -83,6 +92,21 @@ def routines(code: Iterable[str], lanes: bool = False) -> list[str]:
     return parts
 
 
+def of_lanes(single: bool) -> str:
+    """The routine for angles that are vectors already.
+
+    Args:
+        single: Whether of floats.
+    """
+    if not single:
+        return template("sincos_double.c.in") + template("sincos_lanes.c.in")
+    near = Template(template("sincos_single.c.in")).substitute(
+        two_by_pi=repr(TWO_BY_PI), rounder=repr(ROUNDER), half_pi_0=repr(HALF_PI[0]), half_pi_1=repr(HALF_PI[1]),
+        sine=_polynomial(SINE_SINGLE, "f"), cosine=_polynomial(COSINE_SINGLE, "f"),
+    )  # fmt: skip
+    return near + template("sincos_lanes.c.in")
+
+
 def _near(name: str, real: str = "double", word: str = "uint64_t", to_word: str = "sym_word",
          to_real: str = "sym_real") -> str:  # fmt: skip
     """The routine for angles up to FAR, on numbers or on vectors.
@@ -101,10 +125,9 @@ def _near(name: str, real: str = "double", word: str = "uint64_t", to_word: str 
     )  # fmt: skip
 
 
-def _polynomial(coefficients: tuple[float, ...]) -> str:
+def _polynomial(coefficients: tuple[float, ...], suffix: str = "") -> str:
     """c0 + z * (c1 + ... + z * cn)."""
-    text = repr(coefficients[-1])
+    text = f"{coefficients[-1]!r}{suffix}"
     for coefficient in coefficients[-2::-1]:
-        inner = text if text[0] in "-0123456789" and " " not in text else f"({text})"
-        text = f"{coefficient!r} + z * {inner}"
+        text = f"{coefficient!r}{suffix} + z * {text if ' ' not in text else f'({text})'}"
     return text

@@ -21,6 +21,8 @@ from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.expr.expression import Expression
 from symofros.expr.ops import FUNCTIONS
 
+Token = tuple[str, str, int]
+
 MAX_LENGTH = 10_000
 MAX_DEPTH = 100
 
@@ -68,12 +70,12 @@ class ExpressionError(SymofrosError, ValueError):
 @dataclass
 class _Reader:
     text: str
-    tokens: list[tuple[str, str, int]]
+    tokens: list[Token]
     at: int = 0
     depth: int = 0
 
     @property
-    def token(self) -> tuple[str, str, int]:
+    def token(self) -> Token:
         return self.tokens[self.at]
 
     def fail(self, reason: str, remedy: str = "") -> ExpressionError:
@@ -161,18 +163,15 @@ class _Reader:
         return Expression(name, tuple(args))
 
 
-def parse(text: str) -> Expression:
-    """Read a formula.
-
-    Args:
-        text: Such as "L1/2 + 0.1*cos(q1)".
+def tokenize(text: str) -> list[Token]:
+    """The tokens of a formula: kind ("number", "name", "sign" and at last "end"), text, position.
 
     Raises:
-        ExpressionError: Anything outside the grammar, too long, or too deep.
+        ExpressionError: Too long, or something that is not a token.
     """
     if len(text) > MAX_LENGTH:
         raise ExpressionError(text, f"longer than {MAX_LENGTH} characters", MAX_LENGTH, "split it with parameters")
-    tokens: list[tuple[str, str, int]] = []
+    tokens: list[Token] = []
     at, end = 0, len(text.rstrip())
     while at < end:
         match = _TOKEN.match(text, at)
@@ -188,7 +187,19 @@ def parse(text: str) -> Expression:
         tokens.append((kind, found, start))
         at = match.end()
     tokens.append(("end", "", end))
-    reader = _Reader(text, tokens)
+    return tokens
+
+
+def parse(text: str) -> Expression:
+    """Read a formula.
+
+    Args:
+        text: Such as "L1/2 + 0.1*cos(q1)".
+
+    Raises:
+        ExpressionError: Anything outside the grammar, too long, or too deep.
+    """
+    reader = _Reader(text, tokenize(text))
     expression = reader.sum()
     if reader.token[0] != "end":
         raise reader.fail(f"'{reader.token[1]}' unexpected", _PRODUCTS)

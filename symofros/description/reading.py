@@ -58,6 +58,16 @@ def read_bytes(path: Path, limit: int) -> bytes:
         raise DescriptionError(
             Problem(f"{str(path)!r} can't be read", reason, "a description is a file", "check the path")
         ) from None
+    refuse_size(path, data, limit)
+    return data
+
+
+def refuse_size(path: Path, data: bytes, limit: int) -> None:
+    """Refuse what is too long.
+
+    Raises:
+        DescriptionError: More bytes than the limit.
+    """
     if len(data) > limit:
         raise DescriptionError(
             Problem(
@@ -66,4 +76,3 @@ def read_bytes(path: Path, limit: int) -> bytes:
                 "check that it is the file you meant",
             )
         )  # fmt: skip
-    return data

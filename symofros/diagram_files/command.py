@@ -91,10 +91,10 @@ def write_files(run: DiagramRun, wishes: Wishes) -> list[str]:
     return list(map(str, files))
 
 
-def tell_run(run: DiagramRun, files: list[str], speed: float, as_json: bool, out: Console) -> None:
+def tell_run(run: DiagramRun, files: list[str], as_json: bool, out: Console) -> None:
     """Outcome, cost, jitter, what was kept, last values."""
     cost, outcome = run.cost, run.outcome
-    jitter = jitter_of(cost, speed or 1.0) if cost.late.size else None
+    jitter = jitter_of(cost) if cost.late.size else None
     counts = {f"{block}.{name}": float(value) for block, found in run.kept.items() if "t" not in found
               for name, value in found.items()}  # fmt: skip
     if as_json:

@@ -30,10 +30,10 @@ class Entries:
         if len(self.problems) < MAX_PROBLEMS:
             self.problems.append(Problem(what, f"{found}"[:80], rule, remedy, self.where(node)))
 
-    def take(self, node: Node, problems: Sequence[Problem]) -> None:
-        """Note faults that others found, at a node where they have no place."""
+    def take(self, node: Node, problems: Sequence[Problem], key: bool = False) -> None:
+        """Note faults that others found, at a node, or its key, where they have no place."""
         for one in problems[: max(0, MAX_PROBLEMS - len(self.problems))]:
-            where = one.where or self.where(node)
+            where = one.where or self.where(node, key)
             self.problems.append(Problem(one.what, one.found, one.rule, one.remedy, where))
 
     def mapping(self, node: Node, what: str, known: Collection[str] = ()) -> dict[str, Node]:

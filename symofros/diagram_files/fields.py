@@ -14,7 +14,7 @@ from symofros.description.native.yaml_nodes import Node
 
 MISSING = dataclasses.MISSING
 # What a field of any type may be: numbers of any shape, texts, true and false.
-_ANY = "numbers, lists of numbers, texts"
+_ANY = "numbers, lists of them, texts, or a mapping to such"
 
 
 class Misfit(Exception):
@@ -70,7 +70,7 @@ def read(kind: Any, node: Node) -> Any:
     """
     origin, arguments, value = get_origin(kind), get_args(kind), node.value
     if kind is Any or _is_array(kind):
-        return _plain(node)
+        return _any(node)
     if origin is Literal:
         if isinstance(value, (dict, list)) or value not in arguments:
             raise Misfit(node, words_for(kind))
@@ -98,6 +98,13 @@ def _scalar(kind: Any, node: Node) -> Any:
     if kind in (bool, str, NoneType) and isinstance(value, kind):
         return value
     raise Misfit(node, words_for(kind))
+
+
+def _any(node: Node) -> Any:
+    """A value of any type; a mapping holds no others."""
+    if isinstance(node.value, dict):
+        return {key: _plain(item) for key, item in node.value.items()}
+    return _plain(node)
 
 
 def _plain(node: Node) -> Any:

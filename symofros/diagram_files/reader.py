@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -14,7 +15,7 @@ from symofros.description.system import System
 from symofros.diagram_files.entries import Entries
 from symofros.diagram_files.fields import Misfit, read, required, types_of
 from symofros.diagram_files.paths import DIAGRAMS, MODELS, refused
-from symofros.diagram_files.registry import kinds
+from symofros.diagram_files.registry import INPUTS, KIND, entry_of, kinds
 from symofros.diagram_files.run_settings import read_settings
 from symofros.diagrams.block import Block, ModelFile
 from symofros.diagrams.diagram import Diagram
@@ -32,6 +33,8 @@ SECTIONS = (HEAD, "name", "models", "simulation", "blocks", "parts", "inlets", "
 MODEL = ("file", "functions", "floating_base", "start", "parameters")
 PART = ("file", "diagram", "models", "inputs")
 COMMON = ("kind", "period", "offset", "inputs")
+
+_ARGUMENTS = frozenset(inspect.signature(Diagram.include).parameters) - {"inputs"}
 
 
 def load_diagram(path: str | os.PathLike[str], *, blocks: Iterable[type[Block]] = (), network: bool = False) -> Diagram:
@@ -203,31 +206,44 @@ class _Reader(Entries):
         self, what: str, kind: str, owner: type[Block], name: str, node: Node, entries: Mapping[str, Node]
     ) -> Block | None:
         """The block, if its fields are of their types and all there."""
+        names = {entry_of(name): name for name in types_of(owner) if name != "name"}
         types = types_of(owner)
-        known = [*COMMON, *owner.form()]
+        known = list(dict.fromkeys([*COMMON, *names]))
         before = len(self.problems)
         values: dict[str, Any] = {}
         for key, item in self.mapping(node, f"{what} ({kind})", known).items():
-            if key in ("kind", "inputs"):
+            if key in (KIND, INPUTS):
                 continue
             try:
-                values[key] = read(types[key], item)
+                value = read(types[names[key]], item)
+                values[names[key]] = self.inside(value, item) if names[key] in owner.paths else value
             except Misfit as error:
                 self.fault(error.node, f"{what}: {key} does not fit", error.node.plain(), error.rule,
                            f"see the fields of {kind}")  # fmt: skip
             except (SymofrosError, ValueError, TypeError) as error:
                 self.fault(item, f"{what}: {key} does not fit", f"{error}", f"as {kind} takes it", "mend it")
-        for key in sorted(required(owner) - {"name"} - entries.keys()):
+        for key in sorted({entry_of(name) for name in required(owner) - {"name"}} - entries.keys()):
             self.missing(node, what, key, entries, f"{kind} needs {key}")
         if len(self.problems) > before:
             return None
         try:
             return owner(name=name, **values)
         except DescriptionError as error:
-            self.take(node, error.problems)
+            self.take(node, error.problems, key=True)
         except (SymofrosError, ValueError, TypeError) as error:
-            self.fault(node, f"{what} ({kind}) can't be made", f"{error}", "its fields fit each other", "mend them")
+            problem = Problem(
+                f"{what} ({kind}) can't be made", f"{error}"[:200], "its fields fit each other", "mend them"
+            )
+            self.take(node, [problem], key=True)
         return None
+
+    def inside(self, value: Any, node: Node) -> Any:
+        """The whole path of a file that a block names; nothing is read from elsewhere than the diagram's folder."""
+        if not isinstance(value, str) or not value:
+            return value
+        problem = refused(value, self.base, self.shared.folder)
+        self.take(node, [problem] if problem else [])
+        return str((self.base / value).resolve()) if not problem else value
 
     def wire(self, found: Diagram, block: str, port: str, node: Node) -> None:
         """An input and its source."""
@@ -261,6 +277,10 @@ class _Reader(Entries):
         if len(found.blocks) + len(inner.blocks) > MAX_BLOCKS:
             self.fault(node, "too many blocks", f"more than {MAX_BLOCKS}", f"at most {MAX_BLOCKS}", "drop parts")
             return
+        for reserved in inputs.keys() & _ARGUMENTS:
+            self.fault(entries["inputs"], f"{what}: no inlet can be called '{reserved}'", f"'{reserved}'",
+                       "the name is one of Diagram.include's own", "rename the inlet")  # fmt: skip
+            del inputs[reserved]
         try:
             found.include(name, inner, models, **inputs)
         except DescriptionError as error:

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import symofros.blocks
 from symofros.diagrams.block import Block
 
 _WORD = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
 
-Kinds = Mapping[str, type[Block]]
+# Entries of every block; a field of that name is stated with an underscore behind it.
+KIND, INPUTS = "kind", "inputs"
 
 
 def kind_of(block: type[Block]) -> str:
     """What a class of blocks is called in files: JointPD is joint_pd, View3D view3d."""
     return _WORD.sub("_", block.__name__).lower()
+
+
+def entry_of(name: str) -> str:
+    """The entry of a file that states a field: its name, or kind_ and inputs_, where the file needs these itself."""
+    return f"{name}_" if name in (KIND, INPUTS) else name
 
 
 def kinds(extra: Iterable[type[Block]] = ()) -> dict[str, type[Block]]:

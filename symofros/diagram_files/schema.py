@@ -12,7 +12,7 @@ from typing import Any, Literal, Union, get_args, get_origin
 
 from symofros.diagram_files.fields import required, types_of, words_for
 from symofros.diagram_files.reader import HEAD, VERSION
-from symofros.diagram_files.registry import kinds
+from symofros.diagram_files.registry import entry_of, kinds
 from symofros.diagram_files.run_settings import SETTINGS
 from symofros.diagrams.block import Block
 from symofros.simulation.methods import METHODS
@@ -75,8 +75,8 @@ def json_schema() -> Plain:
 
 def _block(kind: str, owner: type[Block]) -> Plain:
     properties: Plain = {"kind": {"const": kind}}
-    properties |= {name: of_type(item) for name, item in types_of(owner).items() if name != "name"}
-    found = _object(properties | {"inputs": _TEXTS}, ["kind", *sorted(required(owner) - {"name"})])
+    properties |= {entry_of(name): of_type(item) for name, item in types_of(owner).items() if name != "name"}
+    found = _object(properties | {"inputs": _TEXTS}, ["kind", *sorted(map(entry_of, required(owner) - {"name"}))])
     return {"description": (inspect.getdoc(owner) or "").split("\n")[0], **found}
 
 

@@ -17,7 +17,7 @@ from symofros.description.native.yaml_writer import LINE_WIDTH
 from symofros.diagram_files.fields import MISSING, same, write
 from symofros.diagram_files.paths import DIAGRAMS
 from symofros.diagram_files.reader import HEAD, VERSION, load_diagram
-from symofros.diagram_files.registry import kind_of
+from symofros.diagram_files.registry import entry_of, kind_of
 from symofros.diagrams.block import Block, ModelSetup
 from symofros.diagrams.diagram import INSIDE, Diagram, Part
 from symofros.diagrams.settings import RunSettings
@@ -84,7 +84,7 @@ class _Writer:
             "models": {name: self.model(diagram.name, name, setup) for name, setup in diagram.models.items()
                        if name not in replayed.models},
             "simulation": _settings(diagram.simulation),
-            "blocks": {block.name: _block(diagram, block) for block in own},
+            "blocks": {block.name: _block(diagram, block, self.folder) for block in own},
             "parts": parts,
             "wires": loose,
             "inlets": {name: list(targets) for name, targets in diagram.inlets.items()},
@@ -175,7 +175,19 @@ def _alike(a: Block, b: Block | None) -> bool:
     return type(a) is type(b) and all(same(getattr(a, f.name), getattr(b, f.name)) for f in fields(a) if f.init)
 
 
-def _block(diagram: Diagram, block: Block) -> Plain:
+def _path(value: Any, folder: Path) -> str:
+    """A file that a block names, from the diagram's folder.
+
+    Raises:
+        TypeError: It lies elsewhere.
+    """
+    path = Path(str(value)).resolve()
+    if not path.is_relative_to(folder):
+        raise TypeError(f"'{value}' lies outside the diagram's folder")
+    return path.relative_to(folder).as_posix()
+
+
+def _block(diagram: Diagram, block: Block, folder: Path) -> Plain:
     entries: Plain = {"kind": kind_of(type(block))}
     for item in fields(block):
         value = getattr(block, item.name)
@@ -186,11 +198,12 @@ def _block(diagram: Diagram, block: Block) -> Plain:
         if item.name == "name" or not item.init or (has_default and same(value, default)):
             continue
         try:
-            entries[item.name] = write(value)
+            entries[entry_of(item.name)] = _path(value, folder) if item.name in block.paths and value else write(value)
         except TypeError as error:
             raise DescriptionError(Problem(
                 f"diagram '{diagram.name}': block '{block.name}' can't be written: {item.name}", f"{error}",
-                "files state numbers, texts and lists of them", "keep this diagram in Python",
+                "files state numbers, texts, lists of them, and files of their folder",
+                "copy such a file there, or keep this diagram in Python",
             )) from None  # fmt: skip
     inputs = {port: source for (name, port), source in diagram.wires.items() if name == block.name}
     return entries | ({"inputs": inputs} if inputs else {})

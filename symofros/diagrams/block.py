@@ -190,6 +190,8 @@ class Block:
     tunable: ClassVar[tuple[str, ...]] = ()
     # Whether the block is a function of Python's, called from the loop at its samples.
     is_opaque: ClassVar[bool] = False
+    # Fields of text that name files: in a diagram's file relative to it, and inside its folder.
+    paths: ClassVar[tuple[str, ...]] = ("file",)
 
     def ports(self, known: Known) -> Ports:
         """Its ports; asked again while shapes of inputs become known."""

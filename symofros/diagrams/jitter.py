@@ -24,7 +24,7 @@ class Jitter:
         maximum: The worst.
         instants: How many there were.
         missed: How many began when the next was due already, or later.
-        spacing: Shortest time between two instants, by the motion's time.
+        spacing: Shortest time between two instants.
     """
 
     minimum: float
@@ -43,12 +43,8 @@ class Jitter:
                 f" microseconds; {self.missed} missed the next instant, {1e3 * self.spacing:g} ms later")  # fmt: skip
 
 
-def jitter_of(cost: Cost, speed: float = 1.0) -> Jitter:
+def jitter_of(cost: Cost) -> Jitter:
     """The jitter of a run that kept pace.
-
-    Args:
-        cost: Of the run.
-        speed: Seconds of motion a second.
 
     Raises:
         SymofrosError: The run did not keep pace.
@@ -57,7 +53,7 @@ def jitter_of(cost: Cost, speed: float = 1.0) -> Jitter:
     if not late.size:
         raise SymofrosError(str(Problem("jitter: no instants were timed", "0", "a run in real time times its instants",
                                         "run with realtime=True")))  # fmt: skip
-    missed = int(np.sum(late >= cost.spacing / speed))
+    missed = int(np.sum(late >= cost.spacing))
     low, middle, high, worst = (float(value) for value in np.quantile(late, [0.0, 0.5, 0.999, 1.0]))
     return Jitter(low, middle, high, worst, len(late), missed, cost.spacing)
 

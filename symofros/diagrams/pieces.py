@@ -96,6 +96,10 @@ def piece_of(wired: Wired, name: str) -> Piece:
     g = Graph()
     states, memory = _arrays(block.states(known)), _arrays(block.memory(known))
     parameters = block.parameters()
+    for key, value in parameters.items():
+        if np.any(np.isnan(value)):  # Of None, too.
+            raise DescriptionError(Problem(f"block '{name}': {key} is not a number", f"{getattr(block, key)}"[:80],
+                                           "a parameter is one number or an array of them", "state it"))  # fmt: skip
     mechanism = block.mechanism()
     nq = nv = 0
     q0, v0 = np.zeros(0), np.zeros(0)

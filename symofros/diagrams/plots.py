@@ -43,6 +43,9 @@ def draw(run: DiagramRun, plots: Sequence[Plot], figure: Any = None) -> Any:
     Raises:
         SymofrosError: Matplotlib is not installed, or there is no such signal.
     """
+    if not plots:
+        raise SymofrosError(str(Problem("plot: there is nothing to draw", "no signals",
+                                        "a plot shows outputs of blocks", "add a block with an output")))  # fmt: skip
     if figure is None:
         figure = figure_class()(figsize=(8.0, 1.0 + 2.2 * len(plots)), layout="constrained")
     run.compute([run.compiled.resolved.wired.output(split(text)[0]) for plot in plots for text in plot.signals])

@@ -40,7 +40,7 @@ class Cost:
         seconds: On the clock, in the loop.
         worked: Of the processor, by the calling thread [s].
         late: How late each instant began (n) [s]; empty unless pace was kept.
-        spacing: The shortest time between two instants [s].
+        spacing: The shortest time between two instants, on the clock where pace was kept [s].
     """
 
     steps: int

@@ -4,35 +4,30 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.block import Block
-from symofros.diagrams.compiled import CompiledDiagram, Resolved, fuser
-from symofros.diagrams.layout import Place
+from symofros.diagrams.compiled import CompiledDiagram
 from symofros.diagrams.loop import RECORD, Loop, Stage
+from symofros.diagrams.opaque import Opaque, begun, kept_by
+from symofros.diagrams.parts import place_parts, start, watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import Cost, Crossed, DiagramRun
-from symofros.diagrams.wiring import surroundings
-from symofros.errors import AssemblyError, Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.diagrams.values import parameter_values, record_interval
+from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array
 from symofros.runtime.library import CompiledKernel
 from symofros.runtime.model import Model
 from symofros.simulation import stepper as native
-from symofros.simulation.events import Event
-from symofros.simulation.inputs import InputPlan
 from symofros.simulation.outcome import Outcome
 from symofros.simulation.progress import bar
-from symofros.simulation.settings import CLOSED, Settings, Stabilisation
-from symofros.simulation.stepper import Stepper
+from symofros.simulation.settings import Settings, Stabilisation
 
 # Seconds that C may run before Python looks up, for progress and Ctrl-C.
 _SPELL = 0.05
-# Recorded by default at about so many times.
-_RECORDS = 2000
 
 
 def run_compiled(
@@ -74,80 +69,59 @@ def run_compiled(
         SymofrosError: The settings contradict each other, or name what the diagram lacks.
         AssemblyError: The first state does not meet the constraints.
     """
-    resolved = compiled.resolved
-    layout = resolved.layout
+    resolved, name = compiled.resolved, compiled.resolved.wired.name
     if compiled.toolchain is None:
-        raise SymofrosError(
-            str(
-                Problem(
-                    f"diagram '{resolved.wired.name}': the loop is C",
-                    "interpreted functions",
-                    "run_compiled calls compiled functions",
-                    "use interpret",
-                )
-            )  # fmt: skip
-        )
+        raise SymofrosError(str(Problem(f"diagram '{name}': the loop is C", "interpreted functions",
+                                        "a compiled run calls compiled functions", "use interpret")))  # fmt: skip
     par = parameter_values(resolved, parameters or {})
     interval = record_interval(record, t0, t_end, dt)
-    plan = schedule([*resolved.rates(), (RECORD, interval, 0.0)], resolved.wired.name)
-    u0 = np.array(layout.u0, dtype=np.float64)
-    steppers = []
-    for part, model in zip(layout.parts, compiled.parts, strict=True):
-        settings = Settings.of(model, method, dt, t0, t_end, rtol, atol, None, math.inf, None, 1, stabilisation,
-                               gains)  # fmt: skip
-        if settings.method.kind not in ("explicit", "semi_implicit"):
-            raise SymofrosError(
-                str(
-                    Problem(
-                        f"diagram: method '{method}'",
-                        "an implicit method",
-                        "diagrams step by explicit methods",
-                        "use rk4, dopri5 or dop853",
-                    )
-                )  # fmt: skip
-            )
-        watched = resolved_events(compiled) if part.blocks else []
-        stepper = Stepper(model, settings.method, InputPlan(u0.copy(), list(layout.signals)), watched, par)
-        settings.apply(stepper, t0, t_end, 0.0)
-        stepper.run.every = 0
-        q, v = np.array(layout.q0[part.q]), np.array(layout.v0[part.v])
-        if model.nc and settings.stabilisation != "baumgarte":
-            q, v = _close(model, resolved.wired.name, t0, q, v, u0, par)
-        steppers.append((stepper, q, v))
-    names = list(dict.fromkeys(name for due in resolved.schedule.sets for name in _opaque(compiled, due)))
-    blocks = [resolved.wired.blocks[name] for name in names]
-    places = [[layout.held[name, port.name] for port in resolved.wired.ports[name].outputs] for name in names]
+    plan = schedule([*resolved.rates(), (RECORD, interval, 0.0)], name)
+
+    def settings_of(model: Model) -> Settings:
+        return Settings.of(
+            model, method, dt, t0, t_end, rtol, atol, None, math.inf, None, 1, stabilisation, gains
+        )  # fmt: skip
+
+    parts, opaque = place_parts(compiled, settings_of, t0, t_end, par), Opaque(resolved)
     loop = Loop(
-        layout, [stepper for stepper, _, _ in steppers], plan, _stages(compiled, plan, names),
-        [Stage(_kernel(compiled, f"crossed_{i}")) for i in range(len(_watched(compiled)))], par, u0,
-        lambda which, t, heard: _called(compiled, names[which], t, heard), places,
-        [_hears(compiled, name) for name in names], any(layout.condition_names),
+        resolved.layout, [part.stepper for part in parts], plan, _stages(compiled, plan, opaque),
+        [Stage(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(compiled)))], par,
+        np.array(resolved.layout.u0, dtype=np.float64), opaque.call, opaque.places(), opaque.lengths(),
+        any(resolved.layout.condition_names),
     )  # fmt: skip
-    opened = []
     try:
-        for block in blocks:
-            block.learn(surroundings(resolved.wired, block.name))
-            block.begin()
-            opened.append(block)
-        for stepper, q, v in steppers:
-            status = stepper.start(q, v, 1)
-            if status < 0:
-                raise SymofrosError(f"diagram '{resolved.wired.name}': the first accelerations are not finite")
-        run = _drive(compiled, loop, plan, interval, t0, t_end, par, float(realtime), threads, progress)
-        return replace(run, kept=kept_by(opened))
+        with begun(opaque.blocks, resolved.wired) as blocks:
+            start(parts, name)
+            run = _drive(compiled, loop, plan, t0, t_end, par, float(realtime), threads, progress)
+            return replace(run, kept=kept_by(blocks))
     finally:
         loop.close()
-        for block in opened:
-            block.end()
 
 
-def kept_by(blocks: Iterable[Block]) -> dict[str, dict[str, Array]]:
-    """What each block kept of a run, those left out that keep nothing."""
-    return {block.name: dict(found) for block in blocks if (found := block.kept())}
+def _kernel(compiled: CompiledDiagram, name: str) -> CompiledKernel:
+    kernel = compiled.instants.kernels[name, ""]
+    assert isinstance(kernel, CompiledKernel)
+    return kernel
+
+
+def _stages(compiled: CompiledDiagram, plan: Schedule, opaque: Opaque) -> list[list[Stage]]:
+    """For each set of the plan: blocks of Python's in order, then all others at once."""
+    known = {due: i for i, due in enumerate(compiled.resolved.schedule.sets)}
+    found: list[list[Stage]] = []
+    for due in plan.sets:
+        own = due - {RECORD}
+        if not own:
+            found.append([])
+            continue
+        i = known[own]
+        stages = [Stage(_kernel(compiled, f"heard_{i}_{j}"), opaque.names.index(name))
+                  for j, name in enumerate(opaque.due(own))]  # fmt: skip
+        found.append([*stages, Stage(_kernel(compiled, f"due_{i}"))])
+    return found
 
 
 def _drive(
-    compiled: CompiledDiagram, loop: Loop, plan: Schedule, interval: float, t0: float, t_end: float, par: Array,
+    compiled: CompiledDiagram, loop: Loop, plan: Schedule, t0: float, t_end: float, par: Array,
     realtime: float, threads: int, progress: bool,
 ) -> DiagramRun:  # fmt: skip
     span = float(plan.base) * plan.cycle
@@ -176,140 +150,12 @@ def _drive(
         interrupted = True
     t, q, v, u = (np.concatenate(columns) for columns in zip(*portions, strict=True))
     outcome = _outcome(loop, status, interrupted, t_end)
-    watched = _watched(compiled)
-    crossings = tuple(Crossed(*watched[which], when) for when, which in met)
+    looked_for = watched(compiled)
+    crossings = tuple(Crossed(*looked_for[which], when) for when, which in met)
     d = loop.d
-    cost = Cost(int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, loop.late, plan.spacing)
+    cost = Cost(int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, loop.late,
+                plan.spacing / (realtime or 1.0))  # fmt: skip
     return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost)
-
-
-def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
-    """The run-time parameters, some of them given by name.
-
-    Raises:
-        UnknownNameError: There is no such parameter.
-        SymofrosError: A value does not fit.
-    """
-    layout = resolved.layout
-    par = np.array(layout.par, dtype=np.float64)
-    fields = {f"{block}.{name}": place for (block, name), place in layout.parameters.items() if block}
-    for name, value in given.items():
-        array = np.asarray(value, dtype=np.float64)
-        if name in fields:
-            place = fields[name]
-        elif name in layout.par_names:
-            place = Place(layout.par_names.index(name), ())
-        else:
-            known = [*fields, *layout.par_names]
-            raise UnknownNameError(str(Problem(f"diagram: no run-time parameter '{name}'", f"'{name}'",
-                                               f"known: {', '.join(known[:12])}", did_you_mean(name, known))
-                                       ))  # fmt: skip
-        if array.shape not in (place.shape, ()) or not np.all(np.isfinite(array)):
-            raise SymofrosError(str(Problem(f"diagram: parameter '{name}' does not fit", f"{array.shape}",
-                                            f"finite, of shape {place.shape}", "give it that shape")))  # fmt: skip
-        par[place.slice] = np.broadcast_to(array, place.shape).reshape(-1)
-    return par
-
-
-def record_interval(record: float | None, t0: float, t_end: float, dt: float | None) -> float:
-    """Between records: what was asked for, or a multiple of dt that gives about _RECORDS of them.
-
-    Raises:
-        SymofrosError: It is not positive, or there is no span of time.
-    """
-    if not (math.isfinite(t0) and math.isfinite(t_end) and t_end > t0):
-        raise SymofrosError(str(Problem("diagram: no span of time", f"from {t0} to {t_end}", "t_end after t0",
-                                        "set t_end")))  # fmt: skip
-    if record is None:
-        step = dt or 1e-3
-        return step * max(1, math.ceil((t_end - t0) / step / _RECORDS))
-    if not (math.isfinite(record) and record > 0.0):
-        raise SymofrosError(str(Problem("diagram: no interval of recording", f"{record}", "above zero [s]",
-                                        "leave it out")))  # fmt: skip
-    return float(record)
-
-
-def resolved_events(compiled: CompiledDiagram) -> list[Event]:
-    """What the stepper looks for: crossings, each of which stops the motion."""
-    pieces = compiled.resolved.pieces
-    return [
-        Event(f"{name}.{which}", pieces[name].crossings[which].direction, True, f"{name}.{which}")
-        for name, which in _watched(compiled)
-    ]
-
-
-def _watched(compiled: CompiledDiagram) -> list[tuple[str, str]]:
-    return [(name, which) for name, piece in compiled.resolved.pieces.items() for which in piece.crossings]
-
-
-def _close(model: Model, name: str, t0: float, q: Array, v: Array, u: Array, par: Array) -> tuple[Array, Array]:
-    """The nearest state on the constraints.
-
-    Raises:
-        AssemblyError: There is none near.
-    """
-    kernel = model.kernel("project")
-    given = {"q": q, "v": v, "u": u, "t": np.array([t0])}
-    inputs = [np.ascontiguousarray(given[group]).reshape(1, -1) for group, _ in kernel.signature.inputs]
-    q_on, v_on, residual, _ = kernel.run(1, kernel.prepare(par.reshape(1, -1)), inputs)
-    if not residual[0] <= CLOSED:
-        raise AssemblyError(str(Problem(
-            f"diagram '{name}': the first state does not close the loops", f"|phi| = {residual[0]:.3g}",
-            f"at most {CLOSED:g} after projection", "start nearer: see sf.assemble",
-        )))  # fmt: skip
-    return q_on[0], v_on[0]
-
-
-def _kernel(compiled: CompiledDiagram, name: str) -> CompiledKernel:
-    kernel = compiled.instants.kernels[name, ""]
-    assert isinstance(kernel, CompiledKernel)
-    return kernel
-
-
-def _opaque(compiled: CompiledDiagram, due: frozenset[str]) -> list[str]:
-    return fuser(compiled.resolved).opaque(due)
-
-
-def _stages(compiled: CompiledDiagram, plan: Schedule, names: list[str]) -> list[list[Stage]]:
-    """For each set of the plan: blocks of Python's in order, then all others at once."""
-    known = {due: i for i, due in enumerate(compiled.resolved.schedule.sets)}
-    found: list[list[Stage]] = []
-    for due in plan.sets:
-        own = due - {RECORD}
-        if not own:
-            found.append([])
-            continue
-        i = known[own]
-        stages = [Stage(_kernel(compiled, f"heard_{i}_{j}"), names.index(name))
-                  for j, name in enumerate(_opaque(compiled, own))]  # fmt: skip
-        found.append([*stages, Stage(_kernel(compiled, f"due_{i}"))])
-    return found
-
-
-def _hears(compiled: CompiledDiagram, name: str) -> int:
-    wired = compiled.resolved.wired
-    return sum(math.prod(port.shape or ()) for port in wired.ports[name].inputs if (name, port.name) in wired.sources)
-
-
-def _called(compiled: CompiledDiagram, name: str, t: float, heard: Array) -> Array:
-    """Call a block of Python's; its outputs one after the other."""
-    wired = compiled.resolved.wired
-    inputs, at = {}, 0
-    for port in wired.ports[name].inputs:
-        shape = port.shape or ()
-        if (name, port.name) in wired.sources:
-            inputs[port.name] = heard[at : at + math.prod(shape)].reshape(shape)
-            at += math.prod(shape)
-        else:
-            inputs[port.name] = np.broadcast_to(np.asarray(port.default, dtype=np.float64), shape)
-    found = wired.blocks[name].call(t, inputs)
-    outputs = []
-    for port in wired.ports[name].outputs:
-        value = np.asarray(found[port.name], dtype=np.float64)
-        if value.shape != (port.shape or ()):
-            raise SymofrosError(f"block '{name}' returned {port.name} of shape {value.shape}, not {port.shape}")
-        outputs.append(value.reshape(-1))
-    return np.concatenate(outputs) if outputs else np.zeros(0)
 
 
 def _outcome(loop: Loop, status: int, interrupted: bool, t_end: float) -> Outcome:

@@ -13,10 +13,11 @@ from symofros.diagrams.compiled import CompiledDiagram, Resolved, compile_diagra
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.interpret import Blocks, InterpretedRun, run_interpreted
 from symofros.diagrams.loop import RECORD
+from symofros.diagrams.opaque import begun, kept_by
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
-from symofros.diagrams.simulate import kept_by, parameter_values, record_interval, run_compiled
-from symofros.diagrams.wiring import surroundings
+from symofros.diagrams.simulate import run_compiled
+from symofros.diagrams.values import parameter_values, record_interval
 from symofros.errors import Problem, SymofrosError
 from symofros.options import Options
 from symofros.runtime.toolchain import find_toolchain
@@ -91,19 +92,11 @@ class Simulation:
         blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
         interval = record_interval(record, t0, t_end, dt)
         plan = schedule([*resolved.rates(), (RECORD, interval, 0.0)], resolved.wired.name)
-        opened = []
-        try:
-            for block in resolved.wired.blocks.values():
-                block.learn(surroundings(resolved.wired, block.name))
-                block.begin()
-                opened.append(block)
-            with bar(progress, t0, t_end) as show:
-                instants = list(_instants(plan, t0, t_end))
-                run = run_interpreted(blocks, instants, t_end, dt, METHODS[method].tableau, gains is None, show)
-                return replace(run, kept=kept_by(opened))
-        finally:
-            for block in opened:
-                block.end()
+        wired = resolved.wired
+        with begun(wired.blocks.values(), wired) as opened, bar(progress, t0, t_end) as show:
+            instants = list(_instants(plan, t0, t_end))
+            run = run_interpreted(blocks, instants, t_end, dt, METHODS[method].tableau, gains is None, show)
+            return replace(run, kept=kept_by(opened))
 
 
 def _end(diagram: Diagram, t_end: float | None) -> float:

@@ -246,8 +246,9 @@ def _output(
     if not port and len(there) == 1:
         return block, there[0]
     if port not in there:
+        fault = f"has no output '{port}'" if port else f"has {len(there)} outputs, and none is named"
         raise DescriptionError(Problem(
-            f"diagram '{name}': block '{block}' has no output '{port}'", f"source '{text}'",
+            f"diagram '{name}': block '{block}' {fault}", f"source '{text}'",
             f"outputs: {', '.join(there) or 'none'}", did_you_mean(port, there) or "name one of them",
         ))  # fmt: skip
     return block, port

@@ -32,6 +32,17 @@ class LinkMotion:
 
 
 @dataclass(frozen=True)
+class Acceleration:
+    """Of a link: alpha and a, or a part of them, in the link frame."""
+
+    alpha: Vec3
+    a: Vec3
+
+    def __add__(self, other: Acceleration) -> Acceleration:
+        return Acceleration(self.alpha + other.alpha, self.a + other.a)
+
+
+@dataclass(frozen=True)
 class Wrench:
     """Force and moment about a link's origin, in the link frame."""
 
@@ -50,17 +61,37 @@ def no_wrench(g: Graph) -> Wrench:
 def base_to_tip(motion: Motion, v_rate: Sequence[Edge], gravity: Vec3) -> list[LinkMotion]:
     """Velocity and acceleration of every link (eqs. 6-8)."""
     g = motion.g
-    still = Vec3(g)
-    base = LinkMotion(still, still, -gravity, Mat3(g, (ZERO,) * 9), (ZERO,) * 3)
+    base = _moving(Vec3(g), Vec3(g), -gravity)
     moving: list[LinkMotion] = []
     for link in motion.links:
         parent = base if link.parent == BASE else moving[link.parent]
-        moving.append(_across(g, link, parent, link.rates_given(v_rate)))
+        w, alpha, a = _across(g, link, parent, link.rates_given(v_rate))
+        alpha.named(f"alpha_WL_L[{link.name}]")
+        moving.append(_moving(w, alpha, a.named(f"a_WLo_L[{link.name}]")))
     return moving
 
 
-def _across(g: Graph, link: MovingLink, parent: LinkMotion, rates: Sequence[Edge]) -> LinkMotion:
-    """From the parent's motion to the link's."""
+def velocities(motion: Motion) -> tuple[list[LinkMotion], list[Acceleration]]:
+    """What speeds alone make of the motion.
+
+    Returns:
+        Each link with its velocity, as if it did not accelerate; and what its joint adds to the acceleration of its
+        parent (eqs. 7, 8) at v' = 0, or at the given rates of a prescribed motion.
+    """
+    g, still = motion.g, Vec3(motion.g)
+    base = _moving(still, still, still)
+    moving: list[LinkMotion] = []
+    added: list[Acceleration] = []
+    for link in motion.links:
+        parent = base if link.parent == BASE else moving[link.parent]
+        w, alpha, a = _across(g, link, parent, link.rates_given([ZERO] * motion.nv))
+        moving.append(_moving(w, still, still))
+        added.append(Acceleration(alpha, a))
+    return moving, added
+
+
+def _across(g: Graph, link: MovingLink, parent: LinkMotion, rates: Sequence[Edge]) -> tuple[Vec3, Vec3, Vec3]:
+    """From the parent's motion to the link's w, alpha, a."""
     w_AL, v_AL, w_rate, v_rel_rate = Vec3(g), Vec3(g), Vec3(g), Vec3(g)
     for column, speed, rate in zip(link.columns, link.speeds, rates, strict=True):
         w_AL, v_AL = w_AL + column.w.scaled(speed), v_AL + column.v.scaled(speed)
@@ -69,11 +100,12 @@ def _across(g: Graph, link: MovingLink, parent: LinkMotion, rates: Sequence[Edge
     w_WA = link.R_AL.apply_inverse(parent.w)
     w = (w_WA + w_AL).named(f"w_WL_L[{link.name}]")
     alpha = link.R_AL.apply_inverse(parent.alpha) + (w_rate + w_WA.cross(w_AL))
-    alpha.named(f"alpha_WL_L[{link.name}]")
     a = link.R_AL.apply_inverse(parent.a + parent.U.times(link.p_AL)) + (v_rel_rate + (w_WA + w).cross(v_AL))
-    a.named(f"a_WLo_L[{link.name}]")
-    U, ww = _relative_acceleration(w, alpha)
-    return LinkMotion(w, alpha, a, U, ww)
+    return w, alpha, a
+
+
+def _moving(w: Vec3, alpha: Vec3, a: Vec3) -> LinkMotion:
+    return LinkMotion(w, alpha, a, *_relative_acceleration(w, alpha))
 
 
 def _relative_acceleration(w: Vec3, alpha: Vec3) -> tuple[Mat3, tuple[Edge, Edge, Edge]]:

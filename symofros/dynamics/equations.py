@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 
 from symofros.dynamics.applied.forces import generalized_forces, stored_energy
+from symofros.dynamics.articulated import articulated_acceleration, is_local
 from symofros.dynamics.constraints import Constraints, Row
 from symofros.dynamics.derivatives import by_inputs
 from symofros.dynamics.energy import kinetic_energy, potential_energy
@@ -84,6 +86,29 @@ class Equations:
         """V' = M^-1 (Q - h)."""
         return self.factors.solve(self.net)
 
+    @property
+    def is_articulated(self) -> bool:
+        """Whether each joint concerns its link and its parent alone, rotors included."""
+        return all(is_local(self.motion, rotor) for rotor in self.rotors)
+
+    @cached_property
+    def articulated(self) -> list[Edge]:
+        """The same by articulated bodies.
+
+        Raises:
+            DescriptionError: As for `factors`; or not `is_articulated`.
+        """
+        if not self.is_articulated:
+            raise DescriptionError(
+                Problem(f"system '{self.tree.system.name}': forward dynamics by articulated bodies",
+                        "a rotor that is borne by another body than the parent of the joint that drives it",
+                        "a joint's speeds move its link, and rotors on its parent or on the base, alone",
+                        "choose Options(forward_dynamics='factors'), or 'auto'")
+            )  # fmt: skip
+        inertias, _ = link_inertias(self.motion, regrouped=False)
+        with self._refusing_singular():
+            return articulated_acceleration(self.motion, inertias, self.rotors, self.gravity, self.Q)
+
     @cached_property
     def factors(self) -> Factors:
         """Those of M.
@@ -91,10 +116,16 @@ class Equations:
         Raises:
             DescriptionError: A speed moves no mass whatever the state, and so has no acceleration.
         """
-        self.refuse_massless()
-        try:
+        with self._refusing_singular():
             return Factors(self.g, self.M)
+
+    @contextmanager
+    def _refusing_singular(self) -> Iterator[None]:
+        """In words, where the matter is that M is singular in every state."""
+        try:
+            yield
         except SingularMassMatrixError as error:
+            self.refuse_massless()
             name = self.tree.coordinates.v[error.speed]
             raise DescriptionError(
                 Problem(f"system '{self.tree.system.name}': speed '{name}' moves nothing that those after it do not"

@@ -1,7 +1,7 @@
 """Forward dynamics: M v' = Q - h by the factorisation M = L^T D L, which keeps the zeros between branches.
 
 Eliminating from the tips to the base fills nothing in: L has an entry where M has one (Featherstone 2005, "Efficient
-factorization of the joint-space inertia matrix for branched kinematic trees"; docs/theory/rigid.md, section 7).
+factorization of the joint-space inertia matrix for branched kinematic trees"; docs/theory/rigid.md, section 7.1).
 """
 
 from __future__ import annotations

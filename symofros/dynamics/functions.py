@@ -117,7 +117,6 @@ _FUNCTIONS: dict[str, Callable[[Equations], _Parts]] = {
     "bias": lambda e: (("q", "v"), (_vector("h", e.h),)),
     "generalized_force": lambda e: (("q", "v", "u", "t"), (_vector("Q", e.Q),)),
     "dynamics": _dynamics,
-    "forward_dynamics": lambda e: (("q", "v", "u", "t"), (_vector("a", e.acceleration),)),
     "inverse_dynamics": lambda e: (("q", "v", "a", "t"), (_vector("tau", e.required),)),
     "kinetic_energy": lambda e: (("q", "v"), (Output("T", (), (e.T,)),)),
     "potential_energy": lambda e: (("q", "t"), (Output("V", (), (e.V,)),)),
@@ -160,14 +159,14 @@ _FRAME_FUNCTIONS: dict[str, Callable[[Equations, NamedFrame], _Parts]] = {
 }
 
 
-def _function(e: Equations, request: Request, form: str) -> Function:
+def _function(e: Equations, request: Request, form: str, method: str) -> Function:
     """One function's inputs and outputs.
 
     Raises:
         KeyError: There is no such function or frame.
     """
-    if request.name == "forward_dynamics" and e.tree.system.constraints:
-        return _constrained(e, form)
+    if request.name == "forward_dynamics":
+        return _constrained(e, form) if e.tree.system.constraints else _free(e, method)
     if request.name == "project":
         return _project(e)
     if request.name in _SLOPES:
@@ -178,6 +177,12 @@ def _function(e: Equations, request: Request, form: str) -> Function:
         inputs, outputs = _FUNCTIONS[request.name](e)
     more = tuple(name for name in e.always if name not in inputs)
     return Function(request.name, request.frame, (*inputs, *more), outputs)
+
+
+def _free(e: Equations, method: str) -> Function:
+    """Forward dynamics of a tree."""
+    a = e.articulated if method == "articulated" else e.acceleration
+    return Function("forward_dynamics", "", ("q", "v", "u", "t"), (_vector("a", a),))
 
 
 def _constrained(e: Equations, form: str) -> Function:
@@ -241,19 +246,29 @@ def _project(e: Equations) -> Function:
     return Function("project", "", ("q", "v", "u", "t"), outputs, Solver("project", solved, (move,)))
 
 
-def write_program(tree: SpanningTree, requests: Sequence[Request], form: str = "multipliers") -> Program:
+def methods(tree: SpanningTree) -> tuple[str, ...]:
+    """The ways to form forward dynamics, the most accurate first; under constraints there is one."""
+    if tree.system.constraints:
+        return ("factors",)
+    return ("articulated", "factors") if Equations(tree).is_articulated else ("factors",)
+
+
+def write_program(
+    tree: SpanningTree, requests: Sequence[Request], form: str = "multipliers", method: str = "factors"
+) -> Program:
     """Form the requested functions of a tree.
 
     Args:
         tree: The mechanism.
         requests: What to form, in order.
         form: Of forward dynamics under constraints: "multipliers" or "null_space".
+        method: Of forward dynamics of a tree: "articulated" or "factors".
 
     Returns:
         A program that reads the groups q, v, a, u, par, t.
     """
     equations = Equations(tree)
-    functions = tuple(_function(equations, request, form) for request in requests)
+    functions = tuple(_function(equations, request, form, method) for request in requests)
     names = tree.coordinates
     sizes = {
         "q": len(names.q), "v": len(names.v), "a": len(names.v), "u": len(names.u), "par": len(names.par), "t": 1,

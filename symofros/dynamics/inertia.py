@@ -87,8 +87,12 @@ def carried_to_parent(link: MovingLink, inertia: LinkInertia) -> LinkInertia:
     return LinkInertia(inertia.m, S, J)
 
 
-def link_inertias(motion: Motion) -> tuple[list[LinkInertia], LinkInertia]:
+def link_inertias(motion: Motion, regrouped: bool = True) -> tuple[list[LinkInertia], LinkInertia]:
     """Inertia of each link with all that is fixed to it, regrouped towards the base.
+
+    Args:
+        motion: The tree.
+        regrouped: Otherwise only clamped links give theirs to what they are clamped to.
 
     Returns:
         One inertia a link, and what the base was given: it never moves, but its weight counts in the energy.
@@ -96,7 +100,7 @@ def link_inertias(motion: Motion) -> tuple[list[LinkInertia], LinkInertia]:
     own = {i: _stated(motion, i) for i in range(len(motion.links))}
     own[BASE] = no_inertia(motion.g)
     for i, link in reversed(list(enumerate(motion.links))):
-        own[i], give = _split(link, own[i])
+        own[i], give = _split(link, own[i]) if regrouped else _if_clamped(link, own[i])
         if give is not None:
             own[link.parent] = own[link.parent] + _given(link, give)
     for i, link in enumerate(motion.links):
@@ -180,11 +184,17 @@ def _turned(R: Mat3, J: Sym3) -> Sym3:
     return MatrixTurn(R).conjugate(R.g, J) if R != Mat3.identity(R.g) else J
 
 
+def _if_clamped(link: MovingLink, inertia: LinkInertia) -> tuple[LinkInertia, LinkInertia | None]:
+    """A clamped link keeps nothing, any other all."""
+    is_clamped = not link.columns and link.rates is None
+    return (no_inertia(inertia.S.g), inertia) if is_clamped else (inertia, None)
+
+
 def _split(link: MovingLink, inertia: LinkInertia) -> tuple[LinkInertia, LinkInertia | None]:
     """What a link keeps, and what its parent may carry instead (eqs. 16-18)."""
     g, S, J = inertia.S.g, inertia.S, inertia.J
     if not link.columns and link.rates is None:
-        return no_inertia(g), inertia  # Clamped: all of it.
+        return _if_clamped(link, inertia)
     if link.axis is not None:
         # A rod along the axis: one transverse moment and, if it can't slide, the mass and the moment along it.
         k, i = link.axis, (link.axis + 1) % 3

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symofros.dynamics.acceleration import Wrench, base_to_tip, inertia_wrench
+from symofros.dynamics.acceleration import LinkMotion, Wrench, base_to_tip, inertia_wrench
 from symofros.dynamics.beams import beam_forces
 from symofros.dynamics.inertia import LinkInertia
 from symofros.dynamics.rotors import MovingRotor
@@ -37,8 +37,30 @@ def inertia_forces(
     Returns:
         One edge a speed.
     """
+    wrenches, own = link_wrenches(motion, inertias, rotors, base_to_tip(motion, v_rate, gravity), v_rate)
+    return [motion.g.add(a, b) for a, b in zip(virtual_power(motion, wrenches), own, strict=True)]
+
+
+def link_wrenches(
+    motion: Motion,
+    inertias: list[LinkInertia],
+    rotors: list[MovingRotor],
+    moving: Sequence[LinkMotion],
+    v_rate: Sequence[Edge],
+) -> tuple[list[Wrench], list[Edge]]:
+    """What inertia asks of each link by itself, and of each speed besides.
+
+    Args:
+        motion: The tree.
+        inertias: Of its links.
+        rotors: That spin in its links.
+        moving: Velocity and acceleration of the links.
+        v_rate: v' (nv), of elastic coordinates and rotors.
+
+    Returns:
+        A wrench a link; and what its elastic coordinates and the spin of rotors ask of the speeds themselves (nv).
+    """
     g = motion.g
-    moving = base_to_tip(motion, v_rate, gravity)
     wrenches = [inertia_wrench(body, state) for body, state in zip(inertias, moving, strict=True)]
     total: list[Edge] = [ZERO] * motion.nv
     for beam in motion.beams:
@@ -59,8 +81,7 @@ def inertia_forces(
         if rotor.k is not None:
             reaction = g.mul(g.mul(rotor.ratio, rotor.inertia), spin_rate)
             total[rotor.k] = g.add(total[rotor.k], reaction)
-    powers = virtual_power(motion, wrenches)
-    return [g.add(a, b) for a, b in zip(powers, total, strict=True)]
+    return wrenches, total
 
 
 def virtual_power(motion: Motion, wrenches: Sequence[Wrench]) -> list[Edge]:

@@ -31,6 +31,9 @@ COSINE = tuple(map(float.fromhex, (
     "0x1.555555555554cp-5", "-0x1.6c16c16c15183p-10", "0x1.a01a019cb24c3p-16",
     "-0x1.27e4f80a5c2cep-22", "0x1.1ee9ec3537108p-29", "-0x1.8faec545de228p-37",
 )))  # fmt: skip
+# Of floats, fitted likewise: to 2^-27.9 of sin r / r, to 2^-33 of cos r.
+SINE_SINGLE = tuple(map(float.fromhex, ("-0x1.555546p-3", "0x1.11073ap-7", "-0x1.994388p-13")))
+COSINE_SINGLE = tuple(map(float.fromhex, ("0x1.55554ap-5", "-0x1.6c0c32p-10", "0x1.99eb4ap-16")))
 
 _SIGN = np.uint64(62)
 

@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
-from symofros.runtime.kernel import Array, Kernel, Unit
+from symofros.runtime.kernel import Array, Kernel, Manner, Numbers, Precision, Unit
+from symofros.runtime.layout import by_columns, flat, states
 from symofros.runtime.record import ModelRecord
 
 Given = npt.ArrayLike
@@ -53,6 +54,7 @@ class Functions:
         par: Values of the run-time parameters; None for the defaults.
         formulas: Generates and compiles a user's formulas.
         threads: How many share a large batch.
+        precision: Of what functions take and return.
     """
 
     def __init__(
@@ -63,9 +65,11 @@ class Functions:
         par: Array | None = None,
         formulas: Callable[[tuple[Any, ...], bool], Unit] | None = None,
         threads: int = 1,
+        precision: Precision = "double",
     ) -> None:
         self.record = record
         self._threads = threads
+        self._precision = precision
         self._build = build
         self._build_formulas = formulas
         self._par = np.array(record.par_default if par is None else par, dtype=np.float64)
@@ -124,7 +128,7 @@ class Functions:
                 raise self._unknown("run-time parameter", name, self.record.par_names,
                                     "constants are hard-coded: change them in the description")  # fmt: skip
             par[self.record.par_names.index(name)] = self._finite(name, value)
-        return self._like(par, self._threads)
+        return self._like(par=par)
 
     @property
     def threads(self) -> int:
@@ -141,10 +145,38 @@ class Functions:
             raise ValueError(str(Problem(f"model '{self.record.name}': not a number of threads", repr(threads)[:80],
                                          "threads is a whole number, 1 or more", "os.cpu_count() at most pays"
                                          )))  # fmt: skip
-        return self._like(self._par, threads)
+        return self._like(threads=threads)
 
-    def _like(self, par: Array, threads: int) -> Self:
-        other = type(self)(self.record, self._build, (), par, self._build_formulas, threads)
+    @property
+    def precision(self) -> Precision:
+        """Of what functions take and return: "double" or "single"."""
+        return self._precision
+
+    def with_precision(self, precision: Precision) -> Self:
+        """The same model, whose functions take and return arrays of float64 ("double"), or of float32 ("single").
+
+        In single precision they run by vectors of twice as many states, at any size of a batch, and are right to about
+        seven digits of the largest term that makes up a result. Functions that a solver finishes (constraints,
+        derivatives of forward dynamics), interpreted models and those of `Options(batch="loop")` are evaluated in
+        double precision and rounded.
+        Parameters stay in double precision, and so do `bind`, `sf.simulate` and exports; `sf.simulate_batch` keeps
+        states in double precision and takes accelerations in that of the model.
+
+        Raises:
+            ValueError: Neither of them.
+        """
+        if precision not in ("double", "single"):
+            raise ValueError(str(Problem(f"model '{self.record.name}': no such precision", repr(precision)[:80],
+                                         "precision is 'double' or 'single'", "numpy.float32 is 'single'"
+                                         )))  # fmt: skip
+        return self._like(precision=precision)
+
+    def _like(self, par: Array | None = None, threads: int | None = None, precision: Precision | None = None) -> Self:
+        """The same but for what is given."""
+        other = type(self)(
+            self.record, self._build, (), self._par if par is None else par, self._build_formulas,
+            threads or self._threads, precision or self._precision,
+        )  # fmt: skip
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
 
@@ -197,12 +229,13 @@ class Functions:
                                          "pass par=… to a function for values that vary by state")))  # fmt: skip
         return number
 
-    def _one(self, name: str, given: Mapping[str, Given | None], par: Given | None, frame: str = "") -> Array:
+    def _one(self, name: str, given: Mapping[str, Given | None], par: Given | None, frame: str = "") -> Numbers:
         return self._call(name, self._frame(frame) if frame else "", given, par)[0]
 
-    def _call(self, name: str, frame: str, given: Mapping[str, Given | None], par: Given | None) -> list[Array]:
+    def _call(self, name: str, frame: str, given: Mapping[str, Given | None], par: Given | None) -> list[Numbers]:
         kernel = self._kernels.get((name, frame)) or self._make(name, frame)
-        arrays = [self._array(group, self._given(given[group]), size) for group, size in kernel.signature.inputs]
+        dtype = Manner(precision=self._precision).dtype
+        arrays = [self._array(group, self._given(given[group]), size, dtype) for group, size in kernel.signature.inputs]
         shapes = [array.shape[:-1] for array in arrays]
         par_array = None
         if par is not None:
@@ -211,7 +244,8 @@ class Functions:
         batch = self._batch_shape(name, shapes, given)
         n = int(np.prod(batch))
         pre = self._pre(kernel, (name, frame), par_array, batch)
-        outputs = kernel.run(n, pre, [flat(array, batch) for array in arrays], self._threads)
+        inputs = [states(array, batch) for array in arrays]
+        outputs = kernel.run(n, pre, inputs, Manner(self._threads, by_columns(inputs), self._precision))
         shaped = zip(outputs, kernel.signature.outputs, strict=True)
         return [output.reshape(batch + shape) for output, (_, shape) in shaped]
 
@@ -251,13 +285,13 @@ class Functions:
         self._kernels.update(self._build(((name, frame),)).kernels)
         return self._kernels[name, frame]
 
-    def _array(self, group: str, values: Given, size: int) -> Array:
+    def _array(self, group: str, values: Given, size: int, dtype: npt.DTypeLike = np.float64) -> Numbers:
         try:
-            array = np.asarray(values, dtype=np.float64)
+            array = np.asarray(values, dtype=dtype)
         except (TypeError, ValueError):
             raise ShapeError(
                 f"model '{self.record.name}': {group} is not an array of numbers\n  found:  {type(values).__name__}\n"
-                f"  rule:   {group} is a float64 array of shape (..., {size})" + self._hint(group)
+                f"  rule:   {group} is an array of numbers of shape (..., {size})" + self._hint(group)
             ) from None
         if group == "t":
             return array[..., np.newaxis]
@@ -273,11 +307,3 @@ class Functions:
         shown = names.get(group, ())
         listed = ", ".join(shown[:8]) + (", …" if len(shown) > 8 else "")
         return f"\n  remedy: its last dimension runs over {listed}" if shown else ""
-
-
-def flat(array: Array, batch: tuple[int, ...]) -> Array:
-    """As rows (n or 1, size), contiguous: one row where the array has no batch of its own."""
-    size = array.shape[-1]
-    if array.size == size:
-        return np.ascontiguousarray(array.reshape(1, size))
-    return np.ascontiguousarray(np.broadcast_to(array, (*batch, size))).reshape(-1, size)

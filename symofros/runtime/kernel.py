@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from math import prod
+from typing import Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from symofros.runtime.layout import Numbers as Numbers
+from symofros.runtime.layout import columns
+
 Array = npt.NDArray[np.float64]
+Precision = Literal["double", "single"]
 
 
 @dataclass(frozen=True)
@@ -27,6 +32,64 @@ class Signature:
     frame: str
     inputs: tuple[tuple[str, int], ...]
     outputs: tuple[tuple[str, tuple[int, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """How code uses vectors, with one state in each lane.
+
+    Attributes:
+        own: Whether each state may have parameters of its own.
+        precision: Of what lanes hold.
+    """
+
+    own: bool = False
+    precision: Precision = "double"
+
+    @property
+    def single(self) -> bool:
+        """Whether lanes hold floats."""
+        return self.precision == "single"
+
+
+SHARED = Lanes()
+
+
+@dataclass(frozen=True)
+class Manner:
+    """How a batch is to be evaluated.
+
+    Attributes:
+        threads: How many may share the work.
+        columns: Whether results are wanted with the batch as their fast axis.
+        precision: Of inputs and results, and of the work where there is code for it.
+    """
+
+    threads: int = 1
+    columns: bool = False
+    precision: Precision = "double"
+
+    @property
+    def dtype(self) -> type[np.float32] | type[np.float64]:
+        """Of inputs and results."""
+        return np.float32 if self.precision == "single" else np.float64
+
+    def empty(self, n: int, size: int) -> Numbers:
+        """Room for results of so many numbers a state (n, size), laid out as wanted."""
+        return columns(n, size, self.dtype) if self.columns else np.empty((n, size), self.dtype)
+
+    def of(self, results: Array) -> Numbers:
+        """Results (n, *shape), row by row in double precision, as wanted: a copy where they are not so already."""
+        if not self.columns and self.precision == "double":
+            return results
+        wanted = self.empty(len(results), prod(results.shape[1:]))
+        # Beyond the range of floats lies infinity, as in the code by vectors.
+        with np.errstate(over="ignore", invalid="ignore"):
+            wanted[...] = results.reshape(wanted.shape)
+        return wanted.reshape(results.shape)
+
+
+PLAIN = Manner()
 
 
 class Kernel(Protocol):
@@ -48,14 +111,14 @@ class Kernel(Protocol):
         """
         ...
 
-    def run(self, n: int, pre: Array, inputs: list[Array], threads: int = 1) -> list[Array]:
+    def run(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner = PLAIN) -> list[Numbers]:
         """Evaluate n states.
 
         Args:
             n: Number of states.
             pre: (n or 1, npre), from `prepare`.
-            inputs: Each (n or 1, size), C-contiguous, in the signature's order.
-            threads: How many may share the work.
+            inputs: Each (n or 1, size), with any strides, in the signature's order.
+            manner: How.
 
         Returns:
             One array an output, (n, *shape).

@@ -15,7 +15,8 @@ import cffi
 import numpy as np
 
 from symofros.errors import CompileError
-from symofros.runtime.kernel import Array, Kernel, Signature
+from symofros.runtime.kernel import PLAIN, SHARED, Array, Kernel, Lanes, Manner, Numbers, Signature
+from symofros.runtime.layout import Strided
 from symofros.runtime.sharing import share
 
 _ABI = 1
@@ -43,8 +44,8 @@ class CompiledUnit:
         symbol: Its exported function, `NAME_model`.
         header: Text of symofros_model.h.
         expected_hash: What the struct must say.
-        in_lanes: Function, and whether states have parameters of their own -> the same by vectors, or None; asked for
-            once, at the first large batch.
+        in_lanes: Function, and how to use vectors -> the same by vectors, or None; asked for once, at the first large
+            batch.
 
     Raises:
         CompileError: It does not load, or is not what it should be.
@@ -52,10 +53,11 @@ class CompiledUnit:
 
     def __init__(
         self, path: Path, symbol: str, header: str, expected_hash: str,
-        in_lanes: Callable[[tuple[str, str], bool], Kernel | None] | None = None,
+        in_lanes: Callable[[tuple[str, str], Lanes], CompiledKernel | None] | None = None,
     ) -> None:  # fmt: skip
         self.in_lanes = in_lanes
         self.ffi = _interface(header)
+        self.nowhere = self.ffi.cast("char *", 0)
         try:
             # ctypes finds the symbol, whose name differs from model to model; cffi makes the calls, by one interface.
             self._library = ctypes.CDLL(str(path))
@@ -71,15 +73,17 @@ class CompiledUnit:
                 f"the compiled model is another one\n  found:  abi {self.model.abi}, hash {found}\n"
                 f"  rule:   abi {_ABI}, hash {expected_hash}\n  remedy: delete {path.name} from the cache folder"
             )
-        self._kernels: dict[tuple[str, str], Kernel] = {}
+        self.compiled: dict[tuple[str, str], CompiledKernel] = {}
+        lanes = self.model.lanes if self.model.size >= self.ffi.sizeof("sym_model") else self.ffi.NULL
         for i in range(self.model.n_functions):
-            kernel = CompiledKernel(self, self.model.functions[i])
-            self._kernels[kernel.signature.name, kernel.signature.frame] = kernel
+            by_vectors = lanes[i] if lanes != self.ffi.NULL and lanes[i].batch != self.ffi.NULL else None
+            kernel = CompiledKernel(self, self.model.functions[i], by_vectors)
+            self.compiled[kernel.signature.name, kernel.signature.frame] = kernel
 
     @property
     def kernels(self) -> dict[tuple[str, str], Kernel]:
         """Functions by (name, frame)."""
-        return self._kernels
+        return dict(self.compiled)
 
     def prepare(self, par: Array) -> Array:
         """Run the init function on each parameter set (m, npar) -> (m, npre)."""
@@ -100,13 +104,20 @@ class _Scratch(threading.local):
 
 
 class CompiledKernel:
-    """One function of a library."""
+    """One function of a library.
 
-    def __init__(self, unit: CompiledUnit, function: Any) -> None:
+    Args:
+        unit: The library.
+        function: Its sym_function.
+        by_vectors: Its sym_lanes, if there is code by vectors.
+    """
+
+    def __init__(self, unit: CompiledUnit, function: Any, by_vectors: Any = None) -> None:
         self._unit = unit
         self._function = function
+        self._by_vectors = by_vectors
         self._scratch = _Scratch()
-        self._lanes: dict[bool, Kernel] = {}
+        self._lanes: dict[Lanes, CompiledKernel] = {}
         text = unit.ffi.string
 
         def array(entry: Any) -> tuple[str, tuple[int, ...]]:
@@ -134,44 +145,78 @@ class CompiledKernel:
         """The parameter-only part of the work."""
         return self._unit.prepare(par)
 
-    def in_lanes(self, own: bool = False) -> Kernel:
-        """The same by vectors, compiled at the first call; itself where there is no such thing.
-
-        Args:
-            own: Whether states have parameters of their own.
-        """
-        if own not in self._lanes:
+    def in_lanes(self, lanes: Lanes = SHARED) -> CompiledKernel:
+        """The same by vectors, compiled at the first call; itself where there is no such thing."""
+        if lanes not in self._lanes:
             make = self._unit.in_lanes
             key = self.signature.name, self.signature.frame
-            self._lanes[own] = (make(key, own) if make is not None else None) or self
-        return self._lanes[own]
+            self._lanes[lanes] = (make(key, lanes) if make is not None else None) or self
+        return self._lanes[lanes]
 
-    def run(self, n: int, pre: Array, inputs: list[Array], threads: int = 1) -> list[Array]:
-        """Evaluate n states in C: by vectors if they are many, in a loop over the states otherwise."""
-        if n >= MANY:
-            lanes = self.in_lanes(own=len(pre) > 1 and pre.size > 0)
-            if lanes is not self:
-                return lanes.run(n, pre, inputs, threads)
+    def run(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner = PLAIN) -> list[Numbers]:
+        """Evaluate n states in C: by vectors if they are many, or wanted in single precision; else one by one."""
+        lanes = Lanes(len(pre) > 1 and pre.size > 0, manner.precision)
+        if n >= MANY or lanes.single:
+            kernel = self.in_lanes(lanes)
+            if kernel.has(lanes):
+                return kernel._by_lanes(n, pre, inputs, manner)
+        rows = [np.ascontiguousarray(x, dtype=np.float64) for x in (pre, *inputs)]
+        return [manner.of(output) for output in self._by_rows(n, rows, manner.threads)]
+
+    def _by_lanes(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner) -> list[Numbers]:
+        """By vectors of this library: rows are told by their addresses alone, which takes less than their layout."""
+        if manner.precision == "double" and not manner.columns and all(x.flags.c_contiguous for x in inputs):
+            return self._by_rows(n, [pre, *inputs], manner.threads)
+        return self._in_place(n, pre, inputs, manner)
+
+    def has(self, lanes: Lanes) -> bool:
+        """Whether there is code by such vectors in this library."""
+        of = self._by_vectors
+        return of is not None and (of.bytes == 4) == lanes.single and bool(of.own or not lanes.own)
+
+    def _by_rows(self, n: int, arrays: list[Array], threads: int) -> list[Array]:
+        """Contiguous arrays through `batch`."""
         ffi = self._unit.ffi
         outputs = [np.empty((n, *shape)) for _, shape in self.signature.outputs]
         # from_buffer keeps each array alive for the duration of the call.
-        rows_in = [ffi.from_buffer("double[]", x) for x in (pre, *inputs)]
+        rows_in = [ffi.from_buffer("double[]", x) for x in arrays]
         rows_out = [ffi.from_buffer("double[]", y) for y in outputs]
-        strides = [0 if len(x) == 1 else x.shape[1] for x in (pre, *inputs)]
+        strides = [0 if len(x) == 1 else x.shape[1] for x in arrays]
         steps = [math.prod(shape) for _, shape in self.signature.outputs]
         stride = ffi.new("size_t[]", strides)
 
         def part(first: int, end: int) -> None:
-            if self._scratch.work is None:
-                self._scratch.work = self._work()
             self._function.batch(
                 end - first, ffi.new("double *[]", [x + first * by for x, by in zip(rows_in, strides, strict=True)]),
                 stride, ffi.new("double *[]", [y + first * by for y, by in zip(rows_out, steps, strict=True)]),
-                self._scratch.work,
+                self._own_work(),
             )  # fmt: skip
 
         share(n, threads, part)
         return outputs
+
+    def _in_place(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner) -> list[Numbers]:
+        """Arrays as they lie, by vectors."""
+        ffi, nowhere = self._unit.ffi, self._unit.nowhere
+        flat = [manner.empty(n, math.prod(shape)) for _, shape in self.signature.outputs]
+        read = [Strided.of(pre, np.float64), *(Strided.of(x, manner.dtype) for x in inputs)]
+        written = [Strided.of(y, manner.dtype) for y in flat]
+
+        def part(first: int, end: int) -> None:
+            # An address is given as a pointer to so many bytes from nowhere on.
+            arrays = ([(nowhere + at, *by) for at, *by in (x.from_state(first) for x in of)] for of in (read, written))
+            from_, to = (ffi.new("sym_strided[]", of) for of in arrays)
+            self._by_vectors.batch(end - first, from_, to, self._own_work())
+
+        share(n, manner.threads, part)
+        # Splits an axis, so that these are views.
+        return [y.reshape(n, *shape) for y, (_, shape) in zip(flat, self.signature.outputs, strict=True)]
+
+    def _own_work(self) -> Any:
+        """Of this thread."""
+        if self._scratch.work is None:
+            self._scratch.work = self._work()
+        return self._scratch.work
 
     def bind(self, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
         """The function on fixed memory, for one state. The caller keeps the arrays."""

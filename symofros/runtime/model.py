@@ -22,7 +22,9 @@ from symofros.runtime.linear import StateMatrices as StateMatrices
 class Model(Functions):
     """The equations of one mechanism, ready to be evaluated.
 
-    Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays.
+    Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays
+    (float32 after `with_precision("single")`). Results lie in memory as inputs do: with the batch as their fast axis if
+    that is so in all inputs (`np.asfortranarray(q)`, `Q.T`), which is the fastest; else row by row.
     `par=` overrides the run-time parameters (..., npar), `t=` gives the time (...,) to models that depend on it; `u=`
     matters where a motion is prescribed, because its coordinates, speeds and their rates are inputs.
     NaN in an argument propagates to what depends on it, so that one bad state does not spoil its batch.

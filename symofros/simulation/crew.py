@@ -10,8 +10,7 @@ from threading import Event
 import numpy as np
 import numpy.typing as npt
 
-from symofros.runtime.kernel import Array
-from symofros.runtime.library import CompiledKernel
+from symofros.runtime.kernel import Array, Lanes
 from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
 from symofros.simulation.settings import Settings
@@ -128,8 +127,9 @@ class Crew:
         many.pre.at, many.pre.stride = single.shared(pre), pre.shape[1] if len(pre) > 1 else 0
         if not sizes:
             return
-        vectors = kernel.in_lanes(own=many.pre.stride != 0)
-        assert isinstance(vectors, CompiledKernel)
+        # Laws are few operations on what users gave: in double precision.
+        precision = single.model.precision if name == "forward" else "double"
+        vectors = kernel.in_lanes(Lanes(many.pre.stride != 0, precision))
         many.function = self._ffi.cast("sym_function *", vectors.address)
         many.work = single.numbers(np.zeros(max(1, vectors.work)))
         many.pre_here = single.numbers(np.zeros(self._slots * pre.shape[1]))

@@ -7,8 +7,11 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def bar(wanted: bool, t0: float, t_end: float) -> Iterator[Callable[[float], None]]:
-    """A function that shows how far a run has come; it does nothing unless wanted."""
+def bar(wanted: bool | Callable[[float], None], t0: float, t_end: float) -> Iterator[Callable[[float], None]]:
+    """A function that shows how far a run has come; it does nothing unless wanted, or is the caller's own."""
+    if callable(wanted):
+        yield wanted
+        return
     if not wanted:
         yield lambda t: None
         return

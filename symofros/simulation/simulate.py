@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -42,7 +42,7 @@ def simulate(
     stabilisation: Stabilisation = "projection",
     gains: Given | None = None,
     realtime: float | bool = False,
-    progress: bool = False,
+    progress: bool | Callable[[float], None] = False,
 ) -> Trajectory:
     """Move a model from a state through time; the stepping loop is C.
 
@@ -73,7 +73,7 @@ def simulate(
             "none", by accelerations alone, which drifts.
         gains: Baumgarte's, as `Model.forward_dynamics` takes them; by default both are min(20, 1/(2 dt)) [1/s].
         realtime: Keep pace with the clock: True, or seconds of motion a second. Overruns are counted.
-        progress: Show a progress bar.
+        progress: Show a progress bar; or a function that is told the time reached [s], now and then.
 
     Returns:
         The Trajectory; its `outcome` says how the run ended. What went wrong in motion is an outcome, not an

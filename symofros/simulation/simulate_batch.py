@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.errors import Problem, ShapeError, SymofrosError
-from symofros.runtime.functions import flat
 from symofros.runtime.kernel import Array
+from symofros.runtime.layout import flat
 from symofros.runtime.model import Given, Model
 from symofros.simulation import stepper as native
 from symofros.simulation.batch_inputs import Shape, sort_inputs
@@ -45,6 +45,9 @@ def simulate_batch(
     threads: int | None = None,
 ) -> Trajectories:
     """Move a model from many states through time, in C, several trajectories in the lanes of a vector.
+
+    Of a model in single precision (`Model.with_precision`) states stay in double precision, and accelerations of trees
+    are taken in single precision. Starts may lie in memory as they like; they are copied once.
 
     Each trajectory takes the steps that `simulate` would take, of its own length where the method adapts them, and has
     the same states within rounding; it does not depend on the others, nor on the number of threads, to the last bit.
@@ -156,8 +159,9 @@ def _off(model: Model, settings: Settings, starts: Starts, crew: Crew) -> npt.ND
     if model.record.driven:  # The motions of joints are inputs, by formulas too.
         q, v = np.broadcast_to(starts.q, (n, model.nq)), np.broadcast_to(starts.v, (n, model.nv))
         u = np.array([crew.single.inputs_at(starts.t, q[i], v[i]) for i in range(n)])
-    phi = model.constraint(starts.q, u=u, par=starts.par, t=starts.t)
-    rate = model.constraint_rate(starts.q, starts.v, u=u, par=starts.par, t=starts.t)
+    exact = model.with_precision("double")  # As states are.
+    phi = exact.constraint(starts.q, u=u, par=starts.par, t=starts.t)
+    rate = exact.constraint_rate(starts.q, starts.v, u=u, par=starts.par, t=starts.t)
     for values in (phi, rate):
         off |= ~np.all(np.abs(values) <= CLOSED, axis=-1)
     return off

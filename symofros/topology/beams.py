@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 import numpy as np
 
 from symofros.beams.deformation import Deformation, deformation_of
 from symofros.beams.piecewise import stations
-from symofros.beams.shape_functions import FamilyError
+from symofros.beams.shape_functions import FamilyError, Shape
 from symofros.description.beam import STATION, Beam
 from symofros.description.system import System
 from symofros.description.values import ORIGIN, Value
@@ -115,11 +116,17 @@ def _conditioning(beam: Beam, where: str) -> Iterator[Problem]:
         start += count
         if not count:
             continue
-        M = np.array([[float((a.phi * b.phi).integral()) for b in functions] for a in functions])
-        scale = 1.0 / np.sqrt(np.diag(M))
-        condition = float(np.linalg.cond(M * np.outer(scale, scale)))
+        condition = _condition(functions)
         if not condition < MOST_CONDITION:
             yield Problem(f"beam '{beam.name}': the modal mass matrix of {direction} is ill-conditioned",
                           f"{count} functions of family '{beam.family}', condition {condition:.1e}",
                           f"a condition below {MOST_CONDITION:g}",
                           "use fewer functions, or family legendre, spline or clamped_free", where)  # fmt: skip
+
+
+@lru_cache(maxsize=256)
+def _condition(functions: tuple[Shape, ...]) -> float:
+    """Of the mass matrix of some shape functions; an editor asks for that of the same ones again and again."""
+    M = np.array([[float((a.phi * b.phi).integral()) for b in functions] for a in functions])
+    scale = 1.0 / np.sqrt(np.diag(M))
+    return float(np.linalg.cond(M * np.outer(scale, scale)))

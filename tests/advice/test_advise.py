@@ -194,6 +194,7 @@ def test_scenes_that_do_not_fit(changed: dict[str, object], words: str) -> None:
 def test_the_station() -> None:
     """Fifty-seven coordinates; one boom may be rigid in a slow motion, most elastic joints may be locked."""
     advice = advised("flexible_mss")
-    assert advice.ok and advice.gain >= 3.0 and 3 * operations(advice.system) <= operations(advice.full)
+    # An evaluation by articulated bodies costs what the coordinates do, 57 or 25; the rest of the gain is fewer of them.
+    assert advice.ok and advice.gain >= 3.0 and 2 * operations(advice.system) <= operations(advice.full)
     assert advice.choice("rigid", "ssrms_link4").verdict == "taken"
     assert advice.choice("elastic joint", "ssrms_q3").verdict == "refused"

@@ -25,6 +25,7 @@ def run(
     kind: str = "hold",
     dt: float = STEP,
     compare: float = ROUNDING,
+    compiled: bool = False,
 ) -> Mapping[str, np.ndarray]:
     """Outputs of a block over time, by port, and "t"; what the interpreted run gives is compared.
 
@@ -36,6 +37,7 @@ def run(
         kind: Of the inputs between samples.
         dt: Step, and interval of records.
         compare: Largest difference, absolute or relative; 0 leaves the interpreted run out.
+        compiled: Whether C evaluates single blocks in the interpreted run; else NumPy does.
     """
     diagram = sf.Diagram("one")
     for name, (system, start) in (models or {}).items():
@@ -55,7 +57,7 @@ def run(
     ports = [port.name for port in simulation.resolved.wired.ports[block.name].outputs]
     signals = {port: np.asarray(found[f"{block.name}.{port}"]) for port in ports}
     if compare:
-        other = simulation.interpret(end, dt=dt, record=dt)
+        other = simulation.interpret(end, dt=dt, record=dt, compiled=compiled)
         for port, value in signals.items():
             np.testing.assert_allclose(other[f"{block.name}.{port}"], value, rtol=compare, atol=compare, err_msg=port)
     return {"t": np.asarray(found.t), **signals}

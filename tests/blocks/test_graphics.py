@@ -83,6 +83,11 @@ def test_plots_of_the_diagram_come_first_and_single_signals_by_name() -> None:
         run.plot("plant.a[9]")
 
 
+def test_nothing_to_draw_is_told() -> None:
+    with pytest.raises(sf.SymofrosError, match="there is nothing to draw"):
+        sf.Simulation(sf.Diagram("empty")).run(0.01, dt=1e-3).plot()
+
+
 @pytest.mark.parametrize(
     ("block", "words"),
     [

@@ -19,9 +19,12 @@ from symofros.diagrams.result import DiagramRun
 from tests.blocks.sources import Ramp
 
 ROOT = Path(__file__).parent.parent.parent
-PACKETS = 1000
+# So few that a socket's buffer holds them all: however slow the machine, only the relay loses any.
+PACKETS, PERIOD = 250, 2e-3
+# A sender counts as silent after this; between two packets a busy machine can take a while [s].
+TIMEOUT = 0.5
 
-# A program of its own: compiles, says so, waits for a line, sends PACKETS packets in half a second.
+# A program of its own: compiles, says so, waits for a line, sends PACKETS packets.
 SENDER = f"""
 import sys
 import symofros as sf
@@ -37,7 +40,7 @@ simulation.compiled
 library()
 print("ready", flush=True)
 sys.stdin.readline()
-run = simulation.run({(PACKETS - 1) * 5e-4}, dt=1e-3, realtime=True)
+run = simulation.run({(PACKETS - 1) * PERIOD}, dt=1e-3, realtime=True)
 print(run.kept["tx"], flush=True)
 """
 
@@ -58,7 +61,7 @@ class Relay(threading.Thread):
         self.socket.bind(("127.0.0.1", 0))
         self.socket.settimeout(0.2)
         self.port, self.to = self.socket.getsockname()[1], to
-        self.drops = np.random.default_rng(11).random(PACKETS) < loss
+        self.drops = np.random.default_rng(5).random(PACKETS) < loss
         self.drops[[0, -1]] = False
         self.seen: list[int] = []
         self.done = threading.Event()
@@ -106,14 +109,14 @@ def test_a_lossy_line_is_survived_and_its_losses_counted() -> None:
     port = free_port()
     relay = Relay(port, 0.01)
     relay.start()
-    receiver = UdpReceiver(name="rx", port=port, size=2, period=1e-3, timeout=0.2, unit="s")
-    run = heard_from(f'UdpTransmitter(name="tx", port={relay.port}, period=5e-4)', receiver, 1.3)
+    receiver = UdpReceiver(name="rx", port=port, size=2, period=1e-3, timeout=TIMEOUT, unit="s")
+    run = heard_from(f'UdpTransmitter(name="tx", port={relay.port}, period={PERIOD})', receiver, 2.0)
     relay.done.set()
     relay.join()
     assert run.outcome.ok and relay.seen == list(range(PACKETS))
     counts = {name: int(value) for name, value in run.kept["rx"].items()}
     dropped = int(relay.drops.sum())
-    assert dropped > 3
+    assert dropped >= 4
     assert counts == {"received": PACKETS - dropped, "lost": dropped, "late": 0, "duplicate": 0, "malformed": 0,
                       "foreign": 0}  # fmt: skip
     signal, stamp, age, alive = (run[f"rx.{name}"] for name in ("signal", "stamp", "age", "alive"))
@@ -122,24 +125,24 @@ def test_a_lossy_line_is_survived_and_its_losses_counted() -> None:
     first, last = np.flatnonzero(alive)[[0, -1]]
     assert alive[first : last + 1].all() and np.all(np.diff(stamp) >= 0.0)
     # Then the sender is gone: the last values are held, and said to be old.
-    assert stamp[-1] == pytest.approx((PACKETS - 1) * 5e-4) and alive[-1] == 0.0
-    assert np.all(signal[last:] == signal[-1]) and np.all(age[last + 1 :] > 0.2)
+    assert stamp[-1] == pytest.approx((PACKETS - 1) * PERIOD) and alive[-1] == 0.0
+    assert np.all(signal[last:] == signal[-1]) and np.all(age[last + 1 :] > TIMEOUT)
     assert run["rx.lost"][-1] == dropped
 
 
 def test_zenoh_between_two_processes() -> None:
     address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
-    receiver = ZenohSubscriber(name="rx", key="arm/state", size=2, address=address, period=1e-3, timeout=0.2,
+    receiver = ZenohSubscriber(name="rx", key="arm/state", size=2, address=address, period=1e-3, timeout=TIMEOUT,
                                on_silence="value", fallback=-1.0)  # fmt: skip
-    sender = f'ZenohPublisher(name="tx", key="arm/state", address="{address}", period=5e-4)'
-    run = heard_from(sender, receiver, 1.3)
+    sender = f'ZenohPublisher(name="tx", key="arm/state", address="{address}", period={PERIOD})'
+    run = heard_from(sender, receiver, 2.0)
     assert run.outcome.ok
     counts = {name: int(value) for name, value in run.kept["rx"].items()}
     # At most the connection's first moments are missing.
     assert counts["received"] > 0.5 * PACKETS and counts["malformed"] == counts["duplicate"] == 0
     signal, alive = run["rx.signal"], run["rx.alive"]
     assert np.array_equal(signal[alive == 1.0][:, 1], 2.0 * run["rx.stamp"][alive == 1.0])
-    assert np.all(signal[alive == 0.0] == -1.0) and run["rx.stamp"][-1] == pytest.approx((PACKETS - 1) * 5e-4)
+    assert np.all(signal[alive == 0.0] == -1.0) and run["rx.stamp"][-1] == pytest.approx((PACKETS - 1) * PERIOD)
 
 
 def loop_of(*blocks: Block, **inputs: str) -> sf.Simulation:
@@ -214,6 +217,13 @@ class Flood(UdpTransmitter):
 def test_what_does_not_fit_is_told(block: Block, words: str) -> None:
     with pytest.raises(sf.DescriptionError, match=words):
         loop_of(block)
+
+
+def test_a_key_that_is_none_is_told_before_the_run() -> None:
+    address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
+    block = ZenohSubscriber(name="rx", key="a/**b", address=address, size=2, period=0.01)
+    with pytest.raises(sf.SymofrosError, match=r"block 'rx': no key 'a/\*\*b'"):
+        loop_of(block).run(0.1, dt=1e-2)
 
 
 def test_zenoh_missing_is_told_with_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from symofros.compiler import plan
 from tests.models import CASES, system
 
@@ -50,6 +53,22 @@ def test_bitwise_without_contraction(case: str) -> None:
     results = everything(c, np.random.default_rng(1)), everything(twin, np.random.default_rng(1))
     for name, values in results[0].items():
         assert np.array_equal(values, results[1][name]), name
+
+
+@pytest.mark.parametrize("way", ["articulated", "factors"])
+@pytest.mark.parametrize("case", ["parametrised1", "joints2", "gyroscope", "flexible_arm"])
+def test_bits_of_either_way_of_forward_dynamics(case: str, way: Literal["articulated", "factors"]) -> None:
+    """One state at a time, by batches in vectors, in NumPy."""
+    stated = MODELS[case] if case in MODELS else system(case)
+    options = sf.Options(("forward_dynamics",), (), flags=EXACT_FLAGS, forward_dynamics=way)
+    c, twin = sf.compile(stated, options), sf.compile(stated, replace(options, backend="interpreter"))
+    rng = np.random.default_rng(4)
+    pairs = [c.random_state(rng) for _ in range(600)]  # Batches go by vectors from 512 states on.
+    q, v = np.array([q for q, _ in pairs]), np.array([v for _, v in pairs])
+    u = rng.standard_normal((600, c.nu))
+    expected = twin.forward_dynamics(q, v, u)
+    np.testing.assert_array_equal(c.forward_dynamics(q, v, u), expected)
+    np.testing.assert_array_equal(c.forward_dynamics(q[7], v[7], u[7]), expected[7])
 
 
 @pytest.mark.parametrize("case", ["tree0", "tree3", "parametrised1"])

@@ -14,12 +14,12 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.codegen.model import Lanes, model_source
+from symofros.codegen.model import model_source
 from symofros.codegen.templates import template
 from symofros.compiler import compile_library, describe, generate, plan
 from symofros.options import MODEL_FUNCTIONS
 from symofros.runtime import library
-from symofros.runtime.kernel import Array, Kernel
+from symofros.runtime.kernel import Array, Kernel, Lanes, Manner
 from symofros.runtime.library import CompiledUnit
 from symofros.runtime.toolchain import DEFAULT_FLAGS, cpu_identity
 from tests.codegen.test_source import COMPILERS, compile_strictly
@@ -90,6 +90,21 @@ def test_any_number_of_states(case: str, width: str) -> None:
     assert_alike(case, WIDTHS[width], (*CHEAP, *SCALAR), list(range(1, 21)))
 
 
+@pytest.mark.parametrize("width", WIDTHS)
+def test_columns_of_any_number_of_states(width: str) -> None:
+    """In place, but for fewer states than lanes; entries that are always zero are cleared."""
+    if not HAS[width]:
+        pytest.skip("a processor without these vectors")
+    vectors = unit("friction_arm", "vector", WIDTHS[width], (*CHEAP, *SCALAR))
+    for kernel in vectors.compiled.values():
+        pre = kernel.prepare(np.array([parameters("friction_arm")]))
+        for n in (1, 2, 3, 7, 8, 9, 16, 21):
+            inputs = given(kernel, n)
+            columns = kernel._by_lanes(n, pre, [*map(np.asfortranarray, inputs)], Manner(columns=True))
+            for found, expected in zip(columns, kernel._by_rows(n, [pre, *inputs], 1), strict=True):
+                assert np.array_equal(found, expected) and (found.strides[0] == 8 or n == 1)
+
+
 @pytest.mark.parametrize("shared", [("q",), ("v", "u", "t"), ("q", "v", "u", "a", "t")])
 def test_inputs_that_all_states_share(shared: tuple[str, ...]) -> None:
     assert_alike("chain7", EXACT, CHEAP, [2, 8, 13], *shared)
@@ -138,14 +153,14 @@ def test_large_batches_take_vectors_by_themselves(monkeypatch: pytest.MonkeyPatc
     model, loop = (sf.compile(MODELS["chain7"], sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
     rng = np.random.default_rng(0)
     q, v = rng.standard_normal((2, library.MANY + 3, 7))
-    made: list[tuple[tuple[str, str], bool]] = []
+    made: list[tuple[tuple[str, str], Lanes]] = []
     unit = model.kernel("dynamics")._unit  # type: ignore[attr-defined]
     original = unit.in_lanes
-    monkeypatch.setattr(unit, "in_lanes", lambda key, own: made.append((key, own)) or original(key, own))
+    monkeypatch.setattr(unit, "in_lanes", lambda key, how: made.append((key, how)) or original(key, how))
     for n in (library.MANY - 1, library.MANY, library.MANY + 3):
         for found, expected in zip(model.dynamics(q[:n], v[:n], None), loop.dynamics(q[:n], v[:n], None), strict=True):
             assert np.array_equal(found, expected)
-    assert made == [(("dynamics", ""), False)]
+    assert made == [(("dynamics", ""), Lanes())]
 
 
 @pytest.mark.parametrize("case", ["rx90", "friction_arm", "operations"])
@@ -161,12 +176,14 @@ def test_parameters_of_each_state(case: str) -> None:
         assert np.array_equal(found, expected, equal_nan=True)
     kernel = model.kernel("dynamics")
     pre, inputs = kernel.prepare(par[:1]), [q, v, u, np.zeros((1, 1))]
-    own = kernel.in_lanes(own=True)  # type: ignore[attr-defined]
+    own = kernel.in_lanes(Lanes(own=True))  # type: ignore[attr-defined]
     for found, expected in zip(own.run(n, pre, inputs), kernel.run(n, pre, inputs), strict=True):
         assert own is not kernel and np.array_equal(found, expected, equal_nan=True)
 
 
-@pytest.mark.parametrize("lanes", ["shared", "own"])
+@pytest.mark.parametrize(
+    "lanes", [Lanes(own, precision) for own in (False, True) for precision in ("double", "single")], ids=str
+)
 @pytest.mark.parametrize(
     "flags", [(), ("-std=gnu99", "-O2"), ("-std=gnu99", "-O2", "-mavx512f"), ("-std=gnu99", "-mavx")]
 )

@@ -39,7 +39,7 @@ def source(system: sf.System, functions: tuple[str, ...], packs: bool = True) ->
     tree = plan(system)
     options = sf.Options(functions=functions)
     record = describe(tree, options)
-    program, _ = generate(tree, [(name, "") for name in functions], record)
+    program, _ = generate(tree, [(name, "") for name in functions], record, method="factors")
     return model_source(program, record, "test", packs=packs)
 
 
@@ -47,7 +47,7 @@ def source(system: sf.System, functions: tuple[str, ...], packs: bool = True) ->
 def test_bits_are_those_of_scalars(name: str) -> None:
     rng = np.random.default_rng(7)
     system = MODELS[name]
-    options = sf.Options(functions=FUNCTIONS, flags=EXACT)
+    options = sf.Options(functions=FUNCTIONS, flags=EXACT, forward_dynamics="factors")  # These have packs.
     packed, single = sf.compile(system, options), sf.compile(system, replace(options, packs=False))
     q, v, u = (rng.uniform(-1.0, 1.0, (5, n)) for n in (packed.nq, packed.nv, packed.nu))
     np.testing.assert_array_equal(packed.mass_matrix(q), single.mass_matrix(q))

@@ -11,7 +11,8 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from reference_models.rigid.random_tree import MORE_KINDS, random_tree
-from symofros.description.native.files import read_yaml
+from symofros.description.native.files import MAX_BYTES, read_yaml
+from symofros.description.native.yaml_nodes import compose_text
 from symofros.description.native.yaml_writer import write_yaml
 
 HEAD = "symofros: 1\nsystem: {name: arm}\n"
@@ -244,3 +245,26 @@ def test_faults_of_forces(old: str, new: str, line: int, parts: list[str], tmp_p
     for part in parts:
         assert part in message, message
     assert line == 0 or f"arm.yaml:{line}" in message, message
+
+
+def test_a_text_that_is_not_written_yet_is_read_as_if_it_were(tmp_path: Path) -> None:
+    (tmp_path / "parts.yaml").write_text("symofros: 1\nparameters: {m: 2}\n")
+    file = tmp_path / "arm.yaml"
+    text = "symofros: 1\ninclude: [parts.yaml]\nbodies: {a: {joint: {kind: revolute}, inertia: {mass: m}}}\n"
+    unwritten = read_yaml(file, text)
+    assert not file.exists() and unwritten.problems == ()
+    file.write_text(text)
+    assert read_yaml(file).system == unwritten.system
+    assert read_yaml(file, "symofros: 2\n").problems[0].where == f"{file}:1"
+    assert "too large" in read_yaml(tmp_path / "a.yaml", "#" * (MAX_BYTES + 1)).problems[0].what
+
+
+def test_nodes_know_their_place_in_the_text() -> None:
+    text = "a: 1  # c\nb c: {x: 'y', z: [1, 2]}\nd: |\n  e\nf:\n  - g\n"
+    root, _ = compose_text(text, "x")
+    places = {key: (text[node.key_start : node.key_end], text[node.start : node.end], node.style)
+              for key, node in root.value.items()}  # fmt: skip
+    assert places["a"] == ("a", "1", "plain") and places["b c"] == ("b c", "{x: 'y', z: [1, 2]}", "flow")
+    assert places["d"][1:] == ("|\n  e\n", "|") and places["f"][2] == "block"
+    inner = root.value["b c"].value["x"]
+    assert text[inner.start : inner.end] == "'y'" and inner.style == "'"

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
 from symofros.blocks import UdpTransmitter
+from symofros.diagram_files.fields import types_of, words_for
 from symofros.diagram_files.registry import kind_of, kinds
+from symofros.diagram_files.schema import of_type
 from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
 from tests.diagram_files.cases import TEXT, folder_with, line_of
 
@@ -19,7 +22,7 @@ from tests.diagram_files.cases import TEXT, folder_with, line_of
 class UnitGain(Block):
     """Multiplies; its ports have units."""
 
-    gain: float = 1.0
+    gain: Any = 1.0
     takes: str = ""
 
     def ports(self, known: Known) -> Ports:
@@ -27,7 +30,7 @@ class UnitGain(Block):
         return Ports((Port("u", shape, self.takes),), (Port("y", shape),))
 
     def compute(self, at: At) -> Values:
-        return {"y": self.gain * at.inputs["u"]}
+        return {"y": at.numbers(self.gain) * at.inputs["u"]}
 
 
 def problems(path: Path, text: str, **options: object) -> list[sf.Problem]:
@@ -61,7 +64,8 @@ def test_it_runs_as_the_same_diagram_from_python(tmp_path: Path) -> None:
     ("old", "new", "line", "words"),
     [
         ("kind: joint_pd", "kind: joint_pdd", "joint_pdd", ("no kind of blocks", "did you mean 'joint_pd'")),
-        ("kp: [40, 20]", "kp: [40, {a: 1}]", "kp:", ("kp does not fit", "lists of numbers")),
+        ("kp: [40, 20]", "kp: [40, {a: 1}]", "kp:", ("kp does not fit", "lists of them")),
+        ("kd: 2", "kd: null", "  pd:", ("block 'pd': kd",)),
         ("period: 0.01", "period: soon", "period:", ("period does not fit", "a number or null")),
         ("kd: 2", "gain: 2", "gain:", ("unknown entry 'gain'", "kp, kd")),
         ("    kd: 2\n", "", "kind: joint_pd", ("'kd' is missing", "joint_pd needs kd")),
@@ -70,13 +74,13 @@ def test_it_runs_as_the_same_diagram_from_python(tmp_path: Path) -> None:
         ("q_desired: plant.q", "q_wanted: plant.q", "q_wanted", ("no input 'q_wanted'", "use one of: q_desired")),
         ("{u: pd.effort}", "{u: pid.effort}", "u: pid", ("no block 'pid'", "did you mean 'pd'?")),
         ("model: arm", "model: leg", "  plant:", ("no model 'leg'", "models: arm")),
-        ("kp: [40, 20]", "kp: [40, 20, 10]", "  pd:", ("its fields do not fit its inputs", "q (2,)")),
         ("period: 0.01", "period: -1", "  pd:", ("has no sample time", "a period above zero")),
         ("{q1: 0.5, dq2", "{q9: 0.5, dq2", "arm: {", ("no coordinate or speed 'q9'",)),
         ("m2: 0.9", "m2: heavy", "arm: {", ("parameters: 'm2' is not a number",)),
         ("file: arm.yaml", "file: ../arm.yaml", "arm: {", ("leaves the diagram's folder",)),
         ("file: arm.yaml", "file: /etc/passwd", "arm: {", ("leaves the diagram's folder",)),
         ("file: arm.yaml", "file: amr.yaml", "arm: {", ("does not exist", "did you mean 'arm.yaml'?")),
+        ("file: arm.yaml", f"file: {'a' * 500}.yaml", "arm: {", ("is no path", "name too long")),
         ("file: arm.yaml", "file: diagram.yaml", "symofros_diagram", ("symofros_diagram",)),
         ("t_end: 0.2", "t_end: 0", "t_end", ("simulation: t_end", "above zero")),
         ("dt: 1.0e-3", "step: 1.0e-3", "step:", ("unknown entry 'step'",)),
@@ -99,9 +103,8 @@ def test_faults_say_where_they_are(tmp_path: Path, old: str, new: str, line: str
 
 
 def test_all_faults_are_told_at_once(tmp_path: Path) -> None:
-    text = (
-        TEXT.replace("kd: 2", "kd: {}").replace("t_end: 0.2", "t_end: x").replace("kind: forward_d", "kind: froward_d")
-    )
+    text = TEXT.replace("kd: 2", "kd: [{}]").replace("t_end: 0.2", "t_end: x")
+    text = text.replace("kind: forward_d", "kind: froward_d")
     found = problems(tmp_path, text.replace("m2: 0.9", "m2: a"))
     assert [one.where.rpartition(":")[2] for one in found] == ["4", "6", "15", "21"]
     loose = TEXT.replace("      q: plant.q\n", "").replace("      v: plant.v\n", "")
@@ -119,6 +122,44 @@ def test_shapes_and_units_must_fit(tmp_path: Path) -> None:
     (one,) = problems(tmp_path, text)
     assert "s.signal -> plant.u: shapes differ" in one.what and one.found == "(3,)" and "(2,)" in one.rule
     assert one.where.endswith(f":{line_of(text, 's.signal')}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class FromFile(Block):
+    """Reads a file when it is made."""
+
+    file: str = ""
+    units: Any = None
+
+    def __post_init__(self) -> None:
+        Path(self.file).read_text()
+
+
+def test_files_of_blocks_lie_in_the_diagrams_folder(tmp_path: Path) -> None:
+    text = TEXT.replace("outlets:", "  f: {kind: from_file, file: data/x.csv, units: {y: [N m, s]}}\noutlets:")
+    (found,) = problems(tmp_path, text, blocks=[FromFile])
+    assert "'data/x.csv' does not exist" in found.what and found.where.endswith(f":{line_of(text, 'from_file')}")
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "x.csv").write_text("t,y\n")
+    d = sf.load_diagram(folder_with(tmp_path, text), blocks=[FromFile])
+    assert d.blocks["f"] == FromFile(name="f", file=str(tmp_path / "data" / "x.csv"), units={"y": ("N m", "s")})
+    sf.save_diagram(d, tmp_path / "again.yaml")
+    assert "file: data/x.csv" in (tmp_path / "again.yaml").read_text()
+    assert sf.load_diagram(tmp_path / "again.yaml", blocks=[FromFile]).blocks == d.blocks
+    for outside in ("/etc/hostname", "../x.csv", "data/../../x.csv"):
+        (found,) = problems(tmp_path, text.replace("data/x.csv", outside), blocks=[FromFile])
+        assert "leaves the diagram's folder" in found.what
+    (tmp_path / "other").mkdir()
+    with pytest.raises(sf.DescriptionError, match="outside the diagram's folder"):
+        sf.save_diagram(d, tmp_path / "other" / "again.yaml")
+    assert not list((tmp_path / "other").iterdir())
+
+
+def test_fields_must_fit_what_is_connected(tmp_path: Path) -> None:
+    text = TEXT.replace("outlets:", "  g: {kind: unit_gain, gain: [1, 2, 3], inputs: {u: plant.q}}\noutlets:")
+    (one,) = problems(tmp_path, text, blocks=[UnitGain])
+    assert "block 'g': its fields do not fit its inputs" in one.what and "u (2,)" in one.rule
+    assert one.where.endswith(f":{line_of(text, 'unit_gain')}")
 
 
 def test_an_algebraic_loop_is_named_along_its_path(tmp_path: Path) -> None:
@@ -165,7 +206,9 @@ def test_parts_from_files(tmp_path: Path) -> None:
     assert sf.Simulation(d).run(0.05).outcome.ok
     (one,) = problems(tmp_path, text.replace("{q: plant.q, v", "{p: plant.q, v"), blocks=[UnitGain])
     assert "no inlet 'p'" in one.what and one.where.endswith(f":{line_of(text, 'file: part')}")
-    (tmp_path / "part.yaml").write_text(PART.replace("kp: 5", "kp: {}"))
+    found = problems(tmp_path, text.replace("{q: plant.q, v", "{q: plant.q, models: plant.q, v"), blocks=[UnitGain])
+    assert any("no inlet can be called 'models'" in one.what for one in found)
+    (tmp_path / "part.yaml").write_text(PART.replace("kp: 5", "kp: [{}]"))
     (one,) = (one for one in problems(tmp_path, text, blocks=[UnitGain]) if "kp" in one.what)
     assert one.where.endswith("part.yaml:4")
 
@@ -193,15 +236,30 @@ def test_other_machines_are_reached_only_if_that_is_wished(tmp_path: Path) -> No
     assert isinstance(sf.load_diagram(folder_with(tmp_path, text), network=True).blocks["tx"], UdpTransmitter)
 
 
-@pytest.mark.parametrize("kind", sorted(kinds()))
-def test_every_kind_can_be_stated(kind: str) -> None:
-    """Fields have types that files know, and none bears the name of an entry that all blocks have."""
-    from symofros.diagram_files.fields import types_of, words_for
+@dataclass(frozen=True, kw_only=True)
+class Named(Block):
+    """Its fields bear the names of entries that every block has."""
 
+    kind: str
+    inputs: tuple[str, ...] = ()
+
+
+def test_fields_that_are_called_as_entries_have_an_underscore(tmp_path: Path) -> None:
+    text = TEXT.replace("outlets:", "  n: {kind: named, kind_: odd, inputs_: [a, b]}\noutlets:")
+    d = sf.load_diagram(folder_with(tmp_path, text), blocks=[Named])
+    assert d.blocks["n"] == Named(name="n", kind="odd", inputs=("a", "b"))
+    sf.save_diagram(d, tmp_path / "again.yaml")
+    assert sf.load_diagram(tmp_path / "again.yaml", blocks=[Named]) == d
+    (one,) = problems(tmp_path, text.replace("kind_: odd, ", ""), blocks=[Named])
+    assert "'kind_' is missing" in one.what
+
+
+@pytest.mark.parametrize("kind", sorted(kinds()))
+def test_every_kind_has_fields_of_types_that_are_known(kind: str) -> None:
     owner = kinds()[kind]
-    assert kind == kind_of(owner) and not {"kind", "inputs"} & set(owner.form())
+    assert kind == kind_of(owner)
     for name, of in types_of(owner).items():
-        assert words_for(of), name
+        assert words_for(of) and of_type(of), name
 
 
 def test_hostile_bytes_are_refused(tmp_path: Path, rng: np.random.Generator) -> None:

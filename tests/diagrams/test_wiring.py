@@ -44,6 +44,12 @@ def test_every_fault_is_listed_at_once() -> None:
     assert "did you mean 'sum'" in message and "did you mean 'hold'" in message
 
 
+def test_a_source_of_several_outputs_is_named() -> None:
+    diagram = arm(PENDULUM)
+    diagram.add(Hold(name="hold", period=0.1), x="plant")
+    refused(diagram, "block 'plant' has 4 outputs, and none is named", "outputs: q, v, a, friction")
+
+
 def test_shapes_differ() -> None:
     diagram = arm(PENDULUM)
     diagram.blocks["goal"] = Number(name="goal", value=[1.0, 2.0, 3.0])

@@ -54,6 +54,9 @@ def test_constant_factors_multiply_to_the_rotation(seed: int) -> None:
     S = Sym3(g, *map(g.constant, rng.standard_normal(6)))
     turned = numbers(turn.conjugate(S), g)
     np.testing.assert_allclose(turned, expected @ numbers(S, g) @ expected.T, atol=1e-14)
+    B = Mat3(g, tuple(map(g.constant, rng.standard_normal(9))))
+    turned = numbers(turn.conjugate_any(B), g)
+    np.testing.assert_allclose(turned, expected @ numbers(B, g) @ expected.T, atol=1e-14)
 
 
 @pytest.mark.parametrize("tilt", [1e-3, 1e-6, 1e-8, 1e-10, 1e-14])
@@ -78,7 +81,7 @@ def test_right_angles_are_exact_and_free() -> None:
 
 @pytest.mark.parametrize("k", range(3))
 def test_an_axis_turn_costs_what_the_theory_says(k: int) -> None:
-    """Vectors 4 + 2, symmetric tensors 8 + 8 (docs/theory/rigid.md, eq. 12)."""
+    """Vectors 4 + 2, symmetric tensors 8 + 8, others 12 + 11 (docs/theory/rigid.md, eq. 12)."""
     g = Graph()
     turn = Turn(g, (AxisTurn(k, g.input("q", 0), g.input("q", 1)),))
     v = Vec3(g, *(g.input("v", i) for i in range(3)))
@@ -87,6 +90,8 @@ def test_an_axis_turn_costs_what_the_theory_says(k: int) -> None:
     assert (vector.mul, vector.add) == (4, 2)
     # d + d counts as a multiplication by two: 8 + 8 in all.
     assert (tensor.mul + tensor.add, tensor.total) == (16, 16)
+    other = count_operations(g, turn.conjugate_any(Mat3(g, tuple(g.input("a", i) for i in range(9)))).entries)
+    assert (other.mul, other.add) == (12, 11)
 
 
 @given(st.lists(st.floats(-1, 1), min_size=3, max_size=3).filter(lambda x: np.linalg.norm(x) > 0.1))

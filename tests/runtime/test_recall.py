@@ -48,6 +48,7 @@ def test_a_known_model_is_not_generated_again(cache: Path, written: list[str]) -
         sf.Options(flags=("-O1",)),
         sf.Options(batch="loop"),
         sf.Options(constraints="null_space"),
+        sf.Options(forward_dynamics="articulated"),
     ],
 )
 def test_another_request_is_another_model(cache: Path, written: list[str], options: sf.Options) -> None:

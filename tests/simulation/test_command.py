@@ -55,6 +55,7 @@ def test_a_run_that_fails_ends_with_1() -> None:
         (["--input", "q1=__class__"], "formula"),
         (["--method", "rk5"], "no method 'rk5'"),
         (["-o", "run.xlsx"], "can't save as"),
+        (["--plot", "window"], "of diagrams only"),
     ],
 )
 def test_what_does_not_fit(arguments: list[str], words: str) -> None:

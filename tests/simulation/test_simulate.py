@@ -249,15 +249,22 @@ class TestEnds:
         assert run.outcome.ok and run.t[-1] == pytest.approx(0.1) and run["q"][-1] == pytest.approx(0.1)
 
     def test_a_speed_without_mass_is_named_as_such(self) -> None:
-        """Massless by a parameter, which compilation can't know; and light, which is no fault."""
+        """Massless by a parameter, which compilation can't know; and light, which is no fault.
+
+        By articulated bodies the mass of a point cancels, and what is found is the limit of less and less of it.
+        """
         first = sf.RigidBody("first", sf.Joint("a", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, -1.0)),
                              (sf.Frame("end", (0, 0, -1.0)),))  # fmt: skip
         joint = sf.Joint("b", "revolute", "first", "end", axis=(0, 1, 0))
         last = sf.RigidBody("last", joint, sf.Inertia(sf.formula("m", "mass"), (0, 0, -1.0)))
-        model = sf.compile(sf.System("light", (first, last), parameters=(sf.Parameter("m", 1.0),)))
+        system = sf.System("light", (first, last), parameters=(sf.Parameter("m", 1.0),))
+        model, other = (sf.compile(system, sf.Options(forward_dynamics=way)) for way in ("factors", "articulated"))
         run = sf.simulate(model.with_parameters(m=0.0), [0.1, 0.2], t_end=0.1)
         assert run.outcome.kind == "singular" and "moves no mass" in run.outcome.reason and run.outcome.t == 0.0
-        assert sf.simulate(model.with_parameters(m=1e-9), [0.1, 0.2], t_end=0.1).outcome.ok
+        light = sf.simulate(model.with_parameters(m=1e-9), [0.1, 0.2], t_end=0.1)
+        limit = sf.simulate(other.with_parameters(m=0.0), [0.1, 0.2], t_end=0.1)
+        assert light.outcome.ok and limit.outcome.ok
+        np.testing.assert_allclose(limit.q[-1], light.q[-1], rtol=1e-7)
 
     def test_a_jump_of_no_bound(self, pendulum: sf.Model) -> None:
         run = sf.simulate(pendulum, [0.1], [0.0], 1.0, method="dopri5", u={"q": "1/(0.5 - t)^2"}, rtol=1e-9)
@@ -399,3 +406,9 @@ def test_a_passage_close_to_a_singular_posture_is_noted() -> None:
     # It is flat at 0.70845 s.
     assert len(notes) == 1 and "t = 0.708" in notes[0]
     assert sf.simulate(model, np.pi / 2 * upright, -upright, 0.3, dt=2e-3).outcome.notes == ()
+
+
+def test_progress_is_told_to_a_function(pendulum: sf.Model) -> None:
+    told: list[float] = []
+    sf.simulate(pendulum, [0.5], t_end=2.0, dt=1e-4, progress=told.append)
+    assert told == sorted(told) and told[-1] == pytest.approx(2.0)

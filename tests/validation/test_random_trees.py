@@ -4,6 +4,8 @@ disagreement to a minimal tree.
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -11,6 +13,7 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from validation.adapters import interpreted, mujoco, pinocchio
+from validation.adapters.compiled import SymofrosEngine
 from validation.assembly import assemble
 from validation.compare import compute, state_errors, typical_scales
 from validation.interface import Subject, Unsupported
@@ -78,3 +81,19 @@ def test_random_trees_agree(engine: object, system: sf.System) -> None:
         quantity = QUANTITIES[name]
         errors = state_errors(quantity, compute(ours, quantity, states), compute(theirs, quantity, states), scales)
         assert errors.max() <= quantity.tolerance, (name, errors.max())
+
+
+@pytest.mark.parametrize("way", ["articulated", "factors"])
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@given(system=trees())
+def test_either_way_of_forward_dynamics(way: Literal["articulated", "factors"], system: sf.System) -> None:
+    """Pinocchio's own articulated bodies."""
+    subject = Subject("tree", system)
+    theirs = pinocchio.build(subject)
+    if isinstance(theirs, Unsupported):
+        return
+    options = sf.Options(backend="interpreter", forward_dynamics=way)
+    ours = SymofrosEngine("symofros", sf.compile(system, options))
+    states = with_forces(ours, sample(assemble(system), ours.model.nu, STATES))
+    expected, found = theirs.forward_dynamics(states), ours.forward_dynamics(states)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * np.abs(expected).max())

@@ -44,6 +44,7 @@ TOPICS: dict[str, Topic] = {
     "timing": Topic("Speed", "How fast is the C against engines and other generators?", ("timing",), speed.timing),
     "simulation": Topic("Speed", "How fast are motions at equal accuracy?", ("simulation",), speed.simulation),
     "rollouts": Topic("Speed", "How fast are thousands of motions at once?", ("rollouts",), speed.rollouts),
+    "realtime": Topic("Speed", "How late do instants of diagrams begin?", ("realtime",), speed.realtime),
     "passes": Topic("Speed", "What does each pass of the generator gain?", ("passes",), models.passes),
     "exports": Topic("Speed", "What does a call cost, from where?", ("exports",), speed.exports),
     "pareto": Topic(

@@ -84,6 +84,21 @@ def rollouts(data: Data) -> Card:
     )  # fmt: skip
 
 
+def realtime(data: Data) -> Card:
+    """How late instants begin."""
+    rows = data["scenes"]
+    best = [row for row in rows if row["first"]] or rows
+    facts = [
+        Fact(f"{1e6 * row['median']:.0f} µs", f"median: {row['what']}; {row['missed']} of {row['instants']} missed")
+        for row in best
+    ]
+    least, most = (pick(1e6 * row["median"] for row in best) for pick in (min, max))
+    beside = f"at load {data['load']:.1f} on {data['cores']} cores"
+    return Card(
+        f"Instants of diagrams begin {least:.0f} to {most:.0f} µs late (medians), {beside}.", None, tuple(facts)
+    )
+
+
 def exports(data: Data) -> Card:
     """What a call costs where."""
     facts = [

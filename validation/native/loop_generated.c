@@ -18,6 +18,14 @@ typedef struct loop_arrays {
     double *work;
     long long *iwork;
 } loop_arrays;
+/* The same in n blocks of so many states each: the arrays of one block after those of another. */
+typedef struct loop_blocks {
+    size_t n;
+    int32_t n_in, n_out, keep;
+    const size_t *states;
+    const sym_strided *in, *out;
+    double *work;
+} loop_blocks;
 /* cdef end */
 
 static void first(const loop_arrays *s, const double **in, double **out) {
@@ -59,6 +67,14 @@ LOOP_EXPORT void loop_batch(const sym_function *function, const loop_arrays *s, 
             next(s, in, out, block);
         }
     }
+}
+
+/* A function by vectors, its arrays as they lie. */
+LOOP_EXPORT void loop_lanes(const sym_lanes *lanes, const loop_blocks *s, size_t rounds) {
+    size_t r, i;
+    for (r = 0; r < rounds; ++r)
+        for (i = 0; i < s->n; ++i)
+            lanes->batch(s->states[i], s->in + i * s->n_in, s->out + (s->keep ? i * s->n_out : 0), s->work);
 }
 
 /* A function as CasADi generates it. */

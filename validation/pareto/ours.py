@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,12 +27,14 @@ class Ours:
         model: Compiled.
         given: What `sf.simulate` takes besides method, step and tolerance: state, span, inputs, output.
         judge: Trajectory -> error.
+        alone: Whether by `sf.simulate`; else as a batch of one, where precision may be chosen.
     """
 
     label: str
     model: sf.Model
     given: Mapping[str, Any]
     judge: Judge
+    alone: bool = True
 
     def by(self, method: str, steps: Sequence[float], **more: Any) -> list[Contestant]:
         """A contestant for each step of a method [s], or each relative tolerance of one that adapts its steps."""
@@ -48,17 +50,30 @@ class Ours:
 
         return Contestant(OURS, self.label, method, setting, run)
 
+    def in_single_precision(self, method: str, steps: Sequence[float]) -> list[Contestant]:
+        """The same with accelerations in floats, states in doubles, by one lane of the code of batches."""
+        coarse = replace(self, label=f"{self.label}, floats", model=self.model.with_precision("single"), alone=False)
+        return coarse.by(method, steps)
+
     def measured(self, **settings: Any) -> Measured:
         """One run; what is refused, or does not come to its end, says why."""
         try:
-            run = sf.simulate(self.model, **self.given, **settings)
+            run, seconds = self._run(settings)
         except sf.SymofrosError as error:
             return Measured(math.nan, math.nan, str(error).splitlines()[0])
         if not run.outcome.ok:
-            return Measured(math.nan, run.statistics.worked, f"{run.outcome.kind}: {run.outcome.reason}")
+            return Measured(math.nan, seconds, f"{run.outcome.kind}: {run.outcome.reason}")
         # States that grew without bound, but not to infinity, overflow in the judge.
         with np.errstate(over="ignore", invalid="ignore"):
-            return Measured(float(self.judge(run)), run.statistics.worked)
+            return Measured(float(self.judge(run)), seconds)
+
+    def _run(self, settings: Mapping[str, Any]) -> tuple[sf.Trajectory, float]:
+        """With the seconds of the processor."""
+        if self.alone:
+            run = sf.simulate(self.model, **self.given, **settings)
+            return run, run.statistics.worked
+        runs = sf.simulate_batch(self.model, **self.given, **settings)
+        return runs[()], runs.processor_seconds
 
 
 def milliseconds(step: float) -> str:

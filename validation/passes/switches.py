@@ -14,7 +14,7 @@ from symofros.dynamics import inertia
 from symofros.expr.graph import Edge, Graph
 from symofros.expr.ops import ADD, DIV, MUL
 from symofros.expr.vector import Sym3, Vec3
-from symofros.kinematics import links, rotations
+from symofros.kinematics import rotations
 from symofros.kinematics.rotations import MatrixTurn, Turn
 from symofros.passes import stage
 from symofros.runtime.toolchain import DEFAULT_FLAGS
@@ -61,14 +61,7 @@ def _without_sharing() -> AbstractContextManager[None]:
 
 def _without_regrouping() -> AbstractContextManager[None]:
     """Inertia stays with its link, unless it is clamped to the parent."""
-    known = inertia._split
-
-    def kept(
-        link: links.MovingLink, own: inertia.LinkInertia
-    ) -> tuple[inertia.LinkInertia, inertia.LinkInertia | None]:
-        return known(link, own) if not link.columns and link.rates is None else (own, None)
-
-    return _replaced(inertia, "_split", kept)
+    return _replaced(inertia, "_split", inertia._if_clamped)
 
 
 @contextmanager

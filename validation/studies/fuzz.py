@@ -1,7 +1,7 @@
 """Feed hostile inputs to the readers: none may crash them, hang them, or be accepted as what it is not.
 
-A reader's answer to any bytes is a description or a DescriptionError, within a bounded time. What is accepted must
-survive being written and read again; of the accepted files, a sample must also compile.
+A reader's answer to any bytes is a description, a diagram or a DescriptionError, within a bounded time. What is
+accepted must survive being written and read again; of the accepted files, a sample must also compile.
 """
 
 from __future__ import annotations
@@ -108,6 +108,8 @@ def _feed(result: FuzzResult, kind: str, number: int, data: bytes, folder: Path)
     try:
         if kind == "formula":
             _formula(data)
+        elif kind == "diagram":
+            _diagram(folder, data)
         else:
             _file(folder / f"hostile.{kind}", data, number, answers)
         answers.read += 1
@@ -136,6 +138,32 @@ def _file(path: Path, data: bytes, number: int, answers: Answers) -> None:
         model = sf.compile(system, _INTERPRETED)
         model.mass_matrix(model.neutral())
         answers.compiled += 1
+
+
+# What the diagrams are about.
+_ARM = """\
+symofros: 1
+parameters: {m: 1}
+bodies:
+  link:
+    joint: {kind: revolute, name: q, axis: [0, 0, 1], actuated: true}
+    inertia: {mass: m, moments: [0.1, 0.1, 0.1]}
+    frames: {tip: {position: [1, 0, 0]}}
+"""
+
+
+def _diagram(folder: Path, data: bytes) -> None:
+    """A file, the diagram as a whole, and the file that is written of it."""
+    path = folder / "hostile.yaml"
+    path.write_bytes(data)
+    (folder / "arm.yaml").write_text(_ARM)
+    found = sf.load_diagram(path)
+    sf.Simulation(found)
+    again = path.with_name("again.yaml")
+    sf.save_diagram(found, again)
+    read = sf.load_diagram(again)
+    if (read.wires, read.outlets, read.simulation) != (found.wires, found.outlets, found.simulation):
+        raise _Changed("accepted, written, read again: another diagram")
 
 
 def _formula(data: bytes) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import reference_models
 
-KINDS = ("yaml", "urdf", "formula")
+KINDS = ("yaml", "urdf", "formula", "diagram")
 CORPUS = Path(__file__).parent.parent / "corpus"
 
 _FORMULAS = (
@@ -30,6 +30,12 @@ _SNIPPETS: dict[str, tuple[str, ...]] = {
         ".nan", ".inf", "-.inf", "null", "true", "[]", "{}", "include: [../../etc/passwd]", "include: [hostile.yaml]",
         "include: ['\\0']", "kind: free", "kind: general", "kind: fixed", "parent: world", "prescribed: true",
         "actuated: true", "symofros: 2", "about: body",
+    ),
+    "diagram": (
+        *_EVERYWHERE, "!!python/object:os.system", "&a", "*a", "<<: *a", "---", "\t", ": ", "- ", "null", "true", "[]",
+        "{}", "[[1], [2, 3]]", "kind: scope", "kind: store", "period: 0.001", "model: arm", "plant.q", "part/pd.q",
+        "file: ../../etc/passwd", "file: hostile.yaml", "diagram: {}", "models", "inputs: {name: plant.q}", "0.0.0.0",
+        "example.com", "99999999999", "plots: [[]]", ".inf",
     ),
     "urdf": (
         *_EVERYWHERE, '<!DOCTYPE r [<!ENTITY a "b">]>', "&a;", "&#0;", "&lt;", "<![CDATA[x]]>", "<!--", "-->", "<?x?>",

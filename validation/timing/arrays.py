@@ -16,6 +16,7 @@ _FLAGS = ("-O3", "-march=native", "-std=gnu99", "-Wall", "-Wextra")
 _PROTOTYPES = """
 void loop_eval(const sym_function *, const loop_arrays *, size_t);
 void loop_batch(const sym_function *, const loop_arrays *, size_t, size_t);
+void loop_lanes(const sym_lanes *, const loop_blocks *, size_t);
 void loop_casadi(int (*)(const double **, double **, long long *, double *, int), const loop_arrays *, size_t);
 """
 

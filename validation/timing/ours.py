@@ -13,19 +13,24 @@ import numpy as np
 
 import symofros as sf
 from symofros.passes.count import count_program
+from symofros.runtime.kernel import Precision
 from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepper import Stepper
 from validation.geometry import Array
 from validation.timing.arrays import Arrays, Turns, loops
+from validation.timing.blocks import Blocks
 from validation.timing.programs import BuildError, Compiler, build, copies, source
 from validation.timing.task import START, STEP, Cost, Loop, Task
 
 NAME = "symofros"
 BATCH = "symofros, batch"
-# States in a call of a batch: their results stay in the cache, as those of engines do.
-BLOCK = 64
+COLUMNS = "symofros, batch by columns"
+SINGLE = "symofros, batch of floats by columns"
+# States in a call of a batch: their results stay in the second cache, beside the code, as those of engines stay in the
+# first; whole vectors of either precision.
+BLOCK, _LEAST_BLOCK, _KEPT = 64, 16, 3 << 17
 # How many of a function's outputs engines have, too: Q, multipliers and derivatives by u are ours alone.
 _SHARED = {"dynamics": 2, "forward_dynamics": 1, "forward_dynamics_derivatives": 2}
 # More than any race steps through [s].
@@ -35,7 +40,7 @@ _BY_STATE = ("forward_dynamics_derivatives", "step")
 
 
 def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
-    """Each function state by state and, where it has code for that, by vectors.
+    """Each function state by state and, where it has code for that, by vectors: rows, columns, and columns of floats.
 
     Raises:
         SymofrosError: The model can't be compiled.
@@ -46,7 +51,9 @@ def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
             continue
         yield _by_state(task, name)
         if name not in _BY_STATE and not task.system.constraints:
-            yield _by_vectors(task, name)
+            yield _by_rows(task, name)
+            yield _by_columns(task, name, COLUMNS, "double")
+            yield _by_columns(task, name, SINGLE, "single")
 
 
 def _frames(task: Task, name: str) -> tuple[str, ...]:
@@ -56,12 +63,14 @@ def _frames(task: Task, name: str) -> tuple[str, ...]:
 class _Generated:
     """A function in its library, at the states of a task."""
 
-    def __init__(self, task: Task, name: str, batch: Literal["vector", "loop"]) -> None:
+    def __init__(
+        self, task: Task, name: str, batch: Literal["vector", "loop"], precision: Precision = "double"
+    ) -> None:
         # The fastest of our builds, as of the peers'.
         options = sf.Options((name,), _frames(task, name), batch=batch, tune=batch == "loop")
-        sf.compile_library(task.system, options)
+        sf.compile_library(task.system, options, precision)
         start = time.thread_time()  # Now that the library is in the cache, what is left is to make its text.
-        self.path, symbol = sf.compile_library(task.system, options)
+        self.path, symbol = sf.compile_library(task.system, options, precision)
         self.seconds = time.thread_time() - start
         ffi, _ = loops()
         self._libraries = [ctypes.CDLL(str(copy)) for copy in copies(self.path)]
@@ -71,13 +80,17 @@ class _Generated:
         pre = np.zeros(model.npre + 1)
         model.init(model.par_default, ffi.from_buffer("double[]", pre))
         self.functions: list[Any] = [each.functions + 0 for each in models]
+        self.lanes: list[Any] = [each.lanes for each in models]
         states, entry = task.states, model.functions[0]
         given = {"pre": pre[: model.npre], "q": states.q, "v": states.v, "a": states.a, "u": states.u}
         names = [ffi.string(item.name).decode() for item in getattr(entry, "in")[0 : entry.n_in]]
         entered = [item.rows * item.cols for item in getattr(entry, "in")[0 : entry.n_in]]
         sizes = [item.rows * item.cols for item in entry.out[0 : entry.n_out]]
-        inputs = [given.get(item, np.zeros(size)) for item, size in zip(names, entered, strict=True)]
-        self.arrays = Arrays(inputs, sizes, (int(entry.work), 0))
+        self.inputs = [given.get(item, np.zeros(size)) for item, size in zip(names, entered, strict=True)]
+        self.sizes, self.work = sizes, int(entry.work)
+        self.arrays = Arrays(self.inputs, sizes, (self.work, 0))
+        fitting = _KEPT // (8 * max(1, sum(sizes))) // _LEAST_BLOCK * _LEAST_BLOCK
+        self.block = min(BLOCK, len(task.states), max(_LEAST_BLOCK, fitting))
 
 
 def _by_state(task: Task, name: str) -> Loop:
@@ -91,9 +104,21 @@ def _by_state(task: Task, name: str) -> Loop:
     return Loop(name, NAME, run, results, _cost(task, name, made))
 
 
-def _by_vectors(task: Task, name: str) -> Loop:
+def _by_columns(task: Task, name: str, variant: str, precision: Precision) -> Loop:
+    made, native = _Generated(task, name, "vector", precision), loops()[1]
+    dtype = np.float32 if precision == "single" else np.float64
+    blocks = Blocks(made.inputs, made.sizes, made.work, made.block, dtype)
+    filled = blocks.overwritten()
+
+    def results() -> Array:
+        return blocks.results(lambda kept: native.loop_lanes(made.lanes[0], kept, 1), _SHARED.get(name))
+
+    return Loop(name, variant, Turns([partial(native.loop_lanes, lanes, filled) for lanes in made.lanes]), results)
+
+
+def _by_rows(task: Task, name: str) -> Loop:
     made, native = _Generated(task, name, "vector"), loops()[1]
-    block = min(BLOCK, len(task.states))
+    block = made.block
     filled = made.arrays.overwritten(block)
 
     def call(function: Any, rounds: int) -> None:

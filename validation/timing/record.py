@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from datetime import UTC, datetime
 from pathlib import Path
@@ -28,9 +28,10 @@ class Entry:
         function: What was timed.
         peer: Whom we raced; variant: how it was built and which way it went.
         ours: Minimum and median, nanoseconds a state, state by state; theirs: likewise.
-        batch: Ours by vectors, if there is such code.
+        batch: Ours by vectors, row by row, if there is such code.
         error: Largest relative difference of the results.
         date: When (UTC).
+        columns: As `batch`, column by column; single: that in single precision.
     """
 
     model: str
@@ -43,14 +44,16 @@ class Entry:
     theirs: tuple[float, float]
     error: float
     date: str = field(default_factory=_now)
+    columns: tuple[float, float] | None = None
+    single: tuple[float, float] | None = None
 
     @classmethod
-    def of(cls, model: str, nv: int, function: str, peer: str, variant: str, ours: Times, batch: Times | None,
-           theirs: Times, error: float) -> Self:  # fmt: skip
-        """From the times of one race."""
-        pair = None if batch is None else (batch.minimum, batch.median)
-        return cls(model, nv, function, peer, variant, (ours.minimum, ours.median), pair,
-                   (theirs.minimum, theirs.median), error)  # fmt: skip
+    def of(cls, model: str, nv: int, function: str, peer: str, variant: str, ours: Times,
+           vectors: Sequence[Times | None], theirs: Times, error: float) -> Self:  # fmt: skip
+        """From the times of one race; vectors: by rows, by columns, and by columns of floats."""
+        batch, columns, single = (None if times is None else (times.minimum, times.median) for times in vectors)
+        return cls(model, nv, function, peer, variant, (ours.minimum, ours.median), batch,
+                   (theirs.minimum, theirs.median), error, columns=columns, single=single)  # fmt: skip
 
     @property
     def ratio(self) -> float:
@@ -59,8 +62,13 @@ class Entry:
 
     @property
     def batch_ratio(self) -> float | None:
-        """Of the medians, theirs to ours by vectors."""
+        """Of the medians, theirs to ours by vectors, row by row."""
         return None if self.batch is None else self.theirs[1] / self.batch[1]
+
+    @property
+    def columns_ratio(self) -> float | None:
+        """The same column by column."""
+        return None if self.columns is None else self.theirs[1] / self.columns[1]
 
 
 @dataclass(frozen=True)
@@ -150,7 +158,8 @@ def as_data(record: Record) -> dict[str, Any]:
     """A record as JSON holds it; ratios are written out for readers."""
     return {
         "schema": SCHEMA, "machine": record.machine,
-        "entries": [{**asdict(x), "ratio": x.ratio, "batch_ratio": x.batch_ratio} for x in record.entries],
+        "entries": [{**asdict(x), "ratio": x.ratio, "batch_ratio": x.batch_ratio, "columns_ratio": x.columns_ratio}
+                    for x in record.entries],
         "costs": [asdict(x) for x in record.costs], "skipped": record.skipped, "failed": record.failed,
         "flexible": record.flexible,
     }  # fmt: skip
@@ -170,9 +179,9 @@ def read(path: Path) -> Record:
 
 
 def entry(row: Mapping[str, Any]) -> Entry:
-    """An entry from JSON."""
-    values: dict[str, Any] = {item.name: row[item.name] for item in fields(Entry)}
-    for name in ("ours", "batch", "theirs"):
+    """An entry from JSON; what was measured before there were columns has none."""
+    values: dict[str, Any] = {item.name: row.get(item.name) for item in fields(Entry)}
+    for name in ("ours", "batch", "theirs", "columns", "single"):
         values[name] = None if values[name] is None else tuple(values[name])
     return Entry(**values)
 

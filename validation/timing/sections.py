@@ -60,23 +60,26 @@ def headline(record: Record) -> str:
 def _targets(record: Record) -> Section:
     rows = tuple(_target(verdict) for verdict in verdicts(record))
     text = ("Ratios of medians, theirs to ours, each of one race. A peer's best is the fastest of its builds and ways, "
-            "chosen by its median alone.")  # fmt: skip
-    head = ("model", "function", "ours", "against", "#ratio", "#target", "verdict", "measured as")
+            "chosen by its median alone. Batches are column by column: the states are the fast axis (NumPy's Fortran "
+            "order), and arrays are read and written in place; beside them the same by rows.")  # fmt: skip
+    head = ("model", "function", "ours", "against", "#ratio", "#by rows", "#target", "verdict", "measured as")
     return Section("Targets", (text,), head, rows)
 
 
 def _target(verdict: Verdict) -> tuple[str, ...]:
     target, entry = verdict.target, verdict.entry
-    how = {"scalar": "state by state", "batch": "batch"}[target.how]
+    how = {"scalar": "state by state", "columns": "batch by columns"}[target.how]
     against = f"{target.peer}, {target.family}" if target.family else target.peer
     found = f"{verdict.ratio:.2f}" if entry else "-"
-    return (SCENES[target.model].title, FUNCTIONS[target.function], how, against, found, f"{target.least:g}",
+    rows = "" if verdict.by_rows is None else f"{verdict.by_rows:.2f}"
+    return (SCENES[target.model].title, FUNCTIONS[target.function], how, against, found, rows, f"{target.least:g}",
             verdict.words, entry.variant if entry else "")  # fmt: skip
 
 
 def _function(record: Record, function: str) -> Section:
-    head = ("model", "#nv", "#ours [ns]", "#batch [ns]", "#Pinocchio, gcc", "#Pinocchio, best", "#ratio", "#in a batch",
-            "#MuJoCo", "#ratio", "#CasADi", "#ratio", "#SymPy", "#ratio")  # fmt: skip
+    head = ("model", "#nv", "#ours [ns]", "#batch, rows [ns]", "#columns [ns]", "#floats [ns]", "#Pinocchio, gcc",
+            "#Pinocchio, best", "#ratio", "#by rows", "#by columns", "#MuJoCo", "#ratio", "#CasADi", "#ratio", "#SymPy",
+            "#ratio")  # fmt: skip
     rows = []
     for model, scene in SCENES.items():
         best = {peer: record.best(model, function, peer) for peer in ("pinocchio", "mujoco", "casadi", "sympy")}
@@ -84,8 +87,9 @@ def _function(record: Record, function: str) -> Section:
         if known:
             first = known[0]
             gcc, pinocchio = record.best(model, function, "pinocchio", "gcc"), best["pinocchio"]
-            cells = [scene.title, str(first.nv), _pair(first.ours), _pair(first.batch), _theirs(gcc)]
-            cells += [_theirs(pinocchio), _ratio(pinocchio), _batch_ratio(pinocchio)]
+            cells = [scene.title, str(first.nv), _pair(first.ours), _pair(first.batch), _pair(first.columns),
+                     _pair(first.single), _theirs(gcc), _theirs(pinocchio), _ratio(pinocchio),
+                     *_in_batches(pinocchio)]  # fmt: skip
             for peer in ("mujoco", "casadi", "sympy"):
                 cells += [_theirs(best[peer]), _ratio(best[peer])]
             rows.append(tuple(cells))
@@ -108,8 +112,8 @@ def _without_empty(head: Sequence[str], rows: Sequence[tuple[str, ...]]) -> tupl
 _NOTES = {
     "dynamics": "Ours is M + h + Q, in one function. Pinocchio's is crba, then nonLinearEffects; MuJoCo's shares its "
     "kinematics between both; CasADi's is one function, common subexpressions shared.",
-    "forward_dynamics": "Pinocchio's is aba, CasADi's articulated bodies, MuJoCo's M + h, a sparse L D L^T "
-    "and a solve.",
+    "forward_dynamics": "Ours is by articulated bodies or by factors of M, whichever counts less; Pinocchio's is "
+    "aba, CasADi's articulated bodies, MuJoCo's M + h, a sparse L D L^T and a solve.",
     "inverse_dynamics_derivatives": "By q and v. CasADi's are made by its differentiation of Newton-Euler.",
     "forward_dynamics_derivatives": "By q and v; ours by u, too. CasADi's are -M^-1 times those of inverse dynamics at "
     "the acceleration, all in one graph.",
@@ -130,9 +134,9 @@ def _ratio(entry: Entry | None) -> str:
     return "-" if entry is None else f"{entry.ratio:.2f}"
 
 
-def _batch_ratio(entry: Entry | None) -> str:
-    ratio = None if entry is None else entry.batch_ratio
-    return "-" if ratio is None else f"{ratio:.1f}"
+def _in_batches(entry: Entry | None) -> list[str]:
+    ratios = (None, None) if entry is None else (entry.batch_ratio, entry.columns_ratio)
+    return ["-" if ratio is None else f"{ratio:.1f}" for ratio in ratios]
 
 
 def _short(x: float) -> str:
@@ -184,7 +188,7 @@ def _limits(record: Record) -> Section:
 def _limit(record: Record, cost: Made, flops: float, vector: float, copied: float) -> tuple[str, ...]:
     limit = 1e9 * cost.total / flops
     alike = [x for x in record.entries if (x.model, x.function) == (cost.model, cost.function)]
-    batch = next((x.batch for x in alike if x.batch), None)
+    batch = next((x.columns or x.batch for x in alike if x.batch), None)
     in_batch = f"{batch[1] / (1e9 * cost.total / vector):.1f}" if batch and cost.by == "symofros" else "-"
     # A Jacobian of one joint takes no operations.
     distance = f"{cost.time / limit:.1f}" if limit else "-"

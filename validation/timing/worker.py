@@ -19,9 +19,9 @@ import symofros as sf
 from validation.timing.arrays import first_compiler
 from validation.timing.engines import mujoco_loops, pinocchio_loops
 from validation.timing.generated import casadi_loops, sympy_loops
-from validation.timing.ours import BATCH, NAME, our_loops
+from validation.timing.ours import BATCH, COLUMNS, NAME, SINGLE, our_loops
 from validation.timing.programs import BuildError, Skipped
-from validation.timing.race import DisagreementError, checked, race
+from validation.timing.race import OF_FLOATS, DisagreementError, checked, race
 from validation.timing.record import Entry, Made
 from validation.timing.task import Loop, Task, task
 
@@ -63,8 +63,8 @@ def work(job: Job, say: Say) -> None:
 def _function(given: Task, job: Job, function: str, say: Say) -> None:
     ours = {loop.variant: loop for loop in our_loops(given, [function])}
     expected = ours[NAME].results()
-    if BATCH in ours:
-        checked(function, BATCH, ours[BATCH].results(), expected)
+    for name in ours.keys() - {NAME}:
+        checked(function, name, ours[name].results(), expected, OF_FLOATS if name == SINGLE else 1.0)
     sides = dict(ours)
     errors: dict[str, float] = {}
     peers: dict[str, str] = {}
@@ -80,7 +80,7 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
     times = race(sides, job.states, job.repeats)
     for name, peer in peers.items():
         made = Entry.of(job.model, given.assembly.nv, function, peer, sides[name].variant, times[NAME],
-                        times.get(BATCH), times[name], errors[name])  # fmt: skip
+                        [times.get(way) for way in (BATCH, COLUMNS, SINGLE)], times[name], errors[name])  # fmt: skip
         say("entry", asdict(made))
     for name, loop in sides.items():
         if loop.cost is not None:

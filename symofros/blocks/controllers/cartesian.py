@@ -11,7 +11,7 @@ from symofros.blocks.checks import number, numbers, refuse
 from symofros.blocks.kinematics.tasks import Task, near_singular, rows_of
 from symofros.blocks.quantities import joint_units
 from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
-from symofros.diagrams.tensor import Tensor, solved
+from symofros.diagrams.tensor import Tensor, solved, stacked
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +90,7 @@ class CartesianFeedback(_Cartesian):
         kd: Likewise [1/s].
         idle: Damping of motion that the task leaves free [1/s].
         regular: Added to L^-1 where J is nearly singular, relative to its mean diagonal.
-        near: Smallest pivot of J J^T, as a root, below which a posture is nearly singular [m/rad, or 1].
+        near: Below which least singular value of J, about, a posture is nearly singular [m/rad, or 1].
     """
 
     kp: Any
@@ -126,8 +126,7 @@ class CartesianFeedback(_Cartesian):
             + at.parameters["kp"] * error
         )
         M = at.call(self.model, "mass_matrix", q=q, t=at.t)["M"]
-        MJ = at.solved(M, J.T)
-        mobility = self._regular(J, J @ MJ)
+        mobility = self._regular(J, J @ stacked([at.solved(M, row) for row in J]).T)
         idle = -self.idle * v
         F = solved(mobility, x - task.drift(at, q, v) - J @ idle)
         bias = at.call(self.model, "inverse_dynamics", q=q, v=v, a=at.numbers(np.zeros(len(v))), t=at.t)["tau"]

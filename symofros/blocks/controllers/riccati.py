@@ -14,13 +14,15 @@ from symofros.runtime.kernel import Array
 
 # Doubling: 2^40 is more than any time constant of a mechanism takes.
 _ROUNDS = 60
+# Costs beyond are those of what can't be stabilised.
+_LARGEST = 1e60
 
 
 def continuous_gain(A: Array, B: Array, Q: Array, R: Array) -> Array | None:
     """K = R^-1 B^T X (m, n) of A^T X + X A - X B R^-1 B^T X + Q = 0; None where nothing stabilises the system."""
     n, G = len(A), B @ np.linalg.solve(R, B.T)
-    # The Cayley transform keeps digits with a shift about the size of the eigenvalues.
-    shift = max(1e-3, float(np.sqrt(np.linalg.norm(A) * np.abs(np.linalg.eigvals(A)).max(initial=1e-3))))
+    # The Cayley transform keeps digits with a shift about the size of the eigenvalues, and above all of them.
+    shift = max(1e-3, 1.3 * float(np.sqrt(np.linalg.norm(A) * np.abs(np.linalg.eigvals(A)).max(initial=0.0))))
     moved = A - shift * np.eye(n)
     try:
         W = moved.T + Q @ np.linalg.solve(moved, G)
@@ -48,12 +50,12 @@ def _doubled(A: Array, G: Array, H: Array) -> Array:
     """The limit of H."""
     one = np.eye(len(A))
     for _ in range(_ROUNDS):
+        if not np.abs(H).max(initial=0.0) < _LARGEST:
+            raise np.linalg.LinAlgError("the doubling diverges")
         inner = np.linalg.solve(one + G @ H, np.hstack([A, G]))
         forward, across = inner[:, : len(A)], inner[:, len(A) :]
         step = A.T @ H @ forward
         A, G, H = A @ forward, G + A @ across @ A.T, H + 0.5 * (step + step.T)
-        if not np.all(np.isfinite(H)):
-            raise np.linalg.LinAlgError("the doubling diverges")
         if np.linalg.norm(step) <= 1e-15 * np.linalg.norm(H):
             break
     return H

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.blocks.checks import choice, number, numbers
+from symofros.blocks.checks import choice, number, numbers, refuse
 from symofros.blocks.generic.nonlinear import ordered
 from symofros.diagrams.block import At, Block, Crossing, Known, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor
@@ -42,6 +42,9 @@ class Integrator(Block):
     def __post_init__(self) -> None:
         """A start within limits in order."""
         numbers(self.name, "start", self.start)
+        for field in ("low", "high"):
+            if math.isnan(getattr(self, field)):
+                raise refuse(self.name, f"{field} is no limit", "nan", "a number, or infinite for none", "leave it out")
         ordered(self, "low", "high")
         ordered(self, "low", "start")
         ordered(self, "start", "high")

@@ -1,4 +1,4 @@
-"""Random numbers that come out alike compiled and interpreted, on any machine.
+"""Random numbers that come out alike compiled and interpreted.
 
 The generator is MRG32k3a: P. L'Ecuyer, Good parameters and implementations for combined multiple recursive random
 number generators, Operations Research 47 (1999). Its integers stay below 2^53, so that double arithmetic is exact.
@@ -57,6 +57,9 @@ def _power(A: _Matrix, n: int, m: int) -> _Matrix:
 @dataclass(frozen=True, kw_only=True)
 class Noise(Block):
     """White noise at samples: y = mean + scale n, with n normal (0, 1), or uniform within -1 to 1.
+
+    The generator is exact on any machine. What is made of its numbers may differ in the last bit between processors
+    with and without fused operations.
 
     Attributes:
         scale: Standard deviation, or greatest distance from the mean; one, or one an entry.
@@ -118,7 +121,8 @@ def _advance(state: Tensor) -> tuple[Tensor, Tensor]:
     r = _remainder(_A21 * state[5] - _A23N * state[3], _M2)
     turned = stacked([state[1], state[2], p, state[4], state[5], r])
     wrapped = p - r + _M1 * (r - p).apply("step")
-    return turned, wrapped * (1.0 / (_M1 + 1.0))
+    # A product could be fused with what follows it, which changes the last bit from machine to machine.
+    return turned, wrapped / (_M1 + 1.0)
 
 
 def _remainder(x: Tensor, m: int) -> Tensor:

@@ -53,8 +53,9 @@ class Sequence(Block):
             raise refuse(self.name, "no samples" if not self.file else "samples twice",
                          "neither file nor values" if not self.file else "file and values",
                          "samples are given, or read from a file", "state one of them")  # fmt: skip
+        signals = self._signals
         for name in dict(self.units or {}):
-            known_name(self.name, "output", name, self._signals)
+            known_name(self.name, "output", name, signals)
 
     @cached_property
     def _signals(self) -> dict[str, Signal]:
@@ -107,7 +108,7 @@ class Sequence(Block):
 
 def _early(t: Array) -> Array:
     """Times a billionth of the shortest interval earlier: 35 * 0.01 is above 0.35, yet the same instant is meant."""
-    return t - 1e-9 * np.diff(t).min(initial=1.0)
+    return np.asarray(t - 1e-9 * np.diff(t).min(initial=1.0), dtype=np.float64)
 
 
 def _read(block: str, path: Path) -> dict[str, Any]:
@@ -167,5 +168,5 @@ def _read_csv(block: str, path: Path) -> dict[str, Any]:
                     f"{path}:{lines.line_num}",
                 ))  # fmt: skip
             rows.append(row)
-    table = np.array(rows).reshape(-1, len(names))
+    table = np.array(rows).reshape(len(rows), len(names))
     return {name: table[:, i] for i, name in enumerate(names)}

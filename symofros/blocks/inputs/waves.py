@@ -144,21 +144,21 @@ class Pulse(_Wave):
 
 @dataclass(frozen=True, kw_only=True)
 class Sine(_Wave):
-    """y = offset + amplitude sin(2 pi f t + phase), with its rates: an excitation, or a trajectory.
+    """y = mean + amplitude sin(2 pi f t + phase), with its rates: an excitation, or a trajectory.
 
     Attributes:
         amplitude: Amplitude.
         frequency: f [Hz].
         phase: Phase [rad].
-        offset: Mean.
+        mean: Its mean.
         unit: Of the signal.
     """
 
     amplitude: Any = 1.0
     frequency: Any = 1.0
     phase: Any = 0.0
-    offset: Any = 0.0
-    tunable: ClassVar[tuple[str, ...]] = ("amplitude", "frequency", "phase", "offset")
+    mean: Any = 0.0
+    tunable: ClassVar[tuple[str, ...]] = ("amplitude", "frequency", "phase", "mean")
 
     def ports(self, known: Known) -> Ports:
         """Outputs y, rate, acceleration."""
@@ -167,11 +167,11 @@ class Sine(_Wave):
 
     def compute(self, at: At) -> Values:
         """The sine and its derivatives."""
-        amplitude, frequency, phase, offset = (at.parameters[key] for key in self.tunable)
+        amplitude, frequency, phase, mean = (at.parameters[key] for key in self.tunable)
         w = 2.0 * math.pi * frequency
         angle = w * at.t + phase
         s, c = amplitude * angle.apply("sin"), amplitude * angle.apply("cos")
-        found = {"y": offset + s, "rate": w * c, "acceleration": -(w * w * s)}
+        found = {"y": mean + s, "rate": w * c, "acceleration": -(w * w * s)}
         return {name: self._whole(at, value) for name, value in found.items()}
 
 

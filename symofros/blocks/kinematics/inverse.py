@@ -18,9 +18,11 @@ class InverseKinematics(Block):
 
     Sampled, each sample starts from the q of the one before and takes Newton steps q += J^+ e, so that nothing drifts;
     then v = J^+ v_d and a = J^+ (a_d - J' v). Continuous, q is a state with q' = v = J^+ (v_d + K e), and
-    a = J^+ (a_d + K (v_d - J v) - J' v). J^+ is exact away from singular postures and damped near them. Closures of
-    the model are rows of the task with nothing desired. Joints that don't follow stay where the model has them first,
-    at rest: passive and elastic ones of a control model, and free bases.
+    a = J^+ (a_d + K (v_d - J v) - J' v), of orientations to first order in e.
+
+    J^+ is exact away from singular postures and damped near them. Closures of the model are rows of the task with
+    nothing desired. Joints that don't follow stay where the model has them first, at rest: passive and elastic ones of
+    a control model, and free bases.
 
     Attributes:
         model: The model.
@@ -32,7 +34,7 @@ class InverseKinematics(Block):
         steps: Newton steps at a sample.
         gain: K, of the continuous form [1/s].
         damping: Of the rates near singular postures [m/rad, or 1].
-        near: Smallest pivot of J J^T, as a root, below which a posture is nearly singular [m/rad, or 1].
+        near: Below which least singular value of J, about, a posture is nearly singular [m/rad, or 1].
         stride: Most that a joint moves in a Newton step, in proportion with the others [rad or m].
     """
 

@@ -167,15 +167,17 @@ class Task:
 
 
 def near_singular(J: Tensor, damping: float, near: float) -> tuple[Tensor, Tensor]:
-    """The smaller Gram matrix of J (m, n), and what to add to its diagonal where it is nearly singular.
+    """The smaller Gram matrix A of J (m, n), and what to add to its diagonal where it is nearly singular.
 
-    The smallest pivot d of J J^T (or J^T J) + damping^2 tells: nothing is added where d - damping^2 >= near^2, and
-    below, smoothly, (1 - (d - damping^2) / near^2) damping^2.
+    With d = 1 / trace((A + damping^2)^-1) - damping^2, which is at most the square of the least singular value of J:
+    nothing is added where d >= near^2, and below, smoothly, (1 - d / near^2) damping^2.
     """
     gram = J @ J.T if J.shape[0] <= J.shape[1] else J.T @ J
-    full = damping * damping
-    smallest = _smallest_pivot(gram + full * np.eye(len(gram)))
-    return gram, full * (1.0 - (smallest - full) / (near * near)).clipped(0.0, 1.0)
+    full, one = damping * damping, np.eye(len(gram))
+    inverse = solved(gram + full * one, Tensor.numbers(J.g, one))
+    trace = joined([inverse[i, i] for i in range(len(gram))]).sum()
+    least = 1.0 / trace - full
+    return gram, full * (1.0 - least / (near * near)).clipped(0.0, 1.0)
 
 
 def damped(J: Tensor, damping: float, near: float) -> tuple[Tensor, Tensor]:
@@ -189,17 +191,3 @@ def resolved(system: tuple[Tensor, Tensor], rates: Tensor) -> Tensor:
     gram, J = system
     m, n = J.shape
     return J.T @ solved(gram, rates) if m <= n else solved(gram, J.T @ rates)
-
-
-def _smallest_pivot(A: Tensor) -> Tensor:
-    """Of the elimination of a symmetric, positive definite matrix."""
-    n = len(A)
-    rows = [[A[i, j] for j in range(n)] for i in range(n)]
-    smallest = rows[0][0]
-    for k in range(n):
-        smallest = smallest.apply("min", rows[k][k])
-        for i in range(k + 1, n):
-            factor = rows[i][k] / rows[k][k]
-            for j in range(k + 1, n):
-                rows[i][j] = rows[i][j] - factor * rows[k][j]
-    return smallest

@@ -52,6 +52,22 @@ typedef struct sym_function {
     void (*batch)(size_t n, const double *const *in, const size_t *in_stride, double *const *out, double *work);
 } sym_function;
 
+/* One array of a batch in any layout: entry k of state i is number k * step + i * stride from `at` on. Row by row:
+ * step 1, stride = entries; column by column, the batch as the fast axis: stride 1; one input for all: stride 0. */
+typedef struct sym_strided {
+    void *at;
+    ptrdiff_t step, stride;
+} sym_strided;
+
+/* A function by vectors: several states at once, one in each lane; columns are read and written in place. */
+typedef struct sym_lanes {
+    int32_t bytes;   /* of a number in inputs and outputs: 8, or 4; "pre" is of doubles always */
+    int32_t own;     /* whether each state may have its own "pre"; else its stride is 0 */
+    size_t work;     /* doubles of scratch */
+    /* n states; NULL where there is no such code */
+    void (*batch)(size_t n, const sym_strided *in, const sym_strided *out, double *work);
+} sym_lanes;
+
 typedef struct sym_model {
     uint32_t abi;          /* SYM_ABI; first, so that it can be read before anything else */
     uint32_t size;         /* sizeof(sym_model) of the generator */
@@ -65,6 +81,7 @@ typedef struct sym_model {
     void (*init)(const double *par, double *pre);
     int32_t n_functions;
     const sym_function *functions;
+    const sym_lanes *lanes; /* of each function, or NULL; added later: there if `size` says so */
 } sym_model;
 /* cdef end */
 

@@ -17,7 +17,7 @@ from symofros.description.native.schema import BodyEntry, InputEntry, NativeFile
 from symofros.description.native.yaml_nodes import Node, YamlFault, compose
 from symofros.description.native.yaml_writer import write_yaml as write_yaml
 from symofros.description.reading import Reading as Reading
-from symofros.description.reading import in_order, read_bytes
+from symofros.description.reading import in_order, read_bytes, refuse_size
 from symofros.description.system import Body, Input, Parameter, System
 from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 
@@ -39,11 +39,12 @@ _SECTIONS = {
 _SUFFIXES = ("px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 
 
-def read_yaml(path: str | os.PathLike[str]) -> Reading:
+def read_yaml(path: str | os.PathLike[str], text: str | None = None) -> Reading:
     """Read a native description and what it includes.
 
     Args:
         path: The main file. Files that it includes lie in its folder or below.
+        text: What the main file holds, where that is not written yet; then only its name and folder are used.
 
     Returns:
         The system without the entries that could not be read, and every problem. No system where names are missing
@@ -51,6 +52,8 @@ def read_yaml(path: str | os.PathLike[str]) -> Reading:
     """
     main = Path(path)
     merger = _Merger(main.parent.resolve())
+    if text is not None:
+        merger.unwritten[main.resolve()] = text.encode("utf-8")
     merger.add(main, str(main), ())
     return merger.reading(main.stem)
 
@@ -74,6 +77,7 @@ class _Merger:
     incomplete: bool = False
     seen: set[Path] = field(default_factory=set)
     bytes_left: int = field(default_factory=lambda: MAX_BYTES)
+    unwritten: dict[Path, bytes] = field(default_factory=dict)
 
     def reading(self, default_name: str) -> Reading:
         problems, broken = tuple(self.problems), frozenset(self.broken)
@@ -108,7 +112,10 @@ class _Merger:
 
     def bytes_of(self, path: Path) -> bytes:
         """A file's content; the limit is on the main file and all it includes together."""
-        data = read_bytes(path, self.bytes_left)
+        data = self.unwritten.get(path.resolve())
+        if data is None:
+            data = read_bytes(path, self.bytes_left)
+        refuse_size(path, data, self.bytes_left)
         self.bytes_left -= len(data)
         return data
 

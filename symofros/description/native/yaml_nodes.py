@@ -49,11 +49,21 @@ class Node:
         line: Of the value, counted from 1.
         value: A scalar, a mapping or a sequence of nodes.
         key_line: Of its key in a mapping; otherwise `line`.
+        start: Of the value, as a position in the text, its byte order mark left out.
+        end: After the value; of what is in block style, wherever the scanner noticed that it had ended.
+        key_start: Of its key; -1 outside of mappings.
+        key_end: After its key.
+        style: "block" or "flow" of a mapping or sequence; of a scalar "plain", or the sign that it begins with.
     """
 
     line: int
     value: Any
     key_line: int
+    start: int = 0
+    end: int = 0
+    key_start: int = -1
+    key_end: int = -1
+    style: str = "plain"
 
     def plain(self) -> Any:
         """The value without lines: dict, list, str, float, int, bool or None."""
@@ -98,13 +108,30 @@ def compose(data: bytes, file: str) -> tuple[Node, list[Problem]]:
     Raises:
         YamlFault: Not UTF-8, not YAML, or something the format does without.
     """
+    return compose_text(decoded(data, file), file)
+
+
+def decoded(data: bytes, file: str) -> str:
+    """A file's text, without a byte order mark.
+
+    Raises:
+        YamlFault: Not UTF-8.
+    """
     try:
-        text = data.decode("utf-8-sig")
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         found = f"byte 0x{data[error.start]:02x}"
         raise YamlFault(Problem("the text is not UTF-8", found, "files are in UTF-8", "save the file as UTF-8",
                                 f"{file}:{line}")) from None  # fmt: skip
+
+
+def compose_text(text: str, file: str) -> tuple[Node, list[Problem]]:
+    """The same from text.
+
+    Raises:
+        YamlFault: Not YAML, or something the format does without.
+    """
     builder = _Builder(file)
     try:
         for event in YAML(typ="safe", pure=True).parse(text):
@@ -148,10 +175,8 @@ def _not_yaml(found: str, where: str) -> Problem:
                    "mind indentation, ':' and brackets near this line", where)  # fmt: skip
 
 
-def _scalar(event: ScalarEvent) -> Any:
-    text: str = event.value
-    if not event.implicit[0]:
-        return text
+def scalar_of(text: str) -> Any:
+    """What a plain scalar of this text means."""
     if text in _WORDS:
         return _WORDS[text]
     if _INTEGER.match(text):
@@ -166,7 +191,7 @@ class _Builder:
     file: str
     root: Node | None = None
     problems: list[Problem] = field(default_factory=list)
-    open: list[tuple[Node, list[tuple[str, int]]]] = field(default_factory=list)
+    open: list[tuple[Node, list[tuple[str, int, int, int]]]] = field(default_factory=list)
     documents: int = 0
     nodes: int = 0
 
@@ -177,7 +202,8 @@ class _Builder:
         if isinstance(event, ScalarEvent):
             self.scalar(event, line)
         elif isinstance(event, (MappingStartEvent, SequenceStartEvent)):
-            node = Node(line, {} if isinstance(event, MappingStartEvent) else [], line)
+            node = Node(line, {} if isinstance(event, MappingStartEvent) else [], line, event.start_mark.index,
+                        style="flow" if event.flow_style else "block")  # fmt: skip
             if self.wants_key():
                 raise self.fault("a key is not a name", "a list or mapping as a key", "keys are plain names", line)
             self.put(node)
@@ -186,7 +212,7 @@ class _Builder:
                 raise self.fault(f"nested deeper than {MAX_DEPTH}", f"{len(self.open)} levels",
                                  "the format needs fewer than ten", line, "close the brackets")  # fmt: skip
         elif isinstance(event, (MappingEndEvent, SequenceEndEvent)):
-            self.open.pop()
+            self.open.pop()[0].end = event.end_mark.index
 
     def fault(self, what: str, found: str, rule: str, line: int, remedy: str = "") -> YamlFault:
         return YamlFault(Problem(what, found, rule, remedy, f"{self.file}:{line}"))
@@ -212,13 +238,15 @@ class _Builder:
 
     def scalar(self, event: ScalarEvent, line: int) -> None:
         if not self.wants_key():
-            self.put(Node(line, _scalar(event), line))
+            value = scalar_of(event.value) if event.implicit[0] else event.value
+            start, end = event.start_mark.index, event.end_mark.index
+            self.put(Node(line, value, line, start, end, style=event.style or "plain"))
             return
         if event.value == "<<":
             raise self.fault("merge keys are refused", "<<", "every value is written where it is used", line,
                              "write the entries out")  # fmt: skip
         # A key is a name, whatever it looks like: `on`, `1` and `null` are texts here.
-        self.open[-1][1].append((event.value, line))
+        self.open[-1][1].append((event.value, line, event.start_mark.index, event.end_mark.index))
 
     def put(self, node: Node) -> None:
         self.nodes += 1
@@ -232,7 +260,7 @@ class _Builder:
         if not key:
             owner.value.append(node)
             return
-        name, node.key_line = key.pop()
+        name, node.key_line, node.key_start, node.key_end = key.pop()
         if name in owner.value:
             self.duplicate(name, owner.value[name].key_line, node.key_line)
         else:

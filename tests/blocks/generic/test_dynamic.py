@@ -107,6 +107,7 @@ def test_derivatives_are_those_of_the_filtered_signal() -> None:
         (lambda: TransferFunction(name="f", num=[1, 0], den=[1]), "[1. 0.]", "add a pole"),
         (lambda: TransferFunction(name="f", num=[1], den=[0, 1]), "[0. 1.]", "leading zeros"),
         (lambda: Integrator(name="x", start=2.0, high=1.0), "2.0 and 1.0", "exchange"),
+        (lambda: Integrator(name="x", low=math.nan), "nan", "leave it out"),
         (lambda: Integrator(name="x", reset="up"), "'up'", "use one of"),
         (lambda: Derivative(name="d", tau=0.0), "0.0", "within"),
     ],

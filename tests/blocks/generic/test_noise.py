@@ -37,12 +37,15 @@ def test_double_arithmetic_is_exact_and_alike_in_c() -> None:
     block = Noise(name="n", seed=3, size=3, kind="uniform", scale=0.5, mean=0.5, period=STEP)
     found = run(block, t_end=5.0, compare=1e-300)["y"]
     expected = np.array([uniforms(stream(3, i), len(found)) for i in range(3)]).T
-    # (2 u - 1) / 2 + 1/2 rounds once or twice.
+    # (2 u - 1) / 2 + 1/2 rounds twice.
     np.testing.assert_allclose(found, expected, atol=2.3e-16)
 
 
-def test_normal_numbers_are_those_of_box_and_muller_bit_for_bit() -> None:
-    found = run(Noise(name="n", seed=8, period=STEP, scale=2.0), t_end=20.0, compare=1e-300)["y"]
+def test_normal_numbers_are_those_of_box_and_muller() -> None:
+    block = Noise(name="n", seed=8, period=STEP, scale=2.0)
+    found = run(block, t_end=20.0, compare=1e-300, compiled=True)["y"]
+    # NumPy does not fuse the angle into the cosine's reduction: a unit in the last place.
+    run(block, t_end=2.0, compare=4e-16)
     u = np.array(uniforms(stream(8, 0), 2 * len(found))).reshape(-1, 2)
     np.testing.assert_allclose(found, 2 * np.sqrt(-2 * np.log(u[:, 0])) * np.cos(2 * np.pi * u[:, 1]), atol=1e-14)
     # A false alarm once in a thousand seeds; the seed is fixed.

@@ -7,9 +7,11 @@ from validation.timing.record import Entry, Made, Record
 
 
 def entry(model: str = "panda", function: str = "dynamics", peer: str = "pinocchio", variant: str = "gcc 12, local",
-          ours: float = 100.0, theirs: float = 800.0, batch: float | None = 20.0) -> Entry:  # fmt: skip
-    pair = None if batch is None else (batch - 1.0, batch)
-    return Entry(model, 7, function, peer, variant, (ours - 1.0, ours), pair, (theirs - 1.0, theirs), 1e-15, "2026")
+          ours: float = 100.0, theirs: float = 800.0, batch: float | None = 20.0,
+          columns: float | None = None) -> Entry:  # fmt: skip
+    rows, by_columns = (None if time is None else (time - 1.0, time) for time in (batch, columns))
+    return Entry(model, 7, function, peer, variant, (ours - 1.0, ours), rows, (theirs - 1.0, theirs), 1e-15, "2026",
+                 by_columns)  # fmt: skip
 
 
 def made(model: str = "panda", function: str = "dynamics", by: str = "symofros", time: float = 100.0,

@@ -141,8 +141,10 @@ def test_a_model_goes_over_as_numbers() -> None:
 def test_batches_compute_what_single_states_do() -> None:
     """Over a last block that is not full."""
     given = task("planar3R", 100)
-    one, many = our_loops(given, ["dynamics"])
-    assert error(many.results(), one.results()) < 1e-13
+    one, rows, columns, floats = our_loops(given, ["dynamics"])
+    assert error(rows.results(), one.results()) < 1e-13
+    assert error(columns.results(), one.results()) < 1e-13
+    assert 1e-9 < error(floats.results(), one.results()) < 1e-5
 
 
 def test_closed_loops_are_timed_at_closed_postures() -> None:

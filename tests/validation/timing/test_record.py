@@ -17,7 +17,8 @@ from validation.timing.targets import TARGETS, Target, Verdict, verdicts
 def test_ratios_are_of_medians() -> None:
     pair = entry(ours=100.0, theirs=800.0, batch=20.0)
     assert pair.ratio == 8.0 and pair.batch_ratio == 40.0
-    assert entry(batch=None).batch_ratio is None
+    assert entry(batch=None).batch_ratio is None and pair.columns_ratio is None
+    assert entry(theirs=800.0, columns=16.0).columns_ratio == 50.0
 
 
 def test_a_peers_best_is_its_fastest_way_by_the_median() -> None:
@@ -61,14 +62,17 @@ def test_what_was_not_measured_is_not_met() -> None:
 
 
 def test_targets_use_the_family_and_the_batch_they_name() -> None:
-    record = Record([entry(variant="gcc 12, local", theirs=1200.0), entry(variant="clang 19, local", theirs=800.0)])
+    record = Record([entry(variant=variant, theirs=time, columns=16.0)
+                     for variant, time in (("gcc 12, local", 1200.0), ("clang 19, local", 800.0))])  # fmt: skip
     found = [v for v in verdicts(record) if v.entry is not None]
     ratios = {(v.target.how, v.target.family): v.ratio for v in found}
-    assert ratios == {("scalar", ""): 8.0, ("scalar", "gcc"): 12.0, ("batch", ""): 40.0}
+    assert ratios == {("scalar", ""): 8.0, ("scalar", "gcc"): 12.0, ("columns", ""): 50.0}
+    assert {v.by_rows for v in found} == {None, 40.0}
 
 
 def test_a_record_survives_its_file(tmp_path: Path) -> None:
-    record = Record([entry(), entry(batch=None)], [made()], [("panda", "bias", "sympy", "too large")],
+    record = Record([entry(), entry(batch=None), entry(columns=16.0)], [made()],
+                    [("panda", "bias", "sympy", "too large")],
                     [("panda", "bias", "casadi", "no compiler")], [], {"cores": 2})  # fmt: skip
     (tmp_path / "timing.json").write_text(json.dumps(as_data(record)))
     assert read(tmp_path / "timing.json") == record

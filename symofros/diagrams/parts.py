@@ -1,0 +1,109 @@
+"""The parts of a compiled diagram, each at its first state in the hands of a stepper."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from symofros.diagrams.compiled import CompiledDiagram
+from symofros.diagrams.layout import Part
+from symofros.errors import AssemblyError, Problem, SymofrosError
+from symofros.runtime.kernel import Array
+from symofros.runtime.model import Model
+from symofros.simulation.events import Event
+from symofros.simulation.inputs import InputPlan
+from symofros.simulation.settings import CLOSED, Settings
+from symofros.simulation.stepper import Stepper
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A part that is ready to move.
+
+    Attributes:
+        stepper: Its loop.
+        q: First configuration, on the constraints.
+        v: First speeds.
+    """
+
+    stepper: Stepper
+    q: Array
+    v: Array
+
+
+def watched(compiled: CompiledDiagram) -> list[tuple[str, str]]:
+    """(block, crossing) of all values whose zeros are located, in order."""
+    return [(name, which) for name, piece in compiled.resolved.pieces.items() for which in piece.crossings]
+
+
+def place_parts(
+    compiled: CompiledDiagram, settings_of: Callable[[Model], Settings], t0: float, t_end: float, par: Array
+) -> list[Placed]:
+    """A stepper for each part.
+
+    Args:
+        compiled: The diagram.
+        settings_of: How a part steps.
+        t0: Where it begins [s].
+        t_end: Where it ends [s].
+        par: Run-time parameters.
+
+    Raises:
+        SymofrosError: The method is implicit.
+        AssemblyError: A first state closes no loop.
+    """
+    resolved = compiled.resolved
+    layout, pieces, name = resolved.layout, resolved.pieces, resolved.wired.name
+    u0 = np.array(layout.u0, dtype=np.float64)
+    events = [
+        Event(f"{block}.{which}", pieces[block].crossings[which].direction, True, f"{block}.{which}")
+        for block, which in watched(compiled)
+    ]
+    found = []
+    for part, model in zip(layout.parts, compiled.parts, strict=True):
+        settings = settings_of(model)
+        if settings.method.kind not in ("explicit", "semi_implicit"):
+            raise SymofrosError(str(Problem(f"diagram '{name}': method '{settings.method.name}'", "an implicit method",
+                                            "diagrams step by explicit methods",
+                                            "use rk4, dopri5 or dop853")))  # fmt: skip
+        stepper = Stepper(model, settings.method, InputPlan(u0.copy(), list(layout.signals)), events, par)
+        settings.apply(stepper, t0, t_end, 0.0)
+        stepper.run.every = 0  # Instants are recorded by the diagram's own loop.
+        found.append(Placed(stepper, *_first(layout.q0, layout.v0, part)))
+        if model.nc and settings.stabilisation != "baumgarte":
+            found[-1] = Placed(stepper, *_close(model, name, t0, found[-1], u0, par))
+    return found
+
+
+def start(parts: list[Placed], name: str) -> None:
+    """Evaluate the first accelerations.
+
+    Raises:
+        SymofrosError: They are not finite.
+    """
+    for part in parts:
+        if part.stepper.start(part.q, part.v, 1) < 0:
+            raise SymofrosError(str(Problem(f"diagram '{name}': the first accelerations are not finite",
+                                            ", ".join(part.stepper.model.names.v[:6]), "the start is one that moves",
+                                            "look for a mass of zero or a first state that is not a number"
+                                            )))  # fmt: skip
+
+
+def _first(q0: list[float], v0: list[float], part: Part) -> tuple[Array, Array]:
+    return np.array(q0[part.q], dtype=np.float64), np.array(v0[part.v], dtype=np.float64)
+
+
+def _close(model: Model, name: str, t0: float, placed: Placed, u: Array, par: Array) -> tuple[Array, Array]:
+    """The nearest state on the constraints."""
+    kernel = model.kernel("project")
+    given = {"q": placed.q, "v": placed.v, "u": u, "t": np.array([t0])}
+    inputs = [np.ascontiguousarray(given[group]).reshape(1, -1) for group, _ in kernel.signature.inputs]
+    q_on, v_on, residual, _ = kernel.run(1, kernel.prepare(par.reshape(1, -1)), inputs)
+    if not residual[0] <= CLOSED:
+        raise AssemblyError(str(Problem(
+            f"diagram '{name}': the first state does not close the loops", f"|phi| = {residual[0]:.3g}",
+            f"at most {CLOSED:g} after projection", "start nearer: see sf.assemble",
+        )))  # fmt: skip
+    return q_on[0], v_on[0]

@@ -1,0 +1,63 @@
+"""What a run is given by name and by number: run-time parameters, and how often to record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from symofros.diagrams.compiled import Resolved
+from symofros.diagrams.layout import Place
+from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.runtime.kernel import Array
+
+# Recorded by default at about so many times.
+_RECORDS = 2000
+
+
+def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
+    """The run-time parameters, some of them given by name.
+
+    Raises:
+        UnknownNameError: There is no such parameter.
+        SymofrosError: A value does not fit.
+    """
+    layout = resolved.layout
+    par = np.array(layout.par, dtype=np.float64)
+    fields = {f"{block}.{name}": place for (block, name), place in layout.parameters.items() if block}
+    for name, value in given.items():
+        array = np.asarray(value, dtype=np.float64)
+        if name in fields:
+            place = fields[name]
+        elif name in layout.par_names:
+            place = Place(layout.par_names.index(name), ())
+        else:
+            known = [*fields, *layout.par_names]
+            raise UnknownNameError(str(Problem(f"diagram: no run-time parameter '{name}'", f"'{name}'",
+                                               f"known: {', '.join(known[:12])}", did_you_mean(name, known))
+                                       ))  # fmt: skip
+        if array.shape not in (place.shape, ()) or not np.all(np.isfinite(array)):
+            raise SymofrosError(str(Problem(f"diagram: parameter '{name}' does not fit", f"{array.shape}",
+                                            f"finite, of shape {place.shape}", "give it that shape")))  # fmt: skip
+        par[place.slice] = np.broadcast_to(array, place.shape).reshape(-1)
+    return par
+
+
+def record_interval(record: float | None, t0: float, t_end: float, dt: float | None) -> float:
+    """Between records: what was asked for, or a multiple of dt that gives about _RECORDS of them.
+
+    Raises:
+        SymofrosError: It is not positive, or there is no span of time.
+    """
+    if not (math.isfinite(t0) and math.isfinite(t_end) and t_end > t0):
+        raise SymofrosError(str(Problem("diagram: no span of time", f"from {t0} to {t_end}", "t_end after t0",
+                                        "set t_end")))  # fmt: skip
+    if record is None:
+        step = dt or 1e-3
+        return step * max(1, math.ceil((t_end - t0) / step / _RECORDS))
+    if not (math.isfinite(record) and record > 0.0):
+        raise SymofrosError(str(Problem("diagram: no interval of recording", f"{record}", "above zero [s]",
+                                        "leave it out")))  # fmt: skip
+    return float(record)

@@ -1,0 +1,26 @@
+/** The server's stream of events. */
+
+import { withToken } from "./client";
+import type { Job } from "./jobs";
+
+export interface Listener {
+  document(revision: number, name: string): void;
+  disk(): void;
+  job(job: Job): void;
+  lost(): void;
+}
+
+export function listen(listener: Listener): void {
+  const source = new EventSource(withToken("api/events"));
+  // The browser would try again by itself, but cannot tell a server that is gone from one that refuses.
+  source.addEventListener("error", () => {
+    source.close();
+    listener.lost();
+  });
+  source.addEventListener("document", (event) => {
+    const { revision, name } = JSON.parse(event.data as string) as { revision: number; name: string };
+    listener.document(revision, name);
+  });
+  source.addEventListener("disk", () => listener.disk());
+  source.addEventListener("job", (event) => listener.job(JSON.parse(event.data as string) as Job));
+}

@@ -1,0 +1,72 @@
+/** What the jobs of the server return. */
+
+import type { Fault } from "./types";
+
+export type JobKind = "compile" | "crosscheck" | "simulate" | "export";
+export type JobState = "running" | "done" | "failed" | "cancelled";
+
+export interface Count {
+  mul: number;
+  add: number;
+  div: number;
+  call: number;
+  total: number;
+}
+
+export interface Compiled {
+  operations: Record<string, Count>;
+  generate_s: number;
+  compile_s: number;
+  nq: number;
+  nv: number;
+  nu: number;
+  npar: number;
+  nc: number;
+  notes: string[];
+}
+
+export interface Crosschecked {
+  ok: boolean;
+  rows: {
+    quantity: string;
+    engine: string;
+    worst: number;
+    tolerance: number;
+    states: number;
+    passed: boolean;
+    note: string;
+  }[];
+  unsupported: { engine: string; quantity: string; reason: string }[];
+}
+
+export interface Series {
+  name: string;
+  kind: "q" | "v" | "u" | "energy";
+  unit: string;
+  /** Null where a run diverged. */
+  values: (number | null)[];
+}
+
+export interface Simulated {
+  t: number[];
+  series: Series[];
+  energy: { kinetic: (number | null)[]; potential: (number | null)[]; total: (number | null)[] };
+  outcome: { ok: boolean; t: number; reason: string; advice: string; notes: string[] };
+  method: string;
+  steps: number;
+  wall_s: number;
+}
+
+export interface Exported {
+  files: string[];
+  notes: string[];
+}
+
+export interface Job {
+  id: string;
+  kind: JobKind;
+  state: JobState;
+  progress: { done: number; total: number; text: string };
+  result: unknown;
+  error: Fault | null;
+}

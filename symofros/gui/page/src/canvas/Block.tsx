@@ -1,0 +1,114 @@
+import { Handle, type Node, type NodeProps, Position } from "@xyflow/react";
+import { memo, type ReactNode } from "react";
+
+import type { GraphNode, Port } from "../api/types";
+import { frames, hasJoint, jointHeight, portHeight, size } from "../model/geometry";
+import type { Summary } from "../model/summary";
+import { Glyph } from "../shell/Glyph";
+
+export type BlockNode = Node<{ node: GraphNode; summary: Summary }, "block">;
+
+/** Ids of handles; a body's own frame has no name. */
+export const JOINT = "joint";
+export const frameHandle = (port: Port | undefined): string => `frame ${port?.kind === "frame" ? port.name : ""}`;
+export const frameOf = (handle: string): string => handle.slice("frame ".length);
+
+type Props = NodeProps<BlockNode>["data"];
+
+/** What all blocks have: outline and head. */
+function Outline({ node, note, children }: { node: GraphNode; note: string; children: ReactNode }) {
+  const [width, height] = size(node);
+  return (
+    <div className={`block ${node.kind}${node.problems > 0 ? " wrong" : ""}`} style={{ width, height }}>
+      <div className="block-head">
+        <Glyph name={node.kind} size={14} />
+        <span className="block-title">{node.title}</span>
+        {node.problems > 0 ? <span className="block-problems">{node.problems}</span> : null}
+        <span className="block-note">{note}</span>
+      </div>
+      {children}
+    </div>
+  );
+}
+
+function Mark({ glyph, title }: { glyph: string; title: string }) {
+  return (
+    <span className="block-mark" title={title}>
+      <Glyph name={glyph} size={12} />
+    </span>
+  );
+}
+
+function JointWords({ joint }: { joint: NonNullable<Summary["joint"]> }) {
+  return (
+    <div className="block-joint">
+      <Glyph name={joint.kind} />
+      <span className="block-joint-name">{joint.name}</span>
+      <span className="block-joint-kind">{joint.kind}</span>
+      {joint.actuated ? <Mark glyph="motor" title="driven by a motor or an effort" /> : null}
+      {joint.sprung ? <Mark glyph="spring" title="spring, damper, stop or friction" /> : null}
+    </div>
+  );
+}
+
+function FramePort({ node, frame }: { node: GraphNode; frame: Port }) {
+  const name = frame.kind === "origin" ? "origin" : frame.name;
+  return (
+    <div className="block-frame" style={{ top: portHeight(node, frame.name) }}>
+      <span className={frame.kind === "origin" ? "quiet" : ""}>{name}</span>
+      <Handle
+        id={frameHandle(frame)}
+        type="source"
+        position={Position.Right}
+        className="port frame"
+        role="img"
+        aria-label={`frame ${name} of ${node.title}`}
+      />
+    </div>
+  );
+}
+
+/** A body: its joint on the left, the frames that others can be put on at the right. */
+function Body({ node, summary }: Props) {
+  return (
+    <Outline node={node} note={summary.note}>
+      {summary.joint === null ? null : <JointWords joint={summary.joint} />}
+      {hasJoint(node) ? (
+        <Handle
+          id={JOINT}
+          type="target"
+          position={Position.Left}
+          className="port joint"
+          style={{ top: jointHeight }}
+          role="img"
+          aria-label={`joint of ${node.title}`}
+        />
+      ) : null}
+      {frames(node).map((frame) => (
+        <FramePort key={frameHandle(frame)} node={node} frame={frame} />
+      ))}
+    </Outline>
+  );
+}
+
+/** A condition on speeds. */
+function Condition({ node, summary }: Props) {
+  const top = portHeight(node, "");
+  return (
+    <Outline node={node} note="">
+      <div className="block-kind">{summary.note}</div>
+      <Handle
+        id={JOINT}
+        type="target"
+        position={Position.Left}
+        className="port constraint"
+        isConnectable={false}
+        style={{ top }}
+      />
+    </Outline>
+  );
+}
+
+export const Block = memo(function Block({ data }: NodeProps<BlockNode>) {
+  return data.node.kind === "nonholonomic" ? <Condition {...data} /> : <Body {...data} />;
+});

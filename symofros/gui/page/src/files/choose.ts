@@ -1,0 +1,25 @@
+/** The browser's own dialogs for files: one to take, one to give. */
+
+import { importFile } from "../store/files";
+
+export const IMPORTED = [".yaml", ".yml", ".urdf", ".xml", ".mjcf"];
+
+export function chooseImport(): void {
+  const input = window.document.createElement("input");
+  input.type = "file";
+  input.accept = IMPORTED.join(",");
+  input.addEventListener("change", () => {
+    const file = input.files?.[0];
+    if (file !== undefined) void importFile(file);
+  });
+  input.click();
+}
+
+export function offer(blob: Blob, name: string): void {
+  const link = window.document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  // The browser has taken it by then.
+  window.setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

@@ -1,0 +1,41 @@
+/** What every field of a window may need to know. */
+
+import { createContext, useContext } from "react";
+
+import type { Json, JsonMap, Path } from "../api/types";
+import type { Renames } from "../model/changes";
+
+export interface FormContext {
+  /** The whole JSON Schema. */
+  root: JsonMap;
+  /** The document as it was when the window was opened. */
+  data: JsonMap;
+  /** The body whose window it is, if it is one's. */
+  body: string | null;
+  /** New names of entries, made when the window is accepted. */
+  renames: Renames;
+  rename(path: Path, to: string): void;
+  /** Told of each number as it is typed, so that it can be written so. */
+  type(path: Path, text: string): void;
+  hint(text: string): void;
+}
+
+export const Form = createContext<FormContext>({
+  root: {},
+  data: {},
+  body: null,
+  renames: {},
+  rename: () => undefined,
+  type: () => undefined,
+  hint: () => undefined,
+});
+export const useForm = (): FormContext => useContext(Form);
+
+/** What a control of one property gets. */
+export interface ControlProps {
+  value: Json | undefined;
+  onChange(value: Json | undefined): void;
+  path: Path;
+  label: string;
+  help: string;
+}

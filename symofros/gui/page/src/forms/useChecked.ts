@@ -1,0 +1,28 @@
+import { useEffect, useState } from "react";
+
+import { post } from "../api/client";
+import type { Checked, Path } from "../api/types";
+import { isNumber } from "./values";
+
+const PAUSE = 180;
+
+/** What the server says of a formula, a moment after it was typed; null while it has not answered. */
+export function useChecked(path: Path, text: string): Checked | null {
+  const [answer, setAnswer] = useState<{ text: string; checked: Checked } | null>(null);
+  const place = JSON.stringify(path);
+  useEffect(() => {
+    if (text.trim() === "" || isNumber(text)) return undefined;
+    let wanted = true;
+    const timer = window.setTimeout(() => {
+      post<Checked>("api/expression", { path: JSON.parse(place) as Path, text })
+        .then((checked) => wanted && setAnswer({ text, checked }))
+        // A server that is gone has a banner of its own.
+        .catch(() => undefined);
+    }, PAUSE);
+    return () => {
+      wanted = false;
+      window.clearTimeout(timer);
+    };
+  }, [place, text]);
+  return answer?.text === text ? answer.checked : null;
+}

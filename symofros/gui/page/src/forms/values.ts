@@ -1,0 +1,22 @@
+/** What is typed <-> what stands in the file. */
+
+import type { Json } from "../api/types";
+
+const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$/;
+
+export const isNumber = (text: string): boolean => NUMBER.test(text.trim());
+
+/** A number if it is one, else the formula; undefined if nothing is there. */
+export function typed(text: string): Json | undefined {
+  const trimmed = text.trim();
+  if (trimmed === "") return undefined;
+  return isNumber(trimmed) ? Number(trimmed) : trimmed;
+}
+
+// Below this a number is shorter with an exponent.
+const SMALL = 1e-3;
+
+export function shown(value: Json | undefined): string {
+  if (typeof value === "number" && value !== 0 && Math.abs(value) < SMALL) return value.toExponential();
+  return value === undefined || value === null ? "" : typeof value === "object" ? JSON.stringify(value) : String(value);
+}

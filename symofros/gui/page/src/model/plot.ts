@@ -1,0 +1,65 @@
+/** Numbers -> lines and scales. */
+
+export type Span = readonly [number, number];
+
+export interface Box {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
+
+/** The least and the greatest finite value, apart from each other so that one can divide by the difference. */
+export function span(values: readonly (number | null)[]): Span {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const value of values) {
+    if (value === null || !Number.isFinite(value)) continue;
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  }
+  if (low > high) return [0, 1];
+  if (low < high) return [low, high];
+  const margin = Math.abs(low) || 1;
+  return [low - margin, high + margin];
+}
+
+/** Round numbers inside a span, about as many as asked for. */
+export function ticks([low, high]: Span, count: number): number[] {
+  const rough = (high - low) / count;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = ([1, 2, 5, 10].find((each) => each * power >= rough) ?? 10) * power;
+  const first = Math.ceil(low / step - 1e-9);
+  const last = Math.floor(high / step + 1e-9);
+  return Array.from({ length: last - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+}
+
+// More points than pixels are not seen.
+const MOST = 1500;
+
+/** A polyline; it breaks where a value is not finite. */
+export function line(x: readonly number[], values: readonly (number | null)[], xs: Span, ys: Span, box: Box): string {
+  const stride = Math.max(1, Math.ceil(x.length / MOST));
+  let path = "";
+  let pen = "M";
+  for (let i = 0; i < x.length; i += stride) {
+    const value = values[i];
+    const at = x[i];
+    if (value === undefined || value === null || at === undefined) {
+      pen = "M";
+      continue;
+    }
+    const px = box.x + (box.width * (at - xs[0])) / (xs[1] - xs[0]);
+    const py = box.y + box.height * (1 - (value - ys[0]) / (ys[1] - ys[0]));
+    path += `${pen}${px.toFixed(1)},${py.toFixed(1)}`;
+    pen = "L";
+  }
+  return path;
+}
+
+/** Four figures, short. */
+export function brief(value: number): string {
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  return size >= 1e5 || size < 1e-3 ? value.toExponential(2) : String(Number(value.toPrecision(4)));
+}

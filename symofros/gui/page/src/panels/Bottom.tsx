@@ -1,0 +1,114 @@
+import { useState } from "react";
+
+import type {
+  Compiled as CompiledResult,
+  Crosschecked as CrosscheckedResult,
+  Exported,
+  Job,
+  JobKind,
+  Simulated,
+} from "../api/jobs";
+import { Glyph } from "../shell/Glyph";
+import { IconButton } from "../shell/IconButton";
+import { Splitter } from "../shell/Splitter";
+import { type Tab, Tabs } from "../shell/Tabs";
+import { cancel } from "../store/jobs";
+import { type BottomPane, update, useDocument, useStore } from "../store/store";
+import { Compiled } from "./Compiled";
+import { Crosschecked } from "./Crosschecked";
+import { Problems } from "./Problems";
+import { Simulation } from "./Simulation";
+
+const TITLES: Record<JobKind, string> = {
+  compile: "Operations",
+  crosscheck: "Cross-check",
+  simulate: "Simulation",
+  export: "Export",
+};
+
+function Running({ job }: { job: Job }) {
+  const { done, total, text } = job.progress;
+  return (
+    <div className="running" role="status">
+      <progress max={total || 1} value={total > 0 ? done : undefined} aria-label={TITLES[job.kind]} />
+      <span>{text || "starting"}</span>
+      <button type="button" className="small" onClick={() => void cancel(job.kind)}>
+        Cancel
+      </button>
+    </div>
+  );
+}
+
+function Result({ job }: { job: Job }) {
+  switch (job.kind) {
+    case "compile":
+      return <Compiled result={job.result as CompiledResult} />;
+    case "crosscheck":
+      return <Crosschecked result={job.result as CrosscheckedResult} />;
+    case "simulate":
+      return <Simulation result={job.result as Simulated} />;
+    case "export":
+      return (
+        <ul className="results">
+          {[
+            ...(job.result as Exported).files.map((file) => <code key={file}>{file}</code>),
+            ...(job.result as Exported).notes,
+          ].map((line, i) => (
+            <li key={i}>{line}</li>
+          ))}
+        </ul>
+      );
+  }
+}
+
+function Outcome({ job }: { job: Job }) {
+  if (job.state === "running") return <Running job={job} />;
+  if (job.state === "cancelled") return <p className="pane quiet">Cancelled.</p>;
+  if (job.state === "done") return <Result job={job} />;
+  return (
+    <div className="pane fault" role="alert">
+      <p>
+        <Glyph name="warning" size={14} /> <b>{job.error?.object}</b>
+      </p>
+      <dl>
+        {(["found", "rule", "remedy"] as const).map((key) => (
+          <div key={key}>
+            <dt>{key}</dt>
+            <dd>{job.error?.[key]}</dd>
+          </div>
+        ))}
+      </dl>
+    </div>
+  );
+}
+
+/** Problems, and what the jobs returned. */
+export function Bottom({ current }: { current: BottomPane }) {
+  const jobs = useStore((state) => state.jobs);
+  const { problems } = useDocument();
+  const [height, setHeight] = useState(() => Math.round(window.innerHeight * 0.42));
+  const tabs: Tab<BottomPane>[] = [
+    {
+      key: "problems",
+      title: <>Problems{problems.length > 0 ? <span className="count">{problems.length}</span> : null}</>,
+    },
+    ...(Object.keys(TITLES) as JobKind[])
+      .filter((kind) => jobs[kind] !== undefined)
+      .map((kind) => ({ key: kind, title: TITLES[kind] })),
+  ];
+  const job = current === "problems" ? undefined : jobs[current];
+  return (
+    <section className="result-dock" style={{ height }} aria-label="Results">
+      <Splitter side="bottom" label="Height of the results" size={height} onChange={setHeight} />
+      <Tabs
+        tabs={tabs}
+        current={job === undefined ? "problems" : current}
+        onChange={(key) => update({ bottom: key })}
+        label="Results"
+      >
+        {job === undefined ? <Problems /> : <Outcome job={job} />}
+      </Tabs>
+      <IconButton glyph="close" label="Close the results" onClick={() => update({ bottom: null })} />
+    </section>
+  );
+}

@@ -1,0 +1,67 @@
+import type { JsonMap } from "../api/types";
+import { mapAt, textAt } from "../model/paths";
+import { IconButton } from "../shell/IconButton";
+import { edit } from "../store/edits";
+import { useDocument } from "../store/store";
+import { fresh, symbols } from "../model/names";
+import { Cell } from "./Cell";
+
+/** Named inputs, for formulas of efforts and loads. */
+export function Inputs() {
+  const { data } = useDocument();
+  const inputs: JsonMap = mapAt(data, ["inputs"]);
+  const add = (): void => {
+    const name = fresh("u1", symbols(data));
+    void edit(`add ${name}`, [{ op: "set", path: ["inputs", name], value: { unit: "N m" } }]);
+  };
+  return (
+    <div className="pane parameters">
+      <table>
+        <thead>
+          <tr>
+            <th scope="col">Input</th>
+            <th scope="col">Unit</th>
+            <th scope="col">Description</th>
+            <td />
+          </tr>
+        </thead>
+        <tbody>
+          {Object.keys(inputs).map((name) => (
+            <tr key={name}>
+              <th scope="row">
+                <Cell
+                  value={name}
+                  label={`Name of ${name}`}
+                  commit={(to) =>
+                    void edit(`rename ${name}`, [{ op: "rename", path: ["inputs", name], to: to.trim() }])
+                  }
+                />
+              </th>
+              {["unit", "description"].map((key) => (
+                <td key={key}>
+                  <Cell
+                    value={textAt(inputs, [name, key]) ?? ""}
+                    label={`${key} of ${name}`}
+                    commit={(text) =>
+                      void edit(`change ${name}`, [{ op: "set", path: ["inputs", name, key], value: text }])
+                    }
+                  />
+                </td>
+              ))}
+              <td className="narrow">
+                <IconButton
+                  glyph="close"
+                  label={`Remove ${name}`}
+                  onClick={() => void edit(`remove ${name}`, [{ op: "remove", path: ["inputs", name] }])}
+                />
+              </td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      <button type="button" className="small" onClick={add}>
+        Add input
+      </button>
+    </div>
+  );
+}

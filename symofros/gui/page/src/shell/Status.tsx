@@ -1,0 +1,33 @@
+import { cancel } from "../store/jobs";
+import { useDocument, useStore } from "../store/store";
+
+/** One line: the model's size, what runs. */
+export function Status() {
+  const { graph, parameters } = useDocument();
+  const jobs = useStore((state) => state.jobs);
+  const version = useStore((state) => state.catalogue?.version);
+  const running = Object.values(jobs).find((job) => job.state === "running");
+  const bodies = graph.nodes.filter((node) => node.id.startsWith("bodies/")).length;
+  const loops = graph.edges.filter((edge) => edge.kind === "closure").length;
+  return (
+    <footer className="status">
+      <span>
+        bodies {bodies} · closures {loops} · parameters {parameters.length}
+      </span>
+      {running === undefined ? null : (
+        <span className="working">
+          <progress
+            max={running.progress.total || 1}
+            value={running.progress.total > 0 ? running.progress.done : undefined}
+            aria-label={`${running.kind}: progress`}
+          />
+          {running.progress.text || running.kind}
+          <button type="button" className="small" onClick={() => void cancel(running.kind)}>
+            Cancel
+          </button>
+        </span>
+      )}
+      <span className="quiet">{version === undefined ? "" : `symofros ${version}`}</span>
+    </footer>
+  );
+}

@@ -1,0 +1,151 @@
+import { useReactFlow } from "@xyflow/react";
+
+import type { JobKind } from "../api/jobs";
+import { pace, whole } from "../canvas/useSight";
+import { chooseImport } from "../files/choose";
+import { savePicture } from "../files/picture";
+import { tidy } from "../model/layout";
+import { copy, paste } from "../store/clipboard";
+import { place, redo, undo } from "../store/edits";
+import { browse, save } from "../store/files";
+import { run } from "../store/jobs";
+import { now, show, update, useDocument, useStore } from "../store/store";
+import { toggleTheme } from "../store/theme";
+import { IconButton } from "./IconButton";
+import { Menu } from "./Menu";
+
+function FileMenu() {
+  const document = useDocument();
+  return (
+    <Menu
+      title="File"
+      items={[
+        { title: "New…", act: () => show({ kind: "new" }) },
+        { title: "Open…", keys: "Ctrl O", act: () => void browse() },
+        { title: "Save", keys: "Ctrl S", act: () => void save() },
+        { title: "Save as…", keys: "Ctrl Shift S", act: () => show({ kind: "save as" }) },
+        { title: "Import URDF, MJCF, YAML…", act: () => void chooseImport() },
+        { title: "Picture of the diagram, SVG", act: () => void savePicture(document, "svg") },
+        { title: "Picture of the diagram, PNG", act: () => void savePicture(document, "png") },
+      ]}
+    />
+  );
+}
+
+function EditMenu() {
+  return (
+    <Menu
+      title="Edit"
+      items={[
+        { title: "Copy", keys: "Ctrl C", act: copy },
+        { title: "Paste", keys: "Ctrl V", act: () => void paste() },
+        { title: "Find…", keys: "Ctrl K", act: () => show({ kind: "search" }) },
+        { title: "System: gravity, virtual power…", act: () => show({ kind: "properties", path: ["system"] }) },
+        { title: "Keys", keys: "?", act: () => show({ kind: "keys" }) },
+      ]}
+    />
+  );
+}
+
+const WORK: readonly { kind: JobKind; title: string; help: string; start(): void }[] = [
+  {
+    kind: "compile",
+    title: "Compile",
+    help: "Derive the equations, generate and compile C",
+    start: () => void run("compile"),
+  },
+  {
+    kind: "crosscheck",
+    title: "Cross-check",
+    help: "Compare the model with independent engines",
+    start: () => void run("crosscheck"),
+  },
+  { kind: "simulate", title: "Simulate…", help: "Integrate the motion", start: () => show({ kind: "simulate" }) },
+  {
+    kind: "export",
+    title: "Export…",
+    help: "C package, FMU, MEX and other formats",
+    start: () => show({ kind: "export" }),
+  },
+];
+
+function Work() {
+  const { problems } = useDocument();
+  const jobs = useStore((state) => state.jobs);
+  const count = problems.length;
+  return (
+    <div className="cluster" role="group" aria-label="Model">
+      <button
+        type="button"
+        className={count > 0 ? "check bad" : "check good"}
+        onClick={() => update({ bottom: now().bottom === "problems" ? null : "problems" })}
+      >
+        {count === 0 ? "No problems" : `${count} problem${count > 1 ? "s" : ""}`}
+      </button>
+      {WORK.map(({ kind, title, help, start }) => (
+        <button
+          key={kind}
+          type="button"
+          title={help}
+          disabled={count > 0 || jobs[kind]?.state === "running"}
+          onClick={start}
+        >
+          {title}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+/** Commands, from the file at the left to the model at the right. */
+export function Toolbar() {
+  const document = useDocument();
+  const flow = useReactFlow();
+  const right = useStore((state) => state.right);
+  const arrange = async (): Promise<void> => {
+    await place(tidy(document.graph));
+    requestAnimationFrame(() => void flow.fitView({ ...whole(document.graph), duration: pace() }));
+  };
+  return (
+    <header className="toolbar">
+      <FileMenu />
+      <EditMenu />
+      <div className="cluster" role="group" aria-label="Diagram">
+        <IconButton
+          glyph="undo"
+          label={document.can_undo ? `Undo: ${document.undo_label ?? ""} (Ctrl Z)` : "Undo"}
+          disabled={!document.can_undo}
+          onClick={() => void undo()}
+        />
+        <IconButton
+          glyph="redo"
+          label={document.can_redo ? `Redo: ${document.redo_label ?? ""} (Ctrl Y)` : "Redo"}
+          disabled={!document.can_redo}
+          onClick={() => void redo()}
+        />
+        <IconButton glyph="layout" label="Arrange the blocks" onClick={() => void arrange()} />
+        <IconButton
+          glyph="fit"
+          label="Show the whole diagram"
+          onClick={() => void flow.fitView({ ...whole(document.graph), duration: pace() })}
+        />
+        <IconButton glyph="search" label="Find (Ctrl K)" onClick={() => show({ kind: "search" })} />
+      </div>
+      <h1 className="file-name" title={document.path}>
+        {document.path}
+        {document.dirty ? <span className="dirty">unsaved</span> : null}
+      </h1>
+      <Work />
+      <div className="cluster">
+        <button
+          type="button"
+          aria-pressed={right === "text"}
+          onClick={() => update({ right: right === "text" ? "parameters" : "text" })}
+        >
+          YAML
+        </button>
+        <IconButton glyph="theme" label="Dark or light" onClick={toggleTheme} />
+      </div>
+    </header>
+  );
+}

@@ -1,0 +1,53 @@
+import { type FormEvent, type ReactNode, useId, useLayoutEffect, useRef } from "react";
+
+import { IconButton } from "./IconButton";
+
+interface Props {
+  title: string;
+  children: ReactNode;
+  /** Buttons at the foot. */
+  foot?: ReactNode;
+  onClose(): void;
+  onSubmit?: () => void;
+  wide?: boolean;
+}
+
+/** A modal window. The browser's own dialog holds the focus inside, and gives it back when it closes. */
+export function Window({ title, children, foot, onClose, onSubmit, wide = false }: Props) {
+  const dialog = useRef<HTMLDialogElement>(null);
+  const id = useId();
+  // Before it leaves the page: only then the browser knows what had the focus.
+  useLayoutEffect(() => {
+    const element = dialog.current;
+    element?.showModal();
+    // The browser would choose the button that closes it.
+    const first = element?.querySelector<HTMLElement>(".window-body :is(input, select, button)");
+    first?.focus();
+    if (first instanceof HTMLInputElement) first.select();
+    return () => element?.close();
+  }, []);
+  const submit = (event: FormEvent): void => {
+    event.preventDefault();
+    onSubmit?.();
+  };
+  return (
+    <dialog
+      ref={dialog}
+      className={wide ? "window wide" : "window"}
+      aria-labelledby={id}
+      onCancel={(event) => {
+        event.preventDefault();
+        onClose();
+      }}
+    >
+      <form method="dialog" noValidate onSubmit={submit}>
+        <header>
+          <h2 id={id}>{title}</h2>
+          <IconButton glyph="close" label="Close" onClick={onClose} />
+        </header>
+        <div className="window-body">{children}</div>
+        {foot === undefined ? null : <footer>{foot}</footer>}
+      </form>
+    </dialog>
+  );
+}

@@ -1,0 +1,131 @@
+/** What a person does to the diagram: add, link, unlink, remove. */
+
+import type { Edit, Json, JsonMap, PaletteItem, Point } from "../api/types";
+import { frameNames, fresh, symbols } from "../model/names";
+import { isMap, mapAt, textAt } from "../model/paths";
+import { usesOf } from "../model/uses";
+import { edit, place } from "./edits";
+import { now, show, update, type Anchor } from "./store";
+
+const data = (): JsonMap => now().document?.data ?? {};
+
+export function selectedBodies(): string[] {
+  return now()
+    .selected.filter((id) => id.startsWith("bodies/") && !id.endsWith("/joint"))
+    .map((id) => id.slice("bodies/".length));
+}
+
+/** The last frame of each selected body. */
+function selectedFrames(): Anchor[] {
+  return selectedBodies().map((body) => ({ body, frame: frameNames(data(), body).at(-1) ?? "" }));
+}
+
+/** The frame that a new body goes to: that of the only selected body, else the ground. */
+export function carrier(): Anchor | null {
+  const [chosen, ...others] = selectedFrames();
+  return chosen !== undefined && others.length === 0 ? chosen : null;
+}
+
+const anchor = ({ body, frame }: Anchor): JsonMap => (frame === "" ? { body } : { body, frame });
+
+/** A template's ends on the selected bodies: of a link on two, of a condition on one. */
+function aimed(template: Json): Json {
+  if (!isMap(template)) return template;
+  const [first, second, ...more] = selectedFrames();
+  if (first === undefined || more.length > 0) return template;
+  if ("first" in template)
+    return second === undefined ? template : { ...template, first: anchor(first), second: anchor(second) };
+  if (second !== undefined) return template;
+  return Object.fromEntries(
+    Object.entries(template).map(([key, value]) => [
+      key,
+      isMap(value) && "body" in value ? { ...value, body: first.body } : value,
+    ]),
+  );
+}
+
+function attached(template: Json, on: Anchor | null, name: string): Json {
+  if (!isMap(template) || !isMap(template["joint"])) return template;
+  const taken = symbols(data());
+  const coordinate: JsonMap = template["joint"]["kind"] === "fixed" ? {} : { name: fresh("q1", taken) };
+  const joint: JsonMap = { ...coordinate, ...template["joint"] };
+  if (on !== null && on.body !== name) joint["parent"] = on.body;
+  if (on !== null && on.frame !== "") joint["frame"] = on.frame;
+  return { ...template, joint };
+}
+
+/** Adds what a palette entry says; at a place if it was dropped there, beside the selected block if not. */
+export async function add(item: PaletteItem, where?: Point): Promise<void> {
+  if (item.section === "system") {
+    show({ kind: "properties", path: ["system"] });
+    return;
+  }
+  const isSymbol = item.section === "parameters" || item.section === "inputs";
+  const taken = isSymbol ? symbols(data()) : Object.keys(mapAt(data(), [item.section]));
+  const name = fresh(item.name, taken);
+  const id = item.kind === "base" ? "world" : `${item.section}/${name}`;
+  if (where !== undefined) update((state) => ({ places: { ...state.places, [id]: where } }));
+  const value = item.section === "bodies" ? attached(item.template, carrier(), name) : aimed(item.template);
+  const done = await edit(`add ${name}`, [{ op: "set", path: [item.section, name], value }]);
+  if (!done) return;
+  if (where !== undefined) await place({ [id]: where });
+  if (item.section === "bodies" || item.section === "nonholonomic") update({ selected: [id], sight: { id } });
+  if (isSymbol) update({ right: "parameters" });
+  else if (item.section !== "bodies") show({ kind: "properties", path: [item.section, name] });
+}
+
+/** Puts a body's joint into a frame of another body. */
+export function mount(body: string, on: Anchor): Promise<boolean> {
+  const joint = ["bodies", body, "joint"];
+  const frame: Edit[] =
+    on.frame !== ""
+      ? [{ op: "set", path: [...joint, "frame"], value: on.frame }]
+      : textAt(data(), [...joint, "frame"]) !== undefined
+        ? [{ op: "remove", path: [...joint, "frame"] }]
+        : [];
+  return edit(`mount ${body}`, [{ op: "set", path: [...joint, "parent"], value: on.body }, ...frame]);
+}
+
+export type Join = "closure" | "rod" | "spring";
+
+/** Joins two frames: they stay together, or at a distance, or a spring is between them. */
+export async function join(kind: Join, first: Anchor, second: Anchor): Promise<void> {
+  const section = kind === "spring" ? "connections" : "closures";
+  const stem = kind === "spring" ? "spring" : kind === "rod" ? "rod" : "loop";
+  const name = fresh(stem, Object.keys(mapAt(data(), [section])));
+  const more: JsonMap = kind === "spring" ? { stiffness: 100, length: 1 } : kind === "rod" ? { length: 1 } : {};
+  const value = { first: anchor(first), second: anchor(second), ...more };
+  if (await edit(`add ${name}`, [{ op: "set", path: [section, name], value }])) {
+    show({ kind: "properties", path: [section, name] });
+  }
+}
+
+/** Edits that take an element of the diagram away, with what cannot be without it. */
+function removal(id: string): Edit[] {
+  const graph = now().document?.graph;
+  const edge = graph?.edges.find((each) => each.id === id);
+  if (edge?.kind === "joint") {
+    const joint = mapAt(data(), edge.path);
+    return ["parent", "frame"]
+      .filter((key) => key in joint)
+      .map((key) => ({ op: "remove", path: [...edge.path, key] }));
+  }
+  const path = edge?.path ?? graph?.nodes.find((node) => node.id === id)?.path ?? [];
+  const [section, name] = path;
+  if (name === undefined) return [];
+  const uses = section === "bodies" ? usesOf(data(), String(name)) : [];
+  return [...uses, path].map((each) => ({ op: "remove", path: each }));
+}
+
+export async function remove(ids: string[]): Promise<void> {
+  const gone = new Set(ids);
+  // A joint goes with its body.
+  const kept = ids.filter((id) => !(id.endsWith("/joint") && gone.has(id.slice(0, -"/joint".length))));
+  const seen = new Set<string>();
+  const edits = kept.flatMap(removal).filter(({ path }) => {
+    const key = path.join("/");
+    return !seen.has(key) && seen.add(key);
+  });
+  const label = kept.length === 1 ? `remove ${kept[0]?.split("/")[1] ?? ""}` : `remove ${kept.length} elements`;
+  await edit(label, edits);
+}

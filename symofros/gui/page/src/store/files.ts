@@ -1,0 +1,64 @@
+/** Files: open, new, save, import; never over something that nobody has seen. */
+
+import { get, post, type Refused } from "../api/client";
+import type { Document, FileEntry } from "../api/types";
+import { change } from "./edits";
+import { accept, explain, ordered } from "./requests";
+import { dismiss, now, show, update } from "./store";
+
+/** Takes what the server answers as the open document; asks first if unsaved work would be lost. */
+async function replace(address: string, body: object): Promise<void> {
+  const change = async (discard: boolean): Promise<void> => {
+    const document = await ordered(() => post<Document>(address, { ...body, discard }));
+    if (document === undefined) return;
+    accept(document);
+    dismiss();
+  };
+  if (now().document?.dirty === true) show({ kind: "discard", proceed: () => void change(true) });
+  else await change(false);
+}
+
+export const open = (path: string): Promise<void> => replace("api/open", { path });
+export const begin = (path: string): Promise<void> => replace("api/new", { path });
+const importText = (name: string, text: string): Promise<void> => replace("api/import", { name, text });
+
+export const importPath = (path: string): Promise<void> => replace("api/import", { path });
+
+export async function importFile(file: File): Promise<void> {
+  await importText(file.name, await file.text());
+}
+
+export async function browse(): Promise<void> {
+  const answer = await ordered(() => get<{ files: FileEntry[] }>("api/files"));
+  if (answer !== undefined) show({ kind: "open", files: answer.files });
+}
+
+/** Saves; `over` names the state of the file that the user has seen and gives up. */
+export async function save(path: string | null = null, over: string | null = null): Promise<boolean> {
+  const ask = (): Promise<Document> => post("api/save", { revision: now().document?.revision ?? 0, path, over });
+  const conflict = async (refusal: Refused): Promise<undefined> => {
+    const { disk, over: state } = refusal.body;
+    if (refusal.status === 409 && disk !== undefined && state !== undefined)
+      show({ kind: "changed on disk", disk, over: state, path });
+    else explain(refusal);
+    return undefined;
+  };
+  const document = await ordered(ask, conflict);
+  if (document === undefined) return false;
+  accept(document);
+  return true;
+}
+
+/** Back to the file as it was saved; undo brings back what was given up. */
+export const discard = (): Promise<boolean> => change("api/discard", () => ({}));
+
+/** Takes the file as somebody else wrote it; undo brings back what was here. */
+export const reload = (): Promise<boolean> => change("api/reload", () => ({}));
+
+/** The newest document, after somebody else changed it or the server came back. */
+export async function refresh(): Promise<void> {
+  const document = await ordered(() => get<Document>("api/document"));
+  if (document === undefined) return;
+  update({ link: "ok" });
+  accept(document);
+}

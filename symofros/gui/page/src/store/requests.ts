@@ -1,0 +1,55 @@
+/** One request after another, so that each carries the newest revision; refusals become notices. */
+
+import { Refused, Unreachable } from "../api/client";
+import type { Document } from "../api/types";
+import { completed } from "../model/layout";
+import { notify, now, update } from "./store";
+
+let queue: Promise<unknown> = Promise.resolve();
+let waiting = 0;
+
+export function accept(document: Document): void {
+  const old = now().document;
+  // Another file, or a new start: what was chosen in the old one means nothing here.
+  const fresh = old === null || old.path !== document.path;
+  const ids = new Set(document.graph.nodes.map((node) => node.id));
+  update((state) => ({
+    document,
+    // Blocks that nobody has put stay where they were first shown.
+    places: completed(document.graph, fresh ? document.layout : state.places, document.layout),
+    selected: fresh ? [] : state.selected.filter((id) => ids.has(id)),
+    jobs: fresh ? {} : state.jobs,
+  }));
+}
+
+export const busy = (): boolean => waiting > 0;
+
+/** Says what went wrong; true if the request is answered. */
+export function explain(reason: unknown): void {
+  if (reason instanceof Unreachable) update({ link: "lost" });
+  else if (reason instanceof Refused && reason.status === 401) update({ link: "expired" });
+  else if (reason instanceof Refused) notify(reason.fault);
+  else throw reason;
+}
+
+/** Runs `ask` when all earlier ones are answered. Undefined if it was refused and `refused` did not help. */
+export function ordered<T>(
+  ask: () => Promise<T>,
+  refused?: (refusal: Refused) => Promise<T | undefined>,
+): Promise<T | undefined> {
+  const attempt = async (): Promise<T | undefined> => {
+    try {
+      return await ask();
+    } catch (reason) {
+      if (reason instanceof Refused && refused !== undefined) return refused(reason);
+      explain(reason);
+      return undefined;
+    }
+  };
+  waiting += 1;
+  const answer = queue.then(attempt).finally(() => {
+    waiting -= 1;
+  });
+  queue = answer.catch(() => undefined);
+  return answer;
+}

@@ -1,0 +1,53 @@
+/** From the first request on: what the page asks at its start, and what it hears from then on. */
+
+import { get } from "../api/client";
+import { listen } from "../api/events";
+import type { Catalogue } from "../api/types";
+import { fetchParts } from "./clipboard";
+import { refresh } from "./files";
+import { hear } from "./jobs";
+import { busy, explain } from "./requests";
+import { now, update } from "./store";
+
+const PAUSE = 1000;
+
+/** Listens to the server until it is gone; then asks until it is back, or another one is there. */
+async function attend(): Promise<void> {
+  for (;;) {
+    await new Promise<void>((lost) => {
+      listen({
+        document: (revision, name) => {
+          const known = now().document;
+          // Our own changes come back here too, and bring nothing new.
+          if (!busy() && (revision !== known?.revision || name !== known.name)) void refresh();
+        },
+        disk: () => void refresh(),
+        job: hear,
+        lost,
+      });
+    });
+    let isBack = false;
+    while (!isBack) {
+      isBack = await answers();
+      // Also when it is there: a stream that breaks again and again must not be asked for without a pause.
+      await new Promise((resume) => window.setTimeout(resume, PAUSE));
+    }
+    if (now().link === "expired") return;
+    await refresh();
+  }
+}
+
+/** Whether the server says anything, be it that we are strangers. */
+async function answers(): Promise<boolean> {
+  const answer = await get("api/document").catch(explain);
+  return answer !== undefined || now().link === "expired";
+}
+
+export async function begin(): Promise<void> {
+  const catalogue = await get<Catalogue>("api/schema").catch(explain);
+  if (catalogue !== undefined) update({ catalogue });
+  await refresh();
+  if (now().document === null) return;
+  await fetchParts();
+  await attend();
+}

@@ -1,0 +1,90 @@
+/** What the page knows. Everything else is drawn from it. */
+
+import { create } from "zustand";
+
+import type { Job, JobKind } from "../api/jobs";
+import type { Catalogue, Document, Fault, FileEntry, LibraryPart, Path, Point } from "../api/types";
+
+export type Link = "ok" | "lost" | "expired";
+export type RightPane = "parameters" | "text" | "view";
+export type BottomPane = "problems" | "compile" | "crosscheck" | "simulate" | "export";
+
+export interface Anchor {
+  body: string;
+  frame: string;
+}
+
+export type Dialog =
+  | { kind: "properties"; path: Path }
+  | { kind: "open"; files: FileEntry[] }
+  | { kind: "new" }
+  | { kind: "save as" }
+  | { kind: "simulate" }
+  | { kind: "export" }
+  | { kind: "save part"; bodies: string[] }
+  | { kind: "link"; first: Anchor; second: Anchor }
+  | { kind: "discard"; proceed: () => void }
+  | { kind: "changed on disk"; disk: string; over: string; path: string | null }
+  | { kind: "search" }
+  | { kind: "keys" };
+
+export interface Notice {
+  id: number;
+  fault: Fault;
+}
+
+export interface State {
+  catalogue: Catalogue | null;
+  parts: LibraryPart[];
+  document: Document | null;
+  places: Record<string, Point>;
+  selected: string[];
+  /** A block that the canvas shall move into sight; a new object each time. */
+  sight: { id: string } | null;
+  dialog: Dialog | null;
+  jobs: Partial<Record<JobKind, Job>>;
+  link: Link;
+  notices: Notice[];
+  right: RightPane | null;
+  bottom: BottomPane | null;
+}
+
+export const useStore = create<State>(() => ({
+  catalogue: null,
+  parts: [],
+  document: null,
+  places: {},
+  selected: [],
+  sight: null,
+  dialog: null,
+  jobs: {},
+  link: "ok",
+  notices: [],
+  right: "parameters",
+  bottom: null,
+}));
+
+export const update = useStore.setState;
+export const now = useStore.getState;
+
+/** The open document; only for what is drawn once there is one. */
+export function useDocument(): Document {
+  const document = useStore((state) => state.document);
+  if (document === null) throw new Error("no document is open");
+  return document;
+}
+
+export const show = (dialog: Dialog): void => update({ dialog });
+export const dismiss = (): void => update({ dialog: null });
+
+let notices = 0;
+
+export function notify(fault: Fault): void {
+  notices += 1;
+  const notice = { id: notices, fault };
+  update((state) => ({ notices: [...state.notices.slice(-3), notice] }));
+}
+
+export function hush(id: number): void {
+  update((state) => ({ notices: state.notices.filter((notice) => notice.id !== id) }));
+}

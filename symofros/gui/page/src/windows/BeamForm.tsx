@@ -1,0 +1,83 @@
+import { useEffect, useState } from "react";
+
+import { post } from "../api/client";
+import type { Curves, Json, JsonMap, Path } from "../api/types";
+import { useForm } from "../forms/context";
+import { RecordField } from "../forms/Record";
+import { definition, label } from "../forms/schema";
+import { mapAt } from "../model/paths";
+import { Curve } from "../panels/Curve";
+
+const SECTION = ["length", "rhoA", "EI_z", "EI_y", "GJ", "rhoJ", "damping"];
+const MODES = ["bend_y", "bend_z", "twist", "family"];
+const OPTIONS = ["retain", "foreshortening", "rotary_inertia", "rhoI_y", "rhoI_z", "loads"];
+const DIRECTIONS = ["bend_y", "bend_z", "twist"] as const;
+
+/** Shape functions of one direction, drawn over the length. */
+function Shapes({ beam, direction }: { beam: JsonMap; direction: string }) {
+  const [curves, setCurves] = useState<Curves | null>(null);
+  const modes = beam[direction];
+  const question = JSON.stringify({
+    family: beam["family"] ?? "spline",
+    modes,
+    direction,
+    shapes: mapAt(beam, ["shapes"])[direction] ?? [],
+  });
+  useEffect(() => {
+    let wanted = true;
+    // While a number is typed it may be out of range; then the last drawing stays.
+    post<Curves>("api/shapes", JSON.parse(question))
+      .then((answer) => wanted && setCurves(answer))
+      .catch(() => undefined);
+    return () => {
+      wanted = false;
+    };
+  }, [question]);
+  if (curves === null || typeof modes !== "number") return null;
+  return (
+    <figure className="shapes">
+      <Curve
+        x={curves.xi}
+        series={curves.curves.map(({ values }) => values)}
+        width={190}
+        height={72}
+        label={`${modes} shape functions: ${label(direction)}`}
+      />
+      <figcaption>{label(direction)}, over x/L</figcaption>
+    </figure>
+  );
+}
+
+interface Props {
+  value: JsonMap;
+  onChange(value: Json | undefined): void;
+  path: Path;
+}
+
+/** A beam: its section, how many shape functions a direction, what is kept. */
+export function BeamForm({ value, onChange, path }: Props) {
+  const { root } = useForm();
+  const { shape } = definition(root, "BeamEntry");
+  if (shape.kind !== "record") return null;
+  const props = { shape, value, onChange, path };
+  const drawn = DIRECTIONS.filter((direction) => typeof value[direction] === "number" && value[direction] > 0);
+  const modes = value["family"] === "user" ? [...MODES, "shapes"] : MODES;
+  return (
+    <>
+      <h3>Shape functions</h3>
+      <div className="beside">
+        <RecordField {...props} only={modes} />
+        <div className="figures">
+          {drawn.map((direction) => (
+            <Shapes key={direction} beam={value} direction={direction} />
+          ))}
+          {drawn.length === 0 ? <p className="quiet">No shape functions: the beam is rigid.</p> : null}
+        </div>
+      </div>
+      <h3>Section</h3>
+      <RecordField {...props} only={SECTION} />
+      <h3>Model</h3>
+      <RecordField {...props} only={OPTIONS} />
+    </>
+  );
+}

@@ -1,0 +1,49 @@
+import { useState } from "react";
+
+import { stem } from "../model/names";
+import { Foot } from "../shell/Foot";
+import { TextRow } from "../shell/Row";
+import { Window } from "../shell/Window";
+import { run } from "../store/jobs";
+import { dismiss, useDocument, useStore } from "../store/store";
+
+const TITLES: Record<string, string> = {
+  c: "C source package",
+  mex: "MEX function for MATLAB and Octave",
+  sfunction: "S-function for Simulink",
+  fmu2: "FMU 2.0",
+  fmu3: "FMU 3.0",
+  urdf: "URDF",
+  mjcf: "MJCF (MuJoCo)",
+};
+
+/** What to write, and into which folder of the workspace. */
+export function ExportForm() {
+  const { name } = useDocument();
+  const kinds = useStore((state) => state.catalogue?.targets) ?? [];
+  const [kind, setKind] = useState(kinds[0] ?? "");
+  const [folder, setFolder] = useState(`${stem(name)}_export`);
+  const start = (): void => {
+    dismiss();
+    void run("export", { target: kind, folder });
+  };
+  return (
+    <Window
+      title="Export"
+      onClose={dismiss}
+      onSubmit={start}
+      foot={<Foot word="Export" disabled={kind === "" || folder.trim() === ""} />}
+    >
+      <fieldset className="kinds">
+        <legend>Format</legend>
+        {kinds.map((each) => (
+          <label key={each}>
+            <input type="radio" name="kind" checked={kind === each} onChange={() => setKind(each)} />
+            {TITLES[each] ?? each}
+          </label>
+        ))}
+      </fieldset>
+      <TextRow title="Folder" text={folder} onChange={setFolder} />
+    </Window>
+  );
+}

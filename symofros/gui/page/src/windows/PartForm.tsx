@@ -1,0 +1,28 @@
+import { useState } from "react";
+
+import { Foot } from "../shell/Foot";
+import { TextRow } from "../shell/Row";
+import { Window } from "../shell/Window";
+import { savePart } from "../store/clipboard";
+import { dismiss, useStore } from "../store/store";
+
+/** Keeps bodies as a part of the user's library. */
+export function PartForm({ bodies }: { bodies: string[] }) {
+  const parts = useStore((state) => state.parts);
+  const [name, setName] = useState(bodies[0] ?? "part");
+  const exists = parts.some((part) => part.name === name.trim());
+  const accept = async (): Promise<void> => {
+    if (await savePart(name.trim(), bodies)) dismiss();
+  };
+  return (
+    <Window
+      title="Save as a part"
+      onClose={dismiss}
+      onSubmit={() => void accept()}
+      foot={<Foot word={exists ? "Replace" : "Save"} disabled={name.trim() === ""} />}
+    >
+      <p className="quiet">{bodies.join(", ")}, with the parameters and inputs that they use</p>
+      <TextRow title="Name" text={name} onChange={setName} />
+    </Window>
+  );
+}

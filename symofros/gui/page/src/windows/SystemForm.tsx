@@ -1,0 +1,50 @@
+import type { Json } from "../api/types";
+import { useForm } from "../forms/context";
+import { FieldControl } from "../forms/Field";
+import { RecordField } from "../forms/Record";
+import { definition, field } from "../forms/schema";
+import { mapAt, replaced } from "../model/paths";
+
+interface Props {
+  value: Json | undefined;
+  onChange(value: Json | undefined): void;
+}
+
+const SECTIONS = [
+  { key: "virtual_power", title: "Virtual power", help: "Internal forces as F(q, dq) on a speed such as dq1." },
+  { key: "potentials", title: "Potential energies", help: "Formulas of coordinates, parameters and t [J]." },
+] as const;
+
+/** Gravity and name; virtual powers and potentials, which concern several bodies. */
+export function SystemForm({ value, onChange }: Props) {
+  const { root } = useForm();
+  const { shape } = definition(root, "SystemEntry");
+  const properties = mapAt(root, ["properties"]);
+  return (
+    <>
+      {shape.kind === "record" ? (
+        <RecordField
+          shape={shape}
+          value={mapAt(value, ["system"])}
+          onChange={(next) => onChange(replaced(value, "system", next))}
+          path={["system"]}
+        />
+      ) : null}
+      {SECTIONS.map(({ key, title, help }) => (
+        <section key={key}>
+          <h3>{title}</h3>
+          <p className="quiet">{help}</p>
+          <FieldControl
+            name={key}
+            field={field(root, mapAt(properties, [key]))}
+            value={mapAt(value, [key])}
+            onChange={(next) => onChange(replaced(value, key, next))}
+            path={[key]}
+            label={title}
+            siblings={undefined}
+          />
+        </section>
+      ))}
+    </>
+  );
+}

@@ -1,0 +1,126 @@
+"""Riccati equations against SciPy's; regulators hold what falls, on open trees and in closed loops."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import linalg, signal
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.blocks import LQR, Constant, ForwardDynamics
+from symofros.blocks.controllers.riccati import continuous_gain, held_inputs, sampled_gain
+from symofros.diagrams.compiled import resolve
+from symofros.diagrams.wiring import surroundings
+
+
+@pytest.mark.parametrize("size", [1, 2, 5, 12])
+@pytest.mark.parametrize("scale", [1.0, 300.0])
+def test_gains_are_those_of_scipy(size: int, scale: float, rng: np.random.Generator) -> None:
+    A, B = scale * rng.normal(size=(size, size)), scale * rng.normal(size=(size, 2))
+    Q = np.diag(rng.uniform(0.5, 2, size))
+    R = np.array([[2.0, 0.3], [0.3, 1.0]])
+    K = continuous_gain(A, B, Q, R)
+    expected = np.linalg.solve(R, B.T @ linalg.solve_continuous_are(A, B, Q, R))
+    np.testing.assert_allclose(K, expected, rtol=1e-8, atol=1e-8 * np.abs(expected).max())
+    Ad, Bd = held_inputs(A, B, 0.02)
+    Ac, Bc, *_ = signal.cont2discrete((A, B, np.eye(size), np.zeros((size, 2))), 0.02)
+    np.testing.assert_allclose(Ad, Ac, rtol=1e-11, atol=1e-12 * np.abs(Ac).max())
+    np.testing.assert_allclose(Bd, Bc, rtol=1e-10, atol=1e-12 * np.abs(Bc).max())
+    if scale == 1.0:
+        X = linalg.solve_discrete_are(Ac, Bc, Q, R)
+        expected = np.linalg.solve(R + Bc.T @ X @ Bc, Bc.T @ X @ Ac)
+        found = sampled_gain(Ad, Bd, Q, R)
+        np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-9 * np.abs(expected).max())
+
+
+def test_what_no_input_reaches_has_no_gain() -> None:
+    A, B = np.diag([1.0, -1.0]), np.array([[0.0], [1.0]])
+    assert continuous_gain(A, B, np.eye(2), np.eye(1)) is None
+    assert sampled_gain(*held_inputs(A, B, 0.1), np.eye(2), np.eye(1)) is None
+
+
+def held_up(name: str, start: dict[str, float], away: dict[str, float], block: LQR, t_end: float) -> np.ndarray:
+    """The distance of a model from `start` over time, once it is let go elsewhere under a regulator."""
+    system = MODELS[name]
+    diagram = sf.Diagram("hold")
+    diagram.add_model("m", system, start)
+    diagram.add_model("plant", system, {**start, **away})
+    diagram.add(block, q="plant.q", v="plant.v")
+    diagram.add(ForwardDynamics(name="plant", model="plant"), u="lqr.u")
+    simulation = sf.Simulation(diagram)
+    found = simulation.run(t_end, dt=1e-3)
+    assert found.outcome.ok
+    short = simulation.interpret(0.1, dt=1e-3, record=0.01)
+    np.testing.assert_allclose(simulation.run(0.1, dt=1e-3, record=0.01)["lqr.u"], short["lqr.u"], rtol=1e-8, atol=1e-9)
+    return np.linalg.norm(found["lqr.x"], axis=1)
+
+
+@pytest.mark.parametrize("period", [None, 0.01])
+def test_an_inverted_pendulum_is_held_up(period: float | None) -> None:
+    model = sf.compile(MODELS["cart_pole"])
+    pole = model.names.q[1]
+    upright = max((0.0, np.pi), key=lambda x: model.potential_energy(np.array([0.0, x])))
+    block = LQR(name="lqr", model="m", state_weights=[1, 10, 1, 1], input_weights=0.1, period=period)
+    distance = held_up("cart_pole", {pole: upright}, {pole: upright + 0.2}, block, 12.0)
+    assert distance[0] == pytest.approx(0.2)
+    assert distance[-1] < 1e-3
+
+
+def test_a_floating_arm_is_regulated_along_its_manifold() -> None:
+    # Its base drifts freely: what no force reaches can't be regulated, which is said.
+    with pytest.raises(sf.DescriptionError, match="no gain") as caught:
+        held_up("space_arm", {}, {}, LQR(name="lqr", model="m"), 0.1)
+    assert "actuate more joints" in caught.value.problems[0].remedy
+
+
+def test_the_gain_in_a_closed_loop_is_that_of_its_independent_coordinates() -> None:
+    system = crank_driven()
+    diagram = sf.Diagram("loop")
+    q0 = sf.assemble(sf.compile(system), [1.2, -1.2, 1.2]).q
+    diagram.add_model("m", system, dict(zip(("q1", "q2", "q3"), q0, strict=True)))
+    for name, size in (("q", 3), ("v", 3)):
+        diagram.add(Constant(name=name, value=np.zeros(size)))
+    block = LQR(name="lqr", model="m", state_weights=[1, 2, 3, 4, 5, 6], input_weights=0.5)
+    diagram.add(block, q="q.y", v="v.y")
+    wired = resolve(diagram).wired
+    K = block.gain(surroundings(wired, "lqr"))
+    linear = sf.state_space(sf.compile(system), q0)
+    X = linalg.solve_continuous_are(linear.A, linear.B, linear.basis.T @ np.diag(range(1, 7)) @ linear.basis, [[0.5]])
+    np.testing.assert_allclose(K @ linear.basis, linear.B.T @ X / 0.5, rtol=1e-7)
+    assert K.shape == (1, 6)
+
+
+def crank_driven() -> sf.System:
+    """The four-bar linkage with a motor at its crank."""
+    system = MODELS["four_bar"]
+    crank = system.bodies[0]
+    assert crank.joint is not None
+    return system.with_bodies(replace(crank, joint=replace(crank.joint, actuated=True)), *system.bodies[1:])
+
+
+@pytest.mark.parametrize(
+    ("fields", "found"),
+    [
+        ({"state_weights": [1, 2]}, "(2,)"),
+        ({"state_weights": -1.0}, "-1"),
+        ({"input_weights": 0.0}, "0"),
+        ({"nominal": [1, 2]}, "(2,)"),
+        ({"model": "dead"}, "no inputs"),
+    ],
+)
+def test_what_is_wrong_is_said(fields: dict[str, Any], found: str) -> None:
+    diagram = sf.Diagram("one")
+    diagram.add_model("m", MODELS["cart_pole"])
+    diagram.add_model("dead", MODELS["torque_free_body"])
+    diagram.add(Constant(name="x", value=[0.0, 0.0]))
+    diagram.add(LQR(**{"name": "lqr", "model": "m", **fields}), q="x.y", v="x.y")
+    with pytest.raises(sf.DescriptionError) as caught:
+        sf.Simulation(diagram)
+    problem = caught.value.problems[0]
+    assert found in problem.found
+    assert problem.rule
+    assert problem.remedy

@@ -1,0 +1,110 @@
+"""Sequences over time, given or read from files, which nobody trusts."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.blocks import Sequence
+from symofros.blocks.inputs import sequences
+from tests.blocks.support import run
+
+T = np.array([0.0, 0.05, 0.2])
+VALUES = np.array([[1.0, 2.0], [3.0, -2.0], [0.0, 1.0]])
+
+
+@pytest.fixture
+def csv(tmp_path: Path) -> Path:
+    path = tmp_path / "moves.csv"
+    rows = np.hstack([T[:, None], VALUES])
+    path.write_text("t, q1,q2\n" + "\n".join(",".join(map(str, row)) for row in rows) + "\n")
+    return path
+
+
+def lines(t: np.ndarray) -> np.ndarray:
+    return np.stack([np.interp(t, T, column) for column in VALUES.T], axis=1)
+
+
+def test_between_samples_there_are_lines_or_steps() -> None:
+    found = run(Sequence(name="s", t=T, values=VALUES, units={"y": "N m"}), t_end=0.3)
+    np.testing.assert_allclose(found["y"], lines(found["t"]), atol=1e-15)
+    held = run(Sequence(name="s", t=T, values=VALUES, kind="hold"), t_end=0.3)
+    np.testing.assert_array_equal(held["y"][[0, 4, 5, 19, 20, 30]], VALUES[[0, 0, 1, 1, 2, 2]])
+
+
+def test_a_trajectory_has_several_outputs(csv: Path, tmp_path: Path) -> None:
+    np.savez(tmp_path / "moves.npz", t=T, q=VALUES, v=2 * VALUES, a=VALUES[:, 0])
+    found = run(Sequence(name="s", file=str(tmp_path / "moves.npz"), outputs={"q": "q", "v": "v", "a": "a"}), t_end=0.2)
+    np.testing.assert_allclose(found["v"], 2 * lines(found["t"]), atol=1e-15)
+    assert found["a"].ndim == 1
+    found = run(Sequence(name="s", file=str(csv), outputs={"back": ["q2", "q1"], "one": "q1"}), t_end=0.2)
+    np.testing.assert_allclose(found["back"], lines(found["t"])[:, ::-1], atol=1e-15)
+    np.testing.assert_allclose(found["one"], lines(found["t"])[:, 0], atol=1e-15)
+    np.testing.assert_allclose(run(Sequence(name="s", file=str(csv)), t_end=0.2)["y"], lines(found["t"]), atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "found", "where"),
+    [
+        ("t,q\n0,1\n1,two\n", "1,two", "bad.csv:3"),
+        ("t,q\n0,1\n1\n", "1", "bad.csv:3"),
+        ("t,q\n0,nan\n1,2\n", "nan", ""),
+        ("t,q\n1,1\n0,2\n", "[1. 0.]", ""),
+        ("t,t\n", "t, t", ""),
+        ("q\n1\n", "only q", ""),
+        ("", "", ""),
+    ],
+)
+def test_faults_of_files_are_said_by_line(tmp_path: Path, text: str, found: str, where: str) -> None:
+    path = tmp_path / "bad.csv"
+    path.write_text(text)
+    with pytest.raises(sf.DescriptionError) as caught:
+        Sequence(name="s", file=str(path))
+    problem = caught.value.problems[0]
+    assert found in problem.found
+    assert problem.where.endswith(where)
+    assert problem.remedy
+
+
+def test_large_and_foreign_files_are_not_read(tmp_path: Path, csv: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(path: Path) -> str:
+        with pytest.raises(sf.DescriptionError) as caught:
+            Sequence(name="s", file=str(path))
+        return str(caught.value)
+
+    assert "No such file" in refused(tmp_path / "none.csv")
+    assert "names end in .csv or .npz" in refused(tmp_path)
+    # A pickle inside an archive of arrays would run code.
+    np.savez(tmp_path / "objects.npz", t=np.array([{}, {}], dtype=object))
+    assert "no NPZ file" in refused(tmp_path / "objects.npz")
+    (tmp_path / "text.npz").write_text("not an archive")
+    assert "no NPZ file" in refused(tmp_path / "text.npz")
+    with zipfile.ZipFile(tmp_path / "bomb.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("t.npy", bytes(5_000_000))
+    monkeypatch.setattr(sequences, "MOST_NUMBERS", 4)
+    assert "bytes unpacked" in refused(tmp_path / "bomb.npz")
+    assert "4 in all" in refused(csv)
+    monkeypatch.setattr(sequences, "MOST_BYTES", 10)
+    assert "at most 10" in refused(csv)
+
+
+@pytest.mark.parametrize(
+    ("fields", "found"),
+    [
+        ({}, "neither"),
+        ({"values": [1], "file": "x.csv"}, "file and values"),
+        ({"t": [0, 1], "values": [1, 2, 3]}, "(3,)"),
+        ({"t": [0, 1], "values": [1, 2], "kind": "cubic"}, "'cubic'"),
+        ({"t": [0, 1], "values": [1, 2], "outputs": {"z": "x"}}, "'x'"),
+        ({"t": [0, 1], "values": [1, 2], "units": {"z": "m"}}, "'z'"),
+    ],
+)
+def test_what_is_wrong_is_said(fields: dict[str, object], found: str) -> None:
+    with pytest.raises(sf.DescriptionError) as caught:
+        Sequence(name="s", **fields)  # type: ignore[arg-type]
+    assert found in caught.value.problems[0].found
+    assert caught.value.problems[0].remedy

@@ -1,0 +1,201 @@
+"""Every block works with every model: rigid, flexible, closed, on a floating base; against sf.Model in NumPy."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.blocks import (
+    CartesianFeedback,
+    CartesianLinear,
+    ComputedTorque,
+    Extremities,
+    ForwardKinematics,
+    FrameTransform,
+    FrictionCompensation,
+    GravityCompensation,
+    InverseDynamics,
+    InverseKinematics,
+    Jacobian,
+)
+from symofros.description.forces import Friction
+from symofros.diagrams.block import Block
+from symofros.diagrams.variants import friction_only
+from tests.blocks.support import run
+
+# Model -> a frame at the end of what moves.
+CASES = {
+    "rx90": "tool",
+    "planar_robot": "tool",
+    "flexible_pendulum": "",
+    "four_bar": "coupler.end",
+    "flexible_slider_crank": "",
+    "space_arm": "grip",
+    "free_boom": "tip",
+    "joint_zoo": "",
+    "car": "front_left_wheel",
+    "stewart": "",
+}
+COUNT = 3
+# Another route to the same numbers; accelerations of stiff models are large, and so are their roundings.
+CLOSE = {"rtol": 1e-9, "atol": 1e-9}
+
+
+@cache
+def model(name: str) -> sf.Model:
+    return sf.compile(MODELS[name])
+
+
+def frame(name: str) -> str:
+    return CASES[name] or model(name).names.frames[-1]
+
+
+@cache
+def states(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(5)
+    q, v = zip(*(model(name).random_state(rng) for _ in range(COUNT)), strict=True)
+    # Beams bend as far as they may.
+    elastic = ["[" in item for item in model(name).names.q]
+    q = np.where(elastic, 0.01 * np.array(q), q)
+    return q, np.array(v), rng.normal(size=(COUNT, model(name).nv))
+
+
+def through(name: str, block: Block, **inputs: np.ndarray) -> dict[str, np.ndarray]:
+    return dict(run(block, inputs, models={"m": (MODELS[name], {})}, compare=1e-10))
+
+
+pytestmark = pytest.mark.parametrize("name", CASES)
+
+
+def test_direct_kinematics(name: str) -> None:
+    (q, v, a), m, at = states(name), model(name), frame(name)
+    found = through(name, ForwardKinematics(name="b", model="m", frame=at), q=q, v=v, a=a)
+    p, R = m.frame_pose(at, q)
+    np.testing.assert_allclose(found["p"], p, **CLOSE)
+    np.testing.assert_allclose(found["R"], R, **CLOSE)
+    np.testing.assert_allclose(found["velocity"], m.frame_velocity(at, q, v), **CLOSE)
+    np.testing.assert_allclose(found["acceleration"], m.frame_acceleration(at, q, v, a), **CLOSE)
+
+
+def test_all_extremities_at_once(name: str) -> None:
+    (q, v, a), m = states(name), model(name)
+    frames = [item for item in m.names.frames if item != "world"]
+    found = through(name, Extremities(name="b", model="m"), q=q, v=v, a=a)
+    for i, at in enumerate(frames):
+        np.testing.assert_allclose(found["p"][:, i], m.frame_pose(at, q)[0], **CLOSE)
+        np.testing.assert_allclose(found["velocity"][:, i], m.frame_velocity(at, q, v), **CLOSE)
+
+
+def test_jacobians_and_their_rates(name: str) -> None:
+    (q, v, _), m, at = states(name), model(name), frame(name)
+    found = through(name, Jacobian(name="b", model="m", frame=at), q=q, v=v)
+    np.testing.assert_allclose(found["J"], m.frame_jacobian(at, q), **CLOSE)
+    np.testing.assert_allclose(found["rate"], m.frame_jacobian_rate(at, q, v), **CLOSE)
+    np.testing.assert_array_equal(np.concatenate([found["translation"], found["rotation"]], axis=1), found["J"])
+
+
+def test_frame_transforms(name: str) -> None:
+    (q, _, _), m, at = states(name), model(name), frame(name)
+    u = np.arange(6.0 * COUNT).reshape(COUNT, 6)
+    found = through(name, FrameTransform(name="b", model="m", source=at, quantity="wrench"), q=q, u=u)
+    p, R = m.frame_pose(at, q)
+    f = np.einsum("nij,nj->ni", R, u[:, :3])
+    n = np.einsum("nij,nj->ni", R, u[:, 3:]) + np.cross(p, f)
+    np.testing.assert_allclose(found["y"], np.hstack([f, n]), **CLOSE)
+
+
+def test_inverse_dynamics_and_compensations(name: str) -> None:
+    (q, v, a), m = states(name), model(name)
+    rubs = friction(name, q, v)
+    tau = m.inverse_dynamics(q, v, a)
+    scale = {"rtol": 1e-9, "atol": 1e-10 * max(1.0, np.abs(tau).max())}
+    np.testing.assert_allclose(through(name, InverseDynamics(name="b", model="m"), q=q, v=v, a=a)["tau"], tau, **scale)
+    without = through(name, InverseDynamics(name="b", model="m", with_friction=False), q=q, v=v, a=a)["tau"]
+    np.testing.assert_allclose(without, tau + rubs, **scale)
+    found = through(name, FrictionCompensation(name="b", model="m", factor=0.8), q=q, v=v)["effort"]
+    np.testing.assert_allclose(found, -0.8 * rubs, **scale)
+    held = through(name, GravityCompensation(name="b", model="m"), q=q)["effort"]
+    np.testing.assert_allclose(held, m.inverse_dynamics(q, 0 * v, 0 * a), **scale)
+
+
+def friction(name: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Forces of friction (nv), by a model whose joints have no others."""
+    rubbing = [body.joint.name for body in MODELS[name].bodies
+               if body.joint and any(isinstance(element, Friction) for element in body.joint.elements)]  # fmt: skip
+    if not rubbing:
+        return 0 * v
+    only = sf.compile(friction_only(MODELS[name]))
+    return only.generalized_force(q, v, np.zeros(only.nu)) * [item in rubbing for item in only.names.v]
+
+
+def test_computed_torque_makes_the_error_decay(name: str) -> None:
+    (q, v, a), m = states(name), model(name)
+    desired = m.integrate(q, 0.1 * a)
+    block = ComputedTorque(name="b", model="m", kp=50.0, kd=12.0)
+    found = through(name, block, q_desired=desired, v_desired=0.3 * a, a_desired=a, q=q, v=v)
+    error = m.difference(q, desired)
+    np.testing.assert_allclose(found["error"], error, rtol=1e-9, atol=1e-12)
+    tau = m.inverse_dynamics(q, v, a + 50.0 * error + 12.0 * (0.3 * a - v))
+    np.testing.assert_allclose(found["tau"], tau, rtol=1e-9, atol=1e-10 * np.abs(tau).max())
+
+
+def test_cartesian_control(name: str) -> None:
+    (q, v, _), m, at = states(name), model(name), frame(name)
+    rng = np.random.default_rng(1)
+    J = m.frame_jacobian(at, q)[:, :3]
+    # What moves in a plane follows that plane's directions.
+    rows = np.flatnonzero(np.abs(J).max(axis=(0, 2)) > 1e-9)
+    J, k = J[:, rows], len(rows)
+    place, rate = m.frame_pose(at, q)[0][:, rows], rng.normal(size=(COUNT, k))
+    given = {"p_desired": place + 0.1 * rng.normal(size=(COUNT, k)), "v_desired": rate, "q": q, "v": v}
+    fields: dict[str, Any] = {"name": "b", "model": "m", "frame": at, "rows": tuple("xyz"[row] for row in rows)}
+    missing, lag = given["p_desired"] - place, rate - np.einsum("nij,nj->ni", J, v)
+    stiffness = [50.0, 60.0, 70.0][:k]
+    found = through(name, CartesianLinear(**fields, stiffness=stiffness, damping=5.0), **given)
+    wrench = stiffness * missing + 5.0 * lag
+    np.testing.assert_allclose(found["wrench"], wrench, **CLOSE)
+    np.testing.assert_allclose(found["effort"], np.einsum("nij,ni->nj", J, wrench), rtol=1e-9, atol=1e-8)
+    feedback = CartesianFeedback(**fields, kp=30.0, kd=8.0)
+    if m.nc:
+        with pytest.raises(sf.DescriptionError, match="constraints"):
+            through(name, feedback, **given)
+        return
+    a_desired = rng.normal(size=(COUNT, k))
+    found = through(name, feedback, **given, a_desired=a_desired)
+    M, h = m.mass_matrix(q), m.inverse_dynamics(q, v, 0 * v)
+    motion = np.linalg.solve(M, (found["tau"] - h)[..., None])[..., 0]
+    regular = [k and np.linalg.svd(one, compute_uv=False)[min(k, m.nv) - 1] > 0.05 and k <= m.nv for one in J]
+    wanted = a_desired + 8.0 * lag + 30.0 * missing
+    A = m.frame_acceleration(at, q, v, motion)[:, rows]
+    np.testing.assert_allclose(A[regular], wanted[regular], rtol=1e-6, atol=1e-6)
+
+
+def test_inverse_kinematics(name: str) -> None:
+    m, at = model(name), frame(name)
+    q0 = states(name)[0][0]
+    if m.nc:
+        q0 = sf.assemble(m, q0).q
+    joints = [item for item in m.names.v if item in m.names.q and "[" not in item]
+    columns = [m.names.v.index(item) for item in joints]
+    J = m.frame_jacobian(at, q0)[:3, columns]
+    rows = [row for row in range(3) if np.abs(J[row]).max() > 0.05]
+    # Where the joints may take it; of a closed mechanism where it is.
+    step = np.zeros(m.nv)
+    step[columns] = 0.0 if m.nc else 0.1
+    p = m.frame_pose(at, m.integrate(q0, step))[0][rows]
+    block = InverseKinematics(
+        name="b", model="m", frame=at, rows=tuple("xyz"[row] for row in rows), joints=joints, period=0.01
+    )
+    start = dict(zip(m.names.q, q0, strict=True))
+    found = run(block, {"p": np.tile(p, (8, 1))}, models={"m": (MODELS[name], start)}, compare=1e-8)
+    np.testing.assert_allclose(m.frame_pose(at, found["q"][-1])[0][rows], p, atol=1e-9)
+    np.testing.assert_allclose(found["error"][-1], 0.0, atol=1e-9)
+    if m.nc:
+        np.testing.assert_allclose(m.constraint(found["q"][-1]), 0.0, atol=1e-9)
+    still = np.setdiff1d(np.arange(m.nq), [m.names.q.index(item) for item in joints])
+    np.testing.assert_array_equal(found["q"][-1][still], q0[still])
