@@ -15,6 +15,7 @@ from rich.table import Table
 from rich.tree import Tree
 
 import symofros as sf
+from symofros import watching
 from symofros.advice.report import table_of
 from symofros.atomic import write_atomically
 from symofros.codegen.names import identifier
@@ -238,6 +239,15 @@ def simulate(
         float | None, typer.Option(min=1e-6, help="Seconds of motion a second; keeps pace with the clock.")
     ] = None,
     jitter: Annotated[Path | None, typer.Option(help="Of a diagram: picture of how late instants were.")] = None,
+    view: Annotated[
+        bool, typer.Option("--view", help="Play the run in three dimensions in the browser; of a diagram that keeps "
+                           "pace, show it as it goes.")
+    ] = False,
+    view_block: Annotated[str, typer.Option(help="Of a diagram with several mechanisms: whose is shown.")] = "",
+    record_view: Annotated[
+        Path | None, typer.Option(help="Write what --view shows: .html (a replay in one page), .mp4, .gif or .png.")
+    ] = None,
+    exaggeration: Annotated[float, typer.Option(help="Multiplies the elastic coordinates in the picture.")] = 1.0,
     network: Network = False,
     as_json: AsJson = False,
 ) -> None:  # fmt: skip
@@ -246,6 +256,7 @@ def simulate(
     settings = {"method": method, "dt": dt, "rtol": rtol}
     stated: dict[str, Any] = {name: value for name, value in settings.items() if value is not None}
     wanted = not as_json and _err.is_terminal
+    look = watching.Look(view, view_block, record_view, exaggeration)
     try:
         if diagrams.is_diagram(model):
             if inputs:
@@ -256,18 +267,25 @@ def simulate(
             }
             names = tuple(_names(signals) or ())
             wishes = diagrams.Wishes(t_end, stated, pace, names, output, picture, jitter)
-            found = diagrams.run_diagram(sf.load_diagram(model, network=network), wishes, wanted)
-            diagrams.tell_run(found, diagrams.write_files(found, wishes), as_json, _out)
+            diagram = sf.load_diagram(model, network=network)
+            diagram, live = watching.prepared(diagram, look, bool(pace or diagram.simulation.realtime))
+            found = diagrams.run_diagram(diagram, wishes, wanted)
+            files = diagrams.write_files(found, wishes) + watching.recorded(found, look)
+            diagrams.tell_run(found, files, as_json, _out)
+            watching.shown(found, look, live=live)
             ok = found.outcome.ok
         else:
             if picture == diagrams.WINDOW:
                 raise sf.SymofrosError("--plot window: of diagrams only\n  remedy: write a picture: --plot run.png")
-            run = _simulated(_load(model, floating_base), t_end, given, inputs, every, pace, stated, wanted)
-            files = [str(run.save(output))] if output else []
+            look.check()
+            system = _load(model, floating_base)
+            run = _simulated(system, t_end, given, inputs, every, pace, stated, wanted)
+            files = ([str(run.save(output))] if output else []) + watching.recorded(run, look, system)
             if picture:
                 run.plot().savefig(picture, dpi=120)
                 files.append(picture)
             _tell(run, files, as_json)
+            watching.shown(run, look, system)
             ok = run.outcome.ok
     except (sf.SymofrosError, ValueError, OSError) as error:
         raise _refuse(error) from None

@@ -49,8 +49,8 @@ ALLOWED: dict[str, set[str]] = {
         "compiler", "description", "topology", "kinematics", "dynamics", "expr", "passes", "codegen", "runtime",
         "simulation", "errors", "options",
     },
-    # Formulas of blocks go through the parser of model files.
-    "blocks": {"diagrams", "runtime", "simulation", "description", "expr", "errors"},
+    # Formulas of blocks go through the parser of model files; one of them shows its model.
+    "blocks": {"diagrams", "runtime", "simulation", "description", "expr", "viewing", "errors"},
     "diagram_files": {"blocks", "diagrams", "description", "loading", "simulation", "atomic", "errors"},
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
     "gui": {
@@ -60,9 +60,11 @@ ALLOWED: dict[str, set[str]] = {
     "loading": {"errors", "atomic", "description", "topology"},
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.
     "viewing": {
-        "beams", "compiler", "description", "loading", "runtime", "simulation", "topology", "errors", "options",
-        "atomic", "__init__",
+        "beams", "compiler", "description", "diagrams", "loading", "runtime", "simulation", "topology", "errors",
+        "options", "atomic", "__init__",
     },
+    # What the command line shows of a run, as it goes or afterwards.
+    "watching": {"blocks", "description", "diagrams", "simulation", "viewing"},
     "__init__": {
         "errors", "options", "expr", "description", "compiler", "loading", "exporting", "runtime", "simulation",
         "advice", "diagrams", "diagram_files", "viewing",

@@ -20,16 +20,17 @@ def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.chdir(tmp_path)
     shutil.copy(ARM, "arm.yaml")
     snippets = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    assert len(snippets) == 3
+    assert len(snippets) == 5
     names: dict[str, object] = {}
     for snippet in snippets:
         # Examples may run beside others: any free port in place of the usual one.
         exec(compile(snippet.replace("speed=0.5)", "speed=0.5, port=0)"), "view.md", "exec"), names)
-    assert len(opened) == 1 and opened[0].startswith("http://127.0.0.1:")
-    assert {path.name for path in tmp_path.iterdir()} == {"arm.yaml", "run.html", "run.gif", "last.png"}
+    assert len(opened) == 2 and all(url.startswith("http://127.0.0.1:") for url in opened)
+    written = {"square.png", "run.html", "run.gif", "last.png"}
+    assert {path.name for path in tmp_path.iterdir()} == {"arm.yaml", *written}
 
 
 def test_its_pictures_are_there_and_small() -> None:
     named = re.findall(r"!\[[^]]+\]\((images/[^)]+)\)", PAGE.read_text())
-    assert len(named) == 3
+    assert len(named) == 4
     assert all(10_000 < (PAGE.parent / name).stat().st_size < 120_000 for name in named)

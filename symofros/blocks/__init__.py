@@ -59,3 +59,4 @@ from symofros.blocks.middleware import ZenohPublisher as ZenohPublisher
 from symofros.blocks.middleware import ZenohSubscriber as ZenohSubscriber
 from symofros.blocks.network import UdpReceiver as UdpReceiver
 from symofros.blocks.network import UdpTransmitter as UdpTransmitter
+from symofros.blocks.view import View3D as View3D

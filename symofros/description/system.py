@@ -16,6 +16,7 @@ from symofros.description.constraints import Closure, Constraint, Rod
 from symofros.description.forces import Connection, JointElement, Load, Potential, Rotor, VirtualPower
 from symofros.description.frames import Frame
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
+from symofros.description.visual import Visual
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 JointKind = Literal[
@@ -243,6 +244,7 @@ class System:
         constraints: Closures of loops and rods; after them, conditions on speeds.
         notes: What an importer dropped or changed, in words.
         origin: "file:line" of objects, keyed by ("body", name), ("joint", name), …; not part of equality.
+        visuals: Body -> how it looks, as an importer read it; not part of equality, nor of what is compiled.
     """
 
     name: str
@@ -256,6 +258,7 @@ class System:
     constraints: tuple[Constraint, ...] = ()
     notes: tuple[str, ...] = field(default=(), compare=False, repr=False)
     origin: Mapping[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
+    visuals: Mapping[str, tuple[Visual, ...]] = field(default_factory=dict, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         """Freeze the collections and convert the gravity."""
@@ -267,12 +270,13 @@ class System:
         object.__setattr__(self, "constraints", tuple(ordered))
         object.__setattr__(self, "gravity", as_vector(self.gravity, f"system '{self.name}': gravity"))
         object.__setattr__(self, "origin", MappingProxyType(dict(self.origin)))
+        object.__setattr__(self, "visuals", MappingProxyType(dict(self.visuals)))
 
     def __reduce__(self) -> Any:
-        """Pickle without the read-only view, which can't be pickled."""
+        """Pickle without the read-only views, which can't be pickled."""
         return System, (
             self.name, self.bodies, self.parameters, self.inputs, self.gravity, self.connections, self.virtual_power,
-            self.potentials, self.constraints, self.notes, dict(self.origin),
+            self.potentials, self.constraints, self.notes, dict(self.origin), dict(self.visuals),
         )  # fmt: skip
 
     def body(self, name: str) -> Body:

@@ -8,14 +8,14 @@ from collections.abc import Iterable
 import symofros.blocks
 from symofros.diagrams.block import Block
 
-_WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_WORD = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
 
 # Entries of every block; a field of that name is stated with an underscore behind it.
 KIND, INPUTS = "kind", "inputs"
 
 
 def kind_of(block: type[Block]) -> str:
-    """What a class of blocks is called in files: JointPD is joint_pd."""
+    """What a class of blocks is called in files: JointPD is joint_pd, View3D view3d."""
     return _WORD.sub("_", block.__name__).lower()
 
 

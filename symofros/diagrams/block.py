@@ -82,6 +82,14 @@ class Known(Protocol):
         """A model linearised about its first state and inputs u (nu), on its constraints."""
         ...
 
+    def system(self, name: str) -> System:
+        """The description of a model."""
+        ...
+
+    def parameters(self, name: str) -> Array:
+        """The values of a model's run-time parameters (npar), as the diagram states them."""
+        ...
+
     def rubbing(self, model: str) -> list[bool]:
         """Which speeds (nv) of a model have friction."""
         ...
@@ -232,6 +240,9 @@ class Block:
     def crossed(self, at: At, which: str) -> Values:
         """Memory and continuous states, "q" and "v" of its mechanism included, that a crossing changes."""
         return {}
+
+    def learn(self, known: Known) -> None:
+        """Before `begin`, for opaque blocks that need more of their models than ports tell."""
 
     def begin(self) -> None:
         """Before a run, for opaque blocks: open what is needed."""

@@ -11,6 +11,7 @@ import numpy as np
 from symofros.diagrams.block import Block
 from symofros.diagrams.compiled import Resolved, fuser
 from symofros.diagrams.layout import Place
+from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array
 
@@ -82,11 +83,12 @@ def _output(name: str, found: Mapping[str, object], port: str, shape: tuple[int,
 
 
 @contextmanager
-def begun(blocks: Iterable[Block]) -> Iterator[list[Block]]:
-    """Blocks that have begun; each of them ends, however the run does."""
+def begun(blocks: Iterable[Block], wired: Wired) -> Iterator[list[Block]]:
+    """Blocks that know their models and have begun; each of them ends, however the run does."""
     opened: list[Block] = []
     try:
         for block in blocks:
+            block.learn(surroundings(wired, block.name))
             block.begin()
             opened.append(block)
         yield opened

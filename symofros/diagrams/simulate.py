@@ -90,7 +90,7 @@ def run_compiled(
         any(resolved.layout.condition_names),
     )  # fmt: skip
     try:
-        with begun(opaque.blocks) as blocks:
+        with begun(opaque.blocks, resolved.wired) as blocks:
             start(parts, name)
             run = _drive(compiled, loop, plan, t0, t_end, par, float(realtime), threads, progress)
             return replace(run, kept=kept_by(blocks))

@@ -92,7 +92,8 @@ class Simulation:
         blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
         interval = record_interval(record, t0, t_end, dt)
         plan = schedule([*resolved.rates(), (RECORD, interval, 0.0)], resolved.wired.name)
-        with begun(resolved.wired.blocks.values()) as opened, bar(progress, t0, t_end) as show:
+        wired = resolved.wired
+        with begun(wired.blocks.values(), wired) as opened, bar(progress, t0, t_end) as show:
             instants = list(_instants(plan, t0, t_end))
             run = run_interpreted(blocks, instants, t_end, dt, METHODS[method].tableau, gains is None, show)
             return replace(run, kept=kept_by(opened))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from symofros.description.system import System
 from symofros.diagrams.block import Block, Port, Ports, Shape
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.settings import Plot
@@ -93,6 +94,12 @@ class _Surroundings:
 
     def linear(self, name: str, u: Array) -> StateSpace:
         return self._models.linear(name, u)
+
+    def system(self, name: str) -> System:
+        return self._models.system(name)
+
+    def parameters(self, name: str) -> Array:
+        return self._models.parameters(name)
 
     def rubbing(self, model: str) -> list[bool]:
         return self._models.rubbing(model)

@@ -10,7 +10,7 @@ import numpy as np
 from symofros.viewing.centre_line import CentreLine
 from symofros.viewing.shapes import Array, Mesh
 
-Kind = Literal["bodies", "inertias", "joints", "constraints"]
+Kind = Literal["bodies", "inertias", "joints", "constraints", "paths", "visuals"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 Color = tuple[int, int, int]
 

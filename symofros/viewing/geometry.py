@@ -8,6 +8,7 @@
 | beam | a tube along its axis, as the equations bend it |
 | closure, rod, spring, slide | a strut between two points |
 | rolling contact, knife edge | a disc, a sphere, a blade |
+| visual shapes of a file | these |
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from symofros.topology.tree import BASE, Link, NamedFrame, Placement, SpanningTr
 from symofros.viewing.centre_line import CentreLine
 from symofros.viewing.drawing import Bend, Color, Drawing, Part, Place, Strut, Triad
 from symofros.viewing.inertia_box import inertia_box, longest_edges
+from symofros.viewing.looks import visual_mesh
 from symofros.viewing.shapes import Array, Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
 
 # Told apart on white and on grey, also by those who see red and green alike.
@@ -92,7 +94,7 @@ class _Draughtsman:
         boxes = list(self._boxes())
         longest = max(longest_edges(self.tree.system, self.numbers), default=0.0)
         triads = tuple(Triad(f.name, f.link, *placed(f.placement, self.numbers)) for f in self.tree.frames)
-        parts = (*self._skeleton(), *self._joints(), *boxes, *self._contacts())
+        parts = (*self._skeleton(), *self._joints(), *boxes, *self._contacts(), *self._visuals())
         return Drawing(
             self.tree.system.name, parts, tuple(self._bends()), (*self._slides(), *self._ties()), triads,
             self.numbers.values(self.tree.system.gravity), self.size, self.center, longest <= _MOST_BOX * self.size,
@@ -172,6 +174,20 @@ class _Draughtsman:
         if kind == "prismatic":
             return box(np.array([length, 1.6 * radius, 1.6 * radius])).moved(np.zeros(3), axes_along(axis))
         return cylinder(-length / 2 * axis, length / 2 * axis, radius)
+
+    def _visuals(self) -> Iterator[Part]:
+        """How bodies look by their file."""
+        for body in self.tree.system.bodies:
+            for k, visual in enumerate(self.tree.system.visuals.get(body.name, ())):
+                mesh = visual_mesh(visual)
+                if mesh is None:
+                    continue
+                frame = frame_of(self.tree, body.name)
+                mesh = mesh.moved(np.array(visual.position), self.numbers.rotation(visual.rotation))
+                mesh = mesh.moved(*placed(frame.placement, self.numbers))
+                yield Part(
+                    f"visuals/{body.name}.{k}", "visuals", frame.link, mesh, visual.color or self._color(frame.link)
+                )
 
     # Beams.
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 import numpy as np
 
@@ -62,7 +62,19 @@ class Motion:
         return q, self.u[i] + share * (self.u[i + 1] - self.u[i])
 
 
-def motion_of(model: Model, given: Trajectory | Motion | tuple[Given, Given]) -> Motion:
+class States(NamedTuple):
+    """States over time of a mechanism that is yet to be compiled: t (n), q (n, nq), u (n, nu), par (npar)."""
+
+    t: Given
+    q: Given
+    u: Given | None = None
+    par: Given | None = None
+
+
+Played = Trajectory | Motion | States | tuple[Given, Given]
+
+
+def motion_of(model: Model, given: Played) -> Motion:
     """A run, or times (n) and configurations (n, nq), as a motion of a model.
 
     Raises:
@@ -79,6 +91,8 @@ def motion_of(model: Model, given: Trajectory | Motion | tuple[Given, Given]) ->
                 "show it with the system that it was simulated with",
             )
         return _checked(model, given.t, given.q, given.u, given.par, "trajectory")
+    if isinstance(given, States):
+        return _checked(model, *given, "motion")
     t, q = given
     return _checked(model, t, q, None, None, "motion")
 

@@ -15,7 +15,12 @@ from symofros.viewing.shapes import Array
 from symofros.viewing.sliders import Slider
 
 _SPEEDS = ("0.01", "0.1", "0.25", "0.5", "1", "2", "5")
-_LAYER_NAMES = {"inertias": "inertia boxes", "constraints": "constraints and springs", "ground": "ground and gravity"}
+_LAYER_NAMES = {
+    "inertias": "inertia boxes",
+    "constraints": "constraints and springs",
+    "visuals": "visual shapes",
+    "ground": "ground and gravity",
+}
 _MOST_EXAGGERATION = 50.0
 _STEPS = 500  # Of a slider.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +20,7 @@ from symofros.viewing.drawing import Bend, Drawing, Place, Strut
 from symofros.viewing.geometry import draw, landmarks
 from symofros.viewing.inertia_box import longest_edges
 from symofros.viewing.shapes import Array, axes_along
+from symofros.viewing.tracks import Track, track_part
 
 _LEAST_SIZE = 1e-6  # [m]; what is smaller is drawn as if it were a metre, for want of anything to go by.
 
@@ -61,13 +62,14 @@ class Mechanism:
 
     Args:
         system: What the user stated.
+        tracks: What is drawn beside it.
 
     Raises:
         DescriptionError: The system can't be a mechanism.
     """
 
-    def __init__(self, system: System) -> None:
-        self.system = system
+    def __init__(self, system: System, tracks: tuple[Track, ...] = ()) -> None:
+        self.system, self.tracks = system, tracks
         self.tree: SpanningTree = plan(system)
         frames = self.tree.frames
         # A beam's tip without a frame moves nothing that is drawn, and has no name.
@@ -145,14 +147,17 @@ class Mechanism:
         values = dict(zip(self.model.names.par, state.par.tolist(), strict=True))
         neutral = self.posture(state.q, state.u, state.par)
         numbers = Numbers(self.system, values)
-        points = np.array([neutral.point(place) for place in landmarks(self.tree, numbers)])
+        places = [neutral.point(place) for place in landmarks(self.tree, numbers)]
+        points = np.concatenate([places, *(track.points for track in self.tracks)])
         low, high = points.min(axis=0), points.max(axis=0)
         # A body on its own has no other size than its inertia's; a typical one, as files have placeholders.
         size = max(
             float(np.linalg.norm(high - low)), float(np.median(longest_edges(self.system, numbers) or [0.0])),
             *(2 * numbers.value(item.radius) for item in self.system.constraints if isinstance(item, Rolling)),
         )  # fmt: skip
-        return draw(self.tree, values, size if size > _LEAST_SIZE else 1.0, (low + high) / 2)
+        size = size if size > _LEAST_SIZE else 1.0
+        drawing = draw(self.tree, values, size, (low + high) / 2)
+        return replace(drawing, parts=(*drawing.parts, *(track_part(track, size) for track in self.tracks)))
 
     def closed(self, state: State, held: tuple[str, ...] = ()) -> tuple[State, str]:
         """The nearest state whose loops are closed, and why there is none: "" where there is.

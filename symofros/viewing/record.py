@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import io
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -16,15 +16,16 @@ import numpy as np
 
 from symofros.atomic import write_atomically
 from symofros.description.system import System
+from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError, did_you_mean
-from symofros.runtime.model import Given
-from symofros.simulation.trajectory import Trajectory
 from symofros.viewing.camera import Camera
-from symofros.viewing.motion import Motion, finite, motion_of, positive
+from symofros.viewing.motion import Motion, Played, finite, motion_of, positive
+from symofros.viewing.of_run import shown_of
 from symofros.viewing.poses import Mechanism, Posture
 from symofros.viewing.raster import Image, picture
 from symofros.viewing.scene import Scene, shown_at_first
 from symofros.viewing.server import LOOPBACK, start_server, stop_server
+from symofros.viewing.tracks import tracks_of
 
 MOST_FRAMES = 20_000  # Eleven minutes at thirty a second.
 _SUFFIXES = (".html", ".mp4", ".gif", ".png")
@@ -54,24 +55,30 @@ class _Recording:
 
 
 def record(
-    system: System,
-    run: Trajectory | Motion | tuple[Given, Given],
-    path: str | Path,
+    system: System | DiagramRun,
+    run: Played | str | Path,
+    path: str | Path | None = None,
     *,
+    block: str = "",
     exaggeration: float = 1.0,
     speed: float = 1.0,
+    paths: Sequence[Sequence[Any]] = (),
     rate: float = 30.0,
     size: tuple[int, int] = (960, 720),
 ) -> Path:
     """Write a motion as a file that others can look at without SYMOFROS.
 
+    `sf.record(system, run, "run.html")`, or `sf.record(run, "run.html")` of a diagram's run.
+
     Args:
-        system: What moves.
-        run: A trajectory of it, or times (n) and coordinates (n, nq).
+        system: What moves, or a diagram's run.
+        run: A trajectory of it, or times (n) and coordinates (n, nq); left out where a diagram's run is stated.
         path: .html (a page with the scene in it, to turn and to play; needs viser, and no network), .mp4 (needs ffmpeg,
             as the extra `video` brings it), .gif, or .png (the last state).
+        block: Of a diagram's run: the block whose mechanism is shown; where there is one only, that.
         exaggeration: What multiplies elastic coordinates.
         speed: Seconds of the motion a second.
+        paths: Curves drawn beside it, as of `Viewer`.
         rate: Pictures a second; those of a GIF last whole hundredths of a second.
         size: Width and height of films and pictures, even numbers.
 
@@ -80,18 +87,16 @@ def record(
 
     Raises:
         SymofrosError: Another suffix, too long a motion, a size or a rate that can't be, or an extra that is missing.
-        ShapeError: The motion does not fit the system.
+        ShapeError: The motion does not fit the system, or a path can't be drawn.
+        UnknownNameError: The diagram's run has no such mechanism, or several.
     """
-    file = Path(path)
-    if file.suffix not in _SUFFIXES:
-        raise SymofrosError(str(Problem(f"record: can't write '{file.name}'", file.suffix or "no suffix",
-                                        f"one of {', '.join(_SUFFIXES)}", did_you_mean(file.suffix, _SUFFIXES)
-                                        )))  # fmt: skip
+    system, run, file = _asked(system, run, path, block)
+    check_suffix(file)
     speed, rate, exaggeration = positive("speed", speed), positive("rate", rate), finite("exaggeration", exaggeration)
     if any(side < 2 or side % 2 or side > 4096 for side in size):
         raise SymofrosError(str(Problem("record: no such size", str(size), "even numbers of pixels, 2 to 4096",
                                         "such as (960, 720)")))  # fmt: skip
-    mechanism = Mechanism(system)
+    mechanism = Mechanism(system, tracks_of(paths))
     motion = motion_of(mechanism.model, run)
     if file.suffix == ".png":
         motion = Motion(motion.model, motion.t[-1:], motion.q[-1:], motion.u[-1:], motion.par)
@@ -103,6 +108,31 @@ def record(
     }  # fmt: skip
     write_atomically(file, write[file.suffix]())
     return file
+
+
+def check_suffix(file: Path) -> None:
+    """Refuse what can't be recorded to.
+
+    Raises:
+        SymofrosError: Its suffix is another.
+    """
+    if file.suffix not in _SUFFIXES:
+        raise SymofrosError(str(Problem(f"record: can't write '{file.name}'", file.suffix or "no suffix",
+                                        f"one of {', '.join(_SUFFIXES)}", did_you_mean(file.suffix, _SUFFIXES)
+                                        )))  # fmt: skip
+
+
+def _asked(
+    system: System | DiagramRun, run: Played | str | Path, path: str | Path | None, block: str
+) -> tuple[System, Played, Path]:
+    """What moves, how, and where to write it."""
+    if isinstance(system, DiagramRun) and isinstance(run, (str, Path)) and path is None:
+        return *shown_of(system, block), Path(run)
+    if isinstance(system, DiagramRun) or isinstance(run, (str, Path)) or path is None:
+        raise SymofrosError(str(Problem("record: what is to be written?", "other arguments",
+                                        "a system, its motion and a path; or a diagram's run and a path",
+                                        'for example sf.record(system, run, "run.html")')))  # fmt: skip
+    return system, run, Path(path)
 
 
 def _page(frames: _Recording) -> bytes:

@@ -26,7 +26,12 @@ _TRIAD = 0.05  # Length of a frame's axes, of the mechanism's size.
 
 def shown_at_first(drawing: Drawing) -> frozenset[str]:
     """The layers of a drawing that are not in the way of others."""
-    hidden = {"frames", "labels"} if drawing.inertias_fit else {"frames", "labels", "inertias"}
+    dressed, bare = ({part.link for part in drawing.parts if part.kind == kind} for kind in ("visuals", "bodies"))
+    hidden = {"frames", "labels"}
+    if dressed or not drawing.inertias_fit:
+        hidden.add("inertias")
+    if dressed and not bare - dressed and not drawing.bends:
+        hidden |= {"bodies", "joints"}
     return frozenset(LAYERS) - hidden
 
 

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from types import TracebackType
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 from symofros.description.system import System
 from symofros.runtime.model import Given
-from symofros.simulation.trajectory import Trajectory
-from symofros.viewing.motion import Motion, finite, motion_of, positive
+from symofros.viewing.motion import Played, finite, motion_of, positive
 from symofros.viewing.panel import Panel
 from symofros.viewing.player import Player
 from symofros.viewing.poses import Mechanism, State
 from symofros.viewing.server import LOOPBACK, PORT, start_server, stop_server
 from symofros.viewing.sliders import sliders_of
 from symofros.viewing.stage import Stage
+from symofros.viewing.tracks import tracks_of
 
 RATE = 60.0  # Pictures a second at most; browsers show no more.
 _FOLLOWED = 0.1  # Seconds between updates of the controls: they cost more than the picture.
@@ -43,6 +44,8 @@ class Viewer:
         exaggeration: What multiplies elastic coordinates in the picture.
         rate: Pictures a second at most.
         controls: Whether the page has sliders and buttons; not, for a page that is embedded in another.
+        paths: Curves drawn beside it, each (name, points) or (name, points, color): points (n, 3) in the world, or
+            (n, 2) in its plane z = 0 [m]; red, green and blue, 0 to 255.
 
     Attributes:
         painted: How many pictures were shown.
@@ -50,6 +53,7 @@ class Viewer:
 
     Raises:
         DescriptionError: The system can't be a mechanism.
+        ShapeError: A path can't be drawn.
         SymofrosError: viser is not installed (the extra `view`), or the address can't be served at.
     """
 
@@ -62,10 +66,11 @@ class Viewer:
         exaggeration: float = 1.0,
         rate: float = RATE,
         controls: bool = True,
+        paths: Sequence[Sequence[Any]] = (),
     ) -> None:
         self._period, self._controls = 1.0 / positive("rate", rate), controls
         exaggeration = finite("exaggeration", exaggeration)
-        mechanism = Mechanism(system)
+        mechanism = Mechanism(system, tracks_of(paths))
         self._server = start_server(host, port)
         self._wake = threading.Condition()  # Guards what is wanted; held for moments only, never while painting.
         self._painting = threading.RLock()  # Guards the picture, the player and the controls.
@@ -106,6 +111,11 @@ class Viewer:
         return len(self._server.get_clients())
 
     @property
+    def is_closed(self) -> bool:
+        """Whether it serves no more."""
+        return self._closing
+
+    @property
     def mechanism(self) -> Mechanism:
         """What is shown, as it is computed with."""
         return self._stage.mechanism
@@ -125,7 +135,7 @@ class Viewer:
         Raises:
             DescriptionError: The system can't be a mechanism; the picture stays as it was.
         """
-        mechanism = Mechanism(system)
+        mechanism = Mechanism(system, self.mechanism.tracks)
         with self._painting:
             self._discard()
             self._player = None
@@ -169,7 +179,7 @@ class Viewer:
             self._wanted = wanted
             self._wake.notify()
 
-    def play(self, run: Trajectory | Motion | tuple[Given, Given], *, speed: float = 1.0, loop: bool = True) -> None:
+    def play(self, run: Played, *, speed: float = 1.0, loop: bool = True) -> None:
         """Show a motion from its beginning, with controls to pause, to go to a time, and to change the speed.
 
         Args:
@@ -229,7 +239,7 @@ class Viewer:
         """Show or hide a layer.
 
         Args:
-            layer: "bodies", "inertias", "joints", "constraints", "frames", "labels" or "ground".
+            layer: "bodies", "inertias", "joints", "constraints", "paths", "visuals", "frames", "labels" or "ground".
             visible: Whether it is to be seen.
 
         Raises:

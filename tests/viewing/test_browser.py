@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import os
 import shutil
+import threading
 import time
 from collections.abc import Callable, Iterator
 from importlib import import_module
@@ -19,6 +20,8 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.blocks import ForwardDynamics
+from symofros.blocks.view import with_view
 
 pytestmark = pytest.mark.browser
 
@@ -204,6 +207,37 @@ def test_a_motion_plays_and_pauses(open_page: Open) -> None:
         page.get_by_role("button", name="Pause").click()
         until(page, lambda: not viewer._is_playing())
         page.get_by_role("button", name="Play").wait_for(timeout=PATIENCE_MS)
+
+
+def test_a_run_of_a_diagram_is_seen_as_it_goes(open_page: Open) -> None:
+    diagram = sf.Diagram("arm")
+    diagram.add_model("arm", MODELS["double_pendulum"], {"q1": 1.5})
+    diagram.add(ForwardDynamics(name="plant", model="arm"))
+    shown, block = with_view(diagram, open_browser=False, paced=True)
+    simulation = sf.Simulation(shown)
+    simulation.run(0.04, dt=0.01)
+    assert block.viewer is not None
+    page = open_page(block.viewer.url)
+    first, painted = settled(page), block.viewer.painted
+    runs: list[sf.DiagramRun] = []
+    worker = threading.Thread(target=lambda: runs.append(simulation.run(3.0, dt=0.01)))
+    worker.start()
+    until(page, lambda: changed(first, image_of(page)).sum() > 200)
+    assert worker.is_alive()  # It moved before the end.
+    worker.join()
+    until(page, lambda: np.array_equal(block.viewer.state.q, runs[0]["plant.q"][-1]))
+    assert runs[0].kept["view3d"]["shown"] == 76 and block.viewer.painted - painted > 76 / 2
+    block.close()
+
+
+def test_paths_are_seen_beside_it(open_page: Open) -> None:
+    square = [[0.5, 0.3], [1.1, 0.3], [1.1, -0.3], [0.5, -0.3], [0.5, 0.3]]
+    with sf.Viewer(MODELS["planar_robot"], port=0, paths=[("square", square, (200, 0, 200))]) as viewer:
+        viewer.set_layer("ground", False)  # The arrow of gravity is of much the same color.
+        page = open_page(viewer.url)
+        assert colored(settled(page), (200, 0, 200)).sum() > 100
+        viewer.set_layer("paths", False)
+        until(page, lambda: colored(image_of(page), (200, 0, 200)).sum() < 10)
 
 
 def test_another_system_takes_the_place_of_the_one_before(open_page: Open) -> None:

@@ -14,6 +14,7 @@ from symofros.description.mjcf.geometry import Exact, turned
 from symofros.description.mjcf.joints import FREE, Chain, JointReader
 from symofros.description.mjcf.names import Names
 from symofros.description.mjcf.numbers import infinite_numbers
+from symofros.description.mjcf.visuals import visuals_of
 from symofros.description.remarks import Remarks
 from symofros.description.system import WORLD, Inertia, Joint, RigidBody, System
 from symofros.errors import DescriptionError
@@ -80,7 +81,8 @@ class Importer:
         if self.exact.changed:
             self.remarks.add(f"numbers within {self.exact.tolerance:g} of exact ones made exact", "number",
                              f"{self.exact.changed} of them")  # fmt: skip
-        return System(self.stated.name, tuple(bodies), gravity=gravity, notes=self.remarks.notes(), origin=origin)
+        return System(self.stated.name, tuple(bodies), gravity=gravity, notes=self.remarks.notes(), origin=origin,
+                      visuals=visuals_of(self.model, self.bodies.__getitem__))  # fmt: skip
 
     def _body(self, i: int, frames: tuple[Frame, ...]) -> Iterator[RigidBody]:
         """A body, after the massless ones that carry it from joint to joint."""

@@ -1,6 +1,6 @@
 """URDF in, as Pinocchio understands it: links are bodies, joints carry them, the root is the base.
 
-What a rigid tree has no place for (shapes, damping, transmissions, mimic) is ignored, and System.notes says so.
+What a rigid tree has no place for (collisions, damping, transmissions, mimic) is ignored, and System.notes says so.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from pathlib import Path
 from symofros.description.reading import Reading, in_order, read_bytes
 from symofros.description.system import WORLD, Inertia, Joint, JointKind, RigidBody, System
 from symofros.description.urdf.values import Values
+from symofros.description.urdf.visuals import Visuals
+from symofros.description.visual import Visual
 from symofros.description.xml_nodes import Element, XmlFault, parse_xml
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
@@ -30,7 +32,7 @@ _KINDS: dict[str, JointKind] = {
     "prismatic": "prismatic",
     "floating": "free",
 }
-_USED = frozenset({"link", "joint"})
+_USED = frozenset({"link", "joint", "material"})
 
 
 def read_urdf(path: str | os.PathLike[str], *, floating_base: bool = False, snap_tol: float = SNAP_TOL) -> Reading:
@@ -63,7 +65,7 @@ def read_urdf(path: str | os.PathLike[str], *, floating_base: bool = False, snap
                           f"{file}:{root.line}")  # fmt: skip
         return Reading(None, (problem,))
     try:
-        return _Importer(Values(file, snap_tol), root, floating_base).reading()
+        return _Importer(Path(path), Values(file, snap_tol), root, floating_base).reading()
     except DescriptionError as error:
         return Reading(None, error.problems)
 
@@ -80,8 +82,10 @@ class _Link:
 
 
 class _Importer:
-    def __init__(self, values: Values, robot: Element, floating_base: bool) -> None:
+    def __init__(self, file: Path, values: Values, robot: Element, floating_base: bool) -> None:
         self.values = values
+        self.visuals = Visuals(file, robot, values.remarks)
+        self.looks: dict[str, tuple[Visual, ...]] = {}
         self.robot = robot
         self.floating_base = floating_base
         self.links: dict[str, _Link] = {}
@@ -106,7 +110,8 @@ class _Importer:
         problems = in_order(self.values.problems)
         if not self.links:
             return Reading(None, problems)
-        system = System(name, bodies, notes=self.values.remarks.notes(), origin=self.origin)
+        system = System(name, bodies, notes=self.values.remarks.notes(), origin=self.origin,
+                        visuals={name: shapes for name, shapes in self.looks.items() if shapes})  # fmt: skip
         return Reading(system, problems, frozenset(self.broken))
 
     def link(self, element: Element) -> None:
@@ -123,8 +128,9 @@ class _Importer:
         self.origin["body", name] = self.values.where(element)
         if len(self.values.problems) > before:
             self.broken.add(name)
-        if element.first("visual") or element.first("collision"):
-            self.values.remarks.add("visual and collision shapes ignored", "link", name)
+        self.looks[name] = self.visuals.of(element, name)
+        if element.first("collision"):
+            self.values.remarks.add("collision shapes ignored", "link", name)
 
     def joint(self, element: Element) -> None:
         """Read a joint and hang its child link on it."""

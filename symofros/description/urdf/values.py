@@ -69,9 +69,8 @@ class Values:
         text = self.attribute(element, name, owner)
         if text is None:
             return None
-        words = text.split()
-        numbers = tuple(float(word) if _NUMBER.match(word) else math.nan for word in words)
-        if len(numbers) != count or not all(map(math.isfinite, numbers)):
+        numbers = finite_numbers(text, count)
+        if numbers is None:
             rule = "a finite number" if count == 1 else f"{count} finite numbers, separated by spaces"
             remedy = "expand the file's macros first (xacro)" if "${" in text else ""
             self.fault(element, f"{owner}: <{element.tag}> has a bad '{name}'", f"'{text:.60}'", rule, remedy)
@@ -161,6 +160,13 @@ class Values:
         if text is None or _INFINITE.match(text.strip()):
             return None
         return self.number(element, name, owner)
+
+
+def finite_numbers(text: str, count: int) -> tuple[float, ...] | None:
+    """So many finite numbers between spaces; None where they are not that."""
+    words = text.split()
+    numbers = tuple(float(word) if _NUMBER.match(word) else math.nan for word in words)
+    return numbers if len(numbers) == count and all(map(math.isfinite, numbers)) else None
 
 
 def _bare(owner: str) -> str:

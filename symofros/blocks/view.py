@@ -1,0 +1,167 @@
+"""Graphics: a mechanism in three dimensions in a browser, while a run goes on."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import time
+import webbrowser
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from symofros.blocks.quantities import joint_units
+from symofros.diagrams.block import Block, Known, Port, Ports
+from symofros.diagrams.diagram import Diagram
+from symofros.errors import DescriptionError, Problem
+from symofros.runtime.kernel import Array
+from symofros.viewing.of_run import chosen_block
+from symofros.viewing.viewer import Viewer
+
+
+@dataclass(frozen=True, kw_only=True)
+class View3D(Block):
+    """Shows a mechanism in a browser as its coordinates change (the extra `view`, docs/view.md).
+
+    A run hands its coordinates over and goes on: what comes faster than pictures can be drawn is dropped. The mechanism
+    is drawn with the parameters that the diagram states, whatever a single run puts in their place.
+
+    What it keeps of a run: "shown" and "dropped", how many samples were handed over, and how many of these were not
+    drawn since newer ones came first.
+
+    Attributes:
+        model: Of the mechanism.
+        exaggeration: What multiplies the elastic coordinates in the picture.
+        port: Of the page on this machine; 0 for any free one.
+        paced: Whether the run waits at its samples for the clock, so that the motion is seen as fast as it is; a run in
+            real time does so by itself.
+        stays: Whether the page is there after the run, until the program ends or the next run takes it over.
+        open_browser: Whether to open a browser; the address is written to standard error either way.
+    """
+
+    period: float | None = 0.04
+    model: str
+    exaggeration: float = 1.0
+    port: int = 0
+    paced: bool = False
+    stays: bool = True
+    open_browser: bool = True
+    is_opaque: ClassVar[bool] = True
+
+    def ports(self, known: Known) -> Ports:
+        """Coordinates q (nq); inputs u (nu), which matter where they prescribe motion."""
+        if not (np.isfinite(self.exaggeration) and 0 <= self.port <= 65535):
+            raise DescriptionError(Problem(f"block '{self.name}': can't show that",
+                                           f"exaggeration {self.exaggeration}, port {self.port}",
+                                           "exaggeration is a finite number, a port is from 0 to 65535",
+                                           "port 0 is any free one"))  # fmt: skip
+        record = known.model(self.model)
+        q, _, _, effort = joint_units(record)
+        return Ports((Port("q", (len(record.q_names),), q),
+                      Port("u", (len(record.u_names),), effort, record.u_default)))  # fmt: skip
+
+    def learn(self, known: Known) -> None:
+        """Take note of the mechanism."""
+        object.__setattr__(self, "_model", (
+            known.system(self.model), known.start(self.model)[0], known.parameters(self.model)
+        ))  # fmt: skip
+
+    def begin(self) -> None:
+        """Serve the page, or take over that of the run before.
+
+        Raises:
+            SymofrosError: viser is not installed, or the port is taken.
+        """
+        system, q, par = self.__dict__["_model"]
+        viewer = self.viewer
+        if viewer is None or viewer.is_closed:
+            viewer = Viewer(system, port=self.port, exaggeration=self.exaggeration)
+            object.__setattr__(self, "_viewer", viewer)
+            print(f"{self.name}: {viewer.url}", file=sys.stderr)
+            if self.open_browser:
+                webbrowser.open(viewer.url)
+        elif viewer.mechanism.system != system:
+            viewer.set_system(system)
+        object.__setattr__(self, "_pace", _Pace(viewer.dropped))
+        viewer.show(q, par=par)
+
+    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
+        """Hand over one sample; wait for the clock if the run is paced by this block."""
+        pace: _Pace = self.__dict__["_pace"]
+        if self.paced:
+            pace.wait(t)
+        self.__dict__["_viewer"].push(t, inputs["q"], u=inputs["u"], par=self.__dict__["_model"][2])
+        pace.shown += 1
+        return {}
+
+    def kept(self) -> Mapping[str, Array]:
+        """How many samples were handed over, and how many of them dropped."""
+        pace: _Pace = self.__dict__["_pace"]
+        dropped = self.__dict__["_viewer"].dropped - pace.dropped_before
+        return {"shown": np.asarray(float(pace.shown)), "dropped": np.asarray(float(dropped))}
+
+    def end(self) -> None:
+        """Leave the page, or stop serving it."""
+        if not self.stays:
+            self.close()
+
+    @property
+    def viewer(self) -> Viewer | None:
+        """What shows the last run; None before the first."""
+        return self.__dict__.get("_viewer")
+
+    def close(self) -> None:
+        """Stop serving the page."""
+        if self.viewer is not None:
+            self.viewer.close()
+
+
+@dataclass
+class _Pace:
+    """The clock of one run, and how many samples were shown.
+
+    Attributes:
+        dropped_before: States that the viewer had dropped before it.
+        shown: Samples so far.
+        start: When simulated time was zero, by the clock [s]; None before the first sample.
+    """
+
+    dropped_before: int
+    shown: int = 0
+    start: float | None = None
+
+    def wait(self, t: float) -> None:
+        """Until the clock is at t."""
+        now = time.monotonic()
+        if self.start is None:
+            self.start = now - t
+        time.sleep(max(0.0, self.start + t - now))
+
+
+def with_view(diagram: Diagram, block: str = "", **fields: Any) -> tuple[Diagram, View3D]:
+    """The same diagram with a mechanism shown as it moves.
+
+    Args:
+        diagram: What is run; it stays as it is.
+        block: Whose mechanism; "" for the only one.
+        fields: Of the View3D block.
+
+    Returns:
+        The diagram that has the block, and the block.
+
+    Raises:
+        UnknownNameError: There is no such mechanism, or there are several.
+    """
+    block = chosen_block(diagram.name, diagram.blocks, block)
+    name = "view3d"
+    while name in diagram.blocks:
+        name += "_"
+    added = View3D(name=name, model=diagram.blocks[block].mechanism(), **fields)
+    sources = {"q": f"{block}.q"}
+    with contextlib.suppress(KeyError):
+        sources["u"] = diagram.wires[block, "u"]
+    shown = replace(diagram, blocks=dict(diagram.blocks), wires=dict(diagram.wires))
+    shown.add(added, **sources)
+    return shown, added

@@ -1,0 +1,105 @@
+"""The <visual> elements of a URDF. What can't be drawn is no fault of a mechanism: it is left out, and that is said.
+
+A file is untrusted: a mesh lies in the folder of its URDF or below, or in the package that it names, where that is one
+of the folders above. Meshes are not opened here.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path, PurePosixPath
+
+from symofros.description.remarks import Remarks
+from symofros.description.urdf.values import finite_numbers
+from symofros.description.values import Rotation
+from symofros.description.visual import MOST_VISUALS, Visual, VisualKind
+from symofros.description.xml_nodes import Element
+
+Color = tuple[int, int, int]
+
+_PACKAGE = re.compile(r"(?:package|model)://([^/]+)/(.+)\Z")
+_KINDS: dict[str, VisualKind] = {
+    "box": "box", "sphere": "sphere", "cylinder": "cylinder", "capsule": "capsule", "mesh": "mesh",
+}  # fmt: skip
+# Attributes that state a size, and what they are where they are not there.
+_ROUND = (("radius", ""), ("length", ""))
+_SIZES = {"box": (("size", ""),), "sphere": _ROUND[:1], "cylinder": _ROUND, "capsule": _ROUND,
+          "mesh": (("scale", "1 1 1"),)}  # fmt: skip
+
+
+class Visuals:
+    """Reads what links look like.
+
+    Args:
+        file: The URDF.
+        robot: Its root, for materials that links share.
+        remarks: On what is left out.
+    """
+
+    def __init__(self, file: Path, robot: Element, remarks: Remarks) -> None:
+        self.folder = file.resolve().parent
+        self.remarks = remarks
+        self.count = 0
+        named = ((element.attributes.get("name", ""), _color(element)) for element in robot.all("material"))
+        self.materials: Mapping[str, Color] = {name: color for name, color in named if color is not None}
+
+    def of(self, link: Element, name: str) -> tuple[Visual, ...]:
+        """The shapes of a link."""
+        return tuple(self._shapes(link, name))
+
+    def _shapes(self, link: Element, name: str) -> Iterator[Visual]:
+        for element in link.all("visual"):
+            shape = self._shape(element) if self.count < MOST_VISUALS else None
+            if shape is None:
+                self.remarks.add("visual shapes that can't be drawn ignored", "link", name)
+            else:
+                self.count += 1
+                yield shape
+
+    def _shape(self, element: Element) -> Visual | None:
+        geometry, origin = element.first("geometry"), element.first("origin")
+        stated = geometry.children[0] if geometry is not None and geometry.children else None
+        kind = _KINDS.get(stated.tag) if stated is not None else None
+        placed = {} if origin is None else origin.attributes
+        position, angles = (finite_numbers(placed.get(name, "0 0 0"), 3) for name in ("xyz", "rpy"))
+        if stated is None or kind is None or position is None or angles is None:
+            return None
+        numbers = " ".join(stated.attributes.get(name, default) for name, default in _SIZES[kind])
+        size = finite_numbers(numbers, 3 if kind in ("box", "mesh") else len(_SIZES[kind]))
+        file = self._file(stated.attributes.get("filename", "")) if kind == "mesh" else ""
+        if size is None or (not file if kind == "mesh" else min(size) <= 0.0):
+            return None
+        x, y, z = position
+        return Visual(kind, size, (x, y, z), Rotation.rpy(*angles), self._look(element), file)
+
+    def _look(self, element: Element) -> Color | None:
+        material = element.first("material")
+        if material is None:
+            return None
+        return _color(material) or self.materials.get(material.attributes.get("name", ""))
+
+    def _file(self, stated: str) -> str:
+        """Where a mesh is; "" where that is not to be looked at."""
+        package = _PACKAGE.match(stated)
+        name, inner = (package[1], PurePosixPath(package[2])) if package else ("", PurePosixPath(stated))
+        if "://" in str(inner) or inner.is_absolute() or ".." in (name, *inner.parts) or "\0" in stated:
+            return ""
+        above = [folder for folder in (self.folder, *self.folder.parents) if package and folder.name == name]
+        places = [*((root, root) for root in above), (self.folder, self.folder), (self.folder, self.folder / name)]
+        for root, place in places:
+            # Unlike pathlib's, these are content with names that can't be: too long, links in a circle.
+            path = os.path.realpath(place / inner)
+            if Path(path).is_relative_to(root) and os.path.isfile(path):
+                return path
+        return ""
+
+
+def _color(material: Element) -> Color | None:
+    color = material.first("color")
+    shares = finite_numbers(color.attributes.get("rgba", ""), 4) if color is not None else None
+    if shares is None:
+        return None
+    red, green, blue = (round(255 * min(max(share, 0.0), 1.0)) for share in shares[:3])
+    return red, green, blue

@@ -1,0 +1,34 @@
+"""Visual: how a body looks, where its file says so. It has no part in the equations, nor in what is compiled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from symofros.description.values import IDENTITY, Rotation
+
+VisualKind = Literal["box", "sphere", "cylinder", "capsule", "ellipsoid", "mesh"]
+
+MOST_VISUALS = 10_000  # That are kept of one file.
+
+
+@dataclass(frozen=True)
+class Visual:
+    """A shape S that moves with a body B.
+
+    Attributes:
+        kind: What it is.
+        size: Of a box its edges, of an ellipsoid its half-axes, of a sphere (radius,), of a cylinder or a capsule along
+            z (radius, length), the capsule's without its caps [m]; of a mesh the factors along its axes.
+        position: p_BS [m].
+        rotation: R_BS.
+        color: Red, green, blue, 0 to 255; None where it is not stated.
+        file: Of a mesh: where it is.
+    """
+
+    kind: VisualKind
+    size: tuple[float, ...]
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rotation: Rotation = IDENTITY
+    color: tuple[int, int, int] | None = None
+    file: str = ""

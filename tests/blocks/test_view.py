@@ -1,0 +1,138 @@
+"""A mechanism shown while a run goes on, without a browser."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.blocks import ForwardDynamics, Sequence, View3D
+from symofros.blocks.view import with_view
+from symofros.diagram_files.registry import kind_of
+
+PATIENCE = 10.0
+
+
+def arm(system: sf.System = MODELS["double_pendulum"]) -> sf.Diagram:
+    d = sf.Diagram("arm")
+    d.add_model("arm", system, {"q1": 0.5}, {"L1": 0.8})
+    d.add(ForwardDynamics(name="plant", model="arm"))
+    return d
+
+
+def shown(**fields: Any) -> tuple[sf.Simulation, View3D]:
+    diagram, block = with_view(arm(), open_browser=False, **fields)
+    return sf.Simulation(diagram), block
+
+
+@pytest.fixture
+def viewed() -> Iterator[tuple[sf.Simulation, View3D]]:
+    simulation, block = shown()
+    yield simulation, block
+    block.close()
+
+
+def until_shown(block: View3D, q: np.ndarray) -> None:
+    deadline = time.monotonic() + PATIENCE
+    assert block.viewer is not None
+    while not np.array_equal(block.viewer.state.q, q):
+        assert time.monotonic() < deadline, "the last state was not shown"
+        time.sleep(0.005)
+
+
+def test_it_shows_the_run_and_does_not_change_it(
+    viewed: tuple[sf.Simulation, View3D], capsys: pytest.CaptureFixture[str]
+) -> None:
+    simulation, block = viewed
+    assert block.viewer is None
+    run = simulation.run(0.4, dt=1e-2)
+    plain = sf.Simulation(arm()).run(0.4, dt=1e-2)
+    assert np.allclose(run["plant.q"], plain["plant.q"], rtol=0, atol=1e-14)
+    assert block.viewer is not None and block.viewer.url in capsys.readouterr().err
+    until_shown(block, run["plant.q"][-1])
+    kept = run.kept["view3d"]
+    assert kept["shown"] == 11 and 0 <= kept["dropped"] < 11  # Every 0.04 s.
+    # Drawn with the parameters that the diagram states.
+    elbow = block.viewer._server.scene.get_handle_by_name("/mechanism/link1").position
+    assert np.linalg.norm(elbow) == pytest.approx(0.8)
+
+
+def test_one_page_serves_all_runs(viewed: tuple[sf.Simulation, View3D]) -> None:
+    simulation, block = viewed
+    simulation.run(0.1, dt=1e-2)
+    first = block.viewer
+    again = simulation.run(0.2, dt=1e-2)
+    assert block.viewer is first and again.kept["view3d"]["shown"] == 6
+    interpreted = simulation.interpret(0.1, dt=1e-2)
+    assert block.viewer is first and interpreted.kept["view3d"]["shown"] == 3
+
+
+def test_the_page_shows_what_its_own_run_is_about(viewed: tuple[sf.Simulation, View3D]) -> None:
+    """One block in two diagrams, of which one has another model in place of the first."""
+    simulation, block = viewed
+    setup = replace(simulation.diagram.models["arm"], system=MODELS["pendulum"], start={}, parameters={})
+    other = sf.Simulation(simulation.diagram.with_model("arm", setup))
+    for one, nq in ((simulation, 2), (other, 1), (simulation, 2)):
+        run = one.run(0.08, dt=1e-2)
+        assert block.viewer is not None and block.viewer.mechanism.model.nq == nq
+        until_shown(block, run["plant.q"][-1])
+
+
+def test_it_ends_with_the_run_if_it_is_told_to() -> None:
+    simulation, block = shown(stays=False)
+    simulation.run(0.1, dt=1e-2)
+    first = block.viewer
+    assert first is not None and first.is_closed
+    simulation.run(0.1, dt=1e-2)
+    assert block.viewer is not first and block.viewer is not None and block.viewer.is_closed
+
+
+def test_a_paced_run_takes_its_time() -> None:
+    simulation, block = shown(paced=True, stays=False)
+    assert simulation.run(0.4, dt=1e-2).cost.seconds > 0.39
+    free, _ = shown(stays=False)
+    assert free.run(4.0, dt=1e-2).cost.seconds < 2.0  # On its own, it takes no more than the calls do.
+
+
+def test_prescribed_motions_are_shown() -> None:
+    t = np.array([0.0, 1.0])
+    d = sf.Diagram("spin")
+    d.add_model("beam", MODELS["spinning_beam"])
+    d.add(Sequence(name="hub", t=t, values=np.stack([3 * t, 3 + 0 * t, 0 * t], axis=1)))
+    d.add(ForwardDynamics(name="plant", model="beam"), u="hub.y")
+    diagram, block = with_view(d, open_browser=False)
+    run = sf.Simulation(diagram).run(0.2, dt=1e-3)
+    until_shown(block, run["plant.q"][-1])
+    assert block.viewer is not None and block.viewer.state.u[0] == pytest.approx(0.6)
+    block.close()
+
+
+def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "viser", None)
+    simulation, _ = shown()
+    with pytest.raises(sf.SymofrosError, match=r"viser is not installed\n(.*\n)*  remedy: pip install 'symofros"):
+        simulation.run(0.1, dt=1e-2)
+
+
+@pytest.mark.parametrize("fields", [{"port": 70000}, {"exaggeration": float("nan")}])
+def test_what_can_not_be_is_refused(fields: dict[str, Any]) -> None:
+    with pytest.raises(sf.DescriptionError, match="block 'view3d': can't show that"):
+        shown(**fields)
+
+
+def test_the_diagram_that_is_shown_stays_as_it_is() -> None:
+    diagram = arm()
+    shown, block = with_view(diagram)
+    assert list(diagram.blocks) == ["plant"] and list(shown.blocks) == ["plant", "view3d"] and not diagram.wires
+    assert with_view(shown)[1].name == "view3d_" and block.model == "arm"
+
+
+def test_files_call_it_by_its_name() -> None:
+    assert kind_of(View3D) == "view3d" and kind_of(ForwardDynamics) == "forward_dynamics"

@@ -1,0 +1,142 @@
+"""How bodies look by their files: what is read of it, and that nothing else depends on it."""
+
+from __future__ import annotations
+
+import pickle
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import symofros as sf
+from symofros.description.visual import MOST_VISUALS, Visual
+from symofros.topology.numbers import Numbers
+
+ROBOT = """<robot name="arm"><material name="sky"><color rgba="0 0.5 1 1"/></material>
+<link name="base"/>
+<link name="upper"><inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+%s</link>
+<joint name="q1" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>
+"""
+BOX = '<box size="1 2 3"/>'
+
+
+def visual(geometry: str, more: str = "") -> str:
+    return f"<visual>{more}<geometry>{geometry}</geometry></visual>"
+
+
+def load(folder: Path, inside: str) -> sf.System:
+    file = folder / "robot" / "urdf" / "arm.urdf"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(ROBOT % inside)
+    return sf.load(file)
+
+
+def shapes(folder: Path, inside: str) -> tuple[Visual, ...]:
+    return load(folder, inside).visuals.get("upper", ())
+
+
+@pytest.mark.parametrize(
+    ("geometry", "kind", "size"),
+    [
+        (BOX, "box", (1.0, 2.0, 3.0)),
+        ('<sphere radius="0.5"/>', "sphere", (0.5,)),
+        ('<cylinder length="2" radius="0.1"/>', "cylinder", (0.1, 2.0)),
+        ('<capsule length="2" radius="0.1"/>', "capsule", (0.1, 2.0)),
+    ],
+)
+def test_primitives_of_a_urdf(geometry: str, kind: str, size: tuple[float, ...], tmp_path: Path) -> None:
+    (shape,) = shapes(tmp_path, visual(geometry, '<origin xyz="1 2 3" rpy="0 0 0.5"/>'))
+    assert (shape.kind, shape.size, shape.position) == (kind, size, (1.0, 2.0, 3.0))
+    assert shape.rotation == sf.Rotation.rpy(0.0, 0.0, 0.5) and shape.color is None
+
+
+def test_colors_are_those_of_materials(tmp_path: Path) -> None:
+    own = '<material name="x"><color rgba="1 0 2 0.3"/></material>'
+    texts = (own, '<material name="sky"/>', '<material name="none"/>', "")
+    found = shapes(tmp_path, "".join(visual(BOX, text) for text in texts))
+    assert [shape.color for shape in found] == [(255, 0, 255), (0, 128, 255), None, None]
+
+
+@pytest.mark.parametrize(
+    ("stated", "where"),
+    [
+        ("hand.stl", "robot/urdf/hand.stl"),
+        ("meshes/hand.stl", "robot/urdf/meshes/hand.stl"),
+        ("package://robot/meshes/hand.stl", "robot/meshes/hand.stl"),
+        ("model://robot/meshes/hand.stl", "robot/meshes/hand.stl"),
+        ("package://other/hand.stl", "robot/urdf/other/hand.stl"),
+        ("package://other/hand.stl", "robot/urdf/hand.stl"),
+    ],
+)
+def test_meshes_are_found_in_the_folder_and_the_package(stated: str, where: str, tmp_path: Path) -> None:
+    (tmp_path / where).parent.mkdir(parents=True)
+    (tmp_path / where).write_bytes(b"whatever")  # It is not opened.
+    (shape,) = shapes(tmp_path, visual(f'<mesh filename="{stated}" scale="1 -1 0.001"/>'))
+    assert shape.kind == "mesh" and shape.size == (1.0, -1.0, 0.001)
+    assert shape.file == str((tmp_path / where).resolve())
+
+
+@pytest.mark.parametrize(
+    "stated", ["../secret.stl", "/etc/passwd", "file:///etc/passwd", "package://robot/../secret.stl", "link.stl",
+               "package://../secret.stl", "missing.stl", "", "http://example.org/x.stl", "x" * 5000, "loop.stl", "package://a//etc/passwd"],
+)  # fmt: skip
+def test_meshes_elsewhere_are_left_alone(stated: str, tmp_path: Path) -> None:
+    for place in (tmp_path / "secret.stl", tmp_path / "robot" / "secret.stl"):
+        place.parent.mkdir(exist_ok=True)
+        place.write_bytes(b"secret")
+    (tmp_path / "robot" / "urdf").mkdir()
+    (tmp_path / "robot" / "urdf" / "link.stl").symlink_to(tmp_path / "secret.stl")
+    (tmp_path / "robot" / "urdf" / "loop.stl").symlink_to(tmp_path / "robot" / "urdf" / "loop.stl")
+    system = load(tmp_path, visual(f'<mesh filename="{stated}"/>'))
+    assert not system.visuals and any("visual shapes that can't be drawn ignored" in note for note in system.notes)
+
+
+@pytest.mark.parametrize(
+    "inside",
+    ["<visual/>", "<visual><geometry/></visual>", visual("<torus/>"), visual('<box size="1 2"/>'), visual("<sphere/>"),
+     visual('<box size="1 2 0"/>'), visual('<sphere radius="nan"/>'), visual('<cylinder radius="1"/>'),
+     visual(BOX, '<origin xyz="1 2"/>'), visual(BOX, '<origin rpy="a b c"/>')],
+)  # fmt: skip
+def test_what_is_not_understood_is_no_fault(inside: str, tmp_path: Path) -> None:
+    system = load(tmp_path, inside)
+    assert not system.visuals and any("can't be drawn ignored: 1 link (upper)" in note for note in system.notes)
+
+
+def test_no_more_are_kept_than_can_be_shown(tmp_path: Path) -> None:
+    assert len(shapes(tmp_path, visual(BOX) * (MOST_VISUALS + 5))) == MOST_VISUALS
+
+
+def test_looks_change_nothing_that_is_computed(tmp_path: Path) -> None:
+    plain, dressed = load(tmp_path, ""), load(tmp_path, visual(BOX))
+    assert plain == dressed and repr(plain) == repr(dressed) and dressed.visuals and not plain.visuals
+    models = [sf.compile(system, sf.Options(backend="interpreter")) for system in (plain, dressed)]
+    assert models[0].record.hash == models[1].record.hash
+
+
+def test_they_stay_with_a_system(tmp_path: Path) -> None:
+    system = load(tmp_path, visual(BOX))
+    assert pickle.loads(pickle.dumps(system)).visuals == system.visuals
+    assert system.with_bodies(replace(system.body("upper"), waive=())).visuals == system.visuals
+    with pytest.raises(TypeError):
+        system.visuals["upper"] = ()  # type: ignore[index]
+
+
+MJCF = """<mujoco><worldbody><geom type="plane" size="1 1 1"/>
+<body name="arm" pos="0 0 1"><joint name="q" axis="0 1 0"/><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/>
+<geom type="box" size="0.1 0.2 0.3" pos="1 2 3" rgba="1 0 0.5 1"/><geom type="capsule" size="0.1 0.4" euler="0 90 0"/>
+<geom type="ellipsoid" size="0.1 0.2 0.3"/><geom type="cylinder" size="0.1 0.4"/><geom type="sphere" size="0.1"/>
+<geom type="sphere" size="0.1" group="3"/><geom type="sphere" size="0.1" rgba="1 1 1 0"/></body></worldbody></mujoco>
+"""
+
+
+def test_primitives_of_mjcf(tmp_path: Path) -> None:
+    (tmp_path / "arm.xml").write_text(MJCF)
+    system = sf.load(tmp_path / "arm.xml")
+    assert set(system.visuals) == {"arm"}
+    box, capsule, *others = system.visuals["arm"]
+    assert (box.kind, box.position, box.color) == ("box", (1.0, 2.0, 3.0), (255, 0, 128))
+    assert box.size == pytest.approx((0.2, 0.4, 0.6)) and capsule.size == pytest.approx((0.1, 0.8))  # Not half lengths.
+    assert Numbers(system, {}).rotation(capsule.rotation)[:, 2] == pytest.approx([1.0, 0.0, 0.0])
+    assert [shape.kind for shape in others] == ["ellipsoid", "cylinder", "sphere"]  # Those that are seen at first.
