@@ -20,7 +20,7 @@ MODEL, SCENE = str(FLEXIBLE / "spinning_beam.yaml"), str(FLEXIBLE / "scenes" / "
 
 def run(*arguments: str):
     # A console keeps the width that it found when it was made.
-    with mock.patch("symofros.__main__._out", Console(width=160)):
+    with mock.patch("symofros.commands.uses.out", Console(width=160)):
         return CliRunner().invoke(app, ["advise", *arguments])
 
 

@@ -1,0 +1,126 @@
+"""symofros info, symofros compile: what a model or a diagram is, and its C."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.table import Table
+from rich.tree import Tree
+
+import symofros as sf
+from symofros.atomic import write_atomically
+from symofros.codegen.names import identifier
+from symofros.codegen.templates import template
+from symofros.commands.shared import AsJson, FilePath, Floating, ModelPath, Network, load, out, refuse
+from symofros.compiler import compile_system, describe, generate, plan, requested
+from symofros.diagram_files import command as diagrams
+from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
+from symofros.passes.count import Operations, count_program
+from symofros.topology.tree import BASE, SpanningTree
+
+
+def info(model: FilePath, floating_base: Floating = False, network: Network = False, as_json: AsJson = False) -> None:
+    """Show a model: its tree, its sizes, the operations of each function; or a diagram: blocks, rates, order."""
+    if diagrams.is_diagram(model):
+        try:
+            diagrams.tell_diagram(sf.load_diagram(model, network=network), as_json, out)
+        except sf.SymofrosError as error:
+            raise refuse(error) from None
+        return
+    system = load(model, floating_base)
+    tree = plan(system)
+    counts = _counts(tree)
+    names = tree.coordinates
+    sizes = {"nq": len(names.q), "nv": len(names.v), "nu": len(names.u), "npar": len(names.par)}
+    if as_json:
+        operations = {name: vars_of(count) for name, count in counts.items()}
+        frames = [frame.name for frame in tree.frames]
+        print(json.dumps({"name": system.name, **sizes, "frames": frames, "operations": operations,
+                          "notes": list(system.notes)}, indent=1))  # fmt: skip
+        return
+    out.print(_draw(tree))
+    out.print(", ".join(f"{key} {value}" for key, value in sizes.items()), markup=False)
+    table = Table("function", "mul", "add", "div", "call", "total", title="Operations per call")
+    for name, count in counts.items():
+        table.add_row(name, *map(str, (count.mul, count.add, count.div, count.call, count.total)))
+    out.print(table)
+    for note in system.notes:
+        out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+
+
+def vars_of(count: Operations) -> dict[str, int]:
+    """Counts by kind."""
+    return {"mul": count.mul, "add": count.add, "div": count.div, "call": count.call}
+
+
+def _counts(tree: SpanningTree) -> dict[str, Operations]:
+    """Operations of each model function, and of each frame function at the last frame."""
+    frame = tree.frames[-1].name
+    keys = [(name, "") for name in MODEL_FUNCTIONS] + [(name, frame) for name in FRAME_FUNCTIONS]
+    program, _ = generate(tree, keys, describe(tree, sf.Options()))
+    return {" of ".join(filter(None, key)): count for key, count in count_program(program).items()}
+
+
+def _draw(tree: SpanningTree) -> Tree:
+    base = next((body.name for body in tree.system.bodies if body.joint is None), "world")
+    root = Tree(f"{tree.system.name}: {base}", highlight=False)
+    branches = {BASE: root}
+    for i, link in enumerate(tree.links):
+        start, size = link.v
+        speeds = f"v[{start}]" if size == 1 else f"v[{start}:{start + size}]"
+        frames = sum(frame.link == i for frame in tree.frames)
+        text = f"{link.name}  ({link.joint.kind} {link.joint.name}, {speeds}, {frames} frame{'s' * (frames != 1)})"
+        branches[i] = branches[link.parent].add(text)
+    return root
+
+
+def compile_command(
+    model: ModelPath,
+    floating_base: Floating = False,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Also write NAME.c and symofros_model.h to this folder.")
+    ] = None,
+    functions: Annotated[
+        str, typer.Option(help="Functions to generate, comma-separated; all of the model's by default.")
+    ] = ",".join(MODEL_FUNCTIONS),
+    frames: Annotated[str, typer.Option(help="Frames of frame functions, comma-separated; all by default.")] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Generate and compile a model; it is then in the cache."""
+    system = load(model, floating_base)
+    options = sf.Options(functions=tuple(functions.split(",")), frames=tuple(frames.split(",")) if frames else None)
+    start = time.perf_counter()
+    try:
+        tree = plan(system)
+        program, source = generate(tree, requested(tree, options), describe(tree, options))
+        text = source()
+        generated = time.perf_counter()
+        compile_system(system, options)
+    except sf.SymofrosError as error:
+        raise refuse(error) from None
+    done = time.perf_counter()
+    total = sum(count.total for key, count in count_program(program).items() if key[0] != "init")
+    result: dict[str, Any] = {
+        "name": system.name, "operations": total, "bytes": len(text),
+        "generate_s": generated - start, "compile_s": done - generated,
+    }  # fmt: skip
+    if output is not None:
+        output.mkdir(parents=True, exist_ok=True)
+        name = identifier(system.name)
+        write_atomically(output / f"{name}.c", text)
+        write_atomically(output / "symofros_model.h", template("symofros_model.h"))
+        result["files"] = [str(output / f"{name}.c"), str(output / "symofros_model.h")]
+    if as_json:
+        print(json.dumps(result, indent=1))
+        return
+    out.print(
+        f"{system.name}: {total} operations, {len(text) / 1024:.0f} KiB of C; "
+        f"generated in {result['generate_s']:.2f} s, compiled or found in {result['compile_s']:.2f} s",
+        markup=False,
+    )
+    for file in result.get("files", ()):
+        out.print(f"wrote {file}", markup=False)

@@ -1,0 +1,169 @@
+"""symofros simulate: a model or a diagram through time."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich.table import Table
+
+import symofros as sf
+from symofros import watching
+from symofros.commands.shared import (
+    BAD_INPUT,
+    AsJson,
+    FilePath,
+    Floating,
+    Network,
+    assignments,
+    err,
+    load,
+    names_of,
+    number,
+    numbers,
+    out,
+    refuse,
+)
+from symofros.compiler import compile_system
+from symofros.description.system import System
+from symofros.diagram_files import command as diagrams
+from symofros.errors import did_you_mean
+from symofros.runtime.kernel import Array
+from symofros.simulation.methods import METHODS
+
+
+def simulate(
+    model: FilePath,
+    t_end: Annotated[float | None, typer.Argument(help="Where to end [s]; 1, or what the diagram says.")] = None,
+    floating_base: Floating = False,
+    method: Annotated[str | None, typer.Option(help=f"{', '.join(METHODS)}; rk4 by default.")] = None,
+    dt: Annotated[float | None, typer.Option(help="Step [s]; the first one of adaptive methods.")] = None,
+    rtol: Annotated[float | None, typer.Option(help="Relative error of a step, adaptive methods.")] = None,
+    given: Annotated[
+        list[str], typer.Option("--set", help="NAME=NUMBER: a first coordinate or speed (dNAME); of a diagram "
+                                "BLOCK.FIELD=NUMBER or NUMBER,NUMBER: a run-time parameter.")
+    ] = [],  # noqa: B006
+    inputs: Annotated[list[str], typer.Option("--input", help="NAME=FORMULA of coordinates, speeds and t.")] = [],  # noqa: B006
+    every: Annotated[
+        float | None, typer.Option("--record", "--every", help="Record at this interval [s]; each step by default.")
+    ] = None,
+    signals: Annotated[str, typer.Option(help="Of a diagram: BLOCK.PORT,... to save and plot.")] = "",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write .npz, .csv or .parquet.")] = None,
+    picture: Annotated[
+        str, typer.Option("--plot", "--picture", help="Write a picture: .png, .svg, .pdf; of a diagram also 'window'.")
+    ] = "",
+    realtime: Annotated[bool, typer.Option("--realtime", help="Keep pace with the clock.")] = False,
+    speed: Annotated[
+        float | None, typer.Option(min=1e-6, help="Seconds of motion a second; keeps pace with the clock.")
+    ] = None,
+    jitter: Annotated[Path | None, typer.Option(help="Of a diagram: picture of how late instants were.")] = None,
+    view: Annotated[
+        bool, typer.Option("--view", help="Play the run in three dimensions in the browser; of a diagram that keeps "
+                           "pace, show it as it goes.")
+    ] = False,
+    view_block: Annotated[str, typer.Option(help="Of a diagram with several mechanisms: whose is shown.")] = "",
+    record_view: Annotated[
+        Path | None, typer.Option(help="Write what --view shows: .html (a replay in one page), .mp4, .gif or .png.")
+    ] = None,
+    exaggeration: Annotated[float, typer.Option(help="Multiplies the elastic coordinates in the picture.")] = 1.0,
+    network: Network = False,
+    as_json: AsJson = False,
+) -> None:  # fmt: skip
+    """Move a model or a diagram through time, and say how it went."""
+    pace = speed or float(realtime)
+    settings = {"method": method, "dt": dt, "rtol": rtol}
+    stated: dict[str, Any] = {name: value for name, value in settings.items() if value is not None}
+    wanted = not as_json and err.is_terminal
+    look = watching.Look(view, view_block, record_view, exaggeration)
+    try:
+        if diagrams.is_diagram(model):
+            if inputs:
+                raise sf.SymofrosError(f"--input: a diagram's inputs are blocks\n  found:  {inputs[0]}")
+            stated |= {"record": every} if every is not None else {}
+            stated |= {"parameters": {name: numbers(name, text) for name, text in assignments(given, "--set").items()}}
+            names = tuple(names_of(signals) or ())
+            wishes = diagrams.Wishes(t_end, stated, pace, names, output, picture, jitter)
+            diagram = sf.load_diagram(model, network=network)
+            diagram, live = watching.prepared(diagram, look, bool(pace or diagram.simulation.realtime))
+            found = diagrams.run_diagram(diagram, wishes, wanted)
+            files = diagrams.write_files(found, wishes) + watching.recorded(found, look)
+            diagrams.tell_run(found, files, as_json, out)
+            watching.shown(found, look, live=live)
+            ok = found.outcome.ok
+        else:
+            if picture == diagrams.WINDOW:
+                raise sf.SymofrosError("--plot window: of diagrams only\n  remedy: write a picture: --plot run.png")
+            look.check()
+            system = load(model, floating_base)
+            run = _simulated(system, t_end, given, inputs, every, pace, stated, wanted)
+            files = ([str(run.save(output))] if output else []) + watching.recorded(run, look, system)
+            if picture:
+                run.plot().savefig(picture, dpi=120)
+                files.append(picture)
+            _tell(run, files, as_json)
+            watching.shown(run, look, system)
+            ok = run.outcome.ok
+    except (sf.SymofrosError, ValueError, OSError) as error:
+        raise refuse(error) from None
+    if not ok:
+        raise typer.Exit(1)
+
+
+def _simulated(
+    system: System, t_end: float | None, given: list[str], inputs: list[str], every: float | None, pace: float,
+    settings: dict[str, Any], progress: bool,
+) -> sf.Trajectory:  # fmt: skip
+    """The run of one model."""
+    compiled = compile_system(system)
+    q, v = _first_state(compiled, assignments(given, "--set"))
+    return sf.simulate(
+        compiled, q, v, 1.0 if t_end is None else t_end, u=assignments(inputs, "--input") or None, output=every,
+        realtime=pace, progress=progress, **settings,
+    )  # fmt: skip
+
+
+def _first_state(model: sf.Model, given: dict[str, str]) -> tuple[Array, Array]:
+    """The neutral state, with what --set gives; closed where the model has loops."""
+    q, v = model.neutral(), np.zeros(model.nv)
+    for name, text in given.items():
+        value = number(name, text)
+        if name in model.names.q:
+            q[model.names.q.index(name)] = value
+        elif name.removeprefix("d") in model.names.v:
+            v[model.names.v.index(name.removeprefix("d"))] = value
+        elif name in model.names.v:
+            v[model.names.v.index(name)] = value
+        else:
+            known = (*model.names.q, *(f"d{speed}" for speed in model.names.v))
+            err.print(f"--set: no coordinate or speed '{name}'\n  remedy: {did_you_mean(name, known)}", markup=False)
+            raise typer.Exit(BAD_INPUT)
+    if not model.nc:
+        return q, v
+    closed = sf.assemble(model, q, v)
+    return closed.q, closed.v
+
+
+def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:
+    """Outcome, cost and last state of a run."""
+    cost, drift = run.statistics, float(run.energy[-1] - run.energy[0])
+    last = {name: float(column[-1]) for name, column in run.columns().items()}
+    if as_json:
+        outcome = {"kind": run.outcome.kind, "t": run.outcome.t, "reason": run.outcome.reason,
+                   "advice": run.outcome.advice, "notes": list(run.outcome.notes)}  # fmt: skip
+        print(json.dumps({"ok": run.outcome.ok, "outcome": outcome, "statistics": asdict(cost), "last": last,
+                          "energy_change": drift, "files": files}, indent=1))  # fmt: skip
+        return
+    out.print(str(run.outcome), markup=False, highlight=False, soft_wrap=True)
+    table = Table("name", "first", "last", title=f"{len(run)} states, t = {run.t[0]:g} to {run.t[-1]:g} s")
+    for name, column in run.columns().items():
+        table.add_row(name, f"{column[0]:.6g}", f"{column[-1]:.6g}")
+    out.print(table)
+    speed = (run.t[-1] - run.t[0]) / max(cost.seconds, 1e-9)
+    out.print(f"{cost.steps} steps, {cost.rejected} rejected, {cost.evaluations} evaluations; {cost.seconds:.3g} s,"
+               f" {speed:.3g} times real time; energy changed by {drift:.3g} J", markup=False)  # fmt: skip
+    for file in files:
+        out.print(f"wrote {file}", markup=False)

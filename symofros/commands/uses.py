@@ -1,0 +1,118 @@
+"""symofros advise, symofros export, symofros edit: what else is done with a model."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any, cast
+
+import typer
+
+import symofros as sf
+from symofros.advice.report import table_of
+from symofros.commands.shared import (
+    BAD_INPUT,
+    AsJson,
+    FilePath,
+    Floating,
+    ModelPath,
+    assignments,
+    err,
+    load,
+    names_of,
+    number,
+    out,
+    refuse,
+)
+from symofros.diagram_files import command as diagrams
+from symofros.exporting import TARGETS
+
+
+def advise(
+    model: ModelPath,
+    scene: Annotated[Path, typer.Option(help="The scene, a YAML file (docs/advise.md).", show_default=False)],
+    floating_base: Floating = False,
+    tolerance: Annotated[
+        list[str], typer.Option(help="NUMBER for every output, or OUTPUT=NUMBER; in place of the scene's.")
+    ] = [],  # noqa: B006
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the reduced model: .yaml.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Find the cheapest model that keeps a scene's tolerance, each choice verified by simulation."""
+    system = load(model, floating_base)
+    try:
+        found = sf.advise(system, sf.load_scene(scene), _tolerances(tolerance))
+        if output:
+            found.write(output)
+    except sf.SymofrosError as error:
+        raise refuse(error) from None
+    if as_json:
+        print(json.dumps(found.to_json(), indent=1))
+    else:
+        out.print(table_of(found))
+        if output:
+            out.print(f"wrote {output}", markup=False)
+    if not found.ok:
+        raise typer.Exit(1)
+
+
+def _tolerances(given: list[str]) -> float | dict[str, float] | None:
+    """What --tolerance gives: one number, or some by name."""
+    if len(given) == 1 and "=" not in given[0]:
+        return number("--tolerance", given[0])
+    return {name: number(name, text) for name, text in assignments(given, "--tolerance").items()} or None
+
+
+def export_command(
+    model: FilePath,
+    target: Annotated[str, typer.Option("--target", "-t", help=", ".join(TARGETS))],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder: new, empty, or of an earlier export.")],
+    floating_base: Floating = False,
+    name: Annotated[str | None, typer.Option(help="Of files and functions; made of the model's by default.")] = None,
+    frames: Annotated[str | None, typer.Option(help="Frames of kinematics, comma-separated; all by default.")] = None,
+    outputs: Annotated[
+        str | None, typer.Option(help="Frames whose positions an FMU gives, or signals of a diagram; comma-separated.")
+    ] = None,
+    given: Annotated[list[str], typer.Option("--set", help="NAME=NUMBER: a first coordinate or speed (dNAME).")] = [],  # noqa: B006
+    method: Annotated[str, typer.Option(help="How it steps by itself.")] = "rk4",
+    dt: Annotated[float, typer.Option(help="Step [s].")] = 1e-3,
+    as_json: AsJson = False,
+) -> None:
+    """Write a model for C, Matlab, Octave, Simulink, FMI, or as URDF or MJCF; a diagram as a C program."""
+    described = sf.load_diagram(model) if diagrams.is_diagram(model) else load(model, floating_base)
+    start = {key: number(key, text) for key, text in assignments(given, "--set").items()}
+    try:
+        done = sf.export(
+            described, cast(Any, target), output, name=name, frames=names_of(frames), outputs=names_of(outputs),
+            start=start, method=method, dt=dt,
+        )  # fmt: skip
+    except sf.SymofrosError as error:
+        raise refuse(error) from None
+    if as_json:
+        print(json.dumps({"target": done.target, "name": done.name, "files": [str(file) for file in done.files],
+                          "notes": list(done.notes)}, indent=1))  # fmt: skip
+        return
+    for file in done.files:
+        out.print(f"wrote {file}", markup=False, highlight=False, soft_wrap=True)
+    for note in done.notes:
+        out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+
+
+def edit(
+    model: Annotated[Path | None, typer.Argument(help="A model; a new one if not given.")] = None,
+    port: Annotated[int, typer.Option(help="Of the local page; any free one by default.")] = 0,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")] = True,
+    token: Annotated[str | None, typer.Option(help="A fixed one, for tests; drawn at random by default.")] = None,
+) -> None:
+    """Draw, edit, check, compile and simulate a model in the browser."""
+    try:
+        from symofros.gui.command import serve
+    except ModuleNotFoundError as error:
+        if error.name not in ("starlette", "uvicorn", "anyio"):
+            raise
+        err.print(f"the editor needs the package '{error.name}'\n  remedy: pip install 'symofros\\[gui]'")
+        raise typer.Exit(BAD_INPUT) from None
+    try:
+        serve(model, port, token, browser, lambda url: out.print(url, markup=False, highlight=False, soft_wrap=True))
+    except (sf.SymofrosError, OSError) as error:
+        raise refuse(error) from None
