@@ -127,7 +127,7 @@ def _asked(headers: list[tuple[bytes, bytes]], receive: Any) -> int:
     async def answer(request: Request) -> PlainTextResponse:
         return PlainTextResponse(str(len(await request.body())))
 
-    app = Guard(Starlette(routes=[Route("/api/text", answer, methods=["POST"])]), TOKEN, PORT)
+    app = Guard(Starlette(routes=[Route("/api/text", answer, methods=["POST"])]), TOKEN, PORT, "view")
     head = [(b"host", f"127.0.0.1:{PORT}".encode()), (b"authorization", f"Bearer {TOKEN}".encode()),
             (b"content-type", b"application/json"), *headers]  # fmt: skip
     scope = {"type": "http", "method": "POST", "path": "/api/text", "raw_path": b"/api/text", "query_string": b"",
