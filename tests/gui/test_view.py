@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,6 +16,7 @@ from symofros.gui.app import application
 from symofros.gui.relay import MAX_SOCKETS
 from symofros.gui.session import Session
 from tests.gui.conftest import BASE, PORT, TOKEN
+from tests.gui.texts import FILES
 
 Json = dict[str, Any]
 PROTOCOL = "viser-v1.1.1"
@@ -66,21 +69,28 @@ def test_loops_close_around_what_is_moved(client: TestClient) -> None:
     assert pose(client, reset=True)["q"] == pytest.approx(view["q"])
 
 
-def test_a_parameter_moves_it_before_the_document_changes(client: TestClient) -> None:
-    view = look(client)
-    name = view["run_time"][0]
-    number = next(p["number"] for p in client.get("/api/document").json()["parameters"] if p["name"] == name)
-    found = pose(client, par={name: 1.05 * number})
-    assert found["why"] == "" and found["gap"] < 1e-9 and found["q"] != view["q"]
-    assert client.get("/api/document").json()["dirty"] is False
+@pytest.fixture
+def crank(client: TestClient, folder: Path) -> TestClient:
+    """With a slider-crank open."""
+    shutil.copy(FILES["slider_crank"], folder)
+    assert client.post("/api/open", json={"path": "slider_crank.yaml"}).status_code == 200
+    return client
 
 
-def test_where_loops_can_not_be_closed_it_stays(client: TestClient) -> None:
-    view = look(client)
-    name = view["run_time"][0]
-    found = pose(client, par={name: 100.0})
-    assert "assembl" in found["why"] or "close" in found["why"]
-    assert found["q"] == view["q"] and found["gap"] < 1e-9
+def test_a_parameter_moves_it_before_the_document_changes(crank: TestClient) -> None:
+    view = look(crank)
+    assert [one["unit"] for one in view["coordinates"]] == ["rad", "rad", "m"] and "L1" in view["run_time"]
+    found = pose(crank, q={"turn": 0.0, "swing": 0.0}, par={"L1": 0.2})
+    assert found["why"] == "" and found["gap"] < 1e-9
+    assert found["q"]["slide"] == pytest.approx(0.2 + 0.3)
+    assert crank.get("/api/document").json()["dirty"] is False
+
+
+def test_where_loops_can_not_be_closed_it_stays(crank: TestClient) -> None:
+    view = look(crank)
+    found = pose(crank, q={"turn": 1.57}, par={"L2": 0.1})  # The crank's end is 0.15 m above the slider's axis.
+    assert found["why"] and found["q"] == view["q"] and found["gap"] < 1e-9
+    assert pose(crank, q={"turn": 1.57})["why"] == ""  # The rod is as long as it was.
 
 
 def test_it_follows_the_document_and_keeps_the_last_that_was_sound(client: TestClient) -> None:
