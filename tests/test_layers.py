@@ -55,7 +55,7 @@ ALLOWED: dict[str, set[str]] = {
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
     "gui": {
         "__init__", "atomic", "beams", "compiler", "description", "errors", "exporting", "expr", "passes", "simulation",
-        "topology",
+        "topology", "viewing",
     },
     "loading": {"errors", "atomic", "description", "topology"},
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.

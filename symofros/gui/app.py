@@ -7,6 +7,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from functools import partial
 from pathlib import Path
+from secrets import token_urlsafe
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -16,7 +17,7 @@ from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
-from starlette.routing import Mount, Route
+from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
@@ -28,9 +29,11 @@ from symofros.gui.events import Events
 from symofros.gui.guard import Guard, error_body
 from symofros.gui.jobs import Jobs
 from symofros.gui.plain import EditError
+from symofros.gui.relay import Relay
 from symofros.gui.session import Json, Session
 from symofros.gui.shapes import curves
 from symofros.gui.storage import ConflictError
+from symofros.gui.view import View
 from symofros.gui.workspace import FileError
 
 IMPORT_SECONDS = 60.0
@@ -43,13 +46,15 @@ Answer = Callable[[Request], Awaitable[Response]]
 class Editor:
     """Answers requests, one at a time where they touch the document."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, view_token: str) -> None:
         self.session = session
+        self.view = View()
+        self.relay = Relay(self.view, view_token)
         self.events = Events()
         self.jobs = Jobs(self.events.publish)
         self.turn = anyio.Lock()
 
-    def routes(self) -> list[Route]:
+    def routes(self) -> list[Route | WebSocketRoute]:
         """Address by address."""
         session = self.session
         changes: dict[str, Callable[[Json], None]] = {
@@ -73,6 +78,9 @@ class Editor:
             Route("/api/jobs/{key}", self.job),
             Route("/api/jobs/{key}", self.cancel_job, methods=["DELETE"]),
             Route("/api/events", self.listen),
+            Route("/api/view", self.look),
+            Route("/api/pose", self.pose, methods=["POST"]),
+            *self.relay.routes(),
         ]
 
     def changing(self, action: Callable[[Json], None]) -> Answer:
@@ -172,6 +180,17 @@ class Editor:
         """Tell whatever happens, as it happens."""
         return StreamingResponse(self.events.join(), media_type="text/event-stream")
 
+    async def look(self, _: Request) -> Response:
+        """The 3-D view of the document as it is now, made or brought up to date: its address and what moves it."""
+        system = await self.exclusively(lambda: self.session.sound_system)
+        # Compiling takes its time, while others go on with the document.
+        found = await run_sync(partial(self.view.follow, system))
+        return JSONResponse({"address": self.relay.address, **found})
+
+    async def pose(self, request: Request) -> Response:
+        """Move the 3-D view."""
+        return JSONResponse(await run_sync(partial(self.view.pose, await body_of(request))))
+
     async def watch(self) -> None:
         """Tell when somebody else has written the file: once a time that it changes."""
         told = False
@@ -208,7 +227,8 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
         token: What every request must carry.
         port: Where it listens: Host and Origin must name it.
     """
-    editor = Editor(session)
+    view_token = token_urlsafe(32)
+    editor = Editor(session, view_token)
 
     async def refused(_: Request, error: Exception) -> Response:
         assert isinstance(error, (EditError, FileError, YamlFault))
@@ -251,6 +271,7 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
             tasks.start_soon(editor.watch)
             yield
             tasks.cancel_scope.cancel()
+        await run_sync(editor.view.close)
         await run_sync(editor.jobs.close)
 
     inner = Starlette(
@@ -258,4 +279,4 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
         exception_handlers=handlers,
         lifespan=running,
     )
-    return Guard(inner, token, port)
+    return Guard(inner, token, port, view_token)

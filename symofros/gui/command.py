@@ -6,7 +6,9 @@ import secrets
 import socket
 import webbrowser
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
+from typing import Literal
 
 import uvicorn
 
@@ -18,6 +20,8 @@ from symofros.gui.session import Session
 from symofros.gui.workspace import FileError, Workspace
 
 HOST = "127.0.0.1"
+# Of the 3-D view; the package comes with viser, and without it there is nothing to connect to.
+SOCKETS: Literal["websockets-sansio", "none"] = "websockets-sansio" if find_spec("websockets") else "none"
 
 
 def serve(file: Path | None, port: int, token: str | None, browser: bool, tell: Callable[[str], object]) -> None:
@@ -43,7 +47,7 @@ def serve(file: Path | None, port: int, token: str | None, browser: bool, tell: 
         port = listener.getsockname()[1]
         config = uvicorn.Config(
             application(session, token, port), log_level="warning", access_log=False, server_header=False,
-            timeout_graceful_shutdown=1, lifespan="on", ws="none",
+            timeout_graceful_shutdown=1, lifespan="on", ws=SOCKETS, ws_per_message_deflate=False,
         )  # fmt: skip
         server = _Server(config, lambda: _ready(f"http://{HOST}:{port}/?token={token}", browser, tell))
         server.run(sockets=[listener])

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from symofros.description.system import System
 from symofros.errors import Problem
 from symofros.gui.document import Document, refuse_text
 from symofros.gui.edits import with_references
@@ -40,6 +41,12 @@ class Session:
     def document(self) -> Document:
         """The document that is open."""
         return self.storage.document
+
+    @property
+    def sound_system(self) -> System | None:
+        """What the document says; None while it has problems."""
+        analysis = self.document.analysis
+        return None if analysis.problems else analysis.system
 
     def as_json(self) -> Json:
         """The document as every answer carries it."""

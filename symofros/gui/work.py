@@ -17,13 +17,12 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from symofros.beams.deformation import deformation_of
 from symofros.compiler import compile_system, describe, generate, plan, requested
 from symofros.description.native.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.gui.tasks import Json, Tell, system_of
+from symofros.gui.units import coordinate_units
 from symofros.passes.count import count_program
-from symofros.topology.coordinates import angles, joint_sizes
 from symofros.topology.tree import SpanningTree
 
 # What the page shows the cost of.
@@ -154,24 +153,6 @@ def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
         "outcome": {"ok": end.ok, "kind": end.kind, "t": end.t, "reason": end.reason, "advice": end.advice,
                     "notes": list(end.notes)},
     }  # fmt: skip
-
-
-def coordinate_units(tree: SpanningTree) -> dict[str, str]:
-    """Unit of each coordinate, where it is known: of a general joint it is not; a quaternion's parts have none."""
-    found: dict[str, str] = {}
-    for link in tree.links:
-        start, size = link.q
-        names = tree.coordinates.q[start : start + size]
-        if link.tip_of is not None:
-            units = ["m" if length else "rad" for length in deformation_of(link.tip_of).lengths]
-        elif link.joint.kind in ("general", "ball"):
-            units = [""] * size
-        elif link.joint.kind == "free":
-            units = ["m"] * 3 + [""] * 4
-        else:
-            units = ["rad" if angle else "m" for angle in angles(link.joint)[: joint_sizes(link.joint)[0]]]
-        found |= dict(zip(names, units, strict=False))
-    return found
 
 
 def export(request: Json, tell: Tell) -> Json:

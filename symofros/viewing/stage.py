@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.viewing.drawing import Drawing, alike
 from symofros.viewing.poses import Mechanism, Posture, State
 from symofros.viewing.scene import Scene, shown_at_first
 from symofros.viewing.shapes import Array
-from symofros.viewing.sliders import coordinates_of, values_of
+from symofros.viewing.sliders import Slider, coordinates_of, sliders_of, values_of
 
 
 class Stage:
@@ -55,17 +57,39 @@ class Stage:
         return True
 
     @property
+    def sliders(self) -> tuple[Slider, ...]:
+        """What moves the mechanism: one a speed."""
+        return sliders_of(self.mechanism.model, self.mechanism.elastic)
+
+    @property
     def values(self) -> Array:
         """Where the sliders of the state stand (nv)."""
         return values_of(self.mechanism.model, self.state.q)
 
-    def slid(self, index: int, value: float) -> tuple[State, str]:
-        """The state with one slider moved and the loops closed around it, and why they can't be: "" where they can."""
+    def slid(self, changes: Mapping[int, float], par: Array | None = None) -> tuple[State, str]:
+        """The state with some sliders moved and the loops closed around them, and why they can't be: "" where they can.
+
+        Args:
+            changes: Values by the index of the slider.
+            par: Run-time parameters (npar); those of the state by default.
+        """
         model, values = self.mechanism.model, self.values
-        values[index] = value
-        return self.mechanism.closed(
-            self.state._replace(q=coordinates_of(model, values)), (model.names.v[index],)
-        )  # fmt: skip
+        for index, value in changes.items():
+            values[index] = value
+        guess = self.state._replace(q=coordinates_of(model, values), par=self.state.par if par is None else par)
+        return self.mechanism.closed(guess, tuple(model.names.v[index] for index in changes))
+
+    def by_name(self, values: Mapping[str, float], par: Mapping[str, float]) -> tuple[dict[int, float], Array]:
+        """Changes of sliders by index, and run-time parameters (npar), of what is given by labels and names.
+
+        Raises:
+            UnknownNameError: There is no such slider or parameter.
+        """
+        chosen = self.state.par.copy()
+        for name, value in par.items():
+            chosen[_index("parameter", self.mechanism.model.names.par, name)] = value
+        labels = [slider.label for slider in self.sliders]
+        return {_index("coordinate", labels, name): value for name, value in values.items()}, chosen
 
     def _posture(self) -> Posture:
         return self.mechanism.posture(self.state.q, self.state.u, self.state.par, self.exaggeration)
@@ -74,3 +98,10 @@ class Stage:
         """Draw anew; what is shown or hidden stays so."""
         self._drawn_par = self.state.par
         self.scene = Scene(self.server, drawing, self._posture(), self.scene.layers)
+
+
+def _index(what: str, names: Sequence[str], name: str) -> int:
+    if name not in names:
+        raise UnknownNameError(str(Problem(f"view: no {what} '{name}'", ", ".join(names[:12]),
+                                           f"a {what} of the model", did_you_mean(name, names))))  # fmt: skip
+    return names.index(name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from types import TracebackType
 from typing import Any, NamedTuple, Self
@@ -16,7 +16,8 @@ from symofros.viewing.panel import Panel
 from symofros.viewing.player import Player
 from symofros.viewing.poses import Mechanism, State
 from symofros.viewing.server import LOOPBACK, PORT, start_server, stop_server
-from symofros.viewing.sliders import sliders_of
+from symofros.viewing.shapes import Array
+from symofros.viewing.sliders import Slider
 from symofros.viewing.stage import Stage
 from symofros.viewing.tracks import tracks_of
 
@@ -258,10 +259,33 @@ class Viewer:
 
     def slide(self, index: int, value: float) -> None:
         """Move one degree of freedom, by the index of its speed; loops close around it where they can."""
+        self._slide({index: value})
+
+    def move(self, values: Mapping[str, float], par: Mapping[str, float] | None = None) -> str:
+        """Move some degrees of freedom, and change some run-time parameters; loops close around them where they can.
+
+        Args:
+            values: By the labels of `sliders` [rad or m].
+            par: By the names of the parameters; those that are not named stay as they are.
+
+        Returns:
+            Why the loops can't be closed there, and the picture stays: "" where they can.
+
+        Raises:
+            UnknownNameError: There is no such slider or parameter.
+        """
         with self._painting:
-            state, why = self._stage.slid(index, value)
-            self._stand(self._stage.state if why else state)
-            self._panel.say("The loops can't be closed there." if why else "")
+            return self._slide(*self._stage.by_name(values, par or {}))
+
+    @property
+    def sliders(self) -> tuple[Slider, ...]:
+        """What moves it: one slider a speed."""
+        return self._stage.sliders
+
+    @property
+    def values(self) -> Array:
+        """Where the sliders stand (nv)."""
+        return self._stage.values
 
     def reset(self) -> None:
         """Show the configuration that was shown first."""
@@ -320,6 +344,13 @@ class Viewer:
             last = began
             time.sleep(max(0.0, self._period - (time.monotonic() - began)))
 
+    def _slide(self, changes: Mapping[int, float], par: Array | None = None) -> str:
+        with self._painting:
+            state, why = self._stage.slid(changes, par)
+            self._stand(self._stage.state if why else state)
+            self._panel.say("The loops can't be closed there." if why else "")
+            return why
+
     def _is_playing(self) -> bool:
         return self._player is not None and self._player.playing
 
@@ -367,9 +398,8 @@ class Viewer:
 
     def _new_panel(self) -> Panel:
         stage, mechanism = self._stage, self._stage.mechanism
-        sliders = sliders_of(mechanism.model, mechanism.elastic)
         panel = Panel(self._server, self, stage.scene.drawing, stage.scene.layers,
-                      sliders, stage.exaggeration if mechanism.is_flexible else None, self._player,
+                      self.sliders, stage.exaggeration if mechanism.is_flexible else None, self._player,
                       self._controls)  # fmt: skip
         panel.follow(stage.values, self._player)
         return panel

@@ -15,7 +15,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.errors import ShapeError, SymofrosError
+from symofros.errors import ShapeError, SymofrosError, UnknownNameError
 
 PATIENCE = 10.0  # Seconds that a thread may take on a busy machine.
 
@@ -163,6 +163,35 @@ class TestPlay:
         model = sf.compile(viewer.mechanism.system).with_parameters(L1=0.8)
         viewer.play(sf.simulate(model, t_end=0.01, dt=1e-3))
         assert viewer._stage.scene.drawing.bends[0].length == pytest.approx(0.8)
+
+
+class TestMove:
+    def test_what_is_named_moves_and_loops_close_around_it(self) -> None:
+        with sf.Viewer(MODELS["four_bar"], port=0) as viewer:
+            first, *others = (slider.label for slider in viewer.sliders)
+            assert viewer.move({first: 1.2}) == ""
+            values = dict(zip((slider.label for slider in viewer.sliders), viewer.values, strict=True))
+            assert values[first] == pytest.approx(1.2)
+            state = viewer.state
+            assert np.abs(viewer.mechanism.model.constraint(state.q, par=state.par)).max() < 1e-9
+            assert all(abs(values[other]) > 0.1 for other in others)
+
+    def test_parameters_that_are_not_named_stay(self, viewer: sf.Viewer) -> None:
+        names = viewer.mechanism.model.names.par
+        before = viewer.state.par.copy()
+        viewer.move({}, {"L1": 0.8})
+        after = viewer.state.par
+        assert after[names.index("L1")] == 0.8
+        assert np.flatnonzero(after != before).tolist() == [names.index("L1")]
+        assert viewer._stage.scene.drawing.bends[0].length == pytest.approx(0.8)
+
+    @pytest.mark.parametrize(("values", "par"), [({"q11": 1.0}, {}), ({}, {"L11": 1.0})])
+    def test_a_wrong_name_moves_nothing(
+        self, viewer: sf.Viewer, values: dict[str, float], par: dict[str, float]
+    ) -> None:
+        with pytest.raises(UnknownNameError, match="did you mean"):
+            viewer.move({"q1": 0.3, **values}, par)
+        assert np.all(viewer.state.q == 0.0)
 
 
 class TestAnotherSystem:

@@ -17,6 +17,9 @@ from playwright.sync_api import Browser, Page, sync_playwright
 import symofros.gui
 
 TOKEN = "token-of-the-tests"
+# The 3-D view is drawn without a graphics card.
+FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+         "--ignore-gpu-blocklist"]  # fmt: skip
 # The oldest that builds the page.
 NODE = (20, 19)
 # Where pictures for docs/editor.md go, when they are wanted.
@@ -73,7 +76,7 @@ def serve(tmp_path: Path) -> Iterator[Callable[..., Server]]:
 def chromium() -> Iterator[Browser]:
     path = shutil.which("chromium") or shutil.which("chromium-browser") or "/usr/bin/chromium"
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=path, args=FLAGS)
         yield browser
         browser.close()
 

@@ -115,8 +115,6 @@ export interface Catalogue {
   methods: Method[];
   units: string[];
   targets: string[];
-  /** Address of the 3-D view, where there is one. */
-  view?: string | null;
   version?: string;
 }
 
@@ -151,4 +149,43 @@ export interface Checked {
 export interface Curves {
   xi: number[];
   curves: { values: number[]; length: boolean }[];
+}
+
+/** What moves the 3-D view: one degree of freedom. */
+export interface Coordinate {
+  name: string;
+  unit: string;
+  low: number;
+  high: number;
+  elastic: boolean;
+}
+
+/** Where the 3-D view stands. */
+export interface Stand {
+  q: Record<string, number>;
+  exaggeration: number;
+  /** Largest residual of the conditions that close loops; null where there are none. */
+  gap: number | null;
+}
+
+export interface View extends Stand {
+  address: string;
+  coordinates: Coordinate[];
+  flexible: boolean;
+  /** Names of the parameters that move it at once; others need the model to be built anew. */
+  run_time: string[];
+  /** Why it is not the document as it is now, but the last one that could be shown. */
+  fault: Fault | null;
+}
+
+export interface Pose {
+  q?: Record<string, number>;
+  par?: Record<string, number>;
+  exaggeration?: number;
+  reset?: boolean;
+}
+
+export interface Posed extends Stand {
+  /** Why the loops can't be closed there: then nothing has moved. */
+  why: string;
 }

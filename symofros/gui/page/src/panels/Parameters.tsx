@@ -1,67 +1,23 @@
-import { useState } from "react";
-
-import { post } from "../api/client";
-import type { Edit, Json, Parameter } from "../api/types";
+import type { Json, Parameter } from "../api/types";
 import { shown, typed } from "../forms/values";
 import { asTyped, keyOf } from "../model/changes";
+import { parameterChange } from "../model/parameters";
 import { fresh, symbols } from "../model/names";
-import { at, isMap } from "../model/paths";
 import { IconButton } from "../shell/IconButton";
 import { edit } from "../store/edits";
 import { useDocument, useStore } from "../store/store";
 import { Cell } from "./Cell";
+import { ParameterSlider } from "./ParameterSlider";
 
 const UNITS = "units";
-
-/** An entry may be a number alone; then what else is said of it makes it a mapping. */
-function change(data: Json, name: string, key: string, value: Json | undefined): Edit[] {
-  const path = ["parameters", name];
-  const entry = at(data, path);
-  if (!isMap(entry))
-    return [{ op: "set", path, value: key === "value" ? (value ?? 0) : { value: entry ?? 0, [key]: value ?? "" } }];
-  if (value === undefined) return key in entry ? [{ op: "remove", path: [...path, key] }] : [];
-  return [{ op: "set", path: [...path, key], value }];
-}
-
-/** Moves the 3-D view while it is dragged, and changes the document when it is let go. */
-function Slider({ parameter, commit }: { parameter: Parameter; commit(value: number): void }) {
-  const hasView = useStore((state) => typeof state.catalogue?.view === "string");
-  const [dragged, setDragged] = useState<number | null>(null);
-  const value = parameter.number ?? 0;
-  const reach = 2 * Math.abs(value) || 1;
-  const finish = (): void => {
-    if (dragged !== null && dragged !== value) commit(Number(dragged.toPrecision(4)));
-    setDragged(null);
-  };
-  return (
-    <input
-      type="range"
-      min={value < 0 ? -reach : 0}
-      max={value < 0 ? 0 : reach}
-      step={reach / 200}
-      value={dragged ?? value}
-      aria-label={`${parameter.name}, slider`}
-      title={String(dragged ?? value)}
-      onChange={(event) => {
-        const next = Number(event.target.value);
-        setDragged(next);
-        // A pose that comes too late, or not at all, is replaced by the next.
-        if (hasView) post("api/pose", { par: { [parameter.name]: next } }).catch(() => undefined);
-      }}
-      onPointerUp={finish}
-      onKeyUp={finish}
-      onBlur={finish}
-    />
-  );
-}
 
 function Row({ parameter }: { parameter: Parameter }) {
   const { data } = useDocument();
   const { name } = parameter;
   const set = (key: string, value: Json | undefined): void =>
-    void edit(`change ${name}`, change(data, name, key, value));
+    void edit(`change ${name}`, parameterChange(data, name, key, value));
   const setNumber = (text: string): void => {
-    const edits = change(data, name, "value", typed(text) ?? 0);
+    const edits = parameterChange(data, name, "value", typed(text) ?? 0);
     void edit(
       `change ${name}`,
       edits.map((each) => asTyped(each, new Map([[keyOf(each.path), text.trim()]]))),
@@ -97,7 +53,7 @@ function Row({ parameter }: { parameter: Parameter }) {
         />
       </td>
       <td>
-        <Slider parameter={parameter} commit={(value) => set("value", value)} />
+        <ParameterSlider parameter={parameter} />
       </td>
       <td className="narrow">
         <IconButton

@@ -3,24 +3,30 @@ import { lazy, Suspense, useState } from "react";
 import { IconButton } from "../shell/IconButton";
 import { Splitter } from "../shell/Splitter";
 import { type Tab, Tabs } from "../shell/Tabs";
-import { type RightPane, update, useStore } from "../store/store";
+import { type RightPane, update } from "../store/store";
 import { Inputs } from "./Inputs";
 import { Parameters } from "./Parameters";
+import { ViewPane } from "./ViewPane";
 
 const TextPane = lazy(() => import("../text/TextPane"));
 
 /** Parameters, the text of the file, the 3-D view. */
 export function Right({ current }: { current: RightPane }) {
-  const view = useStore((state) => state.catalogue?.view ?? null);
-  const [width, setWidth] = useState(400);
+  const [widths, setWidths] = useState({ parameters: 400, text: 400, view: 540 });
+  const width = widths[current];
   const tabs: Tab<RightPane>[] = [
     { key: "parameters", title: "Parameters" },
     { key: "text", title: "YAML" },
-    ...(view === null ? [] : [{ key: "view" as const, title: "3-D" }]),
+    { key: "view", title: "3-D" },
   ];
   return (
     <aside className="side-dock" style={{ width }} aria-label="Side pane">
-      <Splitter side="right" label="Width of the side pane" size={width} onChange={setWidth} />
+      <Splitter
+        side="right"
+        label="Width of the side pane"
+        size={width}
+        onChange={(size) => setWidths({ ...widths, [current]: size })}
+      />
       <Tabs tabs={tabs} current={current} onChange={(key) => update({ right: key })} label="Side pane">
         {current === "parameters" ? (
           <>
@@ -33,7 +39,7 @@ export function Right({ current }: { current: RightPane }) {
             <TextPane />
           </Suspense>
         ) : null}
-        {current === "view" && view !== null ? <iframe className="view" src={view} title="3-D view" /> : null}
+        {current === "view" ? <ViewPane /> : null}
       </Tabs>
       <IconButton glyph="close" label="Close the side pane" onClick={() => update({ right: null })} />
     </aside>

@@ -144,6 +144,13 @@ export function Toolbar() {
         >
           YAML
         </button>
+        <button
+          type="button"
+          aria-pressed={right === "view"}
+          onClick={() => update({ right: right === "view" ? "parameters" : "view" })}
+        >
+          3-D
+        </button>
         <IconButton glyph="theme" label="Dark or light" onClick={toggleTheme} />
       </div>
     </header>

@@ -41,12 +41,12 @@ export function Window({ title, children, foot, onClose, onSubmit, wide = false 
       }}
     >
       <form method="dialog" noValidate onSubmit={submit}>
-        <header>
+        <div className="window-head">
           <h2 id={id}>{title}</h2>
           <IconButton glyph="close" label="Close" onClick={onClose} />
-        </header>
+        </div>
         <div className="window-body">{children}</div>
-        {foot === undefined ? null : <footer>{foot}</footer>}
+        {foot === undefined ? null : <div className="window-foot">{foot}</div>}
       </form>
     </dialog>
   );

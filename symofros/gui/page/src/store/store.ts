@@ -3,7 +3,7 @@
 import { create } from "zustand";
 
 import type { Job, JobKind } from "../api/jobs";
-import type { Catalogue, Document, Fault, FileEntry, LibraryPart, Path, Point } from "../api/types";
+import type { Catalogue, Document, Fault, FileEntry, LibraryPart, Path, Point, View } from "../api/types";
 
 export type Link = "ok" | "lost" | "expired";
 export type RightPane = "parameters" | "text" | "view";
@@ -45,6 +45,10 @@ export interface State {
   jobs: Partial<Record<JobKind, Job>>;
   link: Link;
   notices: Notice[];
+  /** What the 3-D view shows, while its pane is open; a fault: why it shows nothing. */
+  view: View | Fault | null;
+  /** Why it did not go where it was moved to. */
+  stuck: string;
   right: RightPane | null;
   bottom: BottomPane | null;
 }
@@ -60,6 +64,8 @@ export const useStore = create<State>(() => ({
   jobs: {},
   link: "ok",
   notices: [],
+  view: null,
+  stuck: "",
   right: "parameters",
   bottom: null,
 }));

@@ -1,0 +1,156 @@
+import { useEffect, useState } from "react";
+
+import type { Coordinate, Fault, View } from "../api/types";
+import { useDocument, useStore } from "../store/store";
+import { look, lookAway, move } from "../store/view";
+import { ParameterSlider } from "./ParameterSlider";
+
+const STEPS = 500;
+const MOST_EXAGGERATION = 50;
+const DIGITS = 3;
+
+const digits = (value: number): string => String(Number(value.toPrecision(DIGITS)));
+
+interface SlideProps {
+  name: string;
+  unit: string;
+  low: number;
+  high: number;
+  value: number;
+  move(value: number): void;
+}
+
+/** One slider between its limits. It stands where it is dragged to, otherwise where the view does. */
+function Slide({ name, unit, low, high, value, move }: SlideProps) {
+  const [dragged, setDragged] = useState<number | null>(null);
+  const finish = (): void => setDragged(null);
+  const at = dragged ?? value;
+  return (
+    <div className="slide">
+      <span className="slide-name" title={name}>
+        {name}
+      </span>
+      <span className="slide-limit">{digits(low)}</span>
+      <input
+        type="range"
+        min={low}
+        max={high}
+        step={(high - low) / STEPS || "any"}
+        value={at}
+        aria-label={unit === "" ? name : `${name} [${unit}]`}
+        onChange={(event) => {
+          const next = Number(event.target.value);
+          setDragged(next);
+          move(next);
+        }}
+        onPointerUp={finish}
+        onKeyUp={finish}
+        onBlur={finish}
+      />
+      <span className="slide-limit">{digits(high)}</span>
+      <output>
+        {digits(at)} {unit}
+      </output>
+    </div>
+  );
+}
+
+function Coordinates({ view, chosen }: { view: View; chosen: Coordinate[] }) {
+  return chosen.map((one) => (
+    <Slide
+      key={one.name}
+      {...one}
+      value={view.q[one.name] ?? 0}
+      move={(value) => void move({ q: { [one.name]: value } })}
+    />
+  ));
+}
+
+/** Sliders of the coordinates, of how much bending is exaggerated, of parameters. */
+function Controls({ view }: { view: View }) {
+  const { parameters } = useDocument();
+  const stuck = useStore((state) => state.stuck);
+  const movable = parameters.filter(({ name, number }) => number !== null && view.run_time.includes(name));
+  const elastic = view.coordinates.filter((one) => one.elastic);
+  return (
+    <div className="view-controls" role="group" aria-label="Pose">
+      <div className="view-line">
+        <button type="button" className="small" onClick={() => void move({ reset: true })}>
+          Reset
+        </button>
+        <span role="status" className={stuck === "" ? "quiet" : "bad"}>
+          {stuck !== ""
+            ? "The loops can't be closed there."
+            : view.gap === null
+              ? ""
+              : `Loops closed within ${view.gap.toExponential(0)}`}
+        </span>
+      </div>
+      <Coordinates view={view} chosen={view.coordinates.filter((one) => !one.elastic)} />
+      {view.flexible ? (
+        <>
+          <Slide
+            name="exaggeration"
+            unit=""
+            low={0}
+            high={MOST_EXAGGERATION}
+            value={view.exaggeration}
+            move={(exaggeration) => void move({ exaggeration })}
+          />
+          <details>
+            <summary>Elastic coordinates</summary>
+            <Coordinates view={view} chosen={elastic} />
+          </details>
+        </>
+      ) : null}
+      {movable.length === 0 ? null : (
+        <details>
+          <summary>Parameters</summary>
+          {movable.map((parameter) => (
+            <div key={parameter.name} className="slide of-parameter">
+              <span className="slide-name" title={parameter.name}>
+                {parameter.name}
+              </span>
+              <ParameterSlider parameter={parameter} />
+              <output>
+                {digits(parameter.number ?? 0)} {parameter.unit}
+              </output>
+            </div>
+          ))}
+        </details>
+      )}
+    </div>
+  );
+}
+
+function Why({ fault }: { fault: Fault }) {
+  return (
+    <div className="pane" role="status">
+      <p>
+        {fault.object}: {fault.found}
+      </p>
+      <p className="quiet">{fault.remedy}</p>
+    </div>
+  );
+}
+
+/** The mechanism in three dimensions. The page in the frame is viser's, kept apart from this one. */
+export function ViewPane() {
+  const { revision, path } = useDocument();
+  const view = useStore((state) => state.view);
+  useEffect(() => void look(), [revision, path]);
+  useEffect(() => lookAway, []);
+  if (view === null) return <p className="pane quiet">Deriving the picture…</p>;
+  if (!("address" in view)) return <Why fault={view} />;
+  return (
+    <div className="view-pane">
+      {view.fault === null ? null : (
+        <p className="view-stale" role="status">
+          The last model without problems is shown: {view.fault.object}.
+        </p>
+      )}
+      <iframe className="view" src={view.address} title="3-D view" sandbox="allow-scripts" />
+      <Controls view={view} />
+    </div>
+  );
+}

@@ -1,0 +1,58 @@
+/** The 3-D view: which model it shows, and how it is moved. */
+
+import { get, post, Refused } from "../api/client";
+import type { Pose, Posed, View } from "../api/types";
+import { explain } from "./requests";
+import { now, update } from "./store";
+
+/** The view that is open, if it shows anything. */
+export function shownView(): View | null {
+  const { view } = now();
+  return view !== null && "address" in view ? view : null;
+}
+
+let asked = 0;
+
+/** Brings the view up to the document as it is. */
+export async function look(): Promise<void> {
+  asked += 1;
+  const turn = asked;
+  try {
+    const view = await get<View>("api/view");
+    if (turn === asked) update({ view, stuck: "" });
+  } catch (reason) {
+    if (turn !== asked) return;
+    if (reason instanceof Refused && reason.status === 422) update({ view: reason.fault });
+    else explain(reason);
+  }
+}
+
+export function lookAway(): void {
+  asked += 1;
+  update({ view: null, stuck: "" });
+}
+
+let next: Pose | null = null;
+let moving = false;
+
+/** Moves the view; while one request is on its way, the newest of each value waits. */
+export async function move(pose: Pose): Promise<void> {
+  next = { ...next, ...pose, q: { ...next?.q, ...pose.q }, par: { ...next?.par, ...pose.par } };
+  if (moving) return;
+  moving = true;
+  try {
+    while (next !== null) {
+      const sent: Pose = next;
+      next = null;
+      const { why, ...stand } = await post<Posed>("api/pose", sent);
+      const view = shownView();
+      if (view !== null) update({ view: { ...view, ...stand }, stuck: why });
+    }
+  } catch (reason) {
+    next = null;
+    // A pose of what is no longer there is of no use; the view follows the document anyway.
+    if (!(reason instanceof Refused && reason.status === 422)) explain(reason);
+  } finally {
+    moving = false;
+  }
+}
