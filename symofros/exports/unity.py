@@ -22,6 +22,7 @@ def unity(name: str, title: str, before: Sequence[str], after: Sequence[str], mo
         "#if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)", "#define _POSIX_C_SOURCE 199309L", "#endif",
         "#define SYM_EXPORT", *(f"#include <{header}>" for header in _HEADERS),
         "#if defined(_WIN32)", "#include <windows.h>", "#else", "#include <time.h>", "#endif",
+        "#if defined(__linux__)", "#include <sys/prctl.h>", "#endif",
         *(f"#include {header}" for header in more_headers),
         "#if defined(__GNUC__) && !defined(_WIN32)", "#pragma GCC visibility push(hidden)", "#endif",
         f'#include "{name}.c"', f'#include "{name}_plant.c"', '#include "symofros_stepper.c"', *before,

@@ -11,7 +11,8 @@ from symofros.gui.plain import Path as Steps
 from symofros.gui.sheet import Sheet
 
 ROOT = Path(__file__).parents[2] / "reference_models"
-FILES = {path.stem: path for path in sorted(ROOT.rglob("*.yaml")) if path.parent.name != "scenes"}
+# Models lie in folders by kind; scenes and diagrams do not.
+FILES = {path.stem: path for path in sorted(ROOT.glob("*/*.yaml"))}
 
 ODD = """\
 # head
