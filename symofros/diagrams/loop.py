@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
-import cffi
 import numpy as np
 
-from symofros.codegen.templates import template
 from symofros.diagrams.layout import Layout, Place
 from symofros.diagrams.rates import Schedule
 from symofros.errors import CompileError
-from symofros.runtime.build import build_library
 from symofros.runtime.kernel import Array
 from symofros.runtime.library import CompiledKernel
-from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
-from symofros.simulation.stepper import Stepper, native_headers, native_source
+from symofros.simulation.stepper import Stepper, bound, native_headers, native_source
 
 # What a schedule calls the recording of an instant.
 RECORD = "(record)"
@@ -50,20 +45,8 @@ def library() -> tuple[Any, Any]:
     Raises:
         CompileError: There is no C compiler.
     """
-    toolchain = find_toolchain(None)
-    if toolchain is None:
-        raise CompileError("diagrams step in C, and no C compiler was found\n"
-                           "  remedy: install gcc or clang, or run it interpreted")  # fmt: skip
-    header, headers = template("symofros_model.h"), native_headers() | {_HEADER: _native(_HEADER)}
-    ffi = cffi.FFI()
-    for text in (header, headers["symofros_stepper.h"], headers[_HEADER]):
-        match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", text, re.DOTALL)
-        assert match is not None
-        ffi.cdef(match.group(1))
     source = "\n".join([native_source(), f'#include "{_HEADER}"', *map(_native, _PARTS)])
-    for name, text in reversed(headers.items()):
-        source = source.replace(f'#include "{name}"', text)
-    return ffi, ffi.dlopen(str(build_library(source, header, toolchain, (*DEFAULT_FLAGS, "-O3", "-pthread"))))
+    return bound(source, native_headers() | {_HEADER: _native(_HEADER)}, "-pthread")
 
 
 class Stage:

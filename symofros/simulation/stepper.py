@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -66,20 +66,33 @@ def library() -> tuple[Any, Any]:
     Raises:
         CompileError: There is no C compiler.
     """
+    source = "\n".join([native_source(), f'#include "{_CREW_HEADER}"', _native(_CREW)])
+    return bound(source, native_headers() | {_CREW_HEADER: _native(_CREW_HEADER)})
+
+
+def bound(source: str, headers: Mapping[str, str], *flags: str) -> tuple[Any, Any]:
+    """Hand-written C as a library, with the cffi interface of what its headers declare between their cdef marks.
+
+    Args:
+        source: One C file.
+        headers: File name -> text of what it includes besides symofros_model.h; later ones include earlier ones.
+        flags: Of the compiler, besides the default ones.
+
+    Raises:
+        CompileError: There is no C compiler.
+    """
     toolchain = find_toolchain(None)
     if toolchain is None:
         raise CompileError("simulation steps in C, and no C compiler was found\n"
                            "  remedy: install gcc or clang, or `pip install ziglang`")  # fmt: skip
-    header, headers = template("symofros_model.h"), native_headers() | {_CREW_HEADER: _native(_CREW_HEADER)}
-    ffi = cffi.FFI()
-    for text in (header, headers["symofros_stepper.h"], headers[_CREW_HEADER]):
+    header, ffi = template("symofros_model.h"), cffi.FFI()
+    for text in (header, *headers.values()):
         match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", text, re.DOTALL)
-        assert match is not None
-        ffi.cdef(match.group(1))
-    source = "\n".join([native_source(), f'#include "{_CREW_HEADER}"', _native(_CREW)])
-    for name, text in reversed(headers.items()):  # In one file, as the cache keeps it; later ones include earlier ones.
+        if match is not None:
+            ffi.cdef(match.group(1))
+    for name, text in reversed(list(headers.items())):  # In one file, as the cache keeps it.
         source = source.replace(f'#include "{name}"', text)
-    return ffi, ffi.dlopen(str(build_library(source, header, toolchain, (*DEFAULT_FLAGS, "-O3"))))
+    return ffi, ffi.dlopen(str(build_library(source, header, toolchain, (*DEFAULT_FLAGS, "-O3", *flags))))
 
 
 class Stepper:
