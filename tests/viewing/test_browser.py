@@ -6,8 +6,6 @@
 from __future__ import annotations
 
 import io
-import os
-import shutil
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -30,21 +28,8 @@ PATIENCE_MS = 60_000  # Software rendering on a busy machine.
 # Pictures a second that reached the browser from a model of 22 joints: some 35 on two cores that also render them.
 # A floor far below, for it to be called moving; docs/view.md has what was measured.
 LEAST_RATE = 5.0
-_FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-          "--ignore-gpu-blocklist"]  # fmt: skip
 
 Open = Callable[[str], Any]
-
-
-@pytest.fixture(scope="module")
-def chromium() -> Iterator[Any]:
-    names = ("chromium", "chromium-browser", "google-chrome")
-    program = os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, names)), None)
-    assert program, "no Chromium: install it, or name it in $CHROMIUM"
-    with import_module("playwright.sync_api").sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=_FLAGS)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture
