@@ -51,13 +51,14 @@ class Resolved:
     layout: Layout
     schedule: Schedule
 
-    def rates(self) -> list[tuple[str, float, float]]:
-        """(block, period, offset) of what is sampled."""
-        return [
-            (name, piece.block.period, piece.block.offset)
-            for name, piece in self.pieces.items()
-            if piece.block.period is not None
-        ]
+
+def rates_of(pieces: Mapping[str, Piece]) -> list[tuple[str, float, float]]:
+    """(block, period, offset) of what is sampled."""
+    return [
+        (name, piece.block.period, piece.block.offset)
+        for name, piece in pieces.items()
+        if piece.block.period is not None
+    ]
 
 
 def resolve(diagram: Diagram) -> Resolved:
@@ -82,8 +83,7 @@ def resolve(diagram: Diagram) -> Resolved:
         raise DescriptionError(problems)
     order = order_of(wired, pieces)
     layout = lay_out(wired, pieces, groups_in_motion(wired, pieces))
-    found = Resolved(wired, pieces, order, layout, Schedule.empty())
-    return Resolved(wired, pieces, order, layout, schedule(found.rates(), wired.name))
+    return Resolved(wired, pieces, order, layout, schedule(rates_of(pieces), wired.name))
 
 
 @dataclass
@@ -110,7 +110,7 @@ class CompiledDiagram:
         key = tuple(sources)
         if key not in self._signals:
             program = run_passes(fuser(self.resolved).signals(key))
-            self._signals[key] = _unit(program, record_of(self.resolved, None), self.toolchain)[0].kernels[
+            self._signals[key] = unit_of(program, record_of(self.resolved, None), self.toolchain)[0].kernels[
                 "signals", ""
             ]
         return self._signals[key]
@@ -144,7 +144,7 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
         parts.append(model)
         texts.append(text)
     program = run_passes(write.samples(resolved.schedule.sets))
-    instants, text = _unit(program, record_of(resolved, None), toolchain, options)
+    instants, text = unit_of(program, record_of(resolved, None), toolchain, options)
     return CompiledDiagram(resolved, tuple(parts), instants, toolchain, (*texts, text))
 
 
@@ -152,7 +152,7 @@ def _model(
     resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain | None, options: Options
 ) -> tuple[Model, str]:
     record = record_of(resolved, part)
-    unit, text = _unit(run_passes(write.motion(part)), record, toolchain, options)
+    unit, text = unit_of(run_passes(write.motion(part)), record, toolchain, options)
 
     def formulas(_: tuple[object, ...], __: bool) -> Unit:
         """What the stepper looks for zeros of."""
@@ -161,9 +161,10 @@ def _model(
     return Model(record, None, (unit,), np.array(record.par_default), formulas), text
 
 
-def _unit(
+def unit_of(
     program: Program, record: ModelRecord, toolchain: Toolchain | None, options: Options | None = None
 ) -> tuple[Unit, str]:
+    """The functions of a program, and their C text; without a compiler NumPy interprets them."""
     if toolchain is None:
         return InterpretedUnit(program), ""
     header = template("symofros_model.h")
@@ -175,16 +176,14 @@ def _unit(
 def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
     """Sizes and names of a part, or of the whole."""
     layout = resolved.layout
-    q = part.q if part else slice(0, len(layout.q0))
-    v = part.v if part else slice(0, len(layout.v0))
-    conditions = part.conditions if part else slice(0, len(layout.condition_names))
-    nq = q.stop - q.start
+    of = part or layout.whole
+    q, v, nq = of.q, of.v, of.nq
     segments = tuple(
         segment._replace(q=segment.q - q.start, v=segment.v - v.start)
         for segment in layout.segments
         if q.start <= segment.q < q.stop
     )
-    names = tuple(layout.condition_names[conditions])
+    names = tuple(layout.condition_names[of.conditions])
     stated = repr((resolved.wired.name, layout.q_names, layout.v_names, layout.u_names, layout.par_names))
     return ModelRecord(
         name=resolved.wired.name, hash=hashlib.sha256(stated.encode()).hexdigest()[:16],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from symofros.diagrams.layout import Layout, Part, Place
-from symofros.diagrams.pieces import INPUT, MEMORY, PARAMETER, STATE, Piece
+from symofros.diagrams.pieces import INPUT, MEMORY, PARAMETER, STATE, Piece, watched
 from symofros.diagrams.surroundings import parameter_group
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Source, Wired
@@ -41,12 +41,8 @@ class Point:
         self._wired, self._pieces, self._layout = wired, pieces, layout
         self._rank = {source: i for i, source in enumerate(order)}
         self._due, self._after = due, after
-        whole = slice(0, None)
-        self._q = (part.q if part else whole).start
-        self._v = (part.v if part else whole).start
-        self._lam = (part.conditions if part else whole).start
-        conditions = part.conditions if part else slice(0, len(layout.condition_names))
-        self._nc = conditions.stop - conditions.start
+        read = part or layout.whole
+        self._q, self._v, self._lam, self._nc = read.q.start, read.v.start, read.conditions.start, read.nc
         self._models = {parameter_group(model): model for model in wired.models.names}
         self._values: dict[Source, Tensor] = {}
 
@@ -79,8 +75,7 @@ class Point:
 
     def _behind(self, source: Source) -> list[Source]:
         name, port = source
-        needs = self._pieces[name].needs[port]
-        return [self._wired.sources[name, into] for into in needs if (name, into) in self._wired.sources]
+        return self._wired.behind(name, self._pieces[name].needs[port])
 
     def write(self, piece: Piece, value: Tensor) -> Tensor:
         """A value of a block's own graph, at this point."""
@@ -149,12 +144,9 @@ class Fuser:
         return Point(self._wired, self._pieces, self._layout, self._order, g, frozenset(due), part, after)
 
     def _program(self, name: str, g: Graph, functions: Iterable[Function], part: Part | None = None) -> Program:
-        layout = self._layout
-        nq = part.q.stop - part.q.start if part else len(layout.q0)
-        nv = part.v.stop - part.v.start if part else len(layout.v0)
-        nc = part.conditions.stop - part.conditions.start if part else len(layout.condition_names)
-        sizes = {"q": nq, "v": nv, "u": len(layout.u0), "t": 1, "par": len(layout.par), "a": nv, "lam": nc,
-                 "gains": 2 * nc, "step": nv}  # fmt: skip
+        layout, of = self._layout, part or self._layout.whole
+        sizes = {"q": of.nq, "v": of.nv, "u": len(layout.u0), "t": 1, "par": len(layout.par), "a": of.nv, "lam": of.nc,
+                 "gains": 2 * of.nc, "step": of.nv}  # fmt: skip
         return Program(name, g, sizes, tuple(functions))
 
     # Motion of a part.
@@ -163,9 +155,8 @@ class Fuser:
         """A part's forward_dynamics, project where it has constraints, and "formulas" where zeros are located."""
         g = Graph()
         at = self._at(g, part=part)
-        nc = part.conditions.stop - part.conditions.start
-        functions = self._constrained(at, part, nc) if nc else [self._free(at, part)]
-        values = [edge for name, which in self.watched() for edge in
+        functions = self._constrained(at, part) if part.nc else [self._free(at, part)]
+        values = [edge for name, which in watched(self._pieces) for edge in
                   at.edges(self._pieces[name], self._pieces[name].crossings[which].value.flat)]  # fmt: skip
         if values:
             functions.append(Function("formulas", "", AT, (_vector("value", values),)))
@@ -174,7 +165,7 @@ class Fuser:
     def _free(self, at: Point, part: Part) -> Function:
         """Without constraints: accelerations of mechanisms, rates of states."""
         layout = self._layout
-        a = [ZERO] * (part.v.stop - part.v.start)
+        a = [ZERO] * part.nv
         for name in part.blocks:
             piece = self._pieces[name]
             if piece.terms.a is not None:
@@ -186,9 +177,9 @@ class Fuser:
                 a[at_v : at_v + place.size] = at.edges(piece, piece.rates[key].flat)
         return Function("forward_dynamics", "", AT, (_vector("a", a),))
 
-    def _constrained(self, at: Point, part: Part, nc: int) -> list[Function]:
+    def _constrained(self, at: Point, part: Part) -> list[Function]:
         """M a = r + G^T lam, G a = c for the part as a whole: blocks on the diagonal, rows side by side."""
-        nv = part.v.stop - part.v.start
+        nv, nc = part.nv, part.nc
         M = [[ZERO] * nv for _ in range(nv)]
         G = [[ZERO] * nv for _ in range(nc)]
         r, c, phi, rate = [ZERO] * nv, [ZERO] * nc, [ZERO] * nc, [ZERO] * nc
@@ -222,8 +213,7 @@ class Fuser:
                            Solver("constrained", solved))  # fmt: skip
         q_moved = self._moved(at, part)
         move = Function("move", "", ("q", "step"), (_vector("q_moved", q_moved),))
-        nq = part.q.stop - part.q.start
-        projected = (("q_on", (nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()))
+        projected = (("q_on", (part.nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()))
         outputs = (terms_of[0], terms_of[2], _vector("binds", binds), _vector("phi", phi), _vector("rate", rate))
         return [forward, Function("project", "", AT, outputs, Solver("project", projected, (move,)))]
 
@@ -234,7 +224,7 @@ class Fuser:
 
     def _moved(self, at: Point, part: Part) -> list[Edge]:
         """The configuration that a step along the manifold leads to."""
-        layout, found = self._layout, [ZERO] * (part.q.stop - part.q.start)
+        layout, found = self._layout, [ZERO] * part.nq
         for name in part.blocks:
             if name in layout.q:
                 q, v = layout.q[name], layout.v[name]
@@ -249,10 +239,6 @@ class Fuser:
                 if 0 <= q_at < len(found) and found[q_at] == ZERO:
                     found[q_at] = at.g.add(at.g.input("q", q_at), at.g.input("step", v_at))
         return found
-
-    def watched(self) -> list[tuple[str, str]]:
-        """(block, crossing), in order."""
-        return [(name, which) for name, piece in self._pieces.items() for which in piece.crossings]
 
     # Samples.
 
@@ -269,7 +255,7 @@ class Fuser:
         """
         g = Graph()
         functions = [self._due(g, f"due_{i}", due) for i, due in enumerate(sets)]
-        functions += [self._crossed(g, f"crossed_{i}", *which) for i, which in enumerate(self.watched())]
+        functions += [self._crossed(g, f"crossed_{i}", *which) for i, which in enumerate(watched(self._pieces))]
         for i, due in enumerate(sets):
             functions += [self._heard(g, f"heard_{i}_{j}", name, due) for j, name in enumerate(self.opaque(due))]
         if listened:

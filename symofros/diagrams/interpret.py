@@ -8,23 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from symofros.codegen.interpreted import InterpretedUnit
-from symofros.codegen.model import model_source
-from symofros.codegen.names import identifier
-from symofros.codegen.templates import template
 from symofros.diagrams.block import Terms
 from symofros.diagrams.charts import chart_rate, retract
-from symofros.diagrams.compiled import GENERATOR, Resolved, bare_record
+from symofros.diagrams.compiled import Resolved, bare_record, unit_of
 from symofros.diagrams.layout import Part
 from symofros.diagrams.pieces import INPUT, MEMORY, PARAMETER, STATE, Piece
 from symofros.diagrams.surroundings import parameter_group
 from symofros.diagrams.wiring import Source
 from symofros.expr.program import Function, Output, Program
 from symofros.passes import run_passes
-from symofros.runtime.build import build_library
 from symofros.runtime.constrained import constrained, project
-from symofros.runtime.kernel import Array, Unit
-from symofros.runtime.library import CompiledUnit
+from symofros.runtime.kernel import Array
 from symofros.runtime.toolchain import Toolchain
 from symofros.simulation.tableaus import Tableau
 
@@ -72,7 +66,8 @@ class Blocks:
                 functions.append(Function(which, "", tuple(groups), made))
         if not functions:
             return
-        unit = self._unit(name, run_passes(Program(name, piece.g, sizes, tuple(functions))))
+        program = run_passes(Program(name, piece.g, sizes, tuple(functions)))
+        unit, _ = unit_of(program, bare_record(name), self._toolchain)
         for function in functions:
             kernel = unit.kernels[function.name, ""]
             inputs = [self._memory_of(piece, group) for group in function.inputs]
@@ -80,14 +75,6 @@ class Blocks:
             found = {key: self.out[name, port] if key == "y" else np.zeros(shape) for key, shape in function.returns}
             pre = kernel.prepare(np.zeros((1, 0)))
             self.calls[name, function.name] = kernel.bind(pre, inputs, list(found.values())), found
-
-    def _unit(self, name: str, program: Program) -> Unit:
-        if self._toolchain is None:
-            return InterpretedUnit(program)
-        header, record = template("symofros_model.h"), bare_record(name)
-        text = model_source(program, record, GENERATOR)
-        symbol = f"{identifier(name)}_model"
-        return CompiledUnit(build_library(text, header, self._toolchain), symbol, header, record.hash)
 
     def _memory_of(self, piece: Piece, group: str) -> Array:
         """The array that an input group of a block is read from, flat."""
@@ -248,14 +235,14 @@ def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
 def project_all(blocks: Blocks) -> None:
     """The parts back onto their constraints."""
     for part in blocks.resolved.layout.parts:
-        if part.conditions.stop > part.conditions.start:
+        if part.nc:
             _project(blocks, part)
 
 
 def _project(blocks: Blocks, part: Part) -> None:
     """The state of a part back onto its constraints, as C does it."""
     layout, pieces = blocks.resolved.layout, blocks.resolved.pieces
-    nv, nc = part.v.stop - part.v.start, part.conditions.stop - part.conditions.start
+    nv, nc = part.nv, part.nc
 
     def terms(q: Array, v: Array) -> list[Array]:
         blocks.q[part.q], blocks.v[part.v] = q, v

@@ -55,6 +55,21 @@ class Part:
     v: slice
     conditions: slice
 
+    @property
+    def nq(self) -> int:
+        """Number of coordinates."""
+        return int(self.q.stop - self.q.start)
+
+    @property
+    def nv(self) -> int:
+        """Number of speeds."""
+        return int(self.v.stop - self.v.start)
+
+    @property
+    def nc(self) -> int:
+        """Number of conditions."""
+        return int(self.conditions.stop - self.conditions.start)
+
 
 @dataclass
 class Layout:
@@ -107,6 +122,13 @@ class Layout:
     engaging: list[int] = field(default_factory=list)
     condition_names: list[str] = field(default_factory=list)
     speed_conditions: list[str] = field(default_factory=list)
+
+    @property
+    def whole(self) -> Part:
+        """All parts as one."""
+        blocks = tuple(name for part in self.parts for name in part.blocks)
+        sizes = (len(self.q0), len(self.v0), len(self.condition_names))
+        return Part(blocks, *(slice(0, size) for size in sizes))
 
 
 def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence[str]]) -> Layout:

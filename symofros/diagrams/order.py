@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from symofros.diagrams.pieces import Piece
+from symofros.diagrams.pieces import STATE, Piece
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
 
@@ -16,9 +16,7 @@ def order_of(wired: Wired, pieces: Mapping[str, Piece]) -> list[Source]:
         DescriptionError: Signals that need themselves, with their path.
     """
     before = {
-        (name, port): [wired.sources[name, into] for into in needs if (name, into) in wired.sources]
-        for name, piece in pieces.items()
-        for port, needs in piece.needs.items()
+        (name, port): wired.behind(name, needs) for name, piece in pieces.items() for port, needs in piece.needs.items()
     }
     done: list[Source] = []
     state: dict[Source, int] = {}  # 1: on the path, 2: done.
@@ -85,7 +83,7 @@ def reached(wired: Wired, pieces: Mapping[str, Piece], name: str, inputs: frozen
     """Blocks whose continuous states are behind some inputs of a block, through continuous signals only."""
     found: set[str] = set()
     seen: set[Source] = set()
-    stack = [wired.sources[name, port] for port in inputs if (name, port) in wired.sources]
+    stack = wired.behind(name, inputs)
     while stack:
         source = stack.pop()
         if source in seen:
@@ -96,7 +94,7 @@ def reached(wired: Wired, pieces: Mapping[str, Piece], name: str, inputs: frozen
         if piece.is_discrete or port in piece.block.samples():
             continue
         groups = piece.groups(piece.outputs[port].flat)
-        if any(group in ("q", "v") or group.startswith("x_") for group in groups):
+        if any(group in ("q", "v") or group.startswith(STATE) for group in groups):
             found.add(block)
-        stack += [wired.sources[block, into] for into in piece.needs[port] if (block, into) in wired.sources]
+        stack += wired.behind(block, piece.needs[port])
     return found

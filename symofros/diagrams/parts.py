@@ -9,6 +9,7 @@ import numpy as np
 
 from symofros.diagrams.compiled import CompiledDiagram
 from symofros.diagrams.layout import Part
+from symofros.diagrams.pieces import watched
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model
@@ -33,11 +34,6 @@ class Placed:
     v: Array
 
 
-def watched(compiled: CompiledDiagram) -> list[tuple[str, str]]:
-    """(block, crossing) of all values whose zeros are located, in order."""
-    return [(name, which) for name, piece in compiled.resolved.pieces.items() for which in piece.crossings]
-
-
 def place_parts(
     compiled: CompiledDiagram, settings_of: Callable[[Model], Settings], t0: float, t_end: float, par: Array
 ) -> list[Placed]:
@@ -59,7 +55,7 @@ def place_parts(
     u0 = np.array(layout.u0, dtype=np.float64)
     events = [
         Event(f"{block}.{which}", pieces[block].crossings[which].direction, True, f"{block}.{which}")
-        for block, which in watched(compiled)
+        for block, which in watched(pieces)
     ]
     found = []
     for part, model in zip(layout.parts, compiled.parts, strict=True):

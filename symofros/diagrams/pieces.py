@@ -86,6 +86,11 @@ class Piece:
         return frozenset(group.removeprefix(INPUT) for group in self.groups(edges) if group.startswith(INPUT))
 
 
+def watched(pieces: Mapping[str, Piece]) -> list[tuple[str, str]]:
+    """(block, crossing) of all values whose zeros are located, in order."""
+    return [(name, which) for name, piece in pieces.items() for which in piece.crossings]
+
+
 def piece_of(wired: Wired, name: str) -> Piece:
     """Write out one block.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -145,7 +146,7 @@ class DiagramRun(Mapping[str, Array]):
             self._known[source] = values[:, at : at + size].reshape(n, *wired.shape(source))
             at += size
 
-    @property
+    @cached_property
     def _after(self) -> tuple[Array, Array]:
         """Accelerations (n, nv) and multipliers (n, nc) along the run."""
         parts, layout = self.compiled.parts, self.compiled.resolved.layout

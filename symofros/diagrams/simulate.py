@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.compiled import CompiledDiagram
+from symofros.diagrams.compiled import CompiledDiagram, rates_of
 from symofros.diagrams.loop import RECORD, Loop, Stage
 from symofros.diagrams.opaque import Opaque, begun, kept_by
-from symofros.diagrams.parts import place_parts, start, watched
+from symofros.diagrams.parts import place_parts, start
+from symofros.diagrams.pieces import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import Cost, Crossed, DiagramRun
 from symofros.diagrams.values import parameter_values, record_interval
@@ -75,7 +76,7 @@ def run_compiled(
                                         "a compiled run calls compiled functions", "use interpret")))  # fmt: skip
     par = parameter_values(resolved, parameters or {})
     interval = record_interval(record, t0, t_end, dt)
-    plan = schedule([*resolved.rates(), (RECORD, interval, 0.0)], name)
+    plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
 
     def settings_of(model: Model) -> Settings:
         return Settings.of(
@@ -85,7 +86,7 @@ def run_compiled(
     parts, opaque = place_parts(compiled, settings_of, t0, t_end, par), Opaque(resolved)
     loop = Loop(
         resolved.layout, [part.stepper for part in parts], plan, _stages(compiled, plan, opaque),
-        [Stage(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(compiled)))], par,
+        [Stage(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))], par,
         np.array(resolved.layout.u0, dtype=np.float64), opaque.call, opaque.places(), opaque.lengths(),
         any(resolved.layout.condition_names),
     )  # fmt: skip
@@ -150,7 +151,7 @@ def _drive(
         interrupted = True
     t, q, v, u = (np.concatenate(columns) for columns in zip(*portions, strict=True))
     outcome = _outcome(loop, status, interrupted, t_end)
-    looked_for = watched(compiled)
+    looked_for = watched(compiled.resolved.pieces)
     crossings = tuple(Crossed(*looked_for[which], when) for when, which in met)
     d = loop.d
     cost = Cost(int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, loop.late,

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.compiled import CompiledDiagram, Resolved, compile_diagram, resolve
+from symofros.diagrams.compiled import CompiledDiagram, Resolved, compile_diagram, rates_of, resolve
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.interpret import Blocks, InterpretedRun, run_interpreted
 from symofros.diagrams.loop import RECORD
@@ -91,7 +91,7 @@ class Simulation:
         toolchain = find_toolchain(self.options.compiler) if compiled else None
         blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
         interval = record_interval(record, t0, t_end, dt)
-        plan = schedule([*resolved.rates(), (RECORD, interval, 0.0)], resolved.wired.name)
+        plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], resolved.wired.name)
         wired = resolved.wired
         with begun(wired.blocks.values(), wired) as opened, bar(progress, t0, t_end) as show:
             instants = list(_instants(plan, t0, t_end))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,6 +63,10 @@ class Wired:
         """
         name, index = split(text)
         check_entry(text, index, self.shape(self.output(name)))
+
+    def behind(self, block: str, inputs: Iterable[str]) -> list[Source]:
+        """What feeds some inputs of a block; those on their defaults are left out."""
+        return [self.sources[block, port] for port in inputs if (block, port) in self.sources]
 
     def shape(self, source: Source) -> Shape:
         """Of an output."""
