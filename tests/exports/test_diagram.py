@@ -37,6 +37,18 @@ def crank() -> sf.Diagram:
     return diagram
 
 
+def loop() -> sf.Diagram:
+    """Constraints, and nothing that is sampled: multipliers are told all the same."""
+    diagram, plant = sf.Diagram("loop"), crank().models["plant"]
+    model = sf.compile(plant.system)
+    q = [plant.start[name] for name in model.names.q]
+    moving = sf.assemble(model, q, np.full(model.nv, 0.5))
+    speeds = {f"d{name}": x for name, x in zip(model.names.v, moving.v, strict=True)}
+    diagram.add_model("plant", plant.system, {**plant.start, **speeds})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"))
+    return diagram
+
+
 def table() -> sf.Diagram:
     diagram = sf.Diagram("1 table")
     diagram.add(Given(name="given"))
@@ -73,6 +85,7 @@ def still() -> sf.Diagram:
 CASES: dict[str, tuple[Any, list[str]]] = {
     "pendulum": (pendulum, ["plant.q", "plant.a", "pd.effort"]),
     "crank": (crank, ["plant.q", "plant.lam", "felt"]),
+    "loop": (loop, ["plant.q", "plant.lam"]),
     "table": (table, ["given", "lag", "held"]),
     "ball": (ball, ["ball.height", "ball.bounces", "ticks"]),
     "two": (two, ["first", "second"]),

@@ -112,18 +112,21 @@ SYM_EXPORT void sym_program_prepare(sym_assembly *it) {
     }
 }
 
-static void sym_program_listen(sym_assembly *it) {
+/* The signals of the present time; accelerations and multipliers are those under the inputs held now. */
+static int32_t sym_program_listen(sym_assembly *it) {
     const sym_function *f = it->outputs.function;
     double *into = it->signals;
-    int32_t i;
+    int32_t i, status;
     sym_gather(&it->diagram, *it->diagram.t);
-    if (f == NULL) return;
+    if (f == NULL) return 0;
+    if (it->diagram.looks_back && (status = sym_look_back(&it->diagram)) != 0) return status;
     sym_evaluate(&it->outputs);
     for (i = 0; i < f->n_out; ++i) {
         const size_t n = (size_t)f->out[i].rows * (size_t)f->out[i].cols;
         memcpy(into, it->outputs.out[i], n * sizeof *into);
         into += n;
     }
+    return 0;
 }
 
 SYM_EXPORT sym_assembly *sym_program_in(void *memory, size_t size, const sym_program *program) {
@@ -158,6 +161,7 @@ SYM_EXPORT int32_t sym_program_advance(sym_assembly *it, double t) {
         status = sym_diagram_advance(d, 1);
     }
     d->n_records = d->n_found = 0;
-    if (status == SYM_DONE) sym_program_listen(it);
-    return status;
+    if (status != SYM_DONE) return status;
+    status = sym_program_listen(it);
+    return status == 0 ? SYM_DONE : status;
 }
