@@ -130,14 +130,16 @@ def compile_library(
         how = build.toolchain, build.flags, _dispatch(options, symbol), symbol
         return build_library(source, template("symofros_model.h"), *how)
 
-    return _chosen(made, options, toolchain, symbol, record.hash), symbol
+    return _chosen(made, options, toolchain, lanes, symbol, record.hash), symbol
 
 
-def _chosen(made: Callable[[Build], Path], options: Options, toolchain: Toolchain, symbol: str, of: str) -> Path:
+def _chosen(
+    made: Callable[[Build], Path], options: Options, toolchain: Toolchain, vectors: Lanes | None, symbol: str, of: str
+) -> Path:
     """The library as the options have it, or the fastest of several."""
     if not options.tune:
         return made(Build(toolchain, options.flags, options.packs))
-    first, *others = builds(options, toolchain)
+    first, *others = builds(options, toolchain, vectors is not None)
     libraries = [made(first)]
     for build in others:
         with suppress(CompileError):  # It was only worth a try.
@@ -186,11 +188,17 @@ def generate(
 
 def _written(tree: SpanningTree, requests: Sequence[Request], form: str, method: str) -> Program:
     """The optimised program, its forward dynamics by the cheaper method where that is left to us."""
-    asked = [request for request in requests if request.name == "forward_dynamics"]
-    if method == "auto" and asked:
-        ways = methods(tree)
-        method = cheapest({way: run_passes(write_program(tree, asked, form, way)) for way in ways})
+    if any(request.name == "forward_dynamics" for request in requests):
+        method = forward_method(tree) if method == "auto" else method
     return run_passes(write_program(tree, requests, form, method))
+
+
+def forward_method(tree: SpanningTree) -> str:
+    """The cheaper way to a mechanism's forward dynamics."""
+    ways, asked = methods(tree), [Request("forward_dynamics")]
+    if len(ways) == 1:
+        return ways[0]
+    return cheapest({way: run_passes(write_program(tree, asked, method=way)) for way in ways})
 
 
 def _warn_inconsistent(system: System) -> None:
@@ -248,7 +256,7 @@ class _Builder:
                 header, build.toolchain, build.flags, _dispatch(self._options, symbol), symbol,
             )  # fmt: skip
 
-        path = _chosen(made, self._options, toolchain, symbol, self._record.hash)
+        path = _chosen(made, self._options, toolchain, vectors, symbol, self._record.hash)
         return CompiledUnit(path, symbol, header, self._record.hash, in_lanes)
 
     def _in_lanes(self, what: object, program: Callable[[], Program]) -> Callable[[Key, Lanes], CompiledKernel | None]:

@@ -133,9 +133,8 @@ def _one_function(
         text = with_solver(program, c_name, function, function.solver, packs)
     vectors, work = [], text.work
     if text.lanes:
-        each = text.work if text.in_chunks else 0
-        vectors = ["#if SYM_LANES > 1", text.lanes, lanes.strided(c_name, program, function, each), "#endif"]
-        work = max(work, lanes.scratch(program, function, each))
+        vectors = ["#if SYM_LANES > 1", text.lanes, lanes.strided(c_name, program, function, text.lanes_work), "#endif"]
+        work = max(work, lanes.scratch(program, function, text.lanes_work))
     code = "\n".join([text.code, *vectors, lanes.batch(c_name, function, in_lanes if text.lanes else None)])
     arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)
     arrays_out = ", ".join(f'{{"{name}", {len(s)}, {_rows(s)}, {_columns(s)}}}' for name, s in function.returns)

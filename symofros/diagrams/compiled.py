@@ -20,6 +20,7 @@ from symofros.diagrams.pieces import Piece, piece_of
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem
+from symofros.expr.evaluate import needed_nodes
 from symofros.expr.program import Program
 from symofros.options import Options
 from symofros.passes import run_passes
@@ -94,13 +95,15 @@ class CompiledDiagram:
         resolved: What it was made of.
         parts: A model for each part.
         instants: Functions "due_i", "crossed_i", "heard_i_j".
-        sources: C texts, for people.
+        looks_back: Whether functions of instants read accelerations and multipliers of that time.
         toolchain: What compiles; None: the functions are interpreted.
+        sources: C texts, for people.
     """
 
     resolved: Resolved
     parts: tuple[Model, ...]
     instants: Unit
+    looks_back: bool
     toolchain: Toolchain | None
     sources: tuple[str, ...] = ()
     _signals: dict[tuple[Source, ...], Kernel] = field(default_factory=dict)
@@ -145,7 +148,16 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
         texts.append(text)
     program = run_passes(write.samples(resolved.schedule.sets))
     instants, text = unit_of(program, record_of(resolved, None), toolchain, options)
-    return CompiledDiagram(resolved, tuple(parts), instants, toolchain, (*texts, text))
+    return CompiledDiagram(resolved, tuple(parts), instants, looks_back(program), toolchain, (*texts, text))
+
+
+def looks_back(program: Program) -> bool:
+    """Whether functions read accelerations or multipliers, which the loop then finds at each instant."""
+    graph = program.graph
+    edges = [edge for function in program.functions for edge in function.edges()]
+    nodes = needed_nodes(graph, edges, program.pre)
+    read = {*map(abs, edges), *(abs(arg) for node in nodes for arg in graph.args[node])}
+    return any(slot.group in ("a", "lam") and node in read for node, slot in graph.slot.items())
 
 
 def _model(

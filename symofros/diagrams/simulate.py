@@ -88,7 +88,7 @@ def run_compiled(
         resolved.layout, [part.stepper for part in parts], plan, _stages(compiled, plan, opaque),
         [Stage(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))], par,
         np.array(resolved.layout.u0, dtype=np.float64), opaque.call, opaque.places(), opaque.lengths(),
-        any(resolved.layout.condition_names),
+        compiled.looks_back,
     )  # fmt: skip
     try:
         with begun(opaque.blocks, resolved.wired) as blocks:

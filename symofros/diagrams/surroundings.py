@@ -7,15 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from symofros.compiler import compile_system, describe, plan
+from symofros.compiler import compile_system, describe, forward_method, plan
 from symofros.description.forces import Friction
 from symofros.description.system import System
 from symofros.diagrams.block import ModelSetup
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.variants import FRICTION, friction_only
 from symofros.dynamics.constraints import moved
+from symofros.dynamics.equations import Equations
 from symofros.dynamics.forward import Factors
-from symofros.dynamics.functions import Request, write_program
+from symofros.dynamics.functions import Request, formed
 from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
 from symofros.expr.graph import Edge, Graph
 from symofros.expr.program import Program
@@ -47,6 +48,7 @@ class Models:
         self._setups = setups
         self._trees: dict[str, SpanningTree] = {}
         self._records: dict[str, ModelRecord] = {}
+        self._equations: dict[str, Equations] = {}
         self._programs: dict[tuple[str, str, str], Program] = {}
 
     @property
@@ -156,7 +158,11 @@ class Models:
             frame = self.frame(model, frame)
         key = model, function, frame
         if key not in self._programs:
-            self._programs[key] = write_program(self.tree(model), [Request(function, frame)])
+            tree = self.tree(model)
+            if model not in self._equations:
+                self._equations[model] = Equations(tree)
+            method = forward_method(tree) if function == "forward_dynamics" else "factors"
+            self._programs[key] = formed(self._equations[model], [Request(function, frame)], method=method)
         program = self._programs[key]
         stated = program.functions[0]
         replacement = self._bound(g, model, program, stated.inputs, groups)

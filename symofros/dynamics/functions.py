@@ -267,7 +267,14 @@ def write_program(
     Returns:
         A program that reads the groups q, v, a, u, par, t.
     """
-    equations = Equations(tree)
+    return formed(Equations(tree), requests, form, method)
+
+
+def formed(
+    equations: Equations, requests: Sequence[Request], form: str = "multipliers", method: str = "factors"
+) -> Program:
+    """As `write_program`, of equations that may have been formed in part already."""
+    tree = equations.tree
     functions = tuple(_function(equations, request, form, method) for request in requests)
     names = tree.coordinates
     sizes = {

@@ -13,7 +13,7 @@ import numpy as np
 from symofros.codegen.model import model_source
 from symofros.codegen.names import c_string, identifier
 from symofros.codegen.templates import template
-from symofros.diagrams.compiled import Resolved, compile_diagram, fuser, record_of
+from symofros.diagrams.compiled import Resolved, compile_diagram, fuser, looks_back, record_of
 from symofros.diagrams.loop import loop_headers, program_source
 from symofros.diagrams.pieces import watched
 from symofros.diagrams.simulate import run_compiled
@@ -85,7 +85,7 @@ def write_diagram(
     files[f"{name}_instants.c"] = model_source(
         instants, record_of(resolved, None), generator, c_name=f"{name}_instants"
     )
-    files[f"{name}_program.c"] = _program(resolved, name, sources, generator)
+    files[f"{name}_program.c"] = _program(resolved, name, sources, looks_back(instants), generator)
     until, values = _reference(resolved, outputs, method, dt)
     words = {
         "name": name, "generator": generator, "version": generator.rpartition(" ")[2], "until": repr(until),
@@ -127,7 +127,7 @@ def _part_header(c_name: str) -> str:
     ])  # fmt: skip
 
 
-def _program(resolved: Resolved, name: str, sources: Sequence[Source], generator: str) -> str:
+def _program(resolved: Resolved, name: str, sources: Sequence[Source], back: bool, generator: str) -> str:
     """NAME_program.c: the constants of symofros_program.h."""
     wired, layout, plan = resolved.wired, resolved.layout, resolved.schedule
     parts = layout.parts
@@ -152,7 +152,7 @@ def _program(resolved: Resolved, name: str, sources: Sequence[Source], generator
         _array("const char *const", "output_names", strings(_entries(resolved, sources))),
         f"static const sym_program {name}_program_struct = {{",
         f"    {c_string(wired.name)}, {name}_instants_model, {len(parts)}, parts, q_at, v_at, c_at, u_start,",
-        f"    {len(layout.signals)}, {len(layout.engaging)}, {len(directions)}, {int(bool(layout.condition_names))},",
+        f"    {len(layout.signals)}, {len(layout.engaging)}, {len(directions)}, {int(back)},",
         "    signals, u_at, directions, all_end,",
         f"    {float(plan.base.numerator)!r}, {float(plan.base.denominator)!r}, {plan.cycle}, {len(plan.instants)},",
         f"    instant, set, {len(plan.sets)}, {len(list(_entries(resolved, sources)))}, due, output_names",

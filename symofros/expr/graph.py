@@ -207,6 +207,14 @@ class Graph:
             edge = self._node((name, *args), name, args)
         return -edge if negative else edge
 
+    def apply(self, op: str, *args: Edge) -> Edge:
+        """An operation by its name: a sum, a product, a quotient, or a function of the op table."""
+        if op == ADD:
+            return self.add(*args)
+        if op == MUL:
+            return self.mul(*args)
+        return self.div(*args) if op == DIV else self.call(op, *args)
+
     def sqrt(self, a: Edge) -> Edge:
         """The square root of a."""
         return self.call("sqrt", a)

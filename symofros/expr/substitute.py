@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
-from symofros.expr.ops import ADD, DIV, MUL
 from symofros.expr.packs import WIDTH, Pack, Signed, combined
 
 
@@ -22,7 +21,7 @@ def substitute(graph: Graph, edges: Sequence[Edge], replacement: Mapping[Edge, E
     for node in needed_nodes(graph, edges):
         args = [_at(new, arg) for arg in graph.args[node]]
         if args != list(graph.args[node]):
-            new[node] = _build(graph, graph.op[node], args)
+            new[node] = graph.apply(graph.op[node], *args)
     return [_at(new, edge) for edge in edges]
 
 
@@ -47,7 +46,7 @@ def transplant(graph: Graph, edges: Sequence[Edge], replacement: Mapping[Edge, E
     for node in nodes:
         packs.form(node)
         if node not in new:
-            new[node] = _build(into, graph.op[node], [_known(new, arg) for arg in graph.args[node]])
+            new[node] = into.apply(graph.op[node], *(_known(new, arg) for arg in graph.args[node]))
         if node in graph.label:
             into.name(new[node], graph.label[node])
     return [_known(new, edge) for edge in edges]
@@ -112,8 +111,3 @@ def _at(new: Mapping[int, Edge], edge: Edge) -> Edge:
 
 def _known(new: Mapping[int, Edge], edge: Edge) -> Edge:
     return new[edge] if edge >= 0 else -new[-edge]
-
-
-def _build(graph: Graph, op: str, args: Sequence[Edge]) -> Edge:
-    arithmetic = {ADD: graph.add, MUL: graph.mul, DIV: graph.div}
-    return arithmetic[op](*args) if op in arithmetic else graph.call(op, *args)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from symofros.expr.program import Program
+from symofros.passes.chain import chain_sums, check_packs
 from symofros.passes.stage import check_staged, hoist_parameters
 
 # In order: the pass, and the check of its post-condition.
 PIPELINE: tuple[tuple[Callable[[Program], Program], Callable[[Program], None]], ...] = (
     (hoist_parameters, check_staged),
+    (chain_sums, check_packs),
 )
 
 

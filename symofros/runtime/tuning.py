@@ -43,16 +43,16 @@ class Build:
     packs: bool
 
 
-def builds(options: Options, toolchain: Toolchain) -> list[Build]:
+def builds(options: Options, toolchain: Toolchain, in_lanes: bool = False) -> list[Build]:
     """What is worth trying: compilers that are there, two levels of optimisation, packs or not.
 
-    A compiler, flags, or `packs=False` that the options state are kept.
+    A compiler, flags, or `packs=False` that the options state are kept; code for several states at once has no packs.
     """
     found = [toolchain]
     if options.compiler is None:
         found += [other for name in ("gcc", "clang") if shutil.which(name) and (other := find_toolchain(name))]
     by_version = {tool.identity.partition(" ")[2]: tool for tool in reversed(found)}
-    packs = (True, False) if options.packs else (False,)
+    packs = (True, False) if options.packs and not in_lanes else (options.packs,)
     return [
         Build(tool, flags, packed)
         for tool in reversed(by_version.values())

@@ -8,12 +8,13 @@ from symofros.dynamics.functions import Request, write_program
 from symofros.expr.evaluate import needed_nodes
 from symofros.passes import run_passes
 from symofros.passes.count import count_operations, count_program
+from symofros.passes.stage import hoist_parameters
 from tests.models import system
 
 
 def test_parameter_work_moves_to_init() -> None:
     raw = write_program(plan(system("parametrised0")), [Request("mass_matrix")])
-    staged = run_passes(raw)
+    staged = hoist_parameters(raw)
     before = count_operations(raw.graph, raw.functions[0].edges())
     counts = count_program(staged)
     init, rest = counts["init", ""], counts["mass_matrix", ""]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import symofros as sf
+from symofros import passes
 from symofros.codegen import function as functions
 from symofros.codegen.statements import StatementWriter
 from symofros.dynamics import inertia
@@ -17,6 +18,7 @@ from symofros.expr.vector import Sym3, Vec3
 from symofros.kinematics import rotations
 from symofros.kinematics.rotations import MatrixTurn, Turn
 from symofros.passes import stage
+from symofros.passes.chain import chain_sums
 from symofros.runtime.toolchain import DEFAULT_FLAGS
 
 Without = Callable[[], AbstractContextManager[object]]
@@ -92,6 +94,11 @@ def _without_staging() -> AbstractContextManager[None]:
     )
 
 
+def _without_chains() -> AbstractContextManager[None]:
+    """Sums are added up in the order in which they were formed."""
+    return _replaced(passes, "PIPELINE", tuple(stated for stated in passes.PIPELINE if stated[0] is not chain_sums))
+
+
 def _in_one_piece() -> AbstractContextManager[None]:
     return _replaced(functions, "MAX_STATEMENTS", 10**9)
 
@@ -107,6 +114,8 @@ PASSES = (
     Pass("constant factors", "c1 (c2 x) becomes (c1 c2) x.",
          lambda: _replaced(Graph, "_scale", lambda self, a, b: _both_numbers(self, a, b))),
     Pass("staging", "What parameters alone determine is computed once for each set of them.", _without_staging),
+    Pass("sums in chains", "x + a b + c d takes two fused multiply-adds, (a b + c d) + x three operations.",
+         _without_chains),
     Pass("blocks of sines", "Sines and cosines of up to eight angles by polynomials in one vector; without: libm's.",
          lambda: _replaced(StatementWriter, "_blocks", lambda self: {})),
     Pass("packs", "Columns that are computed alike share vectors.", options=lambda o: replace(o, packs=False)),

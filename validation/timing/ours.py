@@ -67,7 +67,7 @@ class _Generated:
         self, task: Task, name: str, batch: Literal["vector", "loop"], precision: Precision = "double"
     ) -> None:
         # The fastest of our builds, as of the peers'.
-        options = sf.Options((name,), _frames(task, name), batch=batch, tune=batch == "loop")
+        options = sf.Options((name,), _frames(task, name), batch=batch, tune=True)
         sf.compile_library(task.system, options, precision)
         start = time.thread_time()  # Now that the library is in the cache, what is left is to make its text.
         self.path, symbol = sf.compile_library(task.system, options, precision)

@@ -1,0 +1,181 @@
+"""Write sums of products as chains of fused multiply-adds.
+
+A sum of sums that nobody else reads is one sum of several terms, in any order. A processor adds a product to what is
+there in one operation, so x + a b + c d takes two of them and (a b + c d) + x three: a chain starts with a term that is
+no product (docs/theory/code.md, section 1).
+
+Post-condition: what a pack is the sum of is older than the sums it makes, as before.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import chain
+
+from symofros.expr.evaluate import needed_nodes
+from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.ops import ADD, MUL
+from symofros.expr.packs import EMPTY, Pack
+from symofros.expr.program import Function, Program
+
+
+def chain_sums(program: Program) -> Program:
+    """Write every sum as a chain that starts with a term that is no product.
+
+    Sums that packs make stay as they are: vectors form them, too, to the same bits.
+
+    Args:
+        program: Staged or not.
+
+    Returns:
+        The program over a graph of its own, which holds what the functions need; results differ by rounding.
+    """
+    old, new, sums = program.graph, Graph(), _Sums(program)
+    at: dict[int, Edge] = {ZERO: ZERO, ONE: ONE}
+    ages = [0] * len(old)  # How many nodes there were when a node's turn came.
+
+    def moved(edge: Edge) -> Edge:
+        return at[edge] if edge >= 0 else -at[-edge]
+
+    for node in range(2, len(old)):
+        ages[node] = len(new)
+        if node in old.value:
+            at[node] = new.constant(old.value[node])
+        elif node in old.slot:
+            at[node] = new.input(old.slot[node].group, old.slot[node].index)
+        elif node in sums.whole:
+            at[node] = new.sum(map(moved, sums.terms(node)))
+        elif node in sums.nodes and node not in sums.parts:
+            at[node] = new.apply(old.op[node], *map(moved, old.args[node]))
+        if node in old.label and node in at:
+            new.name(at[node], old.label[node])
+    new.packs = list(_Packs(at, ages).of(old.packs))
+
+    def function(stated: Function) -> Function:
+        outputs = tuple(replace(o, edges=tuple(map(moved, o.edges))) for o in stated.outputs)
+        solver = stated.solver and replace(stated.solver, parts=tuple(map(function, stated.solver.parts)))
+        return replace(stated, outputs=outputs, solver=solver)
+
+    # What parameters determine is kept without the sign that its node has got.
+    init = tuple(abs(moved(edge)) for edge in program.init)
+    pre = {abs(moved(node)): slot for node, slot in program.pre.items()}
+    return replace(program, graph=new, functions=tuple(map(function, program.functions)), init=init, pre=pre)
+
+
+def check_packs(program: Program) -> None:
+    """Verify the post-condition.
+
+    Raises:
+        AssertionError: A vector would have to wait for one of its own lanes.
+    """
+    for pack in program.graph.packs:
+        made = {abs(pack.lanes[lane]) for lane in pack.own}
+        read = {abs(operand.lanes[lane]) for _, operand in pack.terms for lane in pack.literal}
+        read.update(abs(factor) for factor, _ in pack.terms)
+        assert min(made, default=pack.start) >= pack.start > max(read, default=0), "a pack reads its own lanes"
+
+
+class _Sums:
+    """The sums of a program, and what they add up.
+
+    Args:
+        program: Any.
+
+    Attributes:
+        nodes: What is computed.
+        whole: Sums, but for those that packs make.
+        parts: Sums that are read once, by one of those.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self._graph, given = program.graph, program.pre
+        op, args, label = program.graph.op, program.graph.args, program.graph.label
+        outputs = [edge for function in program.functions for edge in function.edges()]
+        self.nodes = {*needed_nodes(self._graph, outputs, given), *needed_nodes(self._graph, program.init)}
+        packed = set(_packed(self._graph))
+        free = {node for node in self.nodes if op[node] == ADD and node not in packed}
+        read = Counter(abs(arg) for node in self.nodes for arg in args[node])
+        read.update(map(abs, chain(outputs, program.init)))
+        added = Counter(abs(arg) for node in self.nodes if op[node] == ADD for arg in args[node])
+        summed = {abs(arg) for node in free for arg in args[node]}
+        # A name would be lost with a part, and so would a place among what parameters determine.
+        self.parts = {n for n in free & summed if read[n] == 1 and n not in given and n not in label}
+        self.whole = free - self.parts
+        self._products = {n for n in self.nodes if op[n] == MUL and read[n] == added[n] and n not in given}
+
+    def terms(self, whole: int) -> list[Edge]:
+        """What a sum adds up, in the order in which it was made, but for what a chain starts with.
+
+        That is the oldest term that is no product; if it is the youngest of all terms, too, nothing is to wait for it.
+        """
+        found: list[Edge] = []
+        stack = list(self._graph.args[whole])
+        while stack:
+            edge = stack.pop()
+            if abs(edge) in self.parts:
+                stack += (arg if edge > 0 else -arg for arg in self._graph.args[abs(edge)])
+            else:
+                found.append(edge)
+        found.sort(key=abs)
+        first = next((i for i, edge in enumerate(found[:-1]) if abs(edge) not in self._products), 0)
+        return [found.pop(first), *found]
+
+
+def _packed(graph: Graph) -> Iterator[int]:
+    """The sums that vectors form, too; those that were there before their pack, and those that packs are made of."""
+    for pack in graph.packs:
+        yield from range(pack.start, 1 + max(map(abs, pack.lanes)))
+        sums = {abs(edge) for of in (pack, *(operand for _, operand in pack.terms)) for edge in of.lanes}
+        for _ in pack.terms:
+            yield from sums
+            sums = {abs(arg) for node in sums if graph.op[node] == ADD for arg in graph.args[node]}
+
+
+class _Packs:
+    """Packs that follow their lanes into another graph.
+
+    Args:
+        at: Node -> edge in the other graph, of all that is needed.
+        ages: For each node how many nodes the other graph had before it.
+    """
+
+    def __init__(self, at: dict[int, Edge], ages: Sequence[int]) -> None:
+        self._at, self._ages = at, ages
+        self._known: dict[int, Pack] = {id(EMPTY): EMPTY}
+
+    def of(self, packs: Iterable[Pack]) -> Iterator[Pack]:
+        """The same over there; those whose factors no function needs are left out."""
+        for pack in packs:
+            if all(abs(factor) in self._at for factor, _ in pack.terms):
+                yield self._one(pack)
+
+    def _one(self, pack: Pack) -> Pack:
+        waiting = [pack]
+        while waiting:
+            last = waiting[-1]
+            operands = [operand for _, operand in last.terms] + ([] if last.base is None else [last.base])
+            missing = [operand for operand in operands if id(operand) not in self._known]
+            waiting += missing
+            if not missing:
+                self._known[id(last)] = self._moved(waiting.pop())
+        return self._known[id(pack)]
+
+    def _moved(self, pack: Pack) -> Pack:
+        """A pack whose operands are there."""
+        at, known = self._at, self._known
+        base = None if pack.base is None else known[id(pack.base)]
+        there = frozenset(lane for lane, edge in enumerate(pack.lanes) if abs(edge) in at)
+        lanes = tuple(self._edge(edge) if lane in there else ZERO for lane, edge in enumerate(pack.lanes))
+        if not all(abs(factor) in at for factor, _ in pack.terms):
+            return Pack(lanes, base=base)
+        start = self._ages[pack.start] if pack.terms else 0
+        return replace(
+            pack, lanes=lanes, base=base, start=start, literal=pack.literal & there,
+            terms=tuple((self._edge(factor), known[id(operand)]) for factor, operand in pack.terms),
+            own=frozenset(lane for lane in pack.own & there if abs(lanes[lane]) >= start),
+        )  # fmt: skip
+
+    def _edge(self, edge: Edge) -> Edge:
+        return self._at[edge] if edge >= 0 else -self._at[-edge]
