@@ -64,6 +64,7 @@ from symofros.topology.tree import SpanningTree, build_tree, frame_of
 
 GENERATOR = "symofros 0.1.0"
 _EAGER = (Request("dynamics"),)
+_FORWARD = (Request("forward_dynamics"),)
 
 
 def compile_system(system: System, options: Options | None = None) -> Model:
@@ -188,17 +189,24 @@ def generate(
 
 def _written(tree: SpanningTree, requests: Sequence[Request], form: str, method: str) -> Program:
     """The optimised program, its forward dynamics by the cheaper method where that is left to us."""
-    if any(request.name == "forward_dynamics" for request in requests):
-        method = forward_method(tree) if method == "auto" else method
+    if method == "auto" and any(request.name == "forward_dynamics" for request in requests):
+        programs = _forward_programs(tree)
+        method = cheapest(programs) if programs else "factors"
+        if programs and tuple(requests) == _FORWARD:
+            return programs[method]
     return run_passes(write_program(tree, requests, form, method))
 
 
 def forward_method(tree: SpanningTree) -> str:
     """The cheaper way to a mechanism's forward dynamics."""
-    ways, asked = methods(tree), [Request("forward_dynamics")]
-    if len(ways) == 1:
-        return ways[0]
-    return cheapest({way: run_passes(write_program(tree, asked, method=way)) for way in ways})
+    programs = _forward_programs(tree)
+    return cheapest(programs) if programs else "factors"
+
+
+def _forward_programs(tree: SpanningTree) -> dict[str, Program]:
+    """By each way that there is; none where there is no choice."""
+    ways = methods(tree)
+    return {way: run_passes(write_program(tree, _FORWARD, method=way)) for way in ways} if len(ways) > 1 else {}
 
 
 def _warn_inconsistent(system: System) -> None:

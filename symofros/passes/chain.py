@@ -2,7 +2,7 @@
 
 A sum of sums that nobody else reads is one sum of several terms, in any order. A processor adds a product to what is
 there in one operation, so x + a b + c d takes two of them and (a b + c d) + x three: a chain starts with a term that is
-no product (docs/theory/code.md, section 1).
+no product (docs/theory/code.md, section 6).
 
 Post-condition: what a pack is the sum of is older than the sums it makes, as before.
 """

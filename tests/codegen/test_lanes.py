@@ -195,3 +195,32 @@ def test_builds_without_warnings(flags: tuple[str, ...], lanes: Lanes, tmp_path:
     record = describe(tree, sf.Options())
     program, _ = generate(tree, [("dynamics", ""), ("forward_dynamics", "")], record)
     compile_strictly(tmp_path, model_source(program, record, "test", in_lanes=lanes), COMPILERS[0], *flags)
+
+
+@pytest.mark.parametrize(("case", "first"), [("open_chain_5r", True), ("chain22", False)])
+def test_few_sines_come_first(case: str, first: bool) -> None:
+    """Those of several vectors follow each other, so that none waits; many angles fill the processor by themselves."""
+    tree = plan(MODELS[case])
+    record = describe(tree, sf.Options())
+    program, _ = generate(tree, [("mass_matrix", "")], record)
+    text = model_source(program, record, "test", Lanes())
+    chunk = text.partition(f"{record.name}_mass_matrix_f0_v_0(")[2].partition("\n}")[0]
+    assert "sym_sincos_v(" in chunk
+    assert ("SYM_PUT" not in chunk and "work[" in chunk) is first
+
+
+def test_sines_of_sines_wait() -> None:
+    """The sine of an angle that another sine leads to is not among the first."""
+    joint = sf.Joint("x", "prismatic", effort=("sin(2*x + sin(x))*sin(3*x)",))
+    system = sf.System("nested", [sf.RigidBody("b", joint, sf.Inertia(1.0))])
+    options = sf.Options(("generalized_force",), batch="vector", flags=EXACT)
+    path, symbol = compile_library(system, options)
+    first, _, others = path.with_suffix(".c").read_text(encoding="utf-8").partition("_v_0(")[2].partition("_v_1(")
+    assert "sym_sincos_v(2," in first and "sym_sincos_v(1," not in first and "sym_sincos_v(1," in others
+    kernel = CompiledUnit(path, symbol, template("symofros_model.h"), describe(plan(system), options).hash).kernels[
+        "generalized_force", ""
+    ]
+    x = np.linspace(-3.0, 3.0, 999)[:, None]
+    inputs = [x if name == "q" else np.zeros((1, size)) for name, size in kernel.signature.inputs]
+    (found,) = kernel.run(len(x), kernel.prepare(np.zeros((1, 0))), inputs)
+    np.testing.assert_allclose(found, np.sin(2 * x + np.sin(x)) * np.sin(3 * x), rtol=0, atol=1e-14)
