@@ -19,20 +19,20 @@ from validation.timing.sections import headline, sections
 
 LIMITS = (
     "One thread, pinned to one processor, whose time on it is what is measured. All sides of a function run in one "
-    "process, in turn, each a loop in C over the same random states; before, each side's results are compared with "
-    "ours, to 1e-12 of the largest entry (1e-9 where a system is solved), and sides that differ are not timed. Cells "
-    "hold minimum and median over the repeats, in nanoseconds a state; ratios are of medians, theirs to ours.",
-    "Ours is generated C, one state after the other through the public header, in the fastest of its builds by gcc and "
-    "clang (Options(tune=True)), and (batch) several at a time by vectors, in calls of 64 states, or of as many as "
-    "keep their results within 384 KiB, by rows, by columns, and by columns of floats (checked to 5e-4, 2^29 times "
-    "as coarse); "
-    "results replace each other as those of the engines do, and copies of the library "
-    "compute them in turn, because where its code happens to lie matters; so with CasADi's and SymPy's. Pinocchio is "
-    "its own headers, compiled in the run by gcc and by clang, in the faster of its two conventions; MuJoCo is its "
-    "wheel's own library; CasADi is the C that it makes of composite-rigid-body, Newton-Euler and articulated-body "
-    "recursions, in the best of four builds, gcc and clang with -O3 and -O3 -ffast-math; SymPy is Kane's equations and "
-    "common subexpressions, built alike. Friction and springs in joints are taken out. Machines are noisy: quote a "
-    "ratio rather than a time.",
+    "process, in turns of 10 ms or more, each a loop in C over the same random states; before, each side's results "
+    "are compared with ours, to 1e-12 of the largest entry (1e-9 where a system is solved), and sides that differ are "
+    "not timed. Cells hold minimum and median over the repeats, in nanoseconds a state; ratios are of medians, theirs "
+    "to ours.",
+    "Ours is generated C, one state after the other through the public header, in the fastest of its builds by gcc "
+    "and clang (Options(tune=True)), and (batch) several at a time by vectors, likewise, in calls of 64 states, or of "
+    "as many as keep their results within 384 KiB, by rows, by columns, and by columns of floats (checked to 5e-4, "
+    "2^29 times as coarse); results replace each other as those of the engines do, and copies of the library compute "
+    "them in turn, because where its code happens to lie matters; so with CasADi's and SymPy's. Pinocchio is its own "
+    "headers, compiled in the run by gcc and by clang, in the faster of its two conventions; MuJoCo is its wheel's "
+    "own library; CasADi is the C that it makes of composite-rigid-body, Newton-Euler and articulated-body "
+    "recursions, in the best of four builds, gcc and clang with -O3 and -O3 -ffast-math; SymPy is Kane's equations "
+    "and common subexpressions, built alike. Friction and springs in joints are taken out. Machines are noisy: quote "
+    "a ratio rather than a time.",
 )
 
 
