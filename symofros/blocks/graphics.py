@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from symofros.blocks.quantities import joint_units
+from symofros.blocks.quantities import frame_ports, joint_units
 from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
 from symofros.diagrams.settings import Plot
 from symofros.errors import DescriptionError, Problem
@@ -119,23 +118,24 @@ class ExtremityPlot(Block):
     frames: tuple[str, ...]
 
     def ports(self, known: Known) -> Ports:
-        """Coordinates q (nq) in; out "p_FRAME" (3), the frame's origin in the world [m]."""
+        """Coordinates q (nq) in; out "p_FRAME" (3), the frame's origin in the world [m]; "p_link2_tip" for "link2.tip"."""
         record = known.model(self.model)
-        for name in self.frames:
-            known.frame(self.model, name)
-        outputs = tuple(Port(_position(name), (3,), "m") for name in self.frames)
+        for frame in self.frames:
+            known.frame(self.model, frame)
+        outputs = tuple(Port(port, (3,), "m") for port in self._frames())
         return Ports((Port("q", (len(record.q_names),), joint_units(record)[0]),), outputs)
 
     def compute(self, at: At) -> Values:
         """Positions by the model's own kinematics."""
         q = at.inputs["q"]
-        return {_position(name): at.call(self.model, "frame_pose", name, q=q, t=at.t)["p"] for name in self.frames}
+        return {
+            port: at.call(self.model, "frame_pose", frame, q=q, t=at.t)["p"] for port, frame in self._frames().items()
+        }
 
     def shown(self) -> tuple[Plot, ...]:
         """The outputs."""
-        return tuple(Plot(f"{self.name}: {name}", (_position(name),)) for name in self.frames)
+        return tuple(Plot(f"{self.name}: {frame}", (port,)) for port, frame in self._frames().items())
 
-
-def _position(frame: str) -> str:
-    """The output that is a frame's position."""
-    return "p_" + re.sub(r"\W", "_", frame)
+    def _frames(self) -> dict[str, str]:
+        """Output -> the frame whose position it is."""
+        return frame_ports(self.name, "p_", self.frames)

@@ -117,6 +117,10 @@ class Terms:
     phi: Tensor | None = None
     rate: Tensor | None = None
 
+    def stated(self) -> dict[str, Tensor]:
+        """Those that are not None, by name."""
+        return {item.name: value for item in fields(self) if (value := getattr(self, item.name)) is not None}
+
 
 @dataclass(frozen=True)
 class Crossing:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.block import Terms
 from symofros.diagrams.charts import chart_rate, retract
 from symofros.diagrams.compiled import Resolved, bare_record, unit_of
 from symofros.diagrams.layout import Part
@@ -23,7 +22,6 @@ from symofros.runtime.toolchain import Toolchain
 from symofros.simulation.tableaus import Tableau
 
 Call = Callable[[], None]
-_TERMS = ("a", "M", "r", "G", "c", "phi", "rate")
 
 
 class Blocks:
@@ -55,7 +53,7 @@ class Blocks:
         stated: dict[str, dict[str, Any]] = {f"out_{port}": {"y": value} for port, value in piece.outputs.items()}
         stated["rates"] = {f"d_{key}": value for key, value in piece.rates.items()}
         stated["updates"] = {f"n_{key}": value for key, value in piece.updates.items()}
-        stated["motion"] = {f"t_{key}": value for key, value in _present(piece.terms)}
+        stated["motion"] = {f"t_{key}": value for key, value in piece.terms.stated().items()}
         functions, sizes = [], {"par": 0}
         for which, outputs in stated.items():
             if outputs:
@@ -175,13 +173,6 @@ class Blocks:
                 call, found = self.calls[name, "rates"]
                 call()
                 self.a[place.slice] = found[f"d_{key}"].reshape(-1)
-
-
-def _present(terms: Terms) -> Iterator[tuple[str, Any]]:
-    for key in _TERMS:
-        value = getattr(terms, key)
-        if value is not None:
-            yield key, value
 
 
 @dataclass

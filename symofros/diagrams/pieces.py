@@ -72,8 +72,7 @@ class Piece:
 
     def motion_edges(self) -> list[Edge]:
         """All that its mechanism's terms are."""
-        parts = (self.terms.a, self.terms.M, self.terms.r, self.terms.G, self.terms.c, self.terms.phi, self.terms.rate)
-        return [edge for part in parts if part is not None for edge in part.flat]
+        return [edge for part in self.terms.stated().values() for edge in part.flat]
 
     def groups(self, edges: Iterable[Edge]) -> frozenset[str]:
         """Groups of inputs that some edges depend on."""
