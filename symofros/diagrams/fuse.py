@@ -70,10 +70,10 @@ class Point:
 
     def _place(self, source: Source) -> Place | None:
         """Where an output is read from; None for one that is computed."""
-        layout, block = self._layout, self._pieces[source[0]].block
+        layout, piece = self._layout, self._pieces[source[0]]
         if source in layout.samples:
             return layout.samples[source]
-        return layout.held.get(source) if block.is_opaque or source[0] not in self._due else None
+        return layout.held.get(source) if piece.is_opaque or source[0] not in self._due else None
 
     def _behind(self, source: Source) -> list[Source]:
         name, port = source
@@ -246,7 +246,7 @@ class Fuser:
         """Blocks of Python's that are due, in the order in which they are called."""
         found = dict.fromkeys(name for name, _ in self._order if name in due)
         rest = dict.fromkeys(name for name in self._pieces if name in due)
-        return [name for name in (found | rest) if self._pieces[name].block.is_opaque]
+        return [name for name in (found | rest) if self._pieces[name].is_opaque]
 
     def samples(self, sets: Sequence[frozenset[str]], listened: Sequence[Source] = ()) -> Program:
         """What happens at instants: functions "due_i" for each set and "crossed_i" for each crossing.
