@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symofros.blocks.quantities import joint_units
+from symofros.blocks.quantities import frame_ports, joint_units
 from symofros.diagrams.block import At, Block, Known, Port, Ports, Terms, Values
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.diagrams.variants import FRICTION
@@ -18,7 +18,7 @@ class ForwardDynamics(Block):
     Attributes:
         model: What moves; its first state is that of the model.
         perturbed: Frames that external wrenches act on: each adds an input "wrench_FRAME" (force; moment), at the
-            frame's origin in world axes [N, N m].
+            frame's origin in world axes [N, N m]; "wrench_link2_tip" for the frame "link2.tip".
         engaged: Whether an input "engaged" says which constraints hold now: 1 or 0, one a constraint, from a sampled
             block. A constraint that engages takes the state onto itself as a plastic impact does.
     """
@@ -41,7 +41,9 @@ class ForwardDynamics(Block):
         q, v, a, effort = joint_units(record)
         nv = len(record.v_names)
         inputs = [Port("u", (len(record.u_names),), effort, record.u_default)]
-        inputs += [Port(f"wrench_{known.frame(self.model, name)}", (6,), "", 0.0) for name in self.perturbed]
+        for port, frame in frame_ports(self.name, "wrench_", self.perturbed).items():
+            known.frame(self.model, frame)
+            inputs.append(Port(port, (6,), "", 0.0))
         names = _constraints(record.constraint_names)
         if self.engaged:
             if not names:
@@ -75,10 +77,9 @@ class ForwardDynamics(Block):
     def _push(self, at: At) -> Tensor:
         """Generalized forces of the external wrenches (nv)."""
         total = at.numbers([0.0] * len(at.v))
-        for name in self.perturbed:
-            frame = at.known.frame(self.model, name)
+        for port, frame in frame_ports(self.name, "wrench_", self.perturbed).items():
             J = at.call(self.model, "frame_jacobian", frame, q=at.q, u=at.inputs["u"])["J"]
-            total = total + J.T @ at.inputs[f"wrench_{frame}"]
+            total = total + J.T @ at.inputs[port]
         return total
 
     def _holds(self, at: At) -> Tensor:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
-from symofros.blocks.quantities import joint_units
+from symofros.blocks.quantities import frame_ports, joint_units
 from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.settings import Plot
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.kernel import Array
@@ -48,7 +48,7 @@ class Scope(Block):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Store(Block):
+class Store(OpaqueBlock):
     """Keeps its inputs at samples of its own, whatever interval the run is recorded at.
 
     `run.kept[name]` has them afterwards: "t" (n) and each signal (n, *shape).
@@ -60,7 +60,6 @@ class Store(Block):
 
     signals: tuple[str, ...]
     most: int = 1_000_000
-    is_opaque: ClassVar[bool] = True
 
     def ports(self, known: Known) -> Ports:
         """The signals."""
@@ -70,19 +69,27 @@ class Store(Block):
                                            "rename the signal"))  # fmt: skip
         return open_ports(self.name, self.signals, known)
 
-    def begin(self) -> None:
-        """Forget the run before."""
-        object.__setattr__(self, "_rows", deque(maxlen=self.most))
+    def begin(self, known: Known) -> Running:
+        """Nothing is stored yet."""
+        return _Stored(self.signals, self.most)
+
+
+class _Stored(Running):
+    """Samples of one run."""
+
+    def __init__(self, signals: tuple[str, ...], most: int) -> None:
+        self._signals = signals
+        self._rows: deque[tuple[Any, ...]] = deque(maxlen=most)
 
     def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
         """Keep one sample."""
-        self.__dict__["_rows"].append((t, *(np.array(inputs[name]) for name in self.signals)))
+        self._rows.append((t, *(np.array(inputs[name]) for name in self._signals)))
         return {}
 
     def kept(self) -> Mapping[str, Array]:
         """Times and signals."""
-        rows = list(zip(*self.__dict__["_rows"], strict=True)) or [()] * (len(self.signals) + 1)
-        return {name: np.array(row) for name, row in zip(("t", *self.signals), rows, strict=True)}
+        rows = list(zip(*self._rows, strict=True)) or [()] * (len(self._signals) + 1)
+        return {name: np.array(row) for name, row in zip(("t", *self._signals), rows, strict=True)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,23 +126,24 @@ class ExtremityPlot(Block):
     frames: tuple[str, ...]
 
     def ports(self, known: Known) -> Ports:
-        """Coordinates q (nq) in; out "p_FRAME" (3), the frame's origin in the world [m]."""
+        """Coordinates q (nq) in; out "p_FRAME" (3), the frame's origin in the world [m], dots read as underscores."""
         record = known.model(self.model)
-        for name in self.frames:
-            known.frame(self.model, name)
-        outputs = tuple(Port(_position(name), (3,), "m") for name in self.frames)
+        for frame in self.frames:
+            known.frame(self.model, frame)
+        outputs = tuple(Port(port, (3,), "m") for port in self._frames())
         return Ports((Port("q", (len(record.q_names),), joint_units(record)[0]),), outputs)
 
     def compute(self, at: At) -> Values:
         """Positions by the model's own kinematics."""
         q = at.inputs["q"]
-        return {_position(name): at.call(self.model, "frame_pose", name, q=q, t=at.t)["p"] for name in self.frames}
+        return {
+            port: at.call(self.model, "frame_pose", frame, q=q, t=at.t)["p"] for port, frame in self._frames().items()
+        }
 
     def shown(self) -> tuple[Plot, ...]:
         """The outputs."""
-        return tuple(Plot(f"{self.name}: {name}", (_position(name),)) for name in self.frames)
+        return tuple(Plot(f"{self.name}: {frame}", (port,)) for port, frame in self._frames().items())
 
-
-def _position(frame: str) -> str:
-    """The output that is a frame's position."""
-    return "p_" + re.sub(r"\W", "_", frame)
+    def _frames(self) -> dict[str, str]:
+        """Output -> the frame whose position it is."""
+        return frame_ports(self.name, "p_", self.frames)

@@ -11,21 +11,23 @@ import sys
 import webbrowser
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
+from symofros.blocks.exchange import LOCALHOST, check_size
 from symofros.blocks.graphics import open_ports
-from symofros.blocks.network import LOCALHOST, check_size
 from symofros.blocks.packets import pack
-from symofros.diagrams.block import Block, Known, Ports
+from symofros.blocks.turns import Turn
+from symofros.diagrams.block import Known, Ports
+from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.signals import entries
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array
 
 
 @dataclass(frozen=True, kw_only=True)
-class LivePlot(Block):
+class LivePlot(OpaqueBlock):
     """Shows its inputs as curves in a browser while the run goes on.
 
     Another process draws; the loop only hands it a packet at each sample, and drops it where that would take time. The
@@ -44,7 +46,6 @@ class LivePlot(Block):
     title: str = ""
     window: float = 10.0
     open_browser: bool = True
-    is_opaque: ClassVar[bool] = True
 
     def ports(self, known: Known) -> Ports:
         """The signals."""
@@ -52,33 +53,20 @@ class LivePlot(Block):
         check_size(self.name, max(1, sum(int(np.prod(port.shape)) for port in found.inputs if port.shape is not None)))
         return found
 
-    def begin(self) -> None:
-        """Start the page.
+    def begin(self, known: Known) -> Running:
+        """Start the page, or take over that of the run before.
 
         Raises:
-            SymofrosError: The page's program does not start.
+            SymofrosError: The page's program does not start, or it shows a run that has not ended.
         """
-        page = self.__dict__.get("_page") or _Page()
-        object.__setattr__(self, "_page", page)
-        page.begin(self.name, self.open_browser)
-
-    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
-        """Hand over one sample."""
-        page: _Page = self.__dict__["_page"]
-        if page.sequence == 0:
-            labels = [label for name in self.signals for label, _ in entries(name, inputs[name].shape)]
-            page.say({"labels": labels, "title": self.title or self.name, "window": self.window, "done": False})
-        page.send(t, np.concatenate([inputs[name].reshape(-1) for name in self.signals]))
-        return {}
-
-    def kept(self) -> Mapping[str, Array]:
-        """How many samples were sent and dropped."""
-        page: _Page = self.__dict__["_page"]
-        return {"sent": np.asarray(float(page.sequence - page.dropped)), "dropped": np.asarray(float(page.dropped))}
-
-    def end(self) -> None:
-        """Tell the page that the run has ended; it stays."""
-        self.__dict__["_page"].say({"done": True})
+        page: _Page = self.__dict__.setdefault("_page", _Page())
+        page.turn.take(self.name)
+        try:
+            page.begin(self.name, self.open_browser)
+        except BaseException:
+            page.turn.leave()
+            raise
+        return _Showing(self, page)
 
     @property
     def url(self) -> str:
@@ -87,10 +75,37 @@ class LivePlot(Block):
         return page.url if page else ""
 
 
+class _Showing(Running):
+    """One run on the page."""
+
+    def __init__(self, block: LivePlot, page: _Page) -> None:
+        self._block, self._page = block, page
+
+    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
+        """Hand over one sample."""
+        block, page = self._block, self._page
+        if page.sequence == 0:
+            labels = [label for name in block.signals for label, _ in entries(name, inputs[name].shape)]
+            page.say({"labels": labels, "title": block.title or block.name, "window": block.window, "done": False})
+        page.send(t, np.concatenate([inputs[name].reshape(-1) for name in block.signals]))
+        return {}
+
+    def kept(self) -> Mapping[str, Array]:
+        """How many samples were sent and dropped."""
+        page = self._page
+        return {"sent": np.asarray(float(page.sequence - page.dropped)), "dropped": np.asarray(float(page.dropped))}
+
+    def end(self) -> None:
+        """Tell the page that the run has ended; it stays."""
+        self._page.say({"done": True})
+        self._page.turn.leave()
+
+
 class _Page:
     """The other process, and the socket to it."""
 
     def __init__(self) -> None:
+        self.turn = Turn()
         self.process: subprocess.Popen[str] | None = None
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.setblocking(False)

@@ -8,16 +8,17 @@ from __future__ import annotations
 import json
 import secrets
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
-from symofros.blocks.network import MAX_TAKEN, beyond, check_address, check_size
-from symofros.blocks.packets import Reception, Silence, pack, receiver_ports
-from symofros.diagrams.block import Block, Known, Port, Ports
+from symofros.blocks.exchange import MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
+from symofros.blocks.packets import pack
+from symofros.diagrams.block import Known
+from symofros.diagrams.opaque_block import Running
 from symofros.errors import DescriptionError, Problem, SymofrosError
 from symofros.runtime.kernel import Array
 
@@ -25,7 +26,32 @@ _ADDRESS = "127.0.0.1:7447"
 
 
 @dataclass(frozen=True, kw_only=True)
-class ZenohPublisher(Block):
+class _ByZenoh(Exchange):
+    key: str
+    address: str = _ADDRESS
+    listens: bool = False
+
+    def place(self) -> tuple[str, int]:
+        """Of the address."""
+        host, _, port = self.address.rpartition(":")
+        return host.strip("[]"), int(port) if port.isdigit() and len(port) < 6 else 0
+
+    def check(self) -> None:
+        """Refuse what is no address or no key.
+
+        Raises:
+            DescriptionError: It is none.
+        """
+        super().check()
+        key = self.key
+        if not key or key.startswith("/") or key.endswith("/") or "//" in key or any(c in key for c in "?#$\0"):
+            raise DescriptionError(Problem(f"block '{self.name}': no key '{key:.60}'", f"'{key:.60}'",
+                                           "names joined by '/', none of them empty", "for example arm/state"
+                                           ))  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class ZenohPublisher(_ByZenoh, Transmitter):
     """Publishes its input under a key at each sample; never waits, so packets can be dropped where a reader is slow.
 
     What it keeps of a run: "sent", how many packets.
@@ -36,51 +62,39 @@ class ZenohPublisher(Block):
         listens: Whether the peer comes to that address; else it is gone to, as soon as somebody listens.
     """
 
-    key: str
-    address: str = _ADDRESS
-    listens: bool = False
-    is_opaque: ClassVar[bool] = True
-
-    def ports(self, known: Known) -> Ports:
-        """A signal of any shape; entries go row by row."""
-        _check(self.name, self.key, self.address)
-        shape = known.inputs.get("signal")
-        check_size(self.name, int(np.prod(shape)) if shape is not None else 1)
-        return Ports((Port("signal", shape),))
-
-    def reaches(self) -> str:
-        """The other machine."""
-        return beyond(*_parted(self.address))
-
-    def begin(self) -> None:
+    def begin(self, known: Known) -> Running:
         """Open a session.
 
         Raises:
             SymofrosError: Zenoh is not installed, or the address is taken.
         """
-        session, publisher = _opened(self, lambda session: session.declare_publisher(self.key))
-        object.__setattr__(self, "_open", (session, publisher, secrets.randbits(32)))
-        object.__setattr__(self, "_sent", 0)
+        return _Publishing(*_opened(self, lambda session: session.declare_publisher(self.key)))
+
+
+class _Publishing(Running):
+    """Packets of one run."""
+
+    def __init__(self, session: Any, publisher: Any) -> None:
+        self._session, self._publisher = session, publisher
+        self._stream, self._sent = secrets.randbits(32), 0
 
     def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
         """Publish one packet."""
-        _, publisher, stream = self.__dict__["_open"]
-        sent = self.__dict__["_sent"]
-        publisher.put(pack(stream, sent, t, inputs["signal"].reshape(-1)))
-        object.__setattr__(self, "_sent", sent + 1)
+        self._publisher.put(pack(self._stream, self._sent, t, inputs["signal"].reshape(-1)))
+        self._sent += 1
         return {}
 
     def kept(self) -> Mapping[str, Array]:
         """How many packets were published."""
-        return {"sent": np.asarray(float(self.__dict__["_sent"]))}
+        return {"sent": np.asarray(float(self._sent))}
 
     def end(self) -> None:
         """Close the session."""
-        self.__dict__["_open"][0].close()
+        self._session.close()
 
 
 @dataclass(frozen=True, kw_only=True)
-class ZenohSubscriber(Block):
+class ZenohSubscriber(_ByZenoh, Receiver):
     """Takes the newest packet under a key at each sample, and counts the others, as UdpReceiver does.
 
     Attributes:
@@ -94,27 +108,9 @@ class ZenohSubscriber(Block):
         unit: Of the values.
     """
 
-    key: str
-    size: int
-    address: str = _ADDRESS
     listens: bool = True
-    timeout: float = 0.1
-    on_silence: Silence = "hold"
-    fallback: Any = 0.0
-    unit: str = ""
-    is_opaque: ClassVar[bool] = True
 
-    def ports(self, known: Known) -> Ports:
-        """No inputs; the signal (size), its stamp and age [s], packets lost, and 1 while the sender is alive."""
-        _check(self.name, self.key, self.address)
-        check_size(self.name, self.size)
-        return Ports((), receiver_ports(self.size, self.unit))
-
-    def reaches(self) -> str:
-        """The address, if it is another machine's or others can reach it."""
-        return beyond(*_parted(self.address))
-
-    def begin(self) -> None:
+    def begin(self, known: Known) -> Running:
         """Open a session; packets wait in a queue whose oldest are dropped.
 
         Raises:
@@ -126,42 +122,28 @@ class ZenohSubscriber(Block):
             waiting.append(bytes(sample.payload))
 
         session, subscriber = _opened(self, lambda session: session.declare_subscriber(self.key, heard))
-        object.__setattr__(self, "_open", (session, subscriber, waiting, Reception(self.size, self.timeout)))
-        object.__setattr__(self, "_began", None)
+        return _Subscribed(self, session, subscriber, waiting)
 
-    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
-        """Empty the queue, and say what is known now."""
-        _, _, waiting, reception = self.__dict__["_open"]
-        if self.__dict__["_began"] is None:
-            object.__setattr__(self, "_began", t)
-        for _ in range(len(waiting)):
-            reception.take(waiting.popleft(), t)
-        found: Mapping[str, Any] = reception.outputs(t, self.__dict__["_began"], self.on_silence, self.fallback)
-        return found
 
-    def kept(self) -> Mapping[str, Array]:
-        """How many packets became what."""
-        counts: Mapping[str, Array] = self.__dict__["_open"][3].counts()
-        return counts
+class _Subscribed(Receiving):
+    """Packets of one run."""
+
+    def __init__(self, block: ZenohSubscriber, session: Any, subscriber: Any, waiting: deque[bytes]) -> None:
+        super().__init__(block)
+        self._session, self._waiting = session, waiting
+        self._subscriber = subscriber  # Zenoh hears as long as it is referred to.
+
+    def arrived(self) -> Iterator[bytes]:
+        """What the queue holds; what comes meanwhile is the next sample's."""
+        for _ in range(len(self._waiting)):
+            yield self._waiting.popleft()
 
     def end(self) -> None:
         """Close the session."""
-        self.__dict__["_open"][0].close()
+        self._session.close()
 
 
-def _parted(address: str) -> tuple[str, int]:
-    host, _, port = address.rpartition(":")
-    return host.strip("[]"), int(port) if port.isdigit() and len(port) < 6 else 0
-
-
-def _check(name: str, key: str, address: str) -> None:
-    check_address(name, *_parted(address))
-    if not key or key.startswith("/") or key.endswith("/") or "//" in key or any(c in key for c in "?#$\0"):
-        raise DescriptionError(Problem(f"block '{name}': no key '{key:.60}'", f"'{key:.60}'",
-                                       "names joined by '/', none of them empty", "for example arm/state"))  # fmt: skip
-
-
-def _opened(block: ZenohPublisher | ZenohSubscriber, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
+def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
     """A peer that talks by one address only, and what it declares.
 
     Raises:

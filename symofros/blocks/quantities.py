@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
+from symofros.blocks.checks import refuse
 from symofros.diagrams.block import Known, Shape
 from symofros.runtime.record import ModelRecord
 
@@ -18,6 +20,27 @@ def joint_units(record: ModelRecord) -> tuple[str, str, str, str]:
 def common_shape(known: Known, names: Sequence[str]) -> Shape | None:
     """The shape that inputs of one shape have, as soon as one of them is known."""
     return next((known.inputs[name] for name in names if name in known.inputs), None)
+
+
+def frame_ports(block: str, prefix: str, frames: Sequence[str]) -> dict[str, str]:
+    """Port -> frame, for ports of a block that are named after frames: the prefix and the name that the block states.
+
+    All but letters, digits and underscores becomes an underscore, "wrench_link2_tip" for the frame "link2.tip", so that
+    ports are names in Python and in "block.port".
+
+    Args:
+        block: Its name.
+        prefix: Such as "wrench_".
+        frames: As the block states them.
+
+    Raises:
+        DescriptionError: Two frames have one port.
+    """
+    ports = {prefix + re.sub(r"\W", "_", frame): frame for frame in frames}
+    if len(ports) < len(frames):
+        raise refuse(block, "two frames have one port", ", ".join(frames), "different names, dots read as underscores",
+                     "leave out those that stand twice, or rename one")  # fmt: skip
+    return ports
 
 
 def actuated_names(record: ModelRecord) -> list[str]:

@@ -8,13 +8,16 @@ import time
 import webbrowser
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from symofros.blocks.quantities import joint_units
-from symofros.diagrams.block import Block, Known, Port, Ports
+from symofros.blocks.turns import Turn
+from symofros.description.system import System
+from symofros.diagrams.block import Known, Port, Ports
 from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.kernel import Array
 from symofros.viewing.of_run import chosen_block
@@ -22,7 +25,7 @@ from symofros.viewing.viewer import Viewer
 
 
 @dataclass(frozen=True, kw_only=True)
-class View3D(Block):
+class View3D(OpaqueBlock):
     """Shows a mechanism in a browser as its coordinates change (the extra `view`, docs/view.md).
 
     A run hands its coordinates over and goes on: what comes faster than pictures can be drawn is dropped. The mechanism
@@ -48,7 +51,6 @@ class View3D(Block):
     paced: bool = False
     stays: bool = True
     open_browser: bool = True
-    is_opaque: ClassVar[bool] = True
 
     def ports(self, known: Known) -> Ports:
         """Coordinates q (nq); inputs u (nu), which matter where they prescribe motion."""
@@ -62,19 +64,24 @@ class View3D(Block):
         return Ports((Port("q", (len(record.q_names),), q),
                       Port("u", (len(record.u_names),), effort, record.u_default)))  # fmt: skip
 
-    def learn(self, known: Known) -> None:
-        """Take note of the mechanism."""
-        object.__setattr__(self, "_model", (
-            known.system(self.model), known.start(self.model)[0], known.parameters(self.model)
-        ))  # fmt: skip
-
-    def begin(self) -> None:
+    def begin(self, known: Known) -> Running:
         """Serve the page, or take over that of the run before.
 
         Raises:
-            SymofrosError: viser is not installed, or the port is taken.
+            SymofrosError: viser is not installed, the port is taken, or the page shows a run that has not ended.
         """
-        system, q, par = self.__dict__["_model"]
+        turn: Turn = self.__dict__.setdefault("_turn", Turn())
+        turn.take(self.name)
+        try:
+            viewer, par = self._serve(known.system(self.model)), known.parameters(self.model)
+            viewer.show(known.start(self.model)[0], par=par)
+        except BaseException:
+            turn.leave()
+            raise
+        return _Showing(self, viewer, par, turn)
+
+    def _serve(self, system: System) -> Viewer:
+        """The page, with a mechanism."""
         viewer = self.viewer
         if viewer is None or viewer.is_closed:
             viewer = Viewer(system, port=self.port, exaggeration=self.exaggeration)
@@ -84,28 +91,7 @@ class View3D(Block):
                 webbrowser.open(viewer.url)
         elif viewer.mechanism.system != system:
             viewer.set_system(system)
-        object.__setattr__(self, "_pace", _Pace(viewer.dropped))
-        viewer.show(q, par=par)
-
-    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
-        """Hand over one sample; wait for the clock if the run is paced by this block."""
-        pace: _Pace = self.__dict__["_pace"]
-        if self.paced:
-            pace.wait(t)
-        self.__dict__["_viewer"].push(t, inputs["q"], u=inputs["u"], par=self.__dict__["_model"][2])
-        pace.shown += 1
-        return {}
-
-    def kept(self) -> Mapping[str, Array]:
-        """How many samples were handed over, and how many of them dropped."""
-        pace: _Pace = self.__dict__["_pace"]
-        dropped = self.__dict__["_viewer"].dropped - pace.dropped_before
-        return {"shown": np.asarray(float(pace.shown)), "dropped": np.asarray(float(dropped))}
-
-    def end(self) -> None:
-        """Leave the page, or stop serving it."""
-        if not self.stays:
-            self.close()
+        return viewer
 
     @property
     def viewer(self) -> Viewer | None:
@@ -118,26 +104,39 @@ class View3D(Block):
             self.viewer.close()
 
 
-@dataclass
-class _Pace:
-    """The clock of one run, and how many samples were shown.
+class _Showing(Running):
+    """One run on the page."""
 
-    Attributes:
-        dropped_before: States that the viewer had dropped before it.
-        shown: Samples so far.
-        start: When simulated time was zero, by the clock [s]; None before the first sample.
-    """
+    def __init__(self, block: View3D, viewer: Viewer, par: Array, turn: Turn) -> None:
+        self._block, self._viewer, self._par, self._turn = block, viewer, par, turn
+        self._dropped_before, self._shown = viewer.dropped, 0
+        self._start: float | None = None  # When simulated time was zero, by the clock [s].
 
-    dropped_before: int
-    shown: int = 0
-    start: float | None = None
+    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
+        """Hand over one sample; wait for the clock if the run is paced by this block."""
+        if self._block.paced:
+            self._wait(t)
+        self._viewer.push(t, inputs["q"], u=inputs["u"], par=self._par)
+        self._shown += 1
+        return {}
 
-    def wait(self, t: float) -> None:
+    def _wait(self, t: float) -> None:
         """Until the clock is at t."""
         now = time.monotonic()
-        if self.start is None:
-            self.start = now - t
-        time.sleep(max(0.0, self.start + t - now))
+        if self._start is None:
+            self._start = now - t
+        time.sleep(max(0.0, self._start + t - now))
+
+    def kept(self) -> Mapping[str, Array]:
+        """How many samples were handed over, and how many of them dropped."""
+        dropped = self._viewer.dropped - self._dropped_before
+        return {"shown": np.asarray(float(self._shown)), "dropped": np.asarray(float(dropped))}
+
+    def end(self) -> None:
+        """Leave the page, or stop serving it."""
+        if not self._block.stays:
+            self._viewer.close()
+        self._turn.leave()
 
 
 def with_view(diagram: Diagram, block: str = "", **fields: Any) -> tuple[Diagram, View3D]:

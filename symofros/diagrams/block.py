@@ -117,6 +117,10 @@ class Terms:
     phi: Tensor | None = None
     rate: Tensor | None = None
 
+    def stated(self) -> dict[str, Tensor]:
+        """Those that are not None, by name."""
+        return {item.name: value for item in fields(self) if (value := getattr(self, item.name)) is not None}
+
 
 @dataclass(frozen=True)
 class Crossing:
@@ -188,8 +192,6 @@ class Block:
 
     # Fields that become run-time parameters: tuned without compiling again.
     tunable: ClassVar[tuple[str, ...]] = ()
-    # Whether the block is a function of Python's, called from the loop at its samples.
-    is_opaque: ClassVar[bool] = False
     # Fields of text that name files: in a diagram's file relative to it, and inside its folder.
     paths: ClassVar[tuple[str, ...]] = ("file",)
 
@@ -241,25 +243,8 @@ class Block:
         """Memory and continuous states, "q" and "v" of its mechanism included, that a crossing changes."""
         return {}
 
-    def learn(self, known: Known) -> None:
-        """Before `begin`, for opaque blocks that need more of their models than ports tell."""
-
-    def begin(self) -> None:
-        """Before a run, for opaque blocks: open what is needed."""
-
-    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
-        """The outputs of an opaque block at a sample."""
-        raise NotImplementedError
-
-    def end(self) -> None:
-        """After a run, however it ended."""
-
-    def kept(self) -> Mapping[str, Array]:
-        """What an opaque block kept of the run that comes to its end, by name; the run hands it on."""
-        return {}
-
     def reaches(self) -> str:
-        """The address of another machine that an opaque block would talk to; "" for none."""
+        """The address of another machine that the block would talk to; "" for none."""
         return ""
 
     def shown(self) -> tuple[Plot, ...]:

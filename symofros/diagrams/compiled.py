@@ -96,7 +96,8 @@ class CompiledDiagram:
         parts: A model for each part.
         instants: Functions "due_i", "crossed_i", "heard_i_j".
         looks_back: Whether functions of instants read accelerations and multipliers of that time.
-        toolchain: What compiles; None: the functions are interpreted.
+        toolchain: What compiles.
+        options: As of `compile_diagram`; functions that are asked for later are compiled alike.
         sources: C texts, for people.
     """
 
@@ -104,7 +105,8 @@ class CompiledDiagram:
     parts: tuple[Model, ...]
     instants: Unit
     looks_back: bool
-    toolchain: Toolchain | None
+    toolchain: Toolchain
+    options: Options
     sources: tuple[str, ...] = ()
     _signals: dict[tuple[Source, ...], Kernel] = field(default_factory=dict)
 
@@ -113,9 +115,8 @@ class CompiledDiagram:
         key = tuple(sources)
         if key not in self._signals:
             program = run_passes(fuser(self.resolved).signals(key))
-            self._signals[key] = unit_of(program, record_of(self.resolved, None), self.toolchain)[0].kernels[
-                "signals", ""
-            ]
+            unit, _ = unit_of(program, record_of(self.resolved, None), self.toolchain, self.options)
+            self._signals[key] = unit.kernels["signals", ""]
         return self._signals[key]
 
 
@@ -129,15 +130,19 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
 
     Args:
         resolved: Of `resolve`.
-        options: Of these, `compiler` and `flags` count, and backend "interpreter" for tests without a compiler.
+        options: Of these, `compiler`, `flags` and `packs` count.
 
     Raises:
         DescriptionError: A part needs what is known at instants only.
-        CompileError: There is no compiler, or it failed.
+        CompileError: The options ask for another backend than C, or there is no compiler, or it failed.
     """
     options = options or Options()
-    toolchain = None if options.backend == "interpreter" else find_toolchain(options.compiler)
-    if toolchain is None and options.backend != "interpreter":
+    if options.backend != "c":
+        raise CompileError(str(Problem(f"diagram '{resolved.wired.name}': backend '{options.backend}'",
+                                       "a loop of compiled functions", "a compiled diagram is C",
+                                       "interpret it: Simulation.interpret(compiled=False)")))  # fmt: skip
+    toolchain = find_toolchain(options.compiler)
+    if toolchain is None:
         raise CompileError("a compiled diagram needs a C compiler\n"
                            "  remedy: install gcc or clang, or `pip install ziglang`, or interpret it")  # fmt: skip
     write = fuser(resolved)
@@ -148,7 +153,7 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
         texts.append(text)
     program = run_passes(write.samples(resolved.schedule.sets))
     instants, text = unit_of(program, record_of(resolved, None), toolchain, options)
-    return CompiledDiagram(resolved, tuple(parts), instants, looks_back(program), toolchain, (*texts, text))
+    return CompiledDiagram(resolved, tuple(parts), instants, looks_back(program), toolchain, options, (*texts, text))
 
 
 def looks_back(program: Program) -> bool:
@@ -160,9 +165,7 @@ def looks_back(program: Program) -> bool:
     return any(slot.group in ("a", "lam") and node in read for node, slot in graph.slot.items())
 
 
-def _model(
-    resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain | None, options: Options
-) -> tuple[Model, str]:
+def _model(resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, options: Options) -> tuple[Model, str]:
     record = record_of(resolved, part)
     unit, text = unit_of(run_passes(write.motion(part)), record, toolchain, options)
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
 
+from symofros.diagrams.block import Values
 from symofros.diagrams.layout import Layout, Part, Place
 from symofros.diagrams.pieces import INPUT, MEMORY, PARAMETER, STATE, Piece, watched
 from symofros.diagrams.surroundings import parameter_group
@@ -68,10 +70,10 @@ class Point:
 
     def _place(self, source: Source) -> Place | None:
         """Where an output is read from; None for one that is computed."""
-        layout, block = self._layout, self._pieces[source[0]].block
+        layout, piece = self._layout, self._pieces[source[0]]
         if source in layout.samples:
             return layout.samples[source]
-        return layout.held.get(source) if block.is_opaque or source[0] not in self._due else None
+        return layout.held.get(source) if piece.is_opaque or source[0] not in self._due else None
 
     def _behind(self, source: Source) -> list[Source]:
         name, port = source
@@ -80,6 +82,11 @@ class Point:
     def write(self, piece: Piece, value: Tensor) -> Tensor:
         """A value of a block's own graph, at this point."""
         return Tensor.of(self.g, self.edges(piece, value.flat), value.shape)
+
+    def write_all(self, piece: Piece, values: Values) -> dict[str, Tensor]:
+        """Several values at once, by name."""
+        edges = iter(self.edges(piece, [edge for value in values.values() for edge in value.flat]))
+        return {key: Tensor.of(self.g, islice(edges, value.size), value.shape) for key, value in values.items()}
 
     def edges(self, piece: Piece, edges: Sequence[Edge]) -> list[Edge]:
         """The same for edges."""
@@ -171,10 +178,10 @@ class Fuser:
             if piece.terms.a is not None:
                 at_v = layout.v[name].start - part.v.start
                 a[at_v : at_v + layout.v[name].size] = at.edges(piece, piece.terms.a.flat)
-            for key in piece.states:
+            for key, rate in at.write_all(piece, piece.rates).items():
                 place = layout.states[name, key]
                 at_v = place.start - part.v.start
-                a[at_v : at_v + place.size] = at.edges(piece, piece.rates[key].flat)
+                a[at_v : at_v + place.size] = rate.flat
         return Function("forward_dynamics", "", AT, (_vector("a", a),))
 
     def _constrained(self, at: Point, part: Part) -> list[Function]:
@@ -185,26 +192,24 @@ class Fuser:
         r, c, phi, rate = [ZERO] * nv, [ZERO] * nc, [ZERO] * nc, [ZERO] * nc
         layout, pieces = self._layout, self._pieces
         for name in part.blocks:
-            piece, terms = pieces[name], pieces[name].terms
+            piece = pieces[name]
             if name in layout.v:
                 first, n = layout.v[name].start - part.v.start, layout.v[name].size
                 row = layout.lam[name].start - part.conditions.start
-                if terms.a is not None:
-                    own, right = _identity(n), at.edges(piece, terms.a.flat)
+                terms = at.write_all(piece, piece.terms.stated())
+                if "a" in terms:
+                    r[first : first + n] = terms["a"].flat
+                    for k in range(first, first + n):
+                        M[k][k] = ONE
                 else:
-                    assert None not in (terms.M, terms.r, terms.G, terms.c, terms.phi, terms.rate)
-                    own, right = self._rows(at, piece, terms.M), at.edges(piece, terms.r.flat)  # type: ignore[union-attr]
-                    for i, values in enumerate(self._rows(at, piece, terms.G)):
-                        G[row + i][first : first + n] = values
-                    for into, of in ((c, terms.c), (phi, terms.phi), (rate, terms.rate)):
-                        into[row : row + piece.nc] = at.edges(piece, of.flat)  # type: ignore[union-attr]
-                r[first : first + n] = right
-                for i, values in enumerate(own):
-                    M[first + i][first : first + n] = values
-            for key in piece.states:
-                place = layout.states[name, key]
-                for i, edge in enumerate(at.edges(piece, piece.rates[key].flat)):
-                    k = place.start - part.v.start + i
+                    r[first : first + n] = terms["r"].flat
+                    for whole, key, at_row in ((M, "M", first), (G, "G", row)):
+                        for i, values in enumerate(terms[key].edges):
+                            whole[at_row + i][first : first + n] = values
+                    for into, key in ((c, "c"), (phi, "phi"), (rate, "rate")):
+                        into[row : row + piece.nc] = terms[key].flat
+            for key, value in at.write_all(piece, piece.rates).items():
+                for k, edge in enumerate(value.flat, layout.states[name, key].start - part.v.start):
                     M[k][k], r[k] = ONE, edge
         binds = [ZERO if edge == ZERO else ONE for edge in phi]
         terms_of = (_matrix("M", M, nv), _vector("r", r), _matrix("G", G, nv), _vector("c", c))
@@ -216,11 +221,6 @@ class Fuser:
         projected = (("q_on", (part.nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()))
         outputs = (terms_of[0], terms_of[2], _vector("binds", binds), _vector("phi", phi), _vector("rate", rate))
         return [forward, Function("project", "", AT, outputs, Solver("project", projected, (move,)))]
-
-    def _rows(self, at: Point, piece: Piece, matrix: Tensor | None) -> list[list[Edge]]:
-        assert matrix is not None
-        edges, columns = at.edges(piece, matrix.flat), matrix.shape[1]
-        return [edges[i : i + columns] for i in range(0, len(edges), columns)] if columns else []
 
     def _moved(self, at: Point, part: Part) -> list[Edge]:
         """The configuration that a step along the manifold leads to."""
@@ -246,7 +246,7 @@ class Fuser:
         """Blocks of Python's that are due, in the order in which they are called."""
         found = dict.fromkeys(name for name, _ in self._order if name in due)
         rest = dict.fromkeys(name for name in self._pieces if name in due)
-        return [name for name in (found | rest) if self._pieces[name].block.is_opaque]
+        return [name for name in (found | rest) if self._pieces[name].is_opaque]
 
     def samples(self, sets: Sequence[frozenset[str]], listened: Sequence[Source] = ()) -> Program:
         """What happens at instants: functions "due_i" for each set and "crossed_i" for each crossing.
@@ -305,10 +305,6 @@ class Fuser:
         return Function(
             "signals", "", AFTER, (_vector("y", [edge for one in sources for edge in at.signal(one).flat]),)
         )
-
-
-def _identity(n: int) -> list[list[Edge]]:
-    return [[ONE if i == j else ZERO for j in range(n)] for i in range(n)]
 
 
 def _vector(name: str, edges: Sequence[Edge]) -> Output:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.block import Terms
 from symofros.diagrams.charts import chart_rate, retract
 from symofros.diagrams.compiled import Resolved, bare_record, unit_of
 from symofros.diagrams.layout import Part
+from symofros.diagrams.opaque import Called
 from symofros.diagrams.pieces import INPUT, MEMORY, PARAMETER, STATE, Piece
 from symofros.diagrams.surroundings import parameter_group
 from symofros.diagrams.wiring import Source
@@ -23,7 +23,6 @@ from symofros.runtime.toolchain import Toolchain
 from symofros.simulation.tableaus import Tableau
 
 Call = Callable[[], None]
-_TERMS = ("a", "M", "r", "G", "c", "phi", "rate")
 
 
 class Blocks:
@@ -55,7 +54,7 @@ class Blocks:
         stated: dict[str, dict[str, Any]] = {f"out_{port}": {"y": value} for port, value in piece.outputs.items()}
         stated["rates"] = {f"d_{key}": value for key, value in piece.rates.items()}
         stated["updates"] = {f"n_{key}": value for key, value in piece.updates.items()}
-        stated["motion"] = {f"t_{key}": value for key, value in _present(piece.terms)}
+        stated["motion"] = {f"t_{key}": value for key, value in piece.terms.stated().items()}
         functions, sizes = [], {"par": 0}
         for which, outputs in stated.items():
             if outputs:
@@ -100,27 +99,30 @@ class Blocks:
         model = next(model for model in wired.models.names if parameter_group(model) == group)
         return self._par[layout.parameters["", model].slice]
 
-    def signals(self, due: frozenset[str] | None = None) -> None:
+    def signals(self, due: frozenset[str] = frozenset(), called: Called | None = None) -> None:
         """Continuous outputs at the present point, in order; those of sampled blocks that are due, too.
 
         Python is called once a block: at its first output, all of which need all inputs; without outputs, at the end.
+
+        Args:
+            due: Blocks that are sampled.
+            called: The blocks of Python's; None where none is due.
         """
-        waiting = {name for name in due or () if self.resolved.pieces[name].block.is_opaque}
+        waiting = {name for name in due if called and self.resolved.pieces[name].is_opaque}
         for source in self.resolved.order:
             name, port = source
             piece = self.resolved.pieces[name]
             block = piece.block
             if port in block.samples():
                 self._sample(source)
-            elif not piece.is_discrete or (due is not None and name in due):
-                if name in waiting:
-                    waiting.remove(name)
-                    self._call_python(piece)
-                elif not block.is_opaque:
-                    self.calls[name, f"out_{port}"][0]()
+            elif called and name in waiting:
+                waiting.remove(name)
+                self._call_python(called, name)
+            elif not piece.is_opaque and (name in due or not piece.is_discrete):
+                self.calls[name, f"out_{port}"][0]()
         for name in self.resolved.pieces:
-            if name in waiting:
-                self._call_python(self.resolved.pieces[name])
+            if called and name in waiting:
+                self._call_python(called, name)
 
     def _sample(self, source: Source) -> None:
         signal = self.resolved.pieces[source[0]].block.samples()[source[1]]
@@ -132,14 +134,10 @@ class Blocks:
             found = [column[max(0, int(np.searchsorted(signal.t, t, side="right")) - 1)] for column in columns]
         self.out[source].reshape(-1)[:] = found
 
-    def _call_python(self, piece: Piece) -> None:
-        wired, name = self.resolved.wired, piece.name
-        inputs = {}
-        for port in wired.ports[name].inputs:
-            source = wired.sources.get((name, port.name))
-            given = self.out[source].copy() if source else np.asarray(port.default, dtype=np.float64)
-            inputs[port.name] = np.broadcast_to(given, port.shape or ())
-        for key, value in piece.block.call(float(self.t[0]), inputs).items():
+    def _call_python(self, called: Called, name: str) -> None:
+        sources = self.resolved.wired.sources
+        heard = {port: self.out[source].copy() for (block, port), source in sources.items() if block == name}
+        for key, value in called.call(name, float(self.t[0]), heard).items():
             self.out[name, key][...] = value
 
     def engaged(self) -> Array:
@@ -175,13 +173,6 @@ class Blocks:
                 call, found = self.calls[name, "rates"]
                 call()
                 self.a[place.slice] = found[f"d_{key}"].reshape(-1)
-
-
-def _present(terms: Terms) -> Iterator[tuple[str, Any]]:
-    for key in _TERMS:
-        value = getattr(terms, key)
-        if value is not None:
-            yield key, value
 
 
 @dataclass
@@ -273,13 +264,14 @@ def _project(blocks: Blocks, part: Part) -> None:
 
 
 def run_interpreted(
-    blocks: Blocks, instants: Sequence[tuple[float, frozenset[str], bool]], t_end: float, dt: float, tableau: Tableau,
-    projects: bool, show: Callable[[float], None],
+    blocks: Blocks, called: Called, instants: Sequence[tuple[float, frozenset[str], bool]], t_end: float, dt: float,
+    tableau: Tableau, projects: bool, show: Callable[[float], None],
 ) -> InterpretedRun:  # fmt: skip
     """Run from the first state.
 
     Args:
         blocks: The diagram's.
+        called: Those of Python's, begun.
         instants: (time, what is due, whether to record), in order; the first is the start.
         t_end: Where to end [s].
         dt: Step [s]; steps also end at instants.
@@ -303,7 +295,7 @@ def run_interpreted(
             if looks_back:
                 blocks.accelerate()
             before = blocks.engaged()
-            blocks.signals(due)
+            blocks.signals(due, called)
             blocks.update(due)
             if projects and not np.array_equal(before, blocks.engaged()):
                 project_all(blocks)
@@ -325,4 +317,5 @@ def run_interpreted(
         blocks.t[0] = t_end
         blocks.signals()
         record()
-    return InterpretedRun(blocks.resolved, np.array(times), {source: np.array(rows) for source, rows in kept.items()})
+    values = {source: np.array(rows) for source, rows in kept.items()}
+    return InterpretedRun(blocks.resolved, np.array(times), values, called.kept())

@@ -1,76 +1,56 @@
-"""Blocks of Python's in a compiled run: what they hear, where their outputs go, when they are called."""
+"""Blocks of Python's in a run: begun before it, called at instants, ended after it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 
 import numpy as np
 
-from symofros.diagrams.block import Block
 from symofros.diagrams.compiled import Resolved, fuser
 from symofros.diagrams.layout import Place
+from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array
 
 
-class Opaque:
-    """The blocks of Python's of a diagram, by number.
+class Called:
+    """The blocks of Python's of a diagram in one run.
 
     Args:
-        resolved: The diagram.
-
-    Attributes:
-        names: Of the blocks.
+        wired: The diagram.
+        running: Block -> what it holds in this run.
     """
 
-    def __init__(self, resolved: Resolved) -> None:
-        self._resolved = resolved
-        self._writer = fuser(resolved)
-        self.names = list(dict.fromkeys(name for due in resolved.schedule.sets for name in self.due(due)))
+    def __init__(self, wired: Wired, running: Mapping[str, Running]) -> None:
+        self._wired, self._running = wired, running
 
-    def due(self, due: frozenset[str]) -> list[str]:
-        """Those of a set, in the order in which they are called."""
-        return self._writer.opaque(due)
+    def call(self, name: str, t: float, heard: Mapping[str, Array]) -> dict[str, Array]:
+        """Call one.
 
-    @property
-    def blocks(self) -> list[Block]:
-        """The blocks."""
-        return [self._resolved.wired.blocks[name] for name in self.names]
+        Args:
+            name: Of the block.
+            t: Time [s].
+            heard: Input that is connected -> its signal, which the block may keep.
 
-    def places(self) -> list[list[Place]]:
-        """Where the outputs of each lie in u."""
-        ports = self._resolved.wired.ports
-        return [[self._resolved.layout.held[name, port.name] for port in ports[name].outputs] for name in self.names]
-
-    def lengths(self) -> list[int]:
-        """How many numbers each hears."""
-        wired = self._resolved.wired
-        return [
-            sum(math.prod(port.shape or ()) for port in wired.ports[name].inputs if (name, port.name) in wired.sources)
-            for name in self.names
-        ]
-
-    def call(self, which: int, t: float, heard: Array) -> Array:
-        """Call one; its outputs one after the other.
+        Returns:
+            Output -> its signal, in the order of the ports.
 
         Raises:
             SymofrosError: It returned what its ports do not promise.
         """
-        name, wired = self.names[which], self._resolved.wired
-        inputs, at = {}, 0
-        for port in wired.ports[name].inputs:
-            shape = port.shape or ()
-            if (name, port.name) in wired.sources:
-                inputs[port.name] = heard[at : at + math.prod(shape)].reshape(shape)
-                at += math.prod(shape)
-            else:
-                inputs[port.name] = np.broadcast_to(np.asarray(port.default, dtype=np.float64), shape)
-        found = wired.blocks[name].call(t, inputs)
-        return np.concatenate([np.zeros(0), *(_output(name, found, port.name, port.shape or ())
-                                              for port in wired.ports[name].outputs)])  # fmt: skip
+        ports = self._wired.ports[name]
+        inputs = {port.name: heard[port.name] if port.name in heard else
+                  np.broadcast_to(np.asarray(port.default, dtype=np.float64), port.shape or ())
+                  for port in ports.inputs}  # fmt: skip
+        found = self._running[name].call(t, inputs)
+        return {port.name: _output(name, found, port.name, port.shape or ()) for port in ports.outputs}
+
+    def kept(self) -> dict[str, dict[str, Array]]:
+        """What each block kept of the run, those left out that keep nothing."""
+        return {name: dict(found) for name, one in self._running.items() if (found := one.kept())}
 
 
 def _output(name: str, found: Mapping[str, object], port: str, shape: tuple[int, ...]) -> Array:
@@ -79,24 +59,62 @@ def _output(name: str, found: Mapping[str, object], port: str, shape: tuple[int,
         raise SymofrosError(str(Problem(f"block '{name}': output '{port}' does not fit",
                                         f"{value.shape}" if port in found else "nothing", f"{shape}",
                                         "return it so from call")))  # fmt: skip
-    return value.reshape(-1)
+    return value
 
 
 @contextmanager
-def begun(blocks: Iterable[Block], wired: Wired) -> Iterator[list[Block]]:
-    """Blocks that know their models and have begun; each of them ends, however the run does."""
-    opened: list[Block] = []
-    try:
-        for block in blocks:
-            block.learn(surroundings(wired, block.name))
-            block.begin()
-            opened.append(block)
-        yield opened
-    finally:
-        for block in opened:
-            block.end()
+def begun(wired: Wired) -> Iterator[Called]:
+    """The blocks of Python's, begun for one run; each that has begun ends, however the run does."""
+    running: dict[str, Running] = {}
+    with ExitStack() as ends:
+        for name, block in wired.blocks.items():
+            if isinstance(block, OpaqueBlock):
+                running[name] = block.begin(surroundings(wired, name))
+                ends.callback(running[name].end)
+        yield Called(wired, running)
 
 
-def kept_by(blocks: Iterable[Block]) -> dict[str, dict[str, Array]]:
-    """What each block kept of a run, those left out that keep nothing."""
-    return {block.name: dict(found) for block in blocks if (found := block.kept())}
+class Opaque:
+    """The blocks of Python's of a compiled run, by number; what they hear and give lies in vectors.
+
+    Args:
+        resolved: The diagram.
+        called: Its blocks of Python's in this run.
+
+    Attributes:
+        names: Of the blocks.
+    """
+
+    def __init__(self, resolved: Resolved, called: Called) -> None:
+        self._resolved, self._called = resolved, called
+        self._writer = fuser(resolved)
+        self.names = list(dict.fromkeys(name for due in resolved.schedule.sets for name in self.due(due)))
+        wired = resolved.wired
+        self._heard = [[(port.name, port.shape or ()) for port in wired.ports[name].inputs
+                        if (name, port.name) in wired.sources] for name in self.names]  # fmt: skip
+
+    def due(self, due: frozenset[str]) -> list[str]:
+        """Those of a set, in the order in which they are called."""
+        return self._writer.opaque(due)
+
+    def places(self) -> list[list[Place]]:
+        """Where the outputs of each lie in u."""
+        ports = self._resolved.wired.ports
+        return [[self._resolved.layout.held[name, port.name] for port in ports[name].outputs] for name in self.names]
+
+    def lengths(self) -> list[int]:
+        """How many numbers each hears."""
+        return [sum(math.prod(shape) for _, shape in ports) for ports in self._heard]
+
+    def call(self, which: int, t: float, heard: Array) -> Array:
+        """Call one; its outputs one after the other.
+
+        Raises:
+            SymofrosError: It returned what its ports do not promise.
+        """
+        inputs, at = {}, 0
+        for port, shape in self._heard[which]:
+            inputs[port] = heard[at : at + math.prod(shape)].reshape(shape)
+            at += math.prod(shape)
+        found = self._called.call(self.names[which], t, inputs)
+        return np.concatenate([np.zeros(0), *(value.reshape(-1) for value in found.values())])

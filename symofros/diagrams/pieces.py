@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from symofros.diagrams.block import At, Block, Crossing, Port, Terms, Values
+from symofros.diagrams.opaque_block import OpaqueBlock
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import DescriptionError, Problem
@@ -61,6 +62,11 @@ class Piece:
         return self.block.name
 
     @property
+    def is_opaque(self) -> bool:
+        """Whether it is a function of Python's."""
+        return isinstance(self.block, OpaqueBlock)
+
+    @property
     def is_discrete(self) -> bool:
         """Whether its outputs change at samples only."""
         return self.block.period is not None
@@ -72,8 +78,7 @@ class Piece:
 
     def motion_edges(self) -> list[Edge]:
         """All that its mechanism's terms are."""
-        parts = (self.terms.a, self.terms.M, self.terms.r, self.terms.G, self.terms.c, self.terms.phi, self.terms.rate)
-        return [edge for part in parts if part is not None for edge in part.flat]
+        return [edge for part in self.terms.stated().values() for edge in part.flat]
 
     def groups(self, edges: Iterable[Edge]) -> frozenset[str]:
         """Groups of inputs that some edges depend on."""
@@ -126,14 +131,14 @@ def piece_of(wired: Wired, name: str) -> Piece:
     terms = block.motion(at)
     if terms.a is not None:  # Else they are known after the constraints' equations are solved.
         at = replace(at, a=terms.a)
-    outputs = {} if block.is_opaque else dict(block.compute(at))
+    outputs = {} if isinstance(block, OpaqueBlock) else dict(block.compute(at))
     crossings = dict(block.crossings(at))
     piece = Piece(
         block, g, outputs, dict(block.rates(at)), dict(block.update(at)), terms, crossings,
         {which: dict(block.crossed(at, which)) for which in crossings}, states, memory, parameters, q0, v0,
     )  # fmt: skip
     _fit(wired, piece)
-    if block.is_opaque:
+    if piece.is_opaque:
         needs = {port.name: frozenset(p.name for p in wired.ports[name].inputs) for port in wired.ports[name].outputs}
     else:
         needs = {port: piece.inputs_of(value.flat) for port, value in outputs.items()}
@@ -154,7 +159,7 @@ def _fit(wired: Wired, piece: Piece) -> None:
     """Formulas have the shapes of what they give; a block sticks to the kind that its sample time makes it."""
     name, block = piece.name, piece.block
     shapes = {port.name: port.shape for port in wired.ports[name].outputs}
-    given = set() if block.is_opaque else shapes.keys() - block.samples().keys()
+    given = set() if piece.is_opaque else shapes.keys() - block.samples().keys()
     _same(name, "outputs", piece.outputs, {key: shapes[key] for key in given})
     _same(name, "rates", piece.rates, {key: value.shape for key, value in piece.states.items()})
     kept = {key: value.shape for key, value in piece.memory.items()}
@@ -172,7 +177,7 @@ def _fit(wired: Wired, piece: Piece) -> None:
     if not piece.is_discrete and piece.memory.keys() - watched:
         raise DescriptionError(Problem(f"block '{name}' has memory and no sample time", ", ".join(piece.memory),
                                        "memory changes at samples or at crossings", "give a period"))  # fmt: skip
-    if block.is_opaque and not piece.is_discrete:
+    if piece.is_opaque and not piece.is_discrete:
         raise DescriptionError(Problem(f"block '{name}' calls Python and has no sample time", "period None",
                                        "Python is called at samples", "give a period"))  # fmt: skip
 

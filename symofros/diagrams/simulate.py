@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
+from contextlib import closing
 from dataclasses import replace
 from typing import Any
 
@@ -12,13 +13,12 @@ import numpy as np
 
 from symofros.diagrams.compiled import CompiledDiagram, rates_of
 from symofros.diagrams.loop import RECORD, Loop, Stage
-from symofros.diagrams.opaque import Opaque, begun, kept_by
+from symofros.diagrams.opaque import Opaque, begun
 from symofros.diagrams.parts import place_parts, start
 from symofros.diagrams.pieces import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import Cost, Crossed, DiagramRun
 from symofros.diagrams.values import parameter_values, record_interval
-from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array
 from symofros.runtime.library import CompiledKernel
 from symofros.runtime.model import Model
@@ -71,9 +71,6 @@ def run_compiled(
         AssemblyError: The first state does not meet the constraints.
     """
     resolved, name = compiled.resolved, compiled.resolved.wired.name
-    if compiled.toolchain is None:
-        raise SymofrosError(str(Problem(f"diagram '{name}': the loop is C", "interpreted functions",
-                                        "a compiled run calls compiled functions", "use interpret")))  # fmt: skip
     par = parameter_values(resolved, parameters or {})
     interval = record_interval(record, t0, t_end, dt)
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
@@ -83,20 +80,19 @@ def run_compiled(
             model, method, dt, t0, t_end, rtol, atol, None, math.inf, None, 1, stabilisation, gains
         )  # fmt: skip
 
-    parts, opaque = place_parts(compiled, settings_of, t0, t_end, par), Opaque(resolved)
-    loop = Loop(
-        resolved.layout, [part.stepper for part in parts], plan, _stages(compiled, plan, opaque),
-        [Stage(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))], par,
-        np.array(resolved.layout.u0, dtype=np.float64), opaque.call, opaque.places(), opaque.lengths(),
-        compiled.looks_back,
-    )  # fmt: skip
-    try:
-        with begun(opaque.blocks, resolved.wired) as blocks:
+    parts = place_parts(compiled, settings_of, t0, t_end, par)
+    with begun(resolved.wired) as called:
+        opaque = Opaque(resolved, called)
+        loop = Loop(
+            resolved.layout, [part.stepper for part in parts], plan, _stages(compiled, plan, opaque),
+            [Stage(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))], par,
+            np.array(resolved.layout.u0, dtype=np.float64), opaque.call, opaque.places(), opaque.lengths(),
+            compiled.looks_back,
+        )  # fmt: skip
+        with closing(loop):
             start(parts, name)
             run = _drive(compiled, loop, plan, t0, t_end, par, float(realtime), threads, progress)
-            return replace(run, kept=kept_by(blocks))
-    finally:
-        loop.close()
+            return replace(run, kept=called.kept())
 
 
 def _kernel(compiled: CompiledDiagram, name: str) -> CompiledKernel:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -13,7 +12,7 @@ from symofros.diagrams.compiled import CompiledDiagram, Resolved, compile_diagra
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.interpret import Blocks, InterpretedRun, run_interpreted
 from symofros.diagrams.loop import RECORD
-from symofros.diagrams.opaque import begun, kept_by
+from symofros.diagrams.opaque import begun
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.simulate import run_compiled
@@ -92,11 +91,9 @@ class Simulation:
         blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
         interval = record_interval(record, t0, t_end, dt)
         plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], resolved.wired.name)
-        wired = resolved.wired
-        with begun(wired.blocks.values(), wired) as opened, bar(progress, t0, t_end) as show:
-            instants = list(_instants(plan, t0, t_end))
-            run = run_interpreted(blocks, instants, t_end, dt, METHODS[method].tableau, gains is None, show)
-            return replace(run, kept=kept_by(opened))
+        instants = list(_instants(plan, t0, t_end))
+        with begun(resolved.wired) as called, bar(progress, t0, t_end) as show:
+            return run_interpreted(blocks, called, instants, t_end, dt, METHODS[method].tableau, gains is None, show)
 
 
 def _end(diagram: Diagram, t_end: float | None) -> float:

@@ -15,6 +15,7 @@ from symofros.codegen.names import c_string, identifier
 from symofros.codegen.templates import template
 from symofros.diagrams.compiled import Resolved, compile_diagram, fuser, looks_back, record_of
 from symofros.diagrams.loop import loop_headers, program_source
+from symofros.diagrams.opaque_block import OpaqueBlock
 from symofros.diagrams.pieces import watched
 from symofros.diagrams.simulate import run_compiled
 from symofros.diagrams.wiring import Source
@@ -64,7 +65,7 @@ def write_diagram(
         ExportError: The diagram calls Python, or the folder is not ours.
     """
     wired, layout = resolved.wired, resolved.layout
-    opaque = [name for name, block in wired.blocks.items() if block.is_opaque]
+    opaque = [name for name, block in wired.blocks.items() if isinstance(block, OpaqueBlock)]
     if opaque:
         raise ExportError(str(Problem(f"diagram '{wired.name}': no C program", f"block '{opaque[0]}' calls Python",
                                       "a program of its own has no Python in it", "leave the block out")))  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from types import TracebackType
 from typing import Any, NamedTuple, Self
@@ -12,17 +12,13 @@ from typing import Any, NamedTuple, Self
 from symofros.description.system import System
 from symofros.runtime.model import Given
 from symofros.viewing.motion import Played, finite, motion_of, positive
-from symofros.viewing.panel import Panel
 from symofros.viewing.player import Player
 from symofros.viewing.poses import Mechanism, State
+from symofros.viewing.screen import Screen
 from symofros.viewing.server import LOOPBACK, PORT, start_server, stop_server
-from symofros.viewing.shapes import Array
-from symofros.viewing.sliders import Slider
-from symofros.viewing.stage import Stage
 from symofros.viewing.tracks import tracks_of
 
 RATE = 60.0  # Pictures a second at most; browsers show no more.
-_FOLLOWED = 0.1  # Seconds between updates of the controls: they cost more than the picture.
 
 
 class _Wanted(NamedTuple):
@@ -32,7 +28,7 @@ class _Wanted(NamedTuple):
     t: float
 
 
-class Viewer:
+class Viewer(Screen):
     """A web page with a mechanism in it, for any number of browsers.
 
     The page is served from this process until `close()`, or the end of a `with`. Methods may be called from any thread.
@@ -69,22 +65,18 @@ class Viewer:
         controls: bool = True,
         paths: Sequence[Sequence[Any]] = (),
     ) -> None:
-        self._period, self._controls = 1.0 / positive("rate", rate), controls
+        self._period = 1.0 / positive("rate", rate)
         exaggeration = finite("exaggeration", exaggeration)
         mechanism = Mechanism(system, tracks_of(paths))
-        self._server = start_server(host, port)
+        server = start_server(host, port)
         self._wake = threading.Condition()  # Guards what is wanted; held for moments only, never while painting.
-        self._painting = threading.RLock()  # Guards the picture, the player and the controls.
         self._wanted: _Wanted | None = None
         self._closing = False
-        self._player: Player | None = None
-        self._followed = -_FOLLOWED
-        self.painted = self.dropped = 0
+        self.dropped = 0
         try:
-            self._stage = Stage(self._server, mechanism, exaggeration)
-            self._panel = self._new_panel()
+            super().__init__(server, mechanism, exaggeration, controls)
         except BaseException:
-            stop_server(self._server)
+            stop_server(server)
             raise
         self._worker = threading.Thread(target=self._work, name="symofros view", daemon=True)
         self._worker.start()
@@ -115,16 +107,6 @@ class Viewer:
     def is_closed(self) -> bool:
         """Whether it serves no more."""
         return self._closing
-
-    @property
-    def mechanism(self) -> Mechanism:
-        """What is shown, as it is computed with."""
-        return self._stage.mechanism
-
-    @property
-    def state(self) -> State:
-        """The state that is shown."""
-        return self._stage.state
 
     # What is shown.
 
@@ -201,96 +183,10 @@ class Viewer:
             self._paint_motion()
         self._call_worker()
 
-    @property
-    def exaggeration(self) -> float:
-        """What multiplies elastic coordinates in the picture."""
-        return self._stage.exaggeration
-
-    @exaggeration.setter
-    def exaggeration(self, factor: float) -> None:
-        self.set_exaggeration(factor)
-
-    # What the controls on the page do.
-
     def toggle(self) -> None:
         """Play or pause the motion."""
-        with self._painting:
-            if self._player is not None:
-                if self._player.playing:
-                    self._player.playing = False
-                else:
-                    self._player.start()
-                self._follow()
+        super().toggle()
         self._call_worker()
-
-    def seek(self, time: float) -> None:
-        """Go to a time of the motion [s]."""
-        with self._painting:
-            if self._player is not None:
-                self._player.seek(time)
-                self._paint_motion()
-
-    def set_speed(self, speed: float) -> None:
-        """Play the motion at so many seconds a second."""
-        with self._painting:
-            if self._player is not None:
-                self._player.speed = positive("speed", speed)
-
-    def set_layer(self, layer: str, visible: bool) -> None:
-        """Show or hide a layer.
-
-        Args:
-            layer: "bodies", "inertias", "joints", "constraints", "paths", "visuals", "frames", "labels" or "ground".
-            visible: Whether it is to be seen.
-
-        Raises:
-            UnknownNameError: There is no such layer.
-        """
-        with self._painting:
-            self._stage.scene.show(layer, visible)
-            self._panel.show(self._stage.scene.layers, self._stage.exaggeration)
-
-    def set_exaggeration(self, factor: float) -> None:
-        """Multiply elastic coordinates in the picture."""
-        with self._painting:
-            self._stage.exaggeration = finite("exaggeration", factor)
-            self._paint(self._stage.state)
-            self._panel.show(self._stage.scene.layers, self._stage.exaggeration)
-
-    def slide(self, index: int, value: float) -> None:
-        """Move one degree of freedom, by the index of its speed; loops close around it where they can."""
-        self._slide({index: value})
-
-    def move(self, values: Mapping[str, float], par: Mapping[str, float] | None = None) -> str:
-        """Move some degrees of freedom, and change some run-time parameters; loops close around them where they can.
-
-        Args:
-            values: By the labels of `sliders` [rad or m].
-            par: By the names of the parameters; those that are not named stay as they are.
-
-        Returns:
-            Why the loops can't be closed there, and the picture stays: "" where they can.
-
-        Raises:
-            UnknownNameError: There is no such slider or parameter.
-        """
-        with self._painting:
-            return self._slide(*self._stage.by_name(values, par or {}))
-
-    @property
-    def sliders(self) -> tuple[Slider, ...]:
-        """What moves it: one slider a speed."""
-        return self._stage.sliders
-
-    @property
-    def values(self) -> Array:
-        """Where the sliders stand (nv)."""
-        return self._stage.values
-
-    def reset(self) -> None:
-        """Show the configuration that was shown first."""
-        with self._painting:
-            self._stand(self._stage.first)
 
     # Its end.
 
@@ -337,22 +233,12 @@ class Viewer:
                 with self._wake:
                     wanted, self._wanted = self._wanted, None
                 if wanted is not None:
-                    self._live(wanted)
+                    self._live(wanted.state, wanted.t)
                 elif self._player is not None:
                     self._player.advance(began - last)
                     self._paint_motion()
             last = began
             time.sleep(max(0.0, self._period - (time.monotonic() - began)))
-
-    def _slide(self, changes: Mapping[int, float], par: Array | None = None) -> str:
-        with self._painting:
-            state, why = self._stage.slid(changes, par)
-            self._stand(self._stage.state if why else state)
-            self._panel.say("The loops can't be closed there." if why else "")
-            return why
-
-    def _is_playing(self) -> bool:
-        return self._player is not None and self._player.playing
 
     def _call_worker(self) -> None:
         with self._wake:
@@ -361,45 +247,3 @@ class Viewer:
     def _discard(self) -> None:
         with self._wake:
             self._wanted = None
-
-    def _live(self, wanted: _Wanted) -> None:
-        model, (q, u, par) = self.mechanism.model, wanted.state
-        if (q.size, u.size, par.size) != (model.nq, model.nu, model.npar):
-            return  # It was pushed before the mechanism changed.
-        self._pause()
-        self._paint(wanted.state)
-        if time.monotonic() - self._followed > _FOLLOWED:
-            self._panel.say(f"t = {wanted.t:.2f} s")
-            self._follow()
-
-    def _paint_motion(self) -> None:
-        if self._player is not None:
-            motion = self._player.motion
-            q, u = motion.at(self._player.time)
-            self._paint(State(q, u, motion.par))
-            if time.monotonic() - self._followed > _FOLLOWED or not self._player.playing:
-                self._follow()
-
-    def _stand(self, state: State) -> None:
-        self._pause()
-        self._paint(state)
-        self._follow()
-
-    def _pause(self) -> None:
-        if self._player is not None:
-            self._player.playing = False
-
-    def _paint(self, state: State) -> None:
-        self.painted += self._stage.paint(state)
-
-    def _follow(self) -> None:
-        self._panel.follow(self._stage.values, self._player)
-        self._followed = time.monotonic()
-
-    def _new_panel(self) -> Panel:
-        stage, mechanism = self._stage, self._stage.mechanism
-        panel = Panel(self._server, self, stage.scene.drawing, stage.scene.layers,
-                      self.sliders, stage.exaggeration if mechanism.is_flexible else None, self._player,
-                      self._controls)  # fmt: skip
-        panel.follow(stage.values, self._player)
-        return panel

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+import pytest
 
 import symofros as sf
 from symofros.blocks import Reshape, Sequence
 from symofros.diagrams.block import Block
+from symofros.errors import Problem
 
 # The same formulas in the same order: only the steps' sums and the C compiler's fused operations may differ.
 ROUNDING = 1e-12
@@ -61,3 +63,13 @@ def run(
         for port, value in signals.items():
             np.testing.assert_allclose(other[f"{block.name}.{port}"], value, rtol=compare, atol=compare, err_msg=port)
     return {"t": np.asarray(found.t), **signals}
+
+
+def refused(make: Callable[[], object], found: str, remedy: str = "") -> Problem:
+    """What is stated wrongly is refused, and told in four parts: the block, what was found, a rule, a remedy."""
+    with pytest.raises(sf.DescriptionError) as caught:
+        make()
+    problem = caught.value.problems[0]
+    assert problem.what and found in problem.found, problem
+    assert problem.rule and problem.remedy and remedy in problem.remedy, problem
+    return problem

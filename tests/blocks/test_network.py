@@ -7,15 +7,20 @@ import socket
 import subprocess
 import sys
 import threading
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
 from symofros.blocks import UdpReceiver, UdpTransmitter, ZenohPublisher, ZenohSubscriber
-from symofros.diagrams.block import Block
+from symofros.diagrams.block import Block, Known
+from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.result import DiagramRun
+from tests.blocks.sockets import free_port
 from tests.blocks.sources import Ramp
 
 ROOT = Path(__file__).parent.parent.parent
@@ -43,13 +48,6 @@ sys.stdin.readline()
 run = simulation.run({(PACKETS - 1) * PERIOD}, dt=1e-3, realtime=True)
 print(run.kept["tx"], flush=True)
 """
-
-
-def free_port(kind: socket.SocketKind = socket.SOCK_DGRAM) -> int:
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 class Relay(threading.Thread):
@@ -190,17 +188,28 @@ def test_hostile_packets_neither_stop_the_loop_nor_get_in(rng: np.random.Generat
     assert run.kept["rx"]["received"] == 0 and run.kept["rx"]["malformed"] > 100
 
 
-class Flood(UdpTransmitter):
+@dataclass(frozen=True, kw_only=True)
+class Flood(OpaqueBlock):
     """Sends anything but packets."""
 
-    def ports(self, known):  # type: ignore[no-untyped-def]
-        return sf.diagrams.block.Ports()
+    port: int
 
-    def call(self, t, inputs):  # type: ignore[no-untyped-def]
+    def begin(self, known: Known) -> Running:
+        return Flooding(self.port)
+
+
+class Flooding(Running):
+    def __init__(self, port: int) -> None:
+        self.to, self.socket = ("127.0.0.1", port), socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+
+    def call(self, t: float, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
         rng = np.random.default_rng(int(1e3 * t))
         for size in rng.integers(0, 200, 30):
-            self.__dict__["_open"].socket.sendto(b"SYMO" + rng.bytes(int(size)), (self.host, self.port))
+            self.socket.sendto(b"SYMO" + rng.bytes(int(size)), self.to)
         return {}
+
+    def end(self) -> None:
+        self.socket.close()
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import numpy as np
 import symofros as sf
 from symofros import blocks
 from symofros.diagrams.block import At, Block, Crossing, Known, Port, Ports, Values
+from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.simulation.inputs import Signal
 
 
@@ -113,14 +114,23 @@ class Twice(Block):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Spoken(Block):
+class Spoken(OpaqueBlock):
     """A function of Python's."""
 
-    is_opaque: ClassVar[bool] = True
     heard: list[float]
 
     def ports(self, known: Known) -> Ports:
         return Ports((Port("x", known.inputs.get("x")),), (Port("y", known.inputs.get("x")),))
+
+    def begin(self, known: Known) -> Running:
+        return Speaking(self.heard)
+
+
+class Speaking(Running):
+    """It doubles what it hears."""
+
+    def __init__(self, heard: list[float]) -> None:
+        self.heard = heard
 
     def call(self, t: float, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
         self.heard.append(t)

@@ -13,7 +13,7 @@ import pytest
 import symofros as sf
 from symofros import blocks
 from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
-from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Twice, Wave, arm, table
+from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Speaking, Spoken, Twice, Wave, arm, table
 
 MODELS = Path(__file__).parents[2] / "reference_models"
 PENDULUM = sf.load(MODELS / "rigid" / "double_pendulum.yaml")
@@ -181,6 +181,10 @@ def test_blocks_of_pythons_are_called_at_their_samples() -> None:
 def test_what_a_block_of_pythons_raises_ends_the_run() -> None:
     @dataclass(frozen=True, kw_only=True)
     class Failing(Spoken):
+        def begin(self, known: Known) -> Speaking:
+            return Cut([])
+
+    class Cut(Speaking):
         def call(self, t: float, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
             if t > 0.045:
                 raise RuntimeError("the cable is out")

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from symofros.blocks.checks import numbers, refuse
 from symofros.blocks.generic.sampling import needs_period
 from symofros.description.parser import ExpressionError, parse
 from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError
 from symofros.expr.expression import Expression, lower
@@ -135,7 +136,7 @@ class Formula(Block):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PythonBlock(Block):
+class PythonBlock(OpaqueBlock):
     """A function of Python's, called at samples by the loop in C; its outputs are held between.
 
     Attributes:
@@ -151,7 +152,6 @@ class PythonBlock(Block):
     outputs: Any = None
     on_begin: Callable[[], None] | None = None
     on_end: Callable[[], None] | None = None
-    is_opaque: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         """A function, an output or more, a sample time."""
@@ -169,10 +169,18 @@ class PythonBlock(Block):
         return Ports(tuple(Port(name, shape) for name, shape in given.items()),
                      tuple(Port(name, tuple(shape)) for name, shape in dict(self.outputs).items()))  # fmt: skip
 
-    def begin(self) -> None:
+    def begin(self, known: Known) -> Running:
         """By the user's function."""
         if self.on_begin:
             self.on_begin()
+        return _Function(self)
+
+
+class _Function(Running):
+    """A user's function in one run; what it remembers is the user's own."""
+
+    def __init__(self, block: PythonBlock) -> None:
+        self._block = block
 
     def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
         """By the user's function; what it returns must be the outputs.
@@ -180,15 +188,15 @@ class PythonBlock(Block):
         Raises:
             DescriptionError: Outputs are missing, or have other shapes.
         """
-        found = self.function(t, inputs)
-        shapes = {name: tuple(shape) for name, shape in dict(self.outputs).items()}
+        found = self._block.function(t, inputs)
+        shapes = {name: tuple(shape) for name, shape in dict(self._block.outputs).items()}
         given = {name: np.shape(value) for name, value in found.items()} if isinstance(found, Mapping) else type(found)
         if given != shapes:
-            raise refuse(self.name, "its function returned something else", given, f"outputs {shapes}",
+            raise refuse(self._block.name, "its function returned something else", given, f"outputs {shapes}",
                          "return a mapping of these")  # fmt: skip
         return found
 
     def end(self) -> None:
         """By the user's function."""
-        if self.on_end:
-            self.on_end()
+        if self._block.on_end:
+            self._block.on_end()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,12 +18,12 @@ MOST_STATES = 200
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Linear(Block):
+class _Linear(Block, ABC):
     """What both forms share; x is a state, or kept from sample to sample."""
 
+    @abstractmethod
     def matrices(self) -> tuple[Array, Array, Array, Array]:
         """A (n, n), B (n, m), C (p, n), D (p, m)."""
-        raise NotImplementedError
 
     def first(self) -> Any:
         """The first x (n)."""

@@ -50,7 +50,21 @@ def ordered(block: Block, low: str, high: str) -> None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Saturation(_OneToOne):
+class _Bounded(_OneToOne):
+    """Two bounds, in order."""
+
+    low: Any = -1.0
+    high: Any = 1.0
+    tunable: ClassVar[tuple[str, ...]] = ("low", "high")
+
+    def __post_init__(self) -> None:
+        """Bounds in order."""
+        super().__post_init__()
+        ordered(self, "low", "high")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Saturation(_Bounded):
     """y = u within bounds.
 
     Attributes:
@@ -59,22 +73,13 @@ class Saturation(_OneToOne):
         unit: Of both.
     """
 
-    low: Any = -1.0
-    high: Any = 1.0
-    tunable: ClassVar[tuple[str, ...]] = ("low", "high")
-
-    def __post_init__(self) -> None:
-        """Bounds in order."""
-        super().__post_init__()
-        ordered(self, "low", "high")
-
     def compute(self, at: At) -> Values:
         """The nearest value within."""
         return {"y": at.inputs["u"].clipped(at.parameters["low"], at.parameters["high"])}
 
 
 @dataclass(frozen=True, kw_only=True)
-class DeadZone(_OneToOne):
+class DeadZone(_Bounded):
     """y = 0 between two bounds, beyond them u less the bound.
 
     Attributes:
@@ -82,15 +87,6 @@ class DeadZone(_OneToOne):
         high: Upper end.
         unit: Of both.
     """
-
-    low: Any = -1.0
-    high: Any = 1.0
-    tunable: ClassVar[tuple[str, ...]] = ("low", "high")
-
-    def __post_init__(self) -> None:
-        """Bounds in order."""
-        super().__post_init__()
-        ordered(self, "low", "high")
 
     def compute(self, at: At) -> Values:
         """What sticks out."""

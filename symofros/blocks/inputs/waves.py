@@ -20,7 +20,7 @@ def _rates(unit: str) -> tuple[str, str, str]:
 
 @dataclass(frozen=True, kw_only=True)
 class _Wave(Block):
-    """What the signals share: numbers that broadcast, and a unit."""
+    """What the signals share: numbers that broadcast, a unit, and an output."""
 
     unit: str = ""
 
@@ -39,6 +39,10 @@ class _Wave(Block):
             raise refuse(self.name, "shapes differ", ", ".join(str(array.shape) for array in arrays),
                          f"{', '.join(self.tunable)} broadcast to one shape",
                          "give as many of each") from None  # fmt: skip
+
+    def ports(self, known: Known) -> Ports:
+        """Output y."""
+        return Ports((), (Port("y", self.shape, self.unit),))
 
     def _whole(self, at: At, value: Tensor) -> Tensor:
         return value + np.zeros(self.shape)
@@ -59,10 +63,6 @@ class Step(_Wave):
     before: Any = 0.0
     after: Any = 1.0
     tunable: ClassVar[tuple[str, ...]] = ("time", "before", "after")
-
-    def ports(self, known: Known) -> Ports:
-        """Output y."""
-        return Ports((), (Port("y", self.shape, self.unit),))
 
     def compute(self, at: At) -> Values:
         """One or the other."""
@@ -128,10 +128,6 @@ class Pulse(_Wave):
         super().__post_init__()
         if np.min(self.every) <= 0.0:
             raise refuse(self.name, "every", self.every, "seconds above zero", "give another")
-
-    def ports(self, known: Known) -> Ports:
-        """Output y."""
-        return Ports((), (Port("y", self.shape, self.unit),))
 
     def compute(self, at: At) -> Values:
         """By the place within the interval."""

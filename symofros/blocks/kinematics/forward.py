@@ -20,6 +20,12 @@ def _motion_ports(known: Known, model: str, names: str) -> tuple[Port, ...]:
     return tuple(Port(name, (sizes[name],), units[name], None if name == "q" else 0.0) for name in names)
 
 
+def _frame_ports(*count: int) -> tuple[Port, ...]:
+    """Outputs of `_frame_motion`, of one frame or of a count of them."""
+    return (Port("p", (*count, 3), "m"), Port("R", (*count, 3, 3)), Port("quaternion", (*count, 4)),
+            Port("velocity", (*count, 6)), Port("acceleration", (*count, 6)))  # fmt: skip
+
+
 def _frame_motion(at: At, model: str, frame: str) -> dict[str, Tensor]:
     q, v, a = (at.inputs[name] for name in "qva")
     pose = at.call(model, "frame_pose", frame, q=q, t=at.t)
@@ -44,10 +50,7 @@ class ForwardKinematics(Block):
     def ports(self, known: Known) -> Ports:
         """Motion q, v, a in; p (3), R (3, 3), quaternion (4), velocity and acceleration (6), linear first, out."""
         known.frame(self.model, self.frame)
-        return Ports(_motion_ports(known, self.model, "qva"), (
-            Port("p", (3,), "m"), Port("R", (3, 3)), Port("quaternion", (4,)), Port("velocity", (6,)),
-            Port("acceleration", (6,)),
-        ))  # fmt: skip
+        return Ports(_motion_ports(known, self.model, "qva"), _frame_ports())
 
     def compute(self, at: At) -> Values:
         """By the model's own functions."""
@@ -75,10 +78,7 @@ class Extremities(Block):
     def ports(self, known: Known) -> Ports:
         """Motion in; p (k, 3), R (k, 3, 3), quaternion (k, 4), velocity and acceleration (k, 6) out."""
         k = len(self._frames(known))
-        return Ports(_motion_ports(known, self.model, "qva"), (
-            Port("p", (k, 3), "m"), Port("R", (k, 3, 3)), Port("quaternion", (k, 4)), Port("velocity", (k, 6)),
-            Port("acceleration", (k, 6)),
-        ))  # fmt: skip
+        return Ports(_motion_ports(known, self.model, "qva"), _frame_ports(k))
 
     def compute(self, at: At) -> Values:
         """Frame by frame; what they share is computed once."""

@@ -1,0 +1,132 @@
+"""What blocks that exchange packets with other programs share, by whatever way the packets go."""
+
+from __future__ import annotations
+
+import ipaddress
+import math
+from abc import abstractmethod
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from symofros.blocks.packets import MAX_VALUES, Reception, Silence, receiver_ports
+from symofros.diagrams.block import Known, Port, Ports
+from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.errors import DescriptionError, Problem
+from symofros.runtime.kernel import Array
+
+LOCALHOST = "127.0.0.1"
+# Packets that one sample takes: a flood may not stop the loop.
+MAX_TAKEN = 1000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Exchange(OpaqueBlock):
+    """A block that talks by an address."""
+
+    @abstractmethod
+    def place(self) -> tuple[str, int]:
+        """Host and port."""
+
+    def check(self) -> None:
+        """Refuse what is no address.
+
+        Raises:
+            DescriptionError: The host is no IP address, or the port none of 1 to 65535.
+        """
+        host, port = self.place()
+        try:
+            ipaddress.ip_address(host)
+        except ValueError:
+            raise DescriptionError(Problem(f"block '{self.name}': no address '{host:.60}'", f"'{host:.60}'",
+                                           "a host is an IP address", "127.0.0.1 is this machine"
+                                           )) from None  # fmt: skip
+        if not 1 <= port <= 65535:
+            raise DescriptionError(Problem(f"block '{self.name}': no port {port}", f"{port}",
+                                           "a port is from 1 to 65535", "choose one above 1023"))  # fmt: skip
+
+    def reaches(self) -> str:
+        """The address, if it is another machine's or others can reach it."""
+        host, port = self.place()
+        try:
+            return "" if ipaddress.ip_address(host).is_loopback else f"{host}:{port}"
+        except ValueError:
+            return f"{host:.60}:{port}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transmitter(Exchange):
+    """Sends its input at each sample, as one packet (`symofros.blocks.packets`)."""
+
+    def ports(self, known: Known) -> Ports:
+        """A signal of any shape; entries go row by row."""
+        self.check()
+        shape = known.inputs.get("signal")
+        check_size(self.name, math.prod(shape) if shape is not None else 1)
+        return Ports((Port("signal", shape),))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Receiver(Exchange):
+    """Takes the newest packet that has arrived at each sample, and counts the others.
+
+    Attributes:
+        size: Values a packet.
+        timeout: After so long without a packet the sender counts as silent [s].
+        on_silence: Then "hold" the last values or give the "value" fallback; "alive" is 0 either way.
+        fallback: Values before the first packet, and on silence.
+        unit: Of the values.
+    """
+
+    size: int
+    timeout: float = 0.1
+    on_silence: Silence = "hold"
+    fallback: Any = 0.0
+    unit: str = ""
+
+    def ports(self, known: Known) -> Ports:
+        """No inputs; the signal (size), its stamp and age [s], packets lost, and 1 while the sender is alive."""
+        self.check()
+        check_size(self.name, self.size)
+        return Ports((), receiver_ports(self.size, self.unit))
+
+
+class Receiving(Running):
+    """A receiver in one run.
+
+    Args:
+        block: What it is to receive.
+    """
+
+    def __init__(self, block: Receiver) -> None:
+        self._block = block
+        self._reception = Reception(block.size, block.timeout)
+        self._began: float | None = None
+
+    @abstractmethod
+    def arrived(self) -> Iterable[bytes]:
+        """Packets that have arrived since the last sample, MAX_TAKEN at most; nothing is waited for."""
+
+    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
+        """Take what has arrived, and say what is known now."""
+        if self._began is None:
+            self._began = t
+        for data in self.arrived():
+            self._reception.take(data, t)
+        return self._reception.outputs(t, self._began, self._block.on_silence, self._block.fallback)
+
+    def kept(self) -> Mapping[str, Array]:
+        """How many packets became what."""
+        return self._reception.counts()
+
+
+def check_size(name: str, size: int) -> None:
+    """Refuse signals that no packet holds.
+
+    Raises:
+        DescriptionError: Out of 1 to MAX_VALUES.
+    """
+    if not 1 <= size <= MAX_VALUES:
+        raise DescriptionError(Problem(f"block '{name}': {size} values a packet", f"{size}",
+                                       f"a packet holds 1 to {MAX_VALUES} values", "send less, or by several blocks"
+                                       ))  # fmt: skip

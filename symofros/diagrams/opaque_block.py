@@ -1,0 +1,40 @@
+"""Blocks that are functions of Python's, and what one run of such a block holds."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from symofros.diagrams.block import Block, Known
+from symofros.runtime.kernel import Array
+
+
+class Running(ABC):
+    """A block of Python's in one run: what is open and what is counted is that run's alone."""
+
+    @abstractmethod
+    def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
+        """The outputs at a sample.
+
+        Args:
+            t: Time [s].
+            inputs: Input port -> its signal, in its shape; a copy.
+        """
+
+    def kept(self) -> Mapping[str, Array]:
+        """What it kept of the run that comes to its end, by name; the run hands it on."""
+        return {}
+
+    def end(self) -> None:  # noqa: B027 - most have nothing to close.
+        """After the run, however it ended."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OpaqueBlock(Block, ABC):
+    """A block that the loop calls at its samples; its formulas are not known, so all outputs need all inputs."""
+
+    @abstractmethod
+    def begin(self, known: Known) -> Running:
+        """Before a run: open what is needed. Several runs of one block may go on at once."""
