@@ -112,7 +112,7 @@ def bind_batch(
                           "bind np.zeros(shape), or leave it out, and write into it")  # fmt: skip
     arrays = {name: given[name] if name in given else _room(n, shape, layout) for name, shape in shapes.items()}
     _fill(arrays, given, defaults)
-    pre = kernel.prepare(par.reshape(-1, par.shape[-1]))
+    pre = kernel.prepare(np.atleast_2d(par))
     read = [arrays[group].reshape(-1, size) if size else np.zeros((1, 0)) for group, size in signature.inputs]
     written = [arrays[name].reshape(n, prod(shape)) for name, shape in signature.outputs]
     if isinstance(kernel, BatchKernel):
