@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.runtime.kernel import Array, Kernel, Manner, Numbers, Precision, Unit
 from symofros.runtime.layout import by_columns, flat, states
 from symofros.runtime.record import ModelRecord
@@ -159,8 +160,9 @@ class Functions:
         seven digits of the largest term that makes up a result. Functions that a solver finishes (constraints,
         derivatives of forward dynamics), interpreted models and those of `Options(batch="loop")` are evaluated in
         double precision and rounded.
-        Parameters stay in double precision, and so do `bind`, `sf.simulate` and exports; `sf.simulate_batch` keeps
-        states in double precision and takes accelerations in that of the model.
+        Parameters stay in double precision, and so do `bind`, exports and what solves or simulates: `sf.simulate`,
+        `sf.assemble`, `sf.equilibrium`, `sf.inverse_kinematics`, `sf.state_space` and what is made of it. Only
+        `sf.simulate_batch` takes accelerations in the precision of the model, of states in double precision.
 
         Raises:
             ValueError: Neither of them.
@@ -169,7 +171,7 @@ class Functions:
             raise ValueError(str(Problem(f"model '{self.record.name}': no such precision", repr(precision)[:80],
                                          "precision is 'double' or 'single'", "numpy.float32 is 'single'"
                                          )))  # fmt: skip
-        return self._like(precision=precision)
+        return self if precision == self._precision else self._like(precision=precision)
 
     def _like(self, par: Array | None = None, threads: int | None = None, precision: Precision | None = None) -> Self:
         """The same but for what is given."""
@@ -181,8 +183,19 @@ class Functions:
         return other
 
     def kernel(self, name: str) -> Kernel:
-        """A function of the whole model as the thing that is called, made on demand; for loops of one's own."""
-        return self._kernels.get((name, "")) or self._make(name, "")
+        """A function of the whole model as the thing that is called, made on demand; for loops of one's own.
+
+        Raises:
+            UnknownNameError: There is no such function.
+        """
+        return self._kernel(name, "", "a kernel is a function of the whole model; those of frames are bound")
+
+    def _kernel(self, name: str, frame: str, rule: str) -> Kernel:
+        """A function whose name a user gave, of a frame that exists."""
+        known = FRAME_FUNCTIONS if frame else MODEL_FUNCTIONS
+        if name not in known:
+            raise self._unknown("function", str(name)[:80], known, rule)
+        return self._kernels.get((name, frame)) or self._make(name, frame)
 
     def formulas(self, formulas: Sequence[Any], derivatives: bool = True) -> Kernel:
         """Formulas over the model's names, compiled: (q, v, u, t) -> values, and derivatives by q and by v.

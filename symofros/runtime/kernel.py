@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import prod
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -134,6 +134,25 @@ class Kernel(Protocol):
             pre: (1, npre), from `prepare`.
             inputs: Each (size), C-contiguous, in the signature's order.
             outputs: Each of its shape, C-contiguous.
+        """
+        ...
+
+
+@runtime_checkable
+class BatchKernel(Kernel, Protocol):
+    """A function that C evaluates on batches in fixed memory."""
+
+    def bind_batch(
+        self, n: int, pre: Array, inputs: list[Array], outputs: list[Array], threads: int = 1
+    ) -> Callable[[], None]:
+        """As `bind`, for n states, by the very code that `run` takes for so many.
+
+        Args:
+            n: Number of states.
+            pre: (n or 1, npre), from `prepare`.
+            inputs: Each (n or 1, size), in steps of whole numbers, in the signature's order.
+            outputs: Each (n, size), alike.
+            threads: How many share a large batch.
         """
         ...
 

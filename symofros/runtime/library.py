@@ -15,9 +15,9 @@ import cffi
 import numpy as np
 
 from symofros.errors import CompileError
-from symofros.runtime.kernel import PLAIN, SHARED, Array, Kernel, Lanes, Manner, Numbers, Signature
+from symofros.runtime.kernel import PLAIN, SHARED, Array, Kernel, Lanes, Manner, Numbers, Precision, Signature
 from symofros.runtime.layout import Strided
-from symofros.runtime.sharing import share
+from symofros.runtime.sharing import parts, share, together
 
 _ABI = 1
 # From here on a batch runs by vectors. What decides is the batch alone, so that no result depends on earlier calls;
@@ -155,13 +155,19 @@ class CompiledKernel:
 
     def run(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner = PLAIN) -> list[Numbers]:
         """Evaluate n states in C: by vectors if they are many, or wanted in single precision; else one by one."""
-        lanes = Lanes(len(pre) > 1 and pre.size > 0, manner.precision)
-        if n >= MANY or lanes.single:
-            kernel = self.in_lanes(lanes)
-            if kernel.has(lanes):
-                return kernel._by_lanes(n, pre, inputs, manner)
+        kernel = self._for_many(n, pre, manner.precision)
+        if kernel is not None:
+            return kernel._by_lanes(n, pre, inputs, manner)
         rows = [np.ascontiguousarray(x, dtype=np.float64) for x in (pre, *inputs)]
         return [manner.of(output) for output in self._by_rows(n, rows, manner.threads)]
+
+    def _for_many(self, n: int, pre: Array, precision: Precision = "double") -> CompiledKernel | None:
+        """The same by vectors, where a batch is evaluated so."""
+        lanes = Lanes(len(pre) > 1 and pre.size > 0, precision)
+        if n < MANY and not lanes.single:
+            return None
+        kernel = self.in_lanes(lanes)
+        return kernel if kernel.has(lanes) else None
 
     def _by_lanes(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner) -> list[Numbers]:
         """By vectors of this library: rows are told by their addresses alone, which takes less than their layout."""
@@ -222,11 +228,52 @@ class CompiledKernel:
         """The function on fixed memory, for one state. The caller keeps the arrays."""
         return partial(self._function.eval, self._pointers(pre, *inputs), self._pointers(*outputs), self._work())
 
-    def bind_batch(self, n: int, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
-        """The same for n states, one after the other."""
-        stride = self._unit.ffi.new("size_t[]", [0 if len(array) == 1 else array.shape[1] for array in (pre, *inputs)])
-        read, written = self._pointers(pre, *inputs), self._pointers(*outputs)
-        return partial(self._function.batch, n, read, stride, written, self._work())
+    def bind_batch(
+        self, n: int, pre: Array, inputs: list[Array], outputs: list[Array], threads: int = 1
+    ) -> Callable[[], None]:
+        """The same for n states, by the code that `run` takes: by vectors in place, else from and to rows."""
+        by_vectors = self._for_many(n, pre)
+        if by_vectors is not None and not all(x.flags.c_contiguous for x in (*inputs, *outputs)):
+            calls = [by_vectors._part_in_place(pre, inputs, outputs, *part) for part in parts(n, threads)]
+            return calls[0] if len(calls) == 1 else partial(together, calls)
+        read = [np.ascontiguousarray(x) for x in (pre, *inputs)]
+        written = [y if y.flags.c_contiguous else np.empty(y.shape) for y in outputs]
+        calls = [(by_vectors or self)._part_by_rows(read, written, *part) for part in parts(n, threads)]
+        before = [(to, of) for to, of in zip(read[1:], inputs, strict=True) if to is not of]
+        after = [(to, of) for to, of in zip(outputs, written, strict=True) if to is not of]
+        if not before and not after and len(calls) == 1:
+            return calls[0]
+
+        def evaluate() -> None:
+            for to, of in before:
+                to[...] = of
+            together(calls)
+            for to, of in after:
+                to[...] = of
+
+        return evaluate
+
+    def _part_by_rows(self, read: list[Array], written: list[Array], first: int, end: int) -> Callable[[], None]:
+        """States first to end of contiguous arrays, with scratch of its own."""
+        ffi = self._unit.ffi
+        strides = [0 if len(x) == 1 else x.shape[1] for x in read]
+        from_ = [ffi.from_buffer("double[]", x) + first * by for x, by in zip(read, strides, strict=True)]
+        to = [ffi.from_buffer("double[]", y) + first * (y.size // len(y)) for y in written]
+        pointers = ffi.new("double *[]", from_), ffi.new("size_t[]", strides), ffi.new("double *[]", to)
+        return partial(self._function.batch, end - first, *pointers, self._work())
+
+    def _part_in_place(
+        self, pre: Array, inputs: list[Array], outputs: list[Array], first: int, end: int
+    ) -> Callable[[], None]:
+        """The same of arrays as they lie."""
+        pointers = [self._strided(of, first) for of in ([pre, *inputs], outputs)]
+        return partial(self._by_vectors.batch, end - first, *pointers, self._work())
+
+    def _strided(self, arrays: list[Array], first: int) -> Any:
+        """Arrays from a state on, as C takes them; it does not keep them."""
+        described = [Strided.of(x, np.float64).from_state(first) for x in arrays]
+        # An address is given as a pointer to so many bytes from nowhere on.
+        return self._unit.ffi.new("sym_strided[]", [(self._unit.nowhere + at, *by) for at, *by in described])
 
     def _pointers(self, *arrays: Array) -> Any:
         """To arrays, which it does not keep."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 # States a thread takes at least: waking it takes as long as an arm's equations at a thousand states.
 LEAST = 1024
@@ -23,16 +24,27 @@ def share(n: int, threads: int, work: Callable[[int, int], None]) -> None:
         threads: At most; this one is one of them.
         work: What runs without the interpreter lock for most of its time; what it raises is raised here.
     """
-    parts = max(1, min(threads, n // LEAST))
-    if parts == 1:
-        work(0, n)
+    together([partial(work, first, end) for first, end in parts(n, threads)])
+
+
+def parts(n: int, threads: int) -> list[tuple[int, int]]:
+    """(first, end) of the rows that each thread takes of n."""
+    count = max(1, min(threads, n // LEAST))
+    bounds = [n * i // count for i in range(count + 1)]
+    return list(zip(bounds, bounds[1:], strict=False))
+
+
+def together(calls: Sequence[Callable[[], object]]) -> None:
+    """Make calls at the same time, the first in this thread; what they raise is raised here."""
+    mine, *others = calls
+    if not others:
+        mine()
         return
-    bounds = [n * i // parts for i in range(parts + 1)]
-    if parts not in _pools:
-        _pools[parts] = ThreadPoolExecutor(parts - 1, thread_name_prefix="symofros")
-    running = [_pools[parts].submit(work, first, end) for first, end in zip(bounds[1:], bounds[2:], strict=False)]
+    if len(calls) not in _pools:
+        _pools[len(calls)] = ThreadPoolExecutor(len(others), thread_name_prefix="symofros")
+    running = [_pools[len(calls)].submit(call) for call in others]
     try:
-        work(0, bounds[1])
+        mine()
     finally:  # The others write into arrays that must not go before they are done.
         for future in running:
             future.result()

@@ -67,6 +67,7 @@ def assemble(
         UnknownNameError: `held` names something that is not a speed.
     """
     free = free_speeds(model, held)
+    model = model.with_precision("double")
     q = model.neutral() if q is None else np.array(q, dtype=np.float64)
     wished = np.zeros(model.nv) if v is None else np.array(v, dtype=np.float64)
 

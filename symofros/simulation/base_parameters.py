@@ -36,6 +36,7 @@ def base_parameters(model: Model, samples: int | None = None, seed: int = 0) -> 
         samples: Random states; by default three equations for each parameter.
         seed: Of the states.
     """
+    model = model.with_precision("double")
     rng = np.random.default_rng(seed)
     columns = 10 * (model.regressor(model.neutral(), np.zeros(model.nv), np.zeros(model.nv)).shape[-1] // 10)
     count = samples or max(20, 3 * columns // model.nv)

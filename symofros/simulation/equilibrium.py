@@ -68,6 +68,7 @@ def equilibrium(
         EquilibriumError: None was found; names the coordinate with the largest imbalance.
         UnknownNameError: `held` names something that is not a speed.
     """
+    model = model.with_precision("double")
     free = free_speeds(model, held)
     nv, nc = model.nv, model.nc
     q = model.neutral() if q is None else np.array(q, dtype=np.float64)

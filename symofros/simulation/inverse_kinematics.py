@@ -79,6 +79,7 @@ def inverse_kinematics(
     Raises:
         UnknownNameError: No such frame or speed.
     """
+    model = model.with_precision("double")
     q = model.neutral() if q is None else np.array(q, dtype=np.float64)
     free = free_speeds(model, held)
     task = _Task(model, targets, u, par)
@@ -136,6 +137,7 @@ def joint_motion(
     Raises:
         AssemblyError: A sample is out of reach; says which.
     """
+    model = model.with_precision("double")
     p, V, A = (np.asarray(x, dtype=np.float64) for x in (positions, velocities, accelerations))
     R = None if rotations is None else np.asarray(rotations, dtype=np.float64)
     rows = 3 if R is None else 6

@@ -33,7 +33,7 @@ def nearest_to_singular(
     if rank < 1 or len(t) < 2:
         return None
     chosen = np.unique(np.linspace(0, len(t) - 1, min(len(t), MOST)).astype(int))
-    G = model.constraint_jacobian(q[chosen], u=u[chosen], par=par, t=t[chosen])
+    G = model.with_precision("double").constraint_jacobian(q[chosen], u=u[chosen], par=par, t=t[chosen])
     squares = np.linalg.eigvalsh(G @ np.swapaxes(G, -1, -2))
     # Of the conditions that do not repeat others, the weakest.
     weakest = np.sqrt(np.maximum(squares[:, -rank], 0.0))

@@ -88,6 +88,7 @@ def simulate(
     settings = Settings.of(
         model, method, dt, t0, t_end, rtol, atol, adaptive, max_step, output, every, stabilisation, gains
     )
+    model = model.with_precision("double")
     values = model.parameter_values if par is None else vector(model, "par", par, model.npar)
     q = model.neutral() if q0 is None else vector(model, "q0", q0, model.nq)
     v = np.zeros(model.nv) if v0 is None else vector(model, "v0", v0, model.nv)

@@ -58,6 +58,7 @@ def state_space(
     Raises:
         UnknownNameError: No such output or frame.
     """
+    model = model.with_precision("double")
     v = np.zeros(model.nv) if v is None else np.asarray(v, dtype=np.float64)
     u = np.asarray(model.record.u_default if u is None else u, dtype=np.float64)
     A, B, C, D = model.linearize(q, v, u, outputs=outputs, par=par, t=t)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from tests.models import model, system
 
 BACKENDS = ["c", "interpreter"]
@@ -161,3 +162,11 @@ def test_inverse_dynamics_leaves_out_the_inputs() -> None:
     assert m.names.u == ("u1", "q1")
     assert m.inverse_dynamics([0.0], [1.0], [4.0]) == pytest.approx([2.0 * 4.0 + 3.0])
     assert m.forward_dynamics([0.0], [1.0], [1.0, 0.5]) == pytest.approx([(5.0 - 3.0 + 0.5) / 2.0])
+
+
+@pytest.mark.parametrize("batch", ["vector", "loop"])
+@pytest.mark.parametrize(("name", "said"), [("mass_matrx", "did you mean 'mass_matrix'"), ("frame_pose", "are bound")])
+def test_kernels_that_are_not_there_are_named(name: str, said: str, batch: str) -> None:
+    m = sf.compile(MODELS["double_pendulum"], sf.Options(batch=batch))  # type: ignore[arg-type]
+    with pytest.raises(sf.UnknownNameError, match=rf"no function '{name}'(.|\n)*{said}"):
+        m.kernel(name)

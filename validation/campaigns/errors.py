@@ -19,6 +19,13 @@ class StoreError(OSError):
         super().__init__(f"folder '{folder}'\n  found:  {found}\n  rule:   {rule}\n  remedy: {remedy}")
 
 
+class ClusterError(OSError):
+    """A cluster can't be reached, or has nobody to work; says what was found, the rule, and the remedy."""
+
+    def __init__(self, address: str, found: str, rule: str, remedy: str) -> None:
+        super().__init__(f"scheduler '{address}'\n  found:  {found}\n  rule:   {rule}\n  remedy: {remedy}")
+
+
 class Unfinished(RuntimeError):
     """Batches are missing: the session was interrupted, or some could not be done.
 

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import logging
 import os
+import re
 import signal
+import socket
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -20,6 +22,7 @@ from pathlib import Path
 import dask
 import distributed
 
+from validation.campaigns.errors import ClusterError
 from validation.campaigns.store import Store
 from validation.campaigns.tasks import Task
 
@@ -27,7 +30,9 @@ from validation.campaigns.tasks import Task
 AHEAD = 2
 # A batch is given up when so many workers have died under it: one may be killed by chance, or by hand.
 DEATHS = 2
-_PATIENCE = 60.0  # [s] for the first worker of a cluster.
+PATIENCE = 60.0  # [s] for a worker of a cluster, the first one.
+ANSWER = 10.0  # [s] for its scheduler.
+_ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?(\[[0-9A-Fa-f:]+\]|[^\s:/\[\]]+):([0-9]{1,5})\Z")
 
 
 @dataclass(frozen=True)
@@ -38,23 +43,27 @@ class Pool:
         workers: Processes of this machine, if no cluster is named.
         scheduler: Address of a cluster's scheduler.
         dashboard: Port of dask's own pages on this machine's loopback; none is opened unless asked for.
+        patience: How long a cluster may take to have a worker [s].
     """
 
     workers: int = 2
     scheduler: str = ""
     dashboard: int | None = None
+    patience: float = PATIENCE
 
     @contextmanager
     def client(self) -> Iterator[distributed.Client]:
         """A connection; processes that were started for it end with it.
 
         Raises:
-            OSError: There is no such scheduler.
-            TimeoutError: It has no workers.
+            ClusterError: There is no such scheduler, or it has no workers.
         """
         if self.scheduler:
-            with distributed.Client(self.scheduler, timeout=_PATIENCE) as client:
-                client.wait_for_workers(1, timeout=_PATIENCE)
+            with _connected(self.scheduler) as client:
+                try:
+                    client.wait_for_workers(1, timeout=self.patience)
+                except TimeoutError:
+                    raise _deserted(self) from None
                 yield client
             return
         page = None if self.dashboard is None else f"127.0.0.1:{self.dashboard}"
@@ -69,6 +78,26 @@ class Pool:
         ):  # fmt: skip
             client.register_plugin(_Undisturbed())
             yield client
+
+
+def _connected(address: str) -> distributed.Client:
+    """A client of a scheduler that answers; a port that nobody listens at is told at once."""
+    found = _ADDRESS.match(address)
+    if found is None or int(found[2]) > 65535:
+        raise ClusterError(address, "no such address", "a dask scheduler's address is tcp://HOST:PORT",
+                           "give what `dask scheduler` prints when it starts")  # fmt: skip
+    try:
+        socket.create_connection((found[1].strip("[]"), int(found[2])), timeout=ANSWER).close()
+        return distributed.Client(address, timeout=ANSWER)
+    except OSError as error:  # Of a name that is not known, a port that is closed, time that has run out.
+        said = str(error).partition("\n")[0] or type(error).__name__
+        raise ClusterError(address, said, f"a dask scheduler answers there within {ANSWER:g} s",
+                           "start one with `dask scheduler`, or leave --scheduler out") from None  # fmt: skip
+
+
+def _deserted(pool: Pool) -> ClusterError:
+    return ClusterError(pool.scheduler, f"no worker for {pool.patience:g} s", "one worker at least is connected",
+                        "start some with `dask worker ADDRESS --nthreads 1`")  # fmt: skip
 
 
 class _Undisturbed(distributed.WorkerPlugin):  # type: ignore[misc]  # dask has no types.
@@ -90,6 +119,9 @@ def run(store: Store, tasks: Sequence[Task], pool: Pool, done: Callable[[Task], 
 
     Returns:
         Batch -> why it could not be done: it killed its worker each time, or raised what no row can say.
+
+    Raises:
+        ClusterError: A cluster can't be reached, or has no workers.
     """
     failures: dict[int, str] = {}
     with pool.client() as client:
