@@ -96,7 +96,7 @@ def combined(
 
 
 def _is_product(g: Graph, product: Edge, a: Edge, b: Edge) -> bool:
-    """Whether a product is rounded as a * b is: the graph turns c1 (c2 x) into (c1 c2) x."""
-    if g.op[abs(product)] != MUL or ONE in (abs(a), abs(b)):
+    """Whether a product is rounded as a * b is: the graph turns c1 (c2 x) into (c1 c2) x, or into x."""
+    if ZERO in (a, b) or ONE in (abs(a), abs(b)) or (g.is_constant(a) and g.is_constant(b)):
         return True
-    return set(g.args[abs(product)]) == {abs(a), abs(b)}
+    return g.op[abs(product)] == MUL and set(g.args[abs(product)]) == {abs(a), abs(b)}

@@ -163,19 +163,24 @@ class _Packs:
         return self._known[id(pack)]
 
     def _moved(self, pack: Pack) -> Pack:
-        """A pack whose operands are there."""
+        """A pack whose operands are there; lanes that no function needs are empty."""
         at, known = self._at, self._known
-        base = None if pack.base is None else known[id(pack.base)]
-        there = frozenset(lane for lane, edge in enumerate(pack.lanes) if abs(edge) in at)
-        lanes = tuple(self._edge(edge) if lane in there else ZERO for lane, edge in enumerate(pack.lanes))
+        lanes = tuple(self._edge(edge) if abs(edge) in at else ZERO for edge in pack.lanes)
+        base = None if pack.base is None or self._confuses(pack, pack.base) else known[id(pack.base)]
         if not all(abs(factor) in at for factor, _ in pack.terms):
             return Pack(lanes, base=base)
         start = self._ages[pack.start] if pack.terms else 0
+        given = [pack, *(operand for _, operand in pack.terms)]
+        literal = frozenset(lane for lane in pack.literal if all(abs(one.lanes[lane]) in at for one in given))
         return replace(
-            pack, lanes=lanes, base=base, start=start, literal=pack.literal & there,
+            pack, lanes=lanes, base=base, start=start, literal=literal,
             terms=tuple((self._edge(factor), known[id(operand)]) for factor, operand in pack.terms),
-            own=frozenset(lane for lane in pack.own & there if abs(lanes[lane]) >= start),
+            own=frozenset(lane for lane in pack.own & literal if abs(lanes[lane]) >= start),
         )  # fmt: skip
+
+    def _confuses(self, pack: Pack, base: Pack) -> bool:
+        """Whether a lane that is zero would be taken from one that is empty only because nobody needs it."""
+        return any(a == ZERO and abs(b) not in self._at for a, b in zip(pack.lanes, base.lanes, strict=True))
 
     def _edge(self, edge: Edge) -> Edge:
         return self._at[edge] if edge >= 0 else -self._at[-edge]

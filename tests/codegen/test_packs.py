@@ -56,7 +56,7 @@ def test_bits_are_those_of_scalars(name: str) -> None:
     assert repr(packed.forward_dynamics(q, v, u)) == repr(single.forward_dynamics(q, v, u))
 
 
-@pytest.mark.parametrize("name", ["puma560", "spdm", "flexible_pendulum", "joint_zoo"])
+@pytest.mark.parametrize("name", ["puma560", "spdm", "mss", "flexible_pendulum", "joint_zoo"])
 def test_bits_of_derivatives_are_those_of_scalars(name: str) -> None:
     rng = np.random.default_rng(8)
     functions = ("inverse_dynamics_derivatives", "forward_dynamics_derivatives")

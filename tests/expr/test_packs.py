@@ -51,6 +51,16 @@ def test_a_product_that_the_graph_folds_is_not_its_own() -> None:
     assert set(pack.own) == set(range(WIDTH)) - {4}
 
 
+def test_a_product_that_folds_to_its_operand_is_not_what_a_vector_says() -> None:
+    """c (x / c) becomes x, which differs from c * (x * (1/c)) by rounding: a lane that such a pack can't form."""
+    g = Graph()
+    lanes: list[Edge] = list(inputs(g, "x").lanes)
+    x, c = lanes[4], 128 / 9
+    lanes[4] = g.mul(g.constant(1 / c), x)
+    _, pack = combined(g, [(g.constant(c), (ONE, Pack(tuple(lanes))))])
+    assert pack.lanes[4] == x and pack.literal == set(range(WIDTH)) - {4}
+
+
 def test_one_lane_given() -> None:
     g = Graph()
     x, edge = inputs(g, "x"), g.input("c", 0)

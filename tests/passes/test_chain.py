@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from reference_models import MODELS
 from reference_models.rigid.chain import chain
 from symofros.compiler import plan
 from symofros.dynamics.functions import Request, write_program
@@ -137,3 +138,27 @@ def test_packs_come_along() -> None:
         needed = set(needed_nodes(program.graph, [edge for f in program.functions for edge in f.edges()], program.pre))
         lanes.append(sum(abs(p.lanes[lane]) in needed for p in program.graph.packs for lane in p.own))
     assert lanes[0] == lanes[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "function"),
+    [("chain22", "dynamics"), ("grasp", "residual_derivatives"), ("mss", "inverse_dynamics_derivatives"),
+     ("spdm", "forward_dynamics_derivatives")],
+)  # fmt: skip
+def test_vectors_say_what_scalars_say(name: str, function: str) -> None:
+    """Each lane that a function needs is the sum that its pack states, to the bit, of lanes that are there."""
+    staged = hoist_parameters(write_program(plan(MODELS[name]), [Request(function)]))
+    for program in (staged, chain_sums(staged)):
+        g, edges = program.graph, program.functions[0].edges()
+        needed = {*needed_nodes(g, edges, program.pre), *program.pre, *g.value, *g.slot}
+        used = [(pack, lane) for pack in g.packs for lane in pack.literal if abs(pack.lanes[lane]) in needed]
+        # A lane of which an operand is not needed is put into the vector as a scalar.
+        used = [(p, i) for p, i in used if all(abs(o.lanes[i]) in {*needed, 0} for _, o in p.terms)]
+        assert len(used) > 50
+        rng = np.random.default_rng(1)
+        given = {key: rng.uniform(-1.0, 1.0, (3, size)) for key, size in program.sizes.items()}
+        read = [edge for p, i in used for f, o in p.terms for edge in (p.lanes[i], f, o.lanes[i])]
+        values = dict(zip(read, evaluate_edges(program, read, given, {}), strict=True))
+        for pack, lane in used:
+            total = sum((values[f] * values[o.lanes[lane]] for f, o in pack.terms), np.zeros(3))
+            np.testing.assert_array_equal(total, values[pack.lanes[lane]], strict=False)
