@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 
-from validation.geometry import Array
+from validation.mechanics.geometry import Array
 from validation.timing.arrays import Arrays, Turns, loops
 from validation.timing.programs import Built, Compiler, Skipped, build, compilers, copies
 from validation.timing.task import Cost, Loop, Task
@@ -53,7 +53,8 @@ def casadi_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     Raises:
         Skipped: The recursions have no equations for the model.
     """
-    from validation.adapters import casadi_code, casadi_tree
+    from validation.adapters.casadi import code as casadi_code
+    from validation.adapters.casadi import tree as casadi_tree
 
     if task.assembly.nv > MOST_DERIVED and any(name.endswith("derivatives") for name in functions):
         raise Skipped(f"derivatives are made up to {MOST_DERIVED} degrees of freedom, beyond which they take minutes")
