@@ -98,4 +98,6 @@ def test_either_way_of_forward_dynamics(way: Literal["articulated", "factors"], 
     ours = SymofrosEngine("symofros", sf.compile(system, options))
     states = with_forces(ours, sample(assemble(system), ours.model.nu, STATES))
     expected, found = theirs.forward_dynamics(states), ours.forward_dynamics(states)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
+    # A joint across gravity rests: what an engine then gives is the rounding of a quarter turn, a share of gravity.
+    scale = max(np.abs(expected).max(), np.linalg.norm(system.gravity))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * scale)
