@@ -70,7 +70,39 @@ ALLOWED: dict[str, set[str]] = {
         "advice", "diagrams", "diagram_files", "viewing",
     },
 }  # fmt: skip
+
+# The same of the harness: what a check is made of ...
+HARNESS: dict[str, set[str]] = {
+    "mechanics": set(),
+    "contract": {"mechanics"},
+    "inputs": {"contract", "mechanics"},
+    "adapters": {"contract", "mechanics"},
+    "comparison": {"adapters", "contract", "mechanics"},
+    "check": {"comparison", "adapters", "inputs", "contract", "mechanics"},
+    "crew": {"check", "adapters", "inputs"},
+    "evidence": {"mechanics"},
+    "reporting": {"evidence", "crew", "check", "comparison", "adapters", "contract"},
+}
+# ... and what builds on it: any of the above, and these others.
+STUDIES: dict[str, set[str]] = {
+    "oracle": set(),
+    "questions": set(),
+    "campaigns": set(),
+    "diagrams": {"questions"},
+    "accuracy": {"questions"},
+    "timing": {"oracle"},
+    "passes": {"timing"},
+    "stability": {"accuracy"},
+    "studies": {"accuracy", "oracle", "stability", "timing"},
+    "pareto": {"stability", "studies", "timing"},
+    "dashboard": {"passes"},
+}
+# The oracle answers for itself: of the harness it knows how joints come apart, nothing else.
+MAY_USE = HARNESS | {name: others | set(HARNESS) for name, others in STUDIES.items()} | {"oracle": {"mechanics"}}
+
 ENGINES = {"pinocchio", "mujoco", "exudyn", "casadi"}
+# Room of validation/adapters -> the engine that it alone may import; Lagrange's equations are differentiated by CasADi.
+ADAPTERS = {name: name for name in ENGINES} | {"lagrangian": "casadi"}
 
 
 def imported(path: Path) -> Iterator[str]:
@@ -79,7 +111,11 @@ def imported(path: Path) -> Iterator[str]:
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import"
-            yield node.module or ""
+            module = node.module or ""
+            if module in ("validation", "validation.adapters"):  # What is taken from them may be a room.
+                yield from (f"{module}.{alias.name}" for alias in node.names)
+            else:
+                yield module
 
 
 def room(module: str) -> str:
@@ -108,11 +144,32 @@ def test_only_freeze_looks_inside_sympy(path: Path) -> None:
         assert not any(module.partition(".")[0] == "sympy" for module in imported(path))
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "validation").rglob("*.py")), ids=lambda p: str(p.relative_to(ROOT)))
+HARNESS_SOURCES = sorted((ROOT / "validation").rglob("*.py"))
+# Adapters that need no engine: all others may use them.
+BESIDE = {path.stem for path in (ROOT / "validation/adapters").glob("*.py")}
+
+
+@pytest.mark.parametrize("path", HARNESS_SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_imports_of_the_harness_run_one_way(path: Path) -> None:
+    own = path.relative_to(ROOT / "validation").parts[0].removesuffix(".py")
+    if own == "__main__":  # The command line may use everything.
+        return
+    for module in imported(path):
+        if module.partition(".")[0] == "validation" and room(module) != own:
+            assert room(module) in MAY_USE[own], f"{own} may not import {module}"
+
+
+@pytest.mark.parametrize("path", HARNESS_SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
 def test_engines_stay_in_their_adapters(path: Path) -> None:
-    if path.parent.name != "adapters":
-        found = ENGINES & {module.partition(".")[0] for module in imported(path)}
-        assert not found, f"{path.name} imports {found} outside its adapter"
+    """And adapters of one engine know nothing of another's."""
+    folder = path.parent.relative_to(ROOT / "validation").parts
+    own = folder[1] if folder[:1] == ("adapters",) and len(folder) > 1 else ""
+    for module in imported(path):
+        package = module.partition(".")[0]
+        assert package not in ENGINES or package == ADAPTERS.get(own), f"{path.name} imports {package} outside its room"
+        if folder[:1] == ("adapters",) and module.startswith("validation.adapters."):
+            engine = module.split(".")[2]
+            assert engine in (own, *BESIDE), f"adapters of '{own}' may not import {module}"
 
 
 def test_importing_the_package_is_light() -> None:

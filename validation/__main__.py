@@ -16,20 +16,20 @@ from symofros.atomic import write_atomically
 from validation.accuracy.catalogue import TOPIC as ACCURACY
 from validation.adapters import ROUTES
 from validation.campaigns import command as campaign
-from validation.cases import Case, named, standard_set
 from validation.check import ModelResult, Settings
-from validation.console import output, progress, show
 from validation.crew import run
 from validation.dashboard import command as dashboard
 from validation.diagrams.catalogue import TOPIC as DIAGRAMS
-from validation.junit import to_junit
+from validation.inputs.cases import Case, named, standard_set
+from validation.inputs.sampling import DEFAULT_STATES
 from validation.pareto import command as pareto
 from validation.passes import command as passes
-from validation.provenance import build
 from validation.questions import command as questions
-from validation.record import Record, make_record, summary
-from validation.report import write_report
-from validation.sampling import DEFAULT_STATES
+from validation.reporting.console import output, progress, show
+from validation.reporting.files import write_report
+from validation.reporting.junit import to_junit
+from validation.reporting.provenance import build
+from validation.reporting.record import Record, make_record, summary
 from validation.stability import command as stability
 from validation.studies import (
     exports_report,

@@ -13,22 +13,21 @@ from typing import cast
 import numpy as np
 
 import symofros as sf
-from validation import rotors
-from validation.adapters import ROUTES, Missing, available
+from validation.adapters import ROUTES, Missing, available, rotors
 from validation.adapters import compiled as our_c
+from validation.adapters.closed import ConstrainedEngine, condition, joined_frames, of_clear_rank
 from validation.adapters.compiled import SymofrosEngine
-from validation.assembly import Assembly, assemble
-from validation.closed import ConstrainedEngine, condition, joined_frames, of_clear_rank
-from validation.compare import Comparison, Scales, compute, judge, scaled_errors, typical_scales
-from validation.frames import chosen_frames
-from validation.geometry import Array
-from validation.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
-from validation.loops import of_unique_multipliers
-from validation.motion import MOTIONS, Motion, fall, judge_drift
-from validation.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_ENERGY, QUANTITIES, Quantity
-from validation.retained import judge_order, left_out
-from validation.sampling import DEFAULT_STATES, sample
-from validation.sides import Sides
+from validation.comparison.errors import Comparison, Scales, compute, judge, scaled_errors, typical_scales
+from validation.comparison.loops import of_unique_multipliers
+from validation.comparison.motion import MOTIONS, Motion, fall, judge_drift
+from validation.comparison.retained import judge_order, left_out
+from validation.comparison.sides import Sides
+from validation.contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
+from validation.contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_ENERGY, QUANTITIES, Quantity
+from validation.inputs.frames import chosen_frames
+from validation.inputs.sampling import DEFAULT_STATES, sample
+from validation.mechanics.assembly import Assembly, assemble
+from validation.mechanics.geometry import Array
 
 FORWARD = "forward_dynamics"
 SOLVED = (FORWARD, "multipliers", "constraint_force", "frame_response")

@@ -14,8 +14,8 @@ from typing import Any
 
 import symofros as sf
 from validation.adapters import ROUTES
-from validation.cases import Case
 from validation.check import ModelResult, Settings, check, failed
+from validation.inputs.cases import Case
 
 Report = Callable[[ModelResult], None]
 

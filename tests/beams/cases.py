@@ -10,10 +10,10 @@ import casadi as ca
 import numpy as np
 
 import symofros as sf
-from validation import shape_functions as shapes
-from validation.adapters.lagrangian_beam import Flexible
-from validation.adapters.lagrangian_beam import rotation_about as about
-from validation.adapters.lagrangian_tree import Node, Solid
+from validation.adapters.lagrangian.beam import Flexible
+from validation.adapters.lagrangian.beam import rotation_about as about
+from validation.adapters.lagrangian.tree import Node, Solid
+from validation.mechanics import shape_functions as shapes
 
 GRAVITY = (1.0, -2.0, -9.5)
 L = 1.3

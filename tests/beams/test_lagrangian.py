@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from tests.beams.cases import CASES, GRAVITY
-from validation.adapters.lagrangian_tree import Lagrangian
+from validation.adapters.lagrangian.tree import Lagrangian
 
 # Both sides are sums of some thousand terms of size one, to rounding; the weight's energy may cancel to a hundredth.
 TOLERANCE = 1e-12

@@ -10,8 +10,8 @@ import pytest
 
 import symofros as sf
 from tests.beams.cases import FREE, GRAVITY, L, pair, six
-from validation.adapters.lagrangian_beam import Line
-from validation.adapters.lagrangian_tree import Lagrangian
+from validation.adapters.lagrangian.beam import Line
+from validation.adapters.lagrangian.tree import Lagrangian
 
 TOLERANCE = 1e-13
 FORCES: dict[str, tuple[sf.BeamLoad, Line]] = {

@@ -12,7 +12,7 @@ import symofros as sf
 from symofros.beams.piecewise import Piecewise
 from symofros.beams.shape_functions import MAX_MODES, FamilyError, cantilever_root, shapes
 from symofros.description.beam import Direction
-from validation.shape_functions import cantilever_roots, clamped_free, legendre, monomials, splines
+from validation.mechanics.shape_functions import cantilever_roots, clamped_free, legendre, monomials, splines
 
 FAMILIES = {"spline": 6, "polynomial": 5, "legendre": 6, "clamped_free": 5, "hermite": 2}
 RATIONAL = ("spline", "polynomial", "legendre", "hermite")

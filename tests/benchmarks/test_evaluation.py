@@ -8,7 +8,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 import symofros as sf
 from reference_models import MODELS
-from validation.cases import named
+from validation.inputs.cases import named
 
 BATCH = 1000
 

@@ -13,7 +13,7 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 import symofros as sf
-from validation.cases import named
+from validation.inputs.cases import named
 
 # Of a 7-joint arm with its two fingers. "M and h" is one C file; the others are those that a first call makes.
 FUNCTIONS = (

@@ -13,7 +13,7 @@ import symofros as sf
 from symofros.description.mjcf import files as mjcf_files
 from symofros.description.native.files import read_yaml
 from tests.description.mjcf_models import MODELS, document
-from validation.geometry import quaternion_matrix
+from validation.mechanics.geometry import quaternion_matrix
 
 PENDULUM = '<body name="a"><joint name="q" axis="0 1 0"/><geom size="0.1" pos="1 0 0"/></body>'
 NOT_A_NUMBER = PENDULUM.replace('name="q"', 'name="q" armature="nan"')

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from validation.cases import robot_case
+from validation.inputs.cases import robot_case
 
 INERTIAL = (
     '<inertial><origin xyz="0.1 0 0" rpy="0 0 0.5"/><mass value="2"/>'
@@ -153,7 +153,7 @@ def test_every_robot_of_the_package_loads_or_says_why() -> None:
 @pytest.mark.parametrize("robot", ["talos_data/robots/talos_reduced.urdf", "panda_description/urdf/panda.urdf"])
 def test_inertias_equal_pinocchios(robot: str) -> None:
     pinocchio = pytest.importorskip("pinocchio")
-    from validation.assembly import assemble
+    from validation.mechanics.assembly import assemble
 
     theirs = pinocchio.buildModelFromUrdf(str(robots_folder() / robot))
     for mover in assemble(sf.load(robots_folder() / robot, snap_tol=0.0)).movers:

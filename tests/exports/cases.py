@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from validation.cases import named
+from validation.inputs.cases import named
 
 # The planar robot has a mode of 1e4/s: a Runge-Kutta step of 1e-3 s would enlarge rounding.
 STARTS: dict[str, dict[str, float]] = {

@@ -12,8 +12,8 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from tests.models import system
-from validation.adapters import pinocchio as pin_adapter
-from validation.cases import robot_case
+from validation.adapters.pinocchio import tree as pin_adapter
+from validation.inputs.cases import robot_case
 
 pin = pytest.importorskip("pinocchio")
 # State: guesses that assembly closes, or none for trees.

@@ -10,8 +10,8 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from validation.adapters import pinocchio as pin_adapter
-from validation.interface import Subject
+from validation.adapters.pinocchio import tree as pin_adapter
+from validation.contract.interface import Subject
 
 pin = pytest.importorskip("pinocchio")
 MODEL_NAMES = ("pendulum", "double_pendulum", "cart_pole", "rx90", "space_arm", "flexible_pendulum", "planar_robot")

@@ -8,11 +8,11 @@ import numpy as np
 
 import symofros as sf
 from reference_models.rigid.random_tree import random_inertia, random_tree
-from validation.assembly import Assembly, assemble
-from validation.frames import chosen_frames
-from validation.geometry import Array
-from validation.interface import States, Subject
-from validation.sampling import sample
+from validation.contract.interface import States, Subject
+from validation.inputs.frames import chosen_frames
+from validation.inputs.sampling import sample
+from validation.mechanics.assembly import Assembly, assemble
+from validation.mechanics.geometry import Array
 
 UNIT = sf.Inertia(1.0, (0.1, -0.2, 0.3), (0.5, 0.6, 0.7, 0.01, 0.02, 0.03))
 

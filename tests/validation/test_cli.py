@@ -8,9 +8,10 @@ from typer.testing import CliRunner, Result
 
 from tests.validation.subjects import URDF
 from validation.__main__ import app
-from validation.adapters import available, pinocchio
+from validation.adapters import available
+from validation.adapters.pinocchio import tree as pinocchio
 from validation.check import failed
-from validation.interface import Subject
+from validation.contract.interface import Subject
 
 KEYS = {"model", "engine", "quantity", "states", "error", "tolerance", "ok"}
 

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from tests.validation.subjects import URDF
-from validation.cases import Case
 from validation.check import ModelResult, Settings
+from validation.contract.interface import Subject
 from validation.crew import run, run_case
-from validation.interface import Subject
+from validation.inputs.cases import Case
 
 FEW = Settings(states=10, engines=("pinocchio",))
 

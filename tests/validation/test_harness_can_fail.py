@@ -9,10 +9,11 @@ import pytest
 
 import symofros as sf
 from tests.validation.subjects import floating_arm
-from validation.adapters import available, pinocchio
+from validation.adapters import available
+from validation.adapters.pinocchio import tree as pinocchio
 from validation.check import ModelResult, Settings, check
-from validation.interface import States, Subject
-from validation.quantities import EVERYTHING, QUANTITIES
+from validation.contract.interface import States, Subject
+from validation.contract.quantities import EVERYTHING, QUANTITIES
 
 SUBJECT = floating_arm()
 SETTINGS = Settings(states=40, engines=("pinocchio",))

@@ -2,9 +2,9 @@
 
 import pytest
 
-from validation.cases import robot_case
 from validation.check import Settings
 from validation.crew import run_case
+from validation.inputs.cases import robot_case
 
 
 @pytest.mark.parametrize("label", ["ur5", "kinova", "solo12"])

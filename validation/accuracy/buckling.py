@@ -10,8 +10,8 @@ import scipy.linalg
 import symofros as sf
 from validation.accuracy.beams import cantilever, interpreted, squares, stiffness_and_mass
 from validation.accuracy.reference import data, source
-from validation.findings import Chart, Check, Curve, Figure, Mark, Study, exponent, near
-from validation.geometry import Array
+from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, exponent, near
+from validation.mechanics.geometry import Array
 
 FAMILIES = ("legendre", "polynomial", "spline", "clamped_free")
 COLORS = {"legendre": 0, "polynomial": 2, "spline": 1, "clamped_free": 5}

@@ -16,7 +16,7 @@ from validation.accuracy import (
     spinning,
     spinup,
 )
-from validation.findings import Asked
+from validation.evidence.findings import Asked
 from validation.questions.topic import Topic
 
 STUDIES: dict[str, Asked] = {

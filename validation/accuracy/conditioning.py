@@ -7,8 +7,8 @@ import numpy as np
 import symofros as sf
 from validation.accuracy.beams import FIRST, cantilever, interpreted, squares, stiffness_and_mass
 from validation.accuracy.reference import data, source
-from validation.findings import Chart, Check, Curve, Figure, Mark, Study, near
-from validation.geometry import Array
+from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, near
+from validation.mechanics.geometry import Array
 
 COLORS = {"polynomial": 2, "spline": 1, "legendre": 0, "clamped_free": 5}
 

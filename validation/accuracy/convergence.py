@@ -6,8 +6,8 @@ import numpy as np
 
 from validation.accuracy.beams import spinning, spinning_squares
 from validation.accuracy.reference import data, source
-from validation.findings import Chart, Check, Curve, Figure, Study, exponent
-from validation.geometry import Array
+from validation.evidence.findings import Chart, Check, Curve, Figure, Study, exponent
+from validation.mechanics.geometry import Array
 
 ETA, DELTA = 12, 1
 # Family -> most functions it is asked for; monomials are refused beyond seven.

@@ -6,8 +6,8 @@ import numpy as np
 
 import symofros as sf
 from validation.accuracy.beams import FIRST, cantilever, motion
-from validation.findings import Chart, Check, Curve, Figure, Mark, Study, near
-from validation.geometry import Array
+from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, near
+from validation.mechanics.geometry import Array
 
 # Retardation time in units of sqrt(rhoA L^4/EI): the first mode has a damping ratio of about 0.02.
 TAU = 0.0114

@@ -9,9 +9,9 @@ import scipy.special
 import symofros as sf
 from validation.accuracy.beams import cantilever, interpreted
 from validation.accuracy.reference import data, source
-from validation.adapters.exudyn_ancf import static_tip
-from validation.findings import Chart, Check, Curve, Figure, Mark, Study, near
-from validation.geometry import Array
+from validation.adapters.exudyn.ancf import static_tip
+from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, near
+from validation.mechanics.geometry import Array
 
 # Relative error of the tip's deflection, in per cent, whose beginning is looked for.
 # EA of Exudyn's beam, which stretches, in units of EI/L^2.

@@ -6,8 +6,8 @@ import numpy as np
 
 import symofros as sf
 from validation.accuracy.beams import motion
-from validation.findings import Chart, Check, Curve, Figure, Mark, Study, exponent
-from validation.geometry import Array
+from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, exponent
+from validation.mechanics.geometry import Array
 
 PERIOD = 2 * np.pi / 3.516
 # At an integrator's tolerance of 1e-12 over a hundred periods.

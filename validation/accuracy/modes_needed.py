@@ -6,8 +6,8 @@ import numpy as np
 
 from validation.accuracy.beams import spinning, spinning_squares
 from validation.accuracy.reference import data, source
-from validation.findings import Chart, Check, Curve, Figure, Kind, Study
-from validation.geometry import Array
+from validation.evidence.findings import Chart, Check, Curve, Figure, Kind, Study
+from validation.mechanics.geometry import Array
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
 KINDS: dict[str, Kind] = {"clamped_free": "joined", "legendre": "dashed"}

@@ -8,8 +8,8 @@ import scipy.special
 
 import symofros as sf
 from validation.accuracy.beams import spinning, spinning_squares
-from validation.findings import Chart, Check, Curve, Figure, Study
-from validation.geometry import Array
+from validation.evidence.findings import Chart, Check, Curve, Figure, Study
+from validation.mechanics.geometry import Array
 
 MASSES = (0.0, 0.3, 1.0, 3.0)
 FUNCTIONS = 8

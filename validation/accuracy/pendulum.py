@@ -9,8 +9,8 @@ import numpy as np
 import symofros as sf
 from validation.accuracy.beams import motion
 from validation.accuracy.reference import data, source
-from validation.findings import Chart, Check, Curve, Figure, Mark, Study, near
-from validation.geometry import Array
+from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, near
+from validation.mechanics.geometry import Array
 
 GRAVITY, END = 9.81, 2.0
 MODELS: dict[str, dict[str, Any]] = {

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn_ancf import Strip, princeton
-from validation.findings import Chart, Check, Curve, Figure, Mark, Study, exponent
-from validation.geometry import Array
+from validation.adapters.exudyn.ancf import Strip, princeton
+from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, exponent
+from validation.mechanics.geometry import Array
 
 # Dowell & Traybar 1975: loads of one, two and three pounds.
 LOADS = (4.448, 8.896, 13.345)

@@ -9,9 +9,9 @@ import scipy.optimize
 
 from validation.accuracy.beams import FIRST, spinning, spinning_squares
 from validation.accuracy.reference import data, source
-from validation.adapters.exudyn_ancf import spinning_frequencies
-from validation.findings import Chart, Check, Curve, Figure, Kind, Mark, Study, near
-from validation.geometry import Array
+from validation.adapters.exudyn.ancf import spinning_frequencies
+from validation.evidence.findings import Chart, Check, Curve, Figure, Kind, Mark, Study, near
+from validation.mechanics.geometry import Array
 
 PLANES = {"flap": ("bend_z", "flap"), "lag": ("bend_y", "chord")}
 LINES: dict[int, Kind] = {8: "joined", 10: "dashed"}

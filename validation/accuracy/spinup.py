@@ -9,9 +9,9 @@ import numpy as np
 import symofros as sf
 from validation.accuracy.beams import motion
 from validation.accuracy.reference import data, source
-from validation.adapters.exudyn_ancf import spin_up
-from validation.findings import Chart, Check, Curve, Figure, Mark, Study, near
-from validation.geometry import Array
+from validation.adapters.exudyn.ancf import spin_up
+from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, near
+from validation.mechanics.geometry import Array
 
 LENGTH, EI, RHO_A, END, RATE = 8.0, 566.7095928, 0.20187837656, 15.0, 6.0
 # Over the whole run, whatever the number of functions: the converged theory's distance from the rod [m].

@@ -1,4 +1,4 @@
-"""The engines: one file a route, and no other file imports the engine's package."""
+"""The engines: one room each, and no other room imports the engine's package; here, what needs none."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 
-from validation.interface import EngineFactory, Format
+from validation.contract.interface import EngineFactory, Format
 
 
 @dataclass(frozen=True)
@@ -30,14 +30,14 @@ class Route:
 
 # In the order of reports. The generated C itself is not among them: it is what they are compared with.
 ROUTES: dict[str, Route] = {
-    "pinocchio": Route("validation.adapters.pinocchio"),
-    "mujoco": Route("validation.adapters.mujoco"),
-    "pinocchio-loops": Route("validation.adapters.pinocchio_loops", loops=True),
-    "exudyn-loops": Route("validation.adapters.exudyn_loops", loops=True),
-    "pinocchio-urdf": Route("validation.adapters.pinocchio_urdf", reads="urdf"),
-    "mujoco-urdf": Route("validation.adapters.mujoco_urdf", reads="urdf"),
-    "mujoco-mjcf": Route("validation.adapters.mujoco_mjcf", reads="mjcf"),
-    "lagrangian": Route("validation.adapters.lagrangian", beams=True),
+    "pinocchio": Route("validation.adapters.pinocchio.tree"),
+    "mujoco": Route("validation.adapters.mujoco.tree"),
+    "pinocchio-loops": Route("validation.adapters.pinocchio.loops", loops=True),
+    "exudyn-loops": Route("validation.adapters.exudyn.loops", loops=True),
+    "pinocchio-urdf": Route("validation.adapters.pinocchio.urdf", reads="urdf"),
+    "mujoco-urdf": Route("validation.adapters.mujoco.urdf", reads="urdf"),
+    "mujoco-mjcf": Route("validation.adapters.mujoco.mjcf", reads="mjcf"),
+    "lagrangian": Route("validation.adapters.lagrangian.engine", beams=True),
     "interpreted": Route("validation.adapters.interpreted", independent=False),
     "description": Route("validation.adapters.description", independent=False),
 }

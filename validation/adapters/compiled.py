@@ -10,10 +10,10 @@ import numpy as np
 
 import symofros as sf
 from validation.adapters.reach import stores_energy
-from validation.conventions import times
-from validation.geometry import Array
-from validation.interface import States, Subject
-from validation.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MJCF_ROUTE, QUANTITIES, SECOND_ROUTE
+from validation.contract.conventions import times
+from validation.contract.interface import States, Subject
+from validation.contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MJCF_ROUTE, QUANTITIES, SECOND_ROUTE
+from validation.mechanics.geometry import Array
 
 NAME = "symofros"
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.assembly import Assembly, assemble
-from validation.geometry import Array
-from validation.interface import States, Subject, Unsupported
-from validation.parts import coordinate_symbols, rate_symbols, speed_symbols
-from validation.quantities import FORCES_STATED
+from validation.contract.interface import States, Subject, Unsupported
+from validation.contract.quantities import FORCES_STATED
+from validation.mechanics.assembly import Assembly, assemble
+from validation.mechanics.geometry import Array
+from validation.mechanics.parts import coordinate_symbols, rate_symbols, speed_symbols
 
 NAME = "description"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import symofros as sf
 from validation.adapters.compiled import SymofrosEngine, options
-from validation.interface import Subject
+from validation.contract.interface import Subject
 
 NAME = "interpreted"
 

@@ -9,10 +9,10 @@ import numpy as np
 
 import symofros as sf
 from validation.adapters.segments import segmented
-from validation.assembly import assemble
-from validation.geometry import Array
-from validation.interface import States, Subject, TreeEngine, Unsupported
-from validation.parts import coordinate_symbols
+from validation.contract.interface import States, Subject, TreeEngine, Unsupported
+from validation.mechanics.assembly import assemble
+from validation.mechanics.geometry import Array
+from validation.mechanics.parts import coordinate_symbols
 
 # Of central differences [rad]: their error is its square, and rounding over it.
 _STEP = 1e-5

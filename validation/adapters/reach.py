@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection
 
 import symofros as sf
-from validation.assembly import Assembly, Mover
-from validation.interface import Unsupported
-from validation.quantities import EVERYTHING
+from validation.contract.interface import Unsupported
+from validation.contract.quantities import EVERYTHING
+from validation.mechanics.assembly import Assembly, Mover
 
 
 def unrepresented(system: sf.System, assembly: Assembly, joints: Collection[str]) -> Unsupported | None:

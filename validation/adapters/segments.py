@@ -8,7 +8,7 @@ approximation; each link has the mass of its piece of the beam, tapered or not. 
 lumped at hinges. In one plane everything errs by C/N^2: measured orders are 2.00 for static deflections (4 % at N = 4
 and a deflection of 0.8 L) and 1.95 to 2.00 for the frequencies of spinning beams from N = 16 on. Out of one plane the
 turns of one hinge follow each other, which leaves an error of first order; Richardson's extrapolation over three N
-removes both (`tests/validation/test_segments.py`).
+removes both (`tests/validation/adapters/test_segments.py`).
 
 It can't represent stretch, shear, loads that are spread or that follow the root, nor forces and constraints beside the
 beam's own. Without `rotary_inertia` the mass of a link still turns with it: an error of second order again. MuJoCo
@@ -24,7 +24,7 @@ import symofros as sf
 from symofros.beams.piecewise import gauss
 from symofros.description.beam import STATION
 from symofros.description.values import Value
-from validation.interface import Unsupported
+from validation.contract.interface import Unsupported
 
 # Gauss nodes a link.
 _POINTS = 16

@@ -13,8 +13,8 @@ import typer
 from symofros.atomic import write_atomically
 from validation.campaigns.errors import PlanError, Unfinished
 from validation.campaigns.plan import make, read
-from validation.cases import standard_set
-from validation.page import compact
+from validation.inputs.cases import standard_set
+from validation.reporting.page import compact
 
 STATES = 100_000
 

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from scipy.stats import qmc
 
-from validation.geometry import Array
+from validation.mechanics.geometry import Array
 
 Design = Literal["grid", "latin_hypercube", "sobol"]
 

@@ -15,8 +15,8 @@ import reference_models
 from validation.adapters import ROUTES
 from validation.campaigns.design import Design, Range, points_of
 from validation.campaigns.errors import PlanError
-from validation.cases import Case, named
 from validation.check import description_hash
+from validation.inputs.cases import Case, named
 
 # A plan is a page; whoever sends more wants something else.
 MOST_BYTES = 1 << 20

@@ -13,7 +13,6 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 import symofros as sf
-from validation import provenance
 from validation.campaigns.errors import PlanError, StoreError, Unfinished
 from validation.campaigns.plan import Plan, SweepPlan, as_text, cases, identities, make, plan_hash
 from validation.campaigns.runner import Pool, run
@@ -21,6 +20,7 @@ from validation.campaigns.store import RESULTS, Store, manifest_of, provenance_o
 from validation.campaigns.summary import effort, summarised
 from validation.campaigns.sweep import Sweeper
 from validation.campaigns.tasks import Task, tasks
+from validation.reporting import provenance
 
 
 def begin(plan: Plan, folder: Path, pool: Pool) -> dict[str, Any]:

@@ -10,8 +10,8 @@ import pyarrow as pa
 import symofros as sf
 from validation.campaigns.design import points_of
 from validation.campaigns.plan import SweepPlan
-from validation.cases import Case
-from validation.geometry import Array
+from validation.inputs.cases import Case
+from validation.mechanics.geometry import Array
 
 DONE = "done"
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.findings import Chart, Curve, Kind, Mark
-from validation.page import short
+from validation.evidence.findings import Chart, Curve, Kind, Mark
+from validation.reporting.page import short
 
 # Values over this many times the smallest are better seen on a logarithmic axis.
 _WIDE = 1e3

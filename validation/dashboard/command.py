@@ -10,10 +10,10 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from validation import provenance
 from validation.dashboard.gather import Entry, gather
 from validation.dashboard.page import QuoteError, headline, quote, write_dashboard
 from validation.dashboard.regenerate import Outcome, commands, regenerate
+from validation.reporting import provenance
 
 # Distribution -> the names that reports have for it.
 _ALIASES = {"pin": ("pinocchio", "pinocchio-urdf"), "mujoco": ("mujoco-urdf",)}

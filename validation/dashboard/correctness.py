@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from validation.adapters import ROUTES
+from validation.contract.quantities import ROUNDING, SOLVE
 from validation.dashboard.card import Card, Fact, counted
-from validation.findings import Chart, Curve
-from validation.page import short
-from validation.quantities import ROUNDING, SOLVE
+from validation.evidence.findings import Chart, Curve
+from validation.reporting.page import short
 
 Data = Mapping[str, Any]
 

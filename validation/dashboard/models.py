@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from validation.dashboard.card import Card, Fact, bounded, chart_of, counted, times
-from validation.findings import Chart, Curve
+from validation.evidence.findings import Chart, Curve
 from validation.passes.measure import ALL
 
 Data = Mapping[str, Any]

@@ -9,10 +9,10 @@ from pathlib import Path
 from markupsafe import Markup
 
 from symofros.atomic import write_atomically
-from validation.charts import svg
 from validation.dashboard.gather import Entry
-from validation.findings import Chart
-from validation.page import render
+from validation.evidence.charts import svg
+from validation.evidence.findings import Chart
+from validation.reporting.page import render
 
 BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends -->"
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from validation.dashboard.card import Card, Fact, counted, times
-from validation.findings import Chart, Curve, Mark
+from validation.evidence.findings import Chart, Curve, Mark
 
 Data = Mapping[str, Any]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from validation.diagrams import square, threads, two_arms
-from validation.findings import Asked
+from validation.evidence.findings import Asked
 from validation.questions.topic import Topic
 
 STUDIES: dict[str, Asked] = {"square": square.study, "two_arms": two_arms.study, "threads": threads.study}

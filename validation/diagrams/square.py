@@ -10,8 +10,8 @@ import numpy as np
 import symofros as sf
 from reference_models import MODELS
 from reference_models.diagrams.square import square
-from validation.findings import Chart, Check, Curve, Figure, Mark, Study
-from validation.geometry import Array
+from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study
+from validation.mechanics.geometry import Array
 
 DT, RECORD, T_END = 1e-3, 0.005, 12.0
 APPROACH, ALONG, CORNER, SIDE = 3.0, 2.0, (0.3, 0.3), 0.6  # As the diagram's file has them.

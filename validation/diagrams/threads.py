@@ -7,7 +7,7 @@ import numpy as np
 import symofros as sf
 from reference_models import MODELS
 from symofros import blocks
-from validation.findings import Chart, Check, Curve, Figure, Study
+from validation.evidence.findings import Chart, Check, Curve, Figure, Study
 
 DT, PERIODS = 1e-3, (1e-3, 2e-3, 5e-3, 1e-2)
 

@@ -7,8 +7,8 @@ import numpy as np
 import symofros as sf
 from reference_models.closed.two_arms import HOLD, hand
 from reference_models.diagrams.two_arms import GRIPPED, PLACED, T_END, working
-from validation.findings import Chart, Check, Curve, Figure, Mark, Study
-from validation.geometry import Array
+from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study
+from validation.mechanics.geometry import Array
 
 DT, RECORD = 1e-3, 0.02
 _SPRINGS = tuple(f"{kind}_{axis}" for kind in ("give", "sway") for axis in "xyz")

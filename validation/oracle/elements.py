@@ -8,8 +8,8 @@ from typing import Any
 import sympy
 
 import symofros as sf
+from validation.mechanics.parts import coordinate_symbols, speed_symbols
 from validation.oracle.scope import Scope
-from validation.parts import coordinate_symbols, speed_symbols
 
 
 def stated_forces(scope: Scope) -> dict[str, Any]:

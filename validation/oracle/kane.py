@@ -12,9 +12,9 @@ import sympy
 from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBody, inertia, outer
 
 import symofros as sf
+from validation.mechanics.parts import coordinate_symbols, series, speed_symbols
 from validation.oracle.elements import stated_forces, stored_energy
 from validation.oracle.scope import QUASI, TIME, Derived, Scope, turns
-from validation.parts import coordinate_symbols, series, speed_symbols
 
 Placed = tuple[Any, Any]
 

@@ -8,9 +8,9 @@ import sympy
 from sympy.physics.mechanics import LagrangesMethod
 
 import symofros as sf
+from validation.mechanics.parts import coordinate_symbols, series, speed_symbols
 from validation.oracle.elements import stated_forces, stored_energy
 from validation.oracle.scope import QUASI, TIME, Derived, NotDerivable, Scope, turn
-from validation.parts import coordinate_symbols, series, speed_symbols
 
 Pose = tuple[Any, Any]
 _STILL = sympy.zeros(3, 1)

@@ -10,7 +10,7 @@ import sympy
 from sympy.physics.mechanics import dynamicsymbols
 
 import symofros as sf
-from validation.parts import coordinate_symbols, speed_symbols
+from validation.mechanics.parts import coordinate_symbols, speed_symbols
 
 TIME = dynamicsymbols._t
 QUASI = ("ball", "free")

@@ -10,11 +10,14 @@ from typing import TypeVar
 import numpy as np
 
 import symofros as sf
-from validation.adapters import mujoco, mujoco_steps, pinocchio, pinocchio_steps
-from validation.adapters.exudyn_scenes import held as exudyn_held
-from validation.adapters.exudyn_steps import Solver
-from validation.geometry import Array
-from validation.interface import Subject, Unsupported
+from validation.adapters.exudyn.scenes import held as exudyn_held
+from validation.adapters.exudyn.steps import Solver
+from validation.adapters.mujoco import steps as mujoco_steps
+from validation.adapters.mujoco import tree as mujoco
+from validation.adapters.pinocchio import steps as pinocchio_steps
+from validation.adapters.pinocchio import tree as pinocchio
+from validation.contract.interface import Subject, Unsupported
+from validation.mechanics.geometry import Array
 from validation.pareto.ours import Ours, milliseconds
 from validation.pareto.scene import Contestant, Measured, Prepared, Scene, Target
 from validation.pareto.theirs_exudyn import Theirs

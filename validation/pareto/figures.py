@@ -7,7 +7,7 @@ from string import ascii_lowercase
 
 import numpy as np
 
-from validation.findings import Chart, Curve, Figure, Mark, Tag
+from validation.evidence.findings import Chart, Curve, Figure, Mark, Tag
 from validation.pareto.front import charted, front, usable
 from validation.pareto.race import Result
 from validation.pareto.scene import OURS, Point, Scene

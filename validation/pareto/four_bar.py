@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn_scenes import bars
-from validation.adapters.exudyn_steps import Solver
-from validation.adapters.mujoco_steps import loaded
-from validation.geometry import Array
+from validation.adapters.exudyn.scenes import bars
+from validation.adapters.exudyn.steps import Solver
+from validation.adapters.mujoco.steps import loaded
+from validation.mechanics.geometry import Array
 from validation.pareto.closed_forms import turning
 from validation.pareto.ours import Ours
 from validation.pareto.scene import Contestant, Prepared, Scene, Target

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from validation.adapters.exudyn_scenes import pendulum as exudyn_pendulum
-from validation.adapters.exudyn_steps import Solver
-from validation.adapters.mujoco_steps import loaded
-from validation.geometry import Array
+from validation.adapters.exudyn.scenes import pendulum as exudyn_pendulum
+from validation.adapters.exudyn.steps import Solver
+from validation.adapters.mujoco.steps import loaded
+from validation.mechanics.geometry import Array
 from validation.pareto.closed_forms import swinging
 from validation.pareto.ours import Ours
 from validation.pareto.scene import Contestant, Prepared, Scene, Target

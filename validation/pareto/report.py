@@ -10,15 +10,15 @@ from pathlib import Path
 from typing import Any
 
 from symofros.runtime.toolchain import DEFAULT_FLAGS
-from validation import charts
-from validation.page import compact, number, render, run_data, versions, write_pages
+from validation.evidence import charts
 from validation.pareto import words
 from validation.pareto.catalogue import SCENES
 from validation.pareto.figures import figure, letters
 from validation.pareto.front import charted, front
 from validation.pareto.race import Result
 from validation.pareto.scene import Point, Scene
-from validation.record import machine
+from validation.reporting.page import compact, number, render, run_data, versions, write_pages
+from validation.reporting.record import machine
 
 ENGINES = ("mujoco", "exudyn", "pin")
 FLAGS = " ".join(DEFAULT_FLAGS)

@@ -10,10 +10,10 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from validation.adapters.exudyn_planar import Cable
-from validation.adapters.exudyn_scenes import planar
-from validation.adapters.exudyn_steps import Solver
-from validation.geometry import Array
+from validation.adapters.exudyn.planar import Cable
+from validation.adapters.exudyn.scenes import planar
+from validation.adapters.exudyn.steps import Solver
+from validation.mechanics.geometry import Array
 from validation.pareto.ours import Ours
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
 from validation.pareto.theirs_exudyn import Theirs

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.adapters.exudyn_scenes import Rod
-from validation.geometry import Array
+from validation.adapters.exudyn.scenes import Rod
+from validation.mechanics.geometry import Array
 
 
 def tip(rod: Rod, times: Array, links: int) -> Array:

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn_scenes import Rod, spinning
-from validation.adapters.exudyn_steps import Recorded, Solver
-from validation.geometry import Array
+from validation.adapters.exudyn.scenes import Rod, spinning
+from validation.adapters.exudyn.steps import Recorded, Solver
+from validation.mechanics.geometry import Array
 from validation.pareto import rod
 from validation.pareto.ours import Ours
 from validation.pareto.scene import Contestant, Prepared, Scene, Target

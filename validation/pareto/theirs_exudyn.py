@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.adapters.exudyn_steps import ADAPTIVE, Recorded, Solver, Timed
+from validation.adapters.exudyn.steps import ADAPTIVE, Recorded, Solver, Timed
 from validation.pareto.ours import milliseconds
 from validation.pareto.scene import Contestant, Measured
 

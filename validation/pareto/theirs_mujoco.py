@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.adapters.mujoco_steps import stepped
-from validation.geometry import Array
+from validation.adapters.mujoco.steps import stepped
+from validation.mechanics.geometry import Array
 from validation.pareto.ours import milliseconds
 from validation.pareto.scene import Contestant, Measured
 

@@ -14,10 +14,10 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from symofros.atomic import write_atomically
 from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
-from validation.page import render, versions
 from validation.passes.measure import ALL, APART, MODELS, Measured, as_data, measure
 from validation.passes.switches import PASSES
-from validation.record import machine
+from validation.reporting.page import render, versions
+from validation.reporting.record import machine
 
 _REPEATS = 101
 _APART = "M, h and Q are one function with one set of kinematics; without: three functions."

@@ -17,7 +17,7 @@ import numpy as np
 import reference_models
 import symofros as sf
 from symofros.passes.count import count_program
-from validation.geometry import Array
+from validation.mechanics.geometry import Array
 from validation.passes.switches import PASSES, Without
 from validation.timing.arrays import Arrays, loops
 from validation.timing.models import SCENES

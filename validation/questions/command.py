@@ -11,7 +11,7 @@ from rich.progress import Progress
 from rich.table import Table
 
 import symofros as sf
-from validation.findings import Study
+from validation.evidence.findings import Study
 from validation.questions.report import Answers, as_data, write_report
 from validation.questions.topic import Topic
 

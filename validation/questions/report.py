@@ -8,10 +8,10 @@ from typing import Any
 
 from markupsafe import Markup
 
-from validation.charts import svg
-from validation.findings import Chart, Study
-from validation.page import check_data, compact, figure_data, render, run_data, versions, write_pages
+from validation.evidence.charts import svg
+from validation.evidence.findings import Chart, Study
 from validation.questions.topic import Topic
+from validation.reporting.page import check_data, compact, figure_data, render, run_data, versions, write_pages
 
 
 @dataclass(frozen=True)

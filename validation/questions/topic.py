@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from validation.findings import Asked
+from validation.evidence.findings import Asked
 
 
 @dataclass(frozen=True)

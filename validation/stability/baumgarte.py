@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.findings import Check, exponent
+from validation.evidence.findings import Check, exponent
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, decades, simulate
 

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 import symofros as sf
-from validation.findings import Check
-from validation.geometry import Array
+from validation.evidence.findings import Check
+from validation.mechanics.geometry import Array
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, decades, simulate
 

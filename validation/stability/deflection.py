@@ -12,7 +12,7 @@ import symofros as sf
 from validation.accuracy.pendulum import GRAVITY, MODELS, WORDS
 from validation.accuracy.pendulum import pendulum as stated
 from validation.accuracy.reference import data, source
-from validation.findings import Check
+from validation.evidence.findings import Check
 from validation.stability.scene import Cell, Grid, Map, Maps, Scene, Subject, Verdict, cell, simulate
 
 END = 2.0

@@ -9,8 +9,8 @@ import numpy as np
 
 import symofros as sf
 from symofros.simulation.methods import METHODS
-from validation.adapters import mujoco_motion
-from validation.findings import Check
+from validation.adapters.mujoco import motion as mujoco_motion
+from validation.evidence.findings import Check
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 

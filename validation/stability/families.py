@@ -8,7 +8,7 @@ import numpy as np
 
 import symofros as sf
 from validation.accuracy.reference import data, source
-from validation.findings import Check
+from validation.evidence.findings import Check
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, refused
 
 BOUND = 1e-6

@@ -8,8 +8,8 @@ from html import escape
 import numpy as np
 import numpy.typing as npt
 
-from validation.charts import Axis, line, shown, text
-from validation.geometry import Array
+from validation.evidence.charts import Axis, line, shown, text
+from validation.mechanics.geometry import Array
 from validation.stability.scene import FINISHED, Grid, Limit, Map
 
 WIDTH, HEIGHT = 620, 430

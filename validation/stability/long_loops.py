@@ -8,8 +8,8 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.findings import Check, exponent
-from validation.geometry import Array
+from validation.evidence.findings import Check, exponent
+from validation.mechanics.geometry import Array
 from validation.stability import four_bars
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 

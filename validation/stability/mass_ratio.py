@@ -12,10 +12,10 @@ import numpy as np
 
 import symofros as sf
 from validation.adapters import available
-from validation.findings import Check
-from validation.geometry import Array
-from validation.interface import EngineFactory, States, TreeEngine, Unsupported
-from validation.interface import Subject as Model
+from validation.contract.interface import EngineFactory, States, TreeEngine, Unsupported
+from validation.contract.interface import Subject as Model
+from validation.evidence.findings import Check
+from validation.mechanics.geometry import Array
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 BOUND = 1e-8

@@ -9,7 +9,7 @@ import numpy as np
 
 import symofros as sf
 from reference_models import MODELS
-from validation.findings import Check
+from validation.evidence.findings import Check
 from validation.stability import four_bars
 from validation.stability.four_bars import AXIS, BAR, END_OF_BAR
 from validation.stability.reference import data, source

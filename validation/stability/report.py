@@ -10,7 +10,7 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
-from validation.page import check_data, compact, render, rounded, run_data, versions, write_pages
+from validation.reporting.page import check_data, compact, render, rounded, run_data, versions, write_pages
 from validation.stability import heat
 from validation.stability.scene import FINISHED, Map, Maps, Scene, Verdict
 

@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 import symofros as sf
-from validation.findings import Check
-from validation.geometry import Array
+from validation.evidence.findings import Check
+from validation.mechanics.geometry import Array
 
 # What an Outcome is called when nothing went wrong, here as in `symofros.Outcome`.
 FINISHED = ("finished", "event")

@@ -8,9 +8,10 @@ from collections.abc import Callable
 import numpy as np
 
 import symofros as sf
-from validation.adapters import exudyn_motion, mujoco_motion
-from validation.findings import Check
-from validation.geometry import Array
+from validation.adapters.exudyn import motion as exudyn_motion
+from validation.adapters.mujoco import motion as mujoco_motion
+from validation.evidence.findings import Check
+from validation.mechanics.geometry import Array
 from validation.stability import four_bars
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate

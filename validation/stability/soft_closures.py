@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from validation.adapters import mujoco_motion
-from validation.findings import Check
+from validation.adapters.mujoco import motion as mujoco_motion
+from validation.evidence.findings import Check
 from validation.stability import four_bars
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, decades, simulate

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.findings import Check
+from validation.evidence.findings import Check
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, simulate
 

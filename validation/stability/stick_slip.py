@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.findings import Check
-from validation.geometry import Array
+from validation.evidence.findings import Check
+from validation.mechanics.geometry import Array
 from validation.stability.scene import Cell, Grid, Limit, Map, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 STATED, DYNAMIC, SPRING, PULL = 4.0, 2.0, 100.0, 0.05

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.cases import robot_case
+from validation.inputs.cases import robot_case
 
 ROBOT = "xarm7"
 CALLS = 1_000_000

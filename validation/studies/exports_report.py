@@ -11,9 +11,9 @@ from typing import Annotated
 import typer
 
 from symofros.atomic import write_atomically
-from validation.page import versions
-from validation.provenance import stamp
-from validation.record import machine
+from validation.reporting.page import versions
+from validation.reporting.provenance import stamp
+from validation.reporting.record import machine
 from validation.studies.exports import CALLS, ExportStudy, run_study
 
 _LIMITS = (

@@ -16,7 +16,7 @@ from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Edge, Graph
 from symofros.expr.ops import ADD, MUL, OPS
 from symofros.expr.program import Function, Program
-from validation.geometry import Array
+from validation.mechanics.geometry import Array
 
 PERTURBATION = 1e-6
 

@@ -18,7 +18,7 @@ from rich.progress import Progress
 
 import symofros as sf
 from symofros.atomic import write_atomically
-from validation.provenance import stamp
+from validation.reporting.provenance import stamp
 from validation.studies.fuzz import COMPILED, SLOWEST, FuzzResult, fuzz
 
 INPUTS = 120_000

@@ -22,14 +22,14 @@ from symofros.expr.precise import evaluate_precisely
 from symofros.expr.program import Function
 from validation.adapters import ROUTES, Missing, available, description
 from validation.adapters.interpreted import build as interpreted
-from validation.assembly import assemble
-from validation.compare import Scales, compute, state_errors, typical_scales
-from validation.frames import chosen_frames
-from validation.geometry import Array
-from validation.interface import Engine, States, Subject, Unsupported
-from validation.quantities import FORCES_STATED, FRAME_QUANTITIES, QUANTITIES, Quantity
-from validation.sampling import sample
-from validation.sides import with_forces
+from validation.comparison.errors import Scales, compute, state_errors, typical_scales
+from validation.comparison.sides import with_forces
+from validation.contract.interface import Engine, States, Subject, Unsupported
+from validation.contract.quantities import FORCES_STATED, FRAME_QUANTITIES, QUANTITIES, Quantity
+from validation.inputs.frames import chosen_frames
+from validation.inputs.sampling import sample
+from validation.mechanics.assembly import assemble
+from validation.mechanics.geometry import Array
 from validation.studies.faults import Bench, Fault, faults_at
 
 STATES = 60

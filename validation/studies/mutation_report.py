@@ -16,9 +16,9 @@ from rich.table import Table
 
 import reference_models
 from symofros.atomic import write_atomically
-from validation.cases import standard_set
-from validation.page import versions
-from validation.provenance import stamp
+from validation.inputs.cases import standard_set
+from validation.reporting.page import versions
+from validation.reporting.provenance import stamp
 from validation.studies.mutation import MutationScore, mutate
 
 # Models that an independent engine can represent whole, small and large, fixed and floating.

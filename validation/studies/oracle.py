@@ -17,8 +17,8 @@ from rich.table import Table
 from rich.text import Text
 
 from symofros.atomic import write_atomically
-from validation.console import output
-from validation.provenance import stamp, versions
+from validation.reporting.console import output
+from validation.reporting.provenance import stamp, versions
 
 if TYPE_CHECKING:
     from validation.oracle.compare import Agreement

@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 from symofros.atomic import write_atomically
-from validation.provenance import stamp, versions
+from validation.reporting.provenance import stamp, versions
 from validation.studies import realtime
 from validation.studies.realtime import Timed
 

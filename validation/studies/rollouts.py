@@ -8,10 +8,10 @@ from statistics import median
 import numpy as np
 
 import symofros as sf
-from validation.adapters import mujoco
-from validation.adapters.mujoco_rollout import roll_out
-from validation.geometry import Array
-from validation.interface import Subject, Unsupported
+from validation.adapters.mujoco import tree as mujoco
+from validation.adapters.mujoco.rollout import roll_out
+from validation.contract.interface import Subject, Unsupported
+from validation.mechanics.geometry import Array
 from validation.studies.simulation import DAMPING, STIFFNESS, TARGET
 from validation.timing.models import SCENES
 

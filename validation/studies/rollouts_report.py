@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from symofros.atomic import write_atomically
-from validation.provenance import stamp
+from validation.reporting.provenance import stamp
 from validation.studies import rollouts
 
 _LIMITS = (

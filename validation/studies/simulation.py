@@ -14,10 +14,11 @@ import reference_models
 import symofros as sf
 from validation.accuracy import spinup
 from validation.accuracy.reference import data
-from validation.adapters import mujoco, mujoco_motion
-from validation.adapters.exudyn_ancf import spin_up
-from validation.interface import Subject, Unsupported
-from validation.reference import References
+from validation.adapters.exudyn.ancf import spin_up
+from validation.adapters.mujoco import motion as mujoco_motion
+from validation.adapters.mujoco import tree as mujoco
+from validation.contract.interface import Subject, Unsupported
+from validation.evidence.reference import References
 from validation.stability import four_bars
 from validation.stability.singular import ends_of_crank
 from validation.stability.soft_closures import SOLIMP

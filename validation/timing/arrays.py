@@ -9,7 +9,7 @@ from typing import Any
 import cffi
 import numpy as np
 
-from validation.geometry import Array
+from validation.mechanics.geometry import Array
 from validation.timing.programs import BuildError, Compiler, build, compilers, declared, source
 
 _FLAGS = ("-O3", "-march=native", "-std=gnu99", "-Wall", "-Wextra")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from symofros.runtime.layout import Numbers, Strided, columns
-from validation.geometry import Array
+from validation.mechanics.geometry import Array
 from validation.timing.arrays import loops, room
 
 

@@ -15,10 +15,10 @@ from typing import Any
 import cffi
 import numpy as np
 
-from validation.assembly import Assembly
-from validation.conventions import Chart
-from validation.geometry import Array, matrix_quaternion, quaternion_product
-from validation.interface import Subject, Unsupported
+from validation.contract.conventions import Chart
+from validation.contract.interface import Subject, Unsupported
+from validation.mechanics.assembly import Assembly
+from validation.mechanics.geometry import Array, matrix_quaternion, quaternion_product
 from validation.timing.programs import BuildError, Built, Compiler, Skipped, build, compilers, copies, declared, source
 from validation.timing.task import START, STEP, Loop, Task, flat
 
@@ -120,7 +120,7 @@ def pinocchio_loops(task: Task, functions: Sequence[str], warn: Callable[[str], 
 
 def _ties_text(task: Task) -> str:
     """How Pinocchio's rigid constraints close the loops, for `validation/native/loop_closed.cpp`."""
-    from validation.adapters import pinocchio_loops
+    from validation.adapters.pinocchio import loops as pinocchio_loops
 
     engine = pinocchio_loops.build(Subject(task.label, task.system))
     if isinstance(engine, Unsupported):
@@ -134,7 +134,7 @@ def mujoco_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     Raises:
         Skipped: MuJoCo has no such model, or is not installed.
     """
-    from validation.adapters import mujoco
+    from validation.adapters.mujoco import tree as mujoco
 
     if task.system.constraints:
         raise Skipped("its closures are soft: accelerations are others")

@@ -13,8 +13,8 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from validation.adapters.exudyn_planar import Cable, PlanarTree, planar_tree
-from validation.geometry import Array
+from validation.adapters.exudyn.planar import Cable, PlanarTree, planar_tree
+from validation.mechanics.geometry import Array
 from validation.timing.flexible import LABEL
 
 POSTURE = {"q1": 0.3, "q2": 0.8, "q3": -0.5}

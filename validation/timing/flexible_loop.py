@@ -11,7 +11,7 @@ import cffi
 import numpy as np
 
 import symofros as sf
-from validation.geometry import Array
+from validation.mechanics.geometry import Array
 
 
 class GeneratedLoop:

@@ -16,9 +16,9 @@ from time import thread_time_ns
 
 import numpy as np
 
-from validation.adapters.exudyn_planar import smallest
-from validation.adapters.exudyn_system import Part
-from validation.assembly import assemble
+from validation.adapters.exudyn.planar import smallest
+from validation.adapters.exudyn.system import Part
+from validation.mechanics.assembly import assemble
 from validation.timing.equal_accuracy import NotTheSameError, Pair, pairs, robot
 from validation.timing.flexible import FlexibleTiming
 from validation.timing.flexible_loop import GeneratedLoop

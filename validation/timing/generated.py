@@ -5,14 +5,14 @@ from __future__ import annotations
 import ctypes
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from functools import partial
 
-from validation.geometry import Array
+from validation.mechanics.geometry import Array
 from validation.timing.arrays import Arrays, Turns, loops
 from validation.timing.programs import Built, Compiler, Skipped, build, compilers, copies
+from validation.timing.source import Source
 from validation.timing.task import Cost, Loop, Task
 
 # Straight-line code is erratic: between builds of one source, times differ by half. The best of these counts.
@@ -24,36 +24,14 @@ MOST_KANE = 4
 MOST_DERIVED = 10
 
 
-@dataclass(frozen=True)
-class Source:
-    """One function as C text, with CasADi's signature.
-
-    Attributes:
-        name: Of the function, ours and in C.
-        text: C.
-        inputs: Groups of the states it reads, in order.
-        sizes: Of its outputs.
-        scratch: Doubles and integers it works with.
-        operations: Executed.
-        seconds: From the description to the text.
-    """
-
-    name: str
-    text: str
-    inputs: tuple[str, ...]
-    sizes: tuple[int, ...]
-    scratch: tuple[int, int]
-    operations: Mapping[str, int]
-    seconds: float
-
-
 def casadi_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     """Each function by each build.
 
     Raises:
         Skipped: The recursions have no equations for the model.
     """
-    from validation.adapters import casadi_code, casadi_tree
+    from validation.adapters.casadi import code as casadi_code
+    from validation.adapters.casadi import tree as casadi_tree
 
     if task.assembly.nv > MOST_DERIVED and any(name.endswith("derivatives") for name in functions):
         raise Skipped(f"derivatives are made up to {MOST_DERIVED} degrees of freedom, beyond which they take minutes")

@@ -9,7 +9,7 @@ from functools import partial
 import reference_models
 import symofros as sf
 from reference_models.rigid.chain import chain
-from validation.cases import standard_set
+from validation.inputs.cases import standard_set
 
 # Function of the generated code -> its name in tables.
 FUNCTIONS = {

@@ -18,7 +18,7 @@ from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepper import Stepper
-from validation.geometry import Array
+from validation.mechanics.geometry import Array
 from validation.timing.arrays import Arrays, Turns, loops
 from validation.timing.blocks import Blocks
 from validation.timing.programs import BuildError, Compiler, build, copies, source

@@ -12,8 +12,8 @@ from time import thread_time_ns
 
 import numpy as np
 
-from validation.geometry import Array
-from validation.quantities import ROUNDING, SOLVE
+from validation.contract.quantities import ROUNDING, SOLVE
+from validation.mechanics.geometry import Array
 from validation.timing.task import Loop
 
 # Of the largest entry of a state's result. Integrators of quaternions differ in method, by the fourth power of a step.

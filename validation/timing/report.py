@@ -10,9 +10,9 @@ from typing import Any
 from markupsafe import Markup
 
 from symofros.atomic import write_atomically
-from validation.charts import svg
-from validation.findings import Chart
-from validation.page import render
+from validation.evidence.charts import svg
+from validation.evidence.findings import Chart
+from validation.reporting.page import render
 from validation.timing.flexible_report import flexible_section
 from validation.timing.record import Record, as_data
 from validation.timing.sections import headline, sections

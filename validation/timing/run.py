@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.runtime.toolchain import DEFAULT_FLAGS
-from validation.record import machine
+from validation.reporting.record import machine
 from validation.timing.arrays import first_compiler
 from validation.timing.engines import CLOSED, PINOCCHIO_FLAGS, pinocchio_builds
 from validation.timing.generated import BUILDS

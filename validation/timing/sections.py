@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.findings import Chart, Curve, Figure
+from validation.evidence.findings import Chart, Curve, Figure
 from validation.timing.growth import Growth, growth
 from validation.timing.models import FUNCTIONS, SCENES
 from validation.timing.record import Entry, Made, Record

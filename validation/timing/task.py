@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import symofros as sf
-from validation.assembly import Assembly, assemble
-from validation.geometry import Array
-from validation.interface import States
-from validation.loops import assembled_states
-from validation.sampling import sample
+from validation.comparison.loops import assembled_states
+from validation.contract.interface import States
+from validation.inputs.sampling import sample
+from validation.mechanics.assembly import Assembly, assemble
+from validation.mechanics.geometry import Array
 from validation.timing.models import SCENES
 
 STATES = 1000

@@ -18,7 +18,7 @@ import pytest
 
 from validation.campaigns.plan import make
 from validation.campaigns.tasks import tasks
-from validation.cases import standard_set
+from validation.inputs.cases import standard_set
 
 ROOT = Path(__file__).parents[3]
 WORKERS = 2

@@ -10,7 +10,7 @@ import symofros as sf
 from validation.campaigns.plan import SweepPlan, make
 from validation.campaigns.sweep import DONE, Sweeper
 from validation.campaigns.tasks import tasks
-from validation.cases import Case
+from validation.inputs.cases import Case
 
 END_STATE: dict[str, Any] = {
     "kind": "sweep", "model": "double_pendulum", "quantity": "end_state", "design": "sobol", "points": 16, "batch": 6,

@@ -11,11 +11,11 @@ from typer.testing import CliRunner
 
 from tests.validation.dashboard.test_gather import FUZZ, TODAY, write
 from validation.__main__ import app
-from validation.charts import svg
 from validation.dashboard import regenerate
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import gather
 from validation.dashboard.page import BEGIN, END, QuoteError, headline, quote, quoted, write_dashboard
+from validation.evidence.charts import svg
 
 ROOT = Path(__file__).parents[3]
 

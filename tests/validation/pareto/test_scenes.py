@@ -13,8 +13,8 @@ from scipy.special import ellipk
 from typer.testing import CliRunner
 
 from validation.__main__ import app
-from validation.adapters.exudyn_scenes import Rod, pendulum
-from validation.adapters.exudyn_steps import Solver
+from validation.adapters.exudyn.scenes import Rod, pendulum
+from validation.adapters.exudyn.steps import Solver
 from validation.pareto import andrews, arm, closed_forms, four_bar, rod, spin_up
 from validation.pareto import pendulum as swing
 from validation.pareto.catalogue import SCENES

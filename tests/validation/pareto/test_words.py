@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from validation.charts import svg
+from validation.evidence.charts import svg
 from validation.pareto import words
 from validation.pareto.catalogue import SCENES
 from validation.pareto.figures import figure, letters

@@ -9,7 +9,7 @@ import pytest
 
 import reference_models
 import symofros as sf
-from validation.adapters.exudyn_planar import Cable, planar_tree, smallest
+from validation.adapters.exudyn.planar import Cable, planar_tree, smallest
 from validation.timing import equal_accuracy
 from validation.timing.equal_accuracy import (
     EA,

@@ -10,11 +10,11 @@ import pytest
 import reference_models
 import symofros as sf
 from reference_models.rigid.chain import chain
-from validation.adapters.casadi_code import operations
-from validation.adapters.casadi_links import in_world
-from validation.adapters.casadi_tree import CasadiTree
-from validation.assembly import assemble
-from validation.geometry import Array
+from validation.adapters.casadi.code import operations
+from validation.adapters.casadi.links import in_world
+from validation.adapters.casadi.tree import CasadiTree
+from validation.mechanics.assembly import assemble
+from validation.mechanics.geometry import Array
 from validation.timing.engines import tree_text
 from validation.timing.generated import casadi_loops
 from validation.timing.models import arm
@@ -156,8 +156,8 @@ def test_closed_loops_are_timed_at_closed_postures() -> None:
 
 
 def test_closures_go_over_as_numbers() -> None:
-    from validation.adapters import pinocchio_loops
-    from validation.interface import Subject, Unsupported
+    from validation.adapters.pinocchio import loops as pinocchio_loops
+    from validation.contract.interface import Subject, Unsupported
 
     engine = pinocchio_loops.build(Subject("four_bar", reference_models.MODELS["four_bar"]))
     assert not isinstance(engine, Unsupported)

@@ -1,0 +1,164 @@
+"""The accuracy report: its quick variant, that it can fail, and its charts."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from validation.__main__ import app
+from validation.accuracy import catalogue
+from validation.accuracy.catalogue import TOPIC
+from validation.accuracy.elastica import exact
+from validation.evidence import charts
+from validation.evidence.findings import Chart, Check, Curve, Mark, Study, exponent, near
+from validation.questions.report import Answers, write_report
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    folder = tmp_path_factory.mktemp("reports")
+    done = CliRunner().invoke(app, ["accuracy", "--quick", "--json", "--report", str(folder)])
+    data = json.loads(done.stdout)
+    assert done.exit_code == 0, [(c["what"], c["found"]) for s in data["studies"].values() for c in s["checks"]]
+    return folder, data
+
+
+def number(data: dict[str, Any], study: str, what: str) -> float:
+    """The one number of a study whose name begins so."""
+    (found,) = (c["found"] for c in data["studies"][study]["checks"] if c["what"].startswith(what))
+    return float(found)
+
+
+def test_every_question_is_answered_within_its_bounds(quick: tuple[Path, dict[str, Any]]) -> None:
+    _, data = quick
+    assert data["ok"] and data["quick"] and not data["failures"]
+    assert list(data["studies"]) == list(catalogue.STUDIES)
+    assert all(study["ok"] and study["checks"] and study["figures"] for study in data["studies"].values())
+
+
+# Closed forms and tables, written here a second time.
+@pytest.mark.parametrize(
+    ("study", "what", "expected", "relative"),
+    [
+        ("spinning", "speed of divergence without foreshortening, hub ratio 1", 3.5160152685, 1e-6),
+        ("spinup", "3 functions: peak against the exact rod", -0.7505230852, 4e-3),
+        ("elastica", "deflection over L at which the error reaches 5 %", 0.2144882, 1e-2),
+        ("buckling", "Euler's load, legendre, 5 functions", np.pi**2 / 4, 1e-8),
+        ("buckling", "buckling under its weight", 7.837347, 1e-6),
+        ("buckling", "lateral buckling, 4 functions", 4.016, 2e-4),
+        ("damping", "logarithmic decrement", 0.1259484, 1e-6),
+        ("pendulum", "stiff: largest deflection", 0.0120579, 2e-3),
+        ("conditioning", "legendre: condition number with 8", 3.8, 1e-12),
+    ],
+)
+def test_numbers(quick: tuple[Path, dict[str, Any]], study: str, what: str, expected: float, relative: float) -> None:
+    assert number(quick[1], study, what) == pytest.approx(expected, rel=relative)
+
+
+def test_families_converge_with_their_exponents(quick: tuple[Path, dict[str, Any]]) -> None:
+    _, data = quick
+    assert number(data, "convergence", "cubic splines: exponent") == pytest.approx(4.0, abs=0.7)
+    assert number(data, "convergence", "cantilever modes: exponent") == pytest.approx(4.0, abs=0.7)
+    assert number(data, "convergence", "Legendre: decades") > 0.7
+    assert number(data, "energy", "first order: exponent") > 1.9
+
+
+def test_the_page_is_whole_and_self_contained(quick: tuple[Path, dict[str, Any]]) -> None:
+    folder, data = quick
+    page, summary = ((folder / f"accuracy.{kind}").read_text() for kind in ("html", "md"))
+    assert json.loads((folder / "accuracy.json").read_text()) == data
+    figures = [figure for study in data["studies"].values() for figure in study["figures"]]
+    assert page.count("<figcaption>") == len(figures)
+    assert page.count("<svg") == sum(len(figure["charts"]) for figure in figures)
+    assert not re.search(r'(src|href)="(?!#)', page) and "<script" not in page and "nan" not in page.lower().split()
+    for study in data["studies"].values():
+        assert study["title"] in summary
+    for figure in figures:
+        assert figure["caption"].endswith(".") and len(figure["caption"]) > 60
+        for chart in figure["charts"]:
+            # Every axis has its unit.
+            assert re.search(r"\[.+\]$", chart["x"]) and re.search(r"\[.+\]$", chart["y"]), chart["title"]
+            assert all(curve["label"] for curve in chart["curves"])
+
+
+def test_a_missed_bound_fails_the_command(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    missed = Study("Does it fail?", "Yes.", (), (Check("zero", 1.0, 0.0),))
+    monkeypatch.setitem(catalogue.STUDIES, "spinning", lambda quick: missed)
+    done = CliRunner().invoke(app, ["accuracy", "--study", "spinning", "--report", str(tmp_path)])
+    assert done.exit_code == 1 and "1 miss their bounds" in done.stdout
+    assert "**missed** 1" in (tmp_path / "accuracy.md").read_text()
+
+
+def test_a_study_that_can_not_be_done_fails_the_command_and_no_other(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def broken(quick: bool) -> Study:
+        raise ArithmeticError("diverged")
+
+    monkeypatch.setitem(catalogue.STUDIES, "spinning", broken)
+    command = ["accuracy", "--study", "spinning", "--study", "elastica", "--quick", "--json", "--report", str(tmp_path)]
+    done = CliRunner().invoke(app, command)
+    data = json.loads(done.stdout)
+    assert done.exit_code == 1 and not data["ok"] and data["studies"]["elastica"]["ok"]
+    assert data["failures"] == {"spinning": "ArithmeticError: diverged"}
+
+
+def test_an_unknown_study_is_refused() -> None:
+    done = CliRunner().invoke(app, ["accuracy", "--study", "spining"])
+    assert done.exit_code == 2 and "no study 'spining'" in done.output
+
+
+@pytest.mark.parametrize(("found", "ok"), [(1.0, True), (1.011, False), (0.989, False), (np.nan, False)])
+def test_bounds(found: float, ok: bool) -> None:
+    assert near("x", found, 1.0, 0.01, "").ok is ok
+    assert near("x", -found, -1.0, 0.01, "").ok is ok
+
+
+def test_nothing_asked_is_not_a_success(tmp_path: Path) -> None:
+    run = Answers(TOPIC, {}, {}, True, 0.0)
+    assert not run.ok and write_report(run, tmp_path).is_file()
+
+
+def test_exponent_of_a_power_law() -> None:
+    n = np.array([2.0, 4.0, 8.0])
+    assert exponent(n, 3.0 * n**-2.5) == pytest.approx(2.5, rel=1e-12)
+
+
+def test_elastica_at_small_loads() -> None:
+    deflection, shortening = exact(0.01)
+    # y = a/3 (1 - 4 a^2/35 + ...), u = a^2/15 to first order.
+    assert deflection == pytest.approx(0.01 / 3 * (1 - 4e-4 / 35), rel=1e-7)
+    assert shortening == pytest.approx(1e-4 / 15, rel=1e-4)
+
+
+def points(svg: str) -> list[tuple[float, float]]:
+    (text,) = re.findall(r'points="([^"]*)"', svg)
+    return [(float(x), float(y)) for x, y in (pair.split(",") for pair in text.split())]
+
+
+def test_a_chart_places_points_by_their_values() -> None:
+    x = np.array([1.0, 10.0, 100.0])
+    chart = Chart("t", "x  [1]", "y  [1]", (Curve("c", x, x**2),), (Mark("limit", 1e2),), log_x=True, log_y=True)
+    (x0, y0), (x1, y1), (x2, y2) = points(charts.svg(chart))
+    assert x1 - x0 == pytest.approx(x2 - x1, abs=0.2) and y0 - y1 == pytest.approx(y1 - y2, abs=0.2)
+    (mark,) = re.findall(r'class="limit"[^>]*y1="([\d.]+)"', charts.svg(chart))
+    assert float(mark) == pytest.approx(y1, abs=0.2)
+
+
+@pytest.mark.parametrize("gap", [np.nan, np.inf, -1.0])
+def test_what_can_not_be_drawn_leaves_a_gap(gap: float) -> None:
+    y = np.array([1.0, 2.0, gap, 2.0, 1.0])
+    text = charts.svg(Chart("t", "x", "y", (Curve("a < b", np.arange(5.0), y),), log_y=True))
+    assert text.count("<polyline") == 2 and "nan" not in text and "a &lt; b" in text
+
+
+def test_a_range_cuts_curves() -> None:
+    x = np.linspace(0.0, 10.0, 11)
+    shown = points(charts.svg(Chart("t", "x", "y", (Curve("c", x, x),), range_y=(0.0, 5.0))))
+    assert len(shown) == 6

@@ -1,0 +1,88 @@
+"""Engine against engine, and ours against all."""
+
+import pytest
+
+import symofros as sf
+from tests.validation.subjects import UNIT, every_kind, pendulum, states_of, subject_of, tree
+from validation.adapters.mujoco import tree as mujoco
+from validation.adapters.pinocchio import tree as pinocchio
+from validation.check import Settings, check
+from validation.comparison.errors import compute, state_errors, typical_scales
+from validation.contract.interface import Subject, Unsupported
+from validation.contract.quantities import CONSTRAINED, EVERYTHING, LOOPS, QUANTITIES
+
+FEW = Settings(states=40)
+
+
+@pytest.mark.parametrize("subject", [every_kind(), *(tree(seed) for seed in range(6))], ids=lambda s: s.label)
+def test_pinocchio_agrees_with_mujoco(subject: Subject) -> None:
+    """Two engines and two ways of merging fixed bodies: what the harness does before ours comes in."""
+    states = states_of(subject)
+    ours, theirs = pinocchio.build(subject), mujoco.build(subject)
+    assert not isinstance(ours, Unsupported) and not isinstance(theirs, Unsupported)
+    scales = typical_scales(ours, states)
+    for name in EVERYTHING:
+        quantity = QUANTITIES[name]
+        errors = state_errors(quantity, compute(ours, quantity, states), compute(theirs, quantity, states), scales)
+        assert errors.max() <= quantity.tolerance, name
+
+
+@pytest.mark.parametrize("subject", [every_kind(), tree(0), tree(3)], ids=lambda s: s.label)
+def test_our_c_agrees_with_all(subject: Subject) -> None:
+    result = check(subject, FEW)
+    assert result.ok, [row for row in result.comparisons if not row.ok]
+    assert {row.engine for row in result.comparisons} == {
+        "pinocchio", "mujoco", "interpreted", "description", "symofros"
+    }  # fmt: skip
+    of_trees = {*QUANTITIES, "motion_energy", "energy_drift"} - CONSTRAINED - LOOPS
+    assert {row.quantity for row in result.comparisons} == of_trees
+
+
+def test_forces_are_the_stated_formulas() -> None:
+    system = sf.System(
+        "driven",
+        [
+            sf.RigidBody("a", sf.Joint("j", "revolute", effort=("-k*j - c*dj + 2*push^2",), actuated=True), UNIT),
+            sf.RigidBody("b", sf.Joint("s", "ball", "a", effort=("-c*s.wx", "push", "k*s.qw"), actuated=True), UNIT),
+        ],
+        [sf.Parameter("k", 3.0), sf.Parameter("c", 0.5, constant=True)],
+        [sf.Input("push")],
+    )
+    result = check(subject_of(system), FEW)
+    assert result.ok, [row for row in result.comparisons if not row.ok]
+    row = next(row for row in result.comparisons if row.engine == "description")
+    assert row.states == 40 and row.error is not None
+
+
+@pytest.mark.parametrize("gravity", [(0.0, 0.0, 0.0), (0.0, 9.81, 0.0)])
+def test_quantities_that_vanish_are_no_trouble(gravity: tuple[float, ...]) -> None:
+    """Without gravity, or with gravity along the axis, bias and potential energy are zero or rounding."""
+    result = check(subject_of(pendulum(gravity=gravity)), FEW)
+    assert result.ok, [row for row in result.comparisons if not row.ok]
+
+
+@pytest.mark.parametrize("tilt", [1e-6, 1e-8, 1e-10])
+def test_slight_tilts_are_kept(tilt: float) -> None:
+    """Cosines of small angles are 1 to rounding, the angles are not 0."""
+    bodies, parent = [], "world"
+    for i in range(3):
+        rotation = sf.Rotation.rpy(tilt, tilt, 0.5)
+        joint = sf.Joint(f"q{i}", "revolute", parent, None, (0.3, 0.1, 0.2), rotation, (0.0, 1.0, 0.0))
+        bodies.append(sf.RigidBody(f"b{i}", joint, UNIT))
+        parent = f"b{i}"
+    result = check(subject_of(sf.System("tilted", bodies)), FEW)
+    assert result.ok, [(row.engine, row.quantity, row.error) for row in result.comparisons if not row.ok]
+
+
+@pytest.mark.parametrize(("force", "word"), [
+    ({"effort": ("-0.1*sign(dq)",)}, "sign"),
+    ({"elements": (sf.Friction(0.1),)}, "friction"),
+    ({"elements": (sf.Stop(100.0, upper=0.1),)}, "stop"),
+    ({"elements": (sf.Damper(0.0, 0.1),)}, "damper"),
+])  # fmt: skip
+def test_a_corner_in_a_force_is_no_drift_of_ours(force: dict[str, tuple[object, ...]], word: str) -> None:
+    joint = sf.Joint("q", "revolute", axis=(0, 1, 0), **force)  # type: ignore[arg-type]
+    result = check(subject_of(sf.System("dry", [sf.RigidBody("rod", joint, UNIT)])), FEW)
+    (row,) = (row for row in result.comparisons if row.quantity == "energy_drift")
+    assert row.status == "unsupported" and word in row.note
+    assert result.ok

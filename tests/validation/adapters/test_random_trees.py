@@ -1,0 +1,103 @@
+"""Random trees against the engines: shape, joints, axes, placements, inertias drawn by hypothesis, which shrinks a
+disagreement to a minimal tree.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import symofros as sf
+from validation.adapters import interpreted
+from validation.adapters.compiled import SymofrosEngine
+from validation.adapters.mujoco import tree as mujoco
+from validation.adapters.pinocchio import tree as pinocchio
+from validation.comparison.errors import compute, state_errors, typical_scales
+from validation.comparison.sides import with_forces
+from validation.contract.interface import Subject, Unsupported
+from validation.contract.quantities import EVERYTHING, QUANTITIES
+from validation.inputs.sampling import sample
+from validation.mechanics.assembly import assemble
+
+STATES = 12
+KINDS = ("revolute", "prismatic", "ball", "free", "fixed", "universal", "cylindrical", "planar", "screw", "euler")
+
+small = st.sampled_from([0.0, 0.25, -0.5, 1.0])
+angle = st.sampled_from([0.0, np.pi / 2, -np.pi / 2, np.pi, 0.3])
+axis = st.sampled_from([(1.0, 0, 0), (0, 1.0, 0), (0, 0, -1.0), (1.0, 2.0, -0.5)])
+rotation = st.builds(sf.Rotation.rpy, angle, angle, angle)
+vector = st.tuples(small, small, small)
+
+
+@st.composite
+def inertias(draw: st.DrawFn) -> sf.Inertia:
+    """A physical inertia: two moments, and a third between their difference and their sum."""
+    a, b = draw(st.sampled_from([0.1, 0.4, 1.0])), draw(st.sampled_from([0.2, 0.5]))
+    share = draw(st.sampled_from([0.1, 0.5, 0.9]))
+    c = abs(a - b) + share * (a + b - abs(a - b))
+    return sf.Inertia(draw(st.sampled_from([0.5, 2.0])), draw(vector), (a, b, c), rotation=draw(rotation))
+
+
+@st.composite
+def trees(draw: st.DrawFn) -> sf.System:
+    """One to six bodies; each on any of those before it."""
+    bodies: list[sf.RigidBody] = []
+    for i in range(draw(st.integers(1, 6))):
+        parent = draw(st.sampled_from(["world", *(body.name for body in bodies)]))
+        kind = draw(st.sampled_from(KINDS if i else [k for k in KINDS if k != "fixed"]))
+        more: dict[str, object] = {}
+        if kind == "euler":
+            names = tuple(f"{c}{i}" for c in "xyzabc")
+            more = {"coordinates": names, "moving_position": names[:3],
+                    "moving_rotation": sf.Rotation.rpy(*names[3:])}  # fmt: skip
+        elif kind == "universal":
+            more = {"axis2": (0.2, -1.0, 0.5)}
+        elif kind == "screw":
+            more = {"pitch": 0.3}
+        joint = sf.Joint(
+            f"q{i}", "general" if kind == "euler" else kind, parent, None, draw(vector), draw(rotation), draw(axis),
+            armature=draw(st.sampled_from([0.0, 0.05])), **more,
+        )  # fmt: skip
+        bodies.append(sf.RigidBody(f"b{i}", joint, draw(inertias())))
+    return sf.System("tree", bodies, gravity=draw(st.sampled_from([(0, 0, -9.81), (1.0, 2.0, 3.0)])))
+
+
+@pytest.mark.parametrize("engine", [pinocchio, mujoco], ids=["pinocchio", "mujoco"])
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@given(trees())
+def test_random_trees_agree(engine: object, system: sf.System) -> None:
+    assembly = assemble(system)
+    subject = Subject("tree", system, frames=(system.bodies[-1].name,))
+    theirs = engine.build(subject)  # type: ignore[attr-defined]
+    if isinstance(theirs, Unsupported):
+        assert "screw" in theirs.reason or "armature" in theirs.reason, theirs.reason
+        return
+    ours = interpreted.build(subject)
+    states = with_forces(ours, sample(assembly, ours.model.nu, STATES))
+    scales = typical_scales(ours, states)
+    for name in sorted(EVERYTHING & theirs.capabilities):
+        quantity = QUANTITIES[name]
+        errors = state_errors(quantity, compute(ours, quantity, states), compute(theirs, quantity, states), scales)
+        assert errors.max() <= quantity.tolerance, (name, errors.max())
+
+
+@pytest.mark.parametrize("way", ["articulated", "factors"])
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@given(system=trees())
+def test_either_way_of_forward_dynamics(way: Literal["articulated", "factors"], system: sf.System) -> None:
+    """Pinocchio's own articulated bodies."""
+    subject = Subject("tree", system)
+    theirs = pinocchio.build(subject)
+    if isinstance(theirs, Unsupported):
+        return
+    options = sf.Options(backend="interpreter", forward_dynamics=way)
+    ours = SymofrosEngine("symofros", sf.compile(system, options))
+    states = with_forces(ours, sample(assemble(system), ours.model.nu, STATES))
+    expected, found = theirs.forward_dynamics(states), ours.forward_dynamics(states)
+    # A joint across gravity rests: what an engine then gives is the rounding of a quarter turn, a share of gravity.
+    scale = max(np.abs(expected).max(), np.linalg.norm(system.gravity))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * scale)

@@ -1,0 +1,109 @@
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import symofros as sf
+from tests.validation.subjects import UNIT, URDF, pendulum, subject_of
+from validation.adapters import Missing, available
+from validation.adapters.mujoco import tree as mujoco
+from validation.adapters.mujoco import urdf as mujoco_urdf
+from validation.adapters.pinocchio import urdf as pinocchio_urdf
+from validation.check import Settings, check
+from validation.contract.interface import Subject, Unsupported, UrdfSource
+
+FEW = Settings(states=10)
+FLAT = sf.Inertia(1.0, (0.1, 0, 0), (0.1, 0.1, 0.5))  # 0.5 > 0.1 + 0.1: no body has this.
+
+
+def cross_and_rod(**cross: object) -> sf.System:
+    """A universal joint: its cross is light, or has no mass at all."""
+    return sf.System("universal", [
+        sf.RigidBody("cross", sf.Joint("a", "revolute", axis=(1, 0, 0)), **cross),
+        sf.RigidBody("rod", sf.Joint("b", "revolute", "cross", axis=(0, 1, 0)), UNIT),
+    ])  # fmt: skip
+
+
+def test_mujoco_has_no_massless_bodies_but_others_do() -> None:
+    result = check(subject_of(cross_and_rod()), FEW)
+    assert result.ok
+    (row,) = (row for row in result.comparisons if row.engine == "mujoco")
+    assert row.status == "unsupported" and row.note.startswith("body 'cross': mass and inertia")
+    assert any(row.engine == "pinocchio" and row.status == "agree" for row in result.comparisons)
+
+
+def test_mujoco_refuses_impossible_inertia_by_name() -> None:
+    system = cross_and_rod(inertia=FLAT, waive=frozenset({"nonphysical_inertia"}))
+    built = mujoco.build(subject_of(system))
+    assert isinstance(built, Unsupported) and built.reason.startswith("body 'cross': inertia must satisfy")
+    assert check(subject_of(system), FEW).ok
+
+
+def test_what_is_fixed_to_a_massless_body_gives_it_mass() -> None:
+    tool = sf.RigidBody("tool", sf.Joint("f", "fixed", "cross"), UNIT)
+    built = mujoco.build(subject_of(cross_and_rod().with_bodies(tool)))
+    assert not isinstance(built, Unsupported)
+
+
+def test_an_engine_that_is_not_installed_is_a_row_with_the_remedy() -> None:
+    factories = {**available(), "mujoco": Missing("No module named 'mujoco'; pip install")}
+    result = check(subject_of(pendulum()), FEW, factories)
+    (row,) = (row for row in result.comparisons if row.engine == "mujoco")
+    assert row.status == "unsupported" and "pip install" in row.note
+    assert result.ok
+
+
+def test_agreement_with_nobody_is_no_agreement() -> None:
+    factories = {**available(), "mujoco": Missing("no"), "pinocchio": Missing("no")}
+    result = check(subject_of(pendulum()), FEW, factories)
+    assert not result.ok
+    assert any(row.status == "failed" and "could be asked" in row.note for row in result.comparisons)
+
+
+def test_our_own_interpreter_alone_may_be_asked_for() -> None:
+    assert check(subject_of(pendulum()), replace(FEW, engines=("interpreted",))).ok
+
+
+class TestUrdf:
+    def subject(self, text: str, tmp_path: object) -> Subject:
+        path = tmp_path / "robot.urdf"  # type: ignore[operator]
+        path.write_text(text)
+        system = sf.load(path)
+        return Subject("robot", system, urdf=UrdfSource(text.encode(), sf.load(path, snap_tol=0.0)))
+
+    @pytest.mark.parametrize("route", [pinocchio_urdf, mujoco_urdf])
+    def test_not_from_a_file(self, route: object) -> None:
+        assert isinstance(route.build(subject_of(pendulum())), Unsupported)  # type: ignore[attr-defined]
+
+    @pytest.mark.parametrize("route", [pinocchio_urdf, mujoco_urdf])
+    def test_another_mechanism(self, route: object, tmp_path: object) -> None:
+        """A file with other joints than the description has."""
+        subject = self.subject(URDF, tmp_path)
+        assert subject.urdf is not None
+        for text in (URDF.replace('name="s" type="prismatic"', 'name="s" type="fixed"'), URDF.replace('"s"', '"t"')):
+            other = replace(subject, urdf=replace(subject.urdf, text=text.encode()))
+            built = route.build(other)  # type: ignore[attr-defined]
+            assert isinstance(built, Unsupported) and "its own reading" in built.reason
+
+    def test_mujoco_leaves_no_log_behind(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: Any) -> None:
+        """It has a remark on limits that coincide, and a habit of writing it into the current folder."""
+        monkeypatch.chdir(tmp_path)
+        text = URDF.replace('lower="-1" upper="1"', 'lower="0" upper="0"')
+        assert not isinstance(mujoco_urdf.build(self.subject(text, tmp_path)), Unsupported)
+        assert [path.name for path in tmp_path.iterdir()] == ["robot.urdf"]
+        assert "limit" not in capfd.readouterr().err
+
+    def test_inertia_without_mass(self, tmp_path: object) -> None:
+        """MuJoCo drops it when it fuses bodies; its answer would be another mechanism's."""
+        foot = '<link name="foot"><inertial><mass value="0"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+        foot += '</inertial></link><joint name="f" type="fixed"><parent link="slider"/><child link="foot"/></joint>'
+        built = mujoco_urdf.build(self.subject(URDF.replace("</robot>", foot + "</robot>"), tmp_path))
+        assert isinstance(built, Unsupported) and "'foot'" in built.reason
+
+
+def test_a_prescribed_motion_is_refused_in_words() -> None:
+    cart = sf.RigidBody("cart", sf.Joint("x", "prismatic", prescribed=True), sf.Inertia(1.0))
+    rod = sf.RigidBody("rod", sf.Joint("q", "revolute", "cart"), sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1)))
+    result = check(Subject("driven", sf.System("driven", [cart, rod])), Settings(states=5))
+    assert not result.ok and "prescribed motion" in result.comparisons[0].note

@@ -1,0 +1,1 @@
+"""Exudyn: loops, beams, its own solvers (github.com/jgerstm/EXUDYN)."""

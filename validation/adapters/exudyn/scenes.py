@@ -1,0 +1,254 @@
+"""Exudyn's systems of the scenes in which speed is compared with accuracy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn
+import numpy as np
+from exudyn import itemInterface as items
+from exudyn.advancedUtilities import CreateSymbolicUserFunction
+
+import symofros as sf
+from validation.adapters.closed import anchor_name
+from validation.adapters.exudyn.ancf import straight_beam
+from validation.adapters.exudyn.motion import Link, linkage
+from validation.adapters.exudyn.planar import Cable, populate
+from validation.adapters.exudyn.steps import Timed
+from validation.mechanics.assembly import BASE, assemble
+from validation.mechanics.geometry import Array
+
+# What its stubs state wrongly, or not at all.
+_ENGINE: Any = exudyn
+_HINGES = {
+    (1.0, 0.0, 0.0): exudyn.JointType.RevoluteX,
+    (0.0, 1.0, 0.0): exudyn.JointType.RevoluteY,
+    (0.0, 0.0, 1.0): exudyn.JointType.RevoluteZ,
+}
+# The ground is object 0.
+_FIRST_BAR = 1
+
+
+@dataclass(frozen=True)
+class Rod:
+    """A cantilever on the axis of a hub that spins up.
+
+    Attributes:
+        length: [m].
+        EI: [N m^2].
+        EA: [N].
+        rhoA: [kg/m].
+        duration: Of the spin-up [s].
+        rate: At its end [rad/s].
+    """
+
+    length: float
+    EI: float
+    EA: float
+    rhoA: float
+    duration: float
+    rate: float
+
+    def angle(self, t: Array) -> Array:
+        """The hub's at times within the spin-up: its second rate is rate/duration (1 - cos(2 pi t/duration))."""
+        k = 2.0 * np.pi / self.duration
+        return np.asarray(self.rate / self.duration * (t**2 / 2.0 + (np.cos(k * t) - 1.0) / k**2))
+
+
+def spinning(rod: Rod, elements: int) -> Timed:
+    """The rod of ANCFCable2D elements on a driven hub, with the position of its tip as sensor.
+
+    The hub's angle is one of Exudyn's symbolic functions, evaluated in its C++: a Python function in its place makes
+    a run of four elements a fifth slower. Its joints with such offsets have no form of index 2.
+    """
+
+    def build() -> tuple[Any, Any, Sequence[Any]]:
+        container = exudyn.SystemContainer()
+        system = container.AddSystem()
+        nodes = straight_beam(system, rod.length, rod.EI, rod.EA, rod.rhoA, elements)
+        ground = system.AddMarker(items.MarkerBodyRigid(bodyNumber=system.AddObject(items.ObjectGround())))
+        root = system.AddMarker(items.MarkerBodyRigid(bodyNumber=0))  # The first element's, where it begins.
+        joint = system.AddObject(items.GenericJoint(markerNumbers=[ground, root], constrainedAxes=[1, 1, 0, 0, 0, 1]))
+        k, share = 2.0 * math.pi / rod.duration, rod.rate / rod.duration
+        symbolic = _ENGINE.symbolic
+
+        def offset(mbs: Any, t: Any, itemNumber: Any, offsets: Any) -> list[Any]:  # noqa: N803 - Exudyn's own names.
+            return [0.0, 0.0, 0.0, 0.0, 0.0, share * (t * t * 0.5 + (symbolic.cos(k * t) - 1.0) * (1.0 / k**2))]
+
+        made = CreateSymbolicUserFunction(system, offset, "offsetUserFunction", joint)
+        system.SetObjectParameter(joint, "offsetUserFunction", made)
+        sensor = system.AddSensor(items.SensorNode(
+            nodeNumber=nodes[-1], writeToFile=False, storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Position,
+        ))  # fmt: skip
+        system.Assemble()
+        return container, system, [sensor]
+
+    return Timed(build)
+
+
+def planar(
+    system: sf.System, angles: Mapping[str, float], cables: Mapping[str, Cable], place: tuple[float, float]
+) -> Timed:
+    """A planar tree at rest in its reference configuration, with the position of a point of its last body as sensor.
+
+    Args:
+        system: The description, of what `validation.adapters.exudyn.planar` takes.
+        angles: Of its hinges in the reference configuration, by joint [rad].
+        cables: What its beams are made of, by body.
+        place: Of the point in the frame of the last joint [m].
+    """
+
+    def build() -> tuple[Any, Any, Sequence[Any]]:
+        container = exudyn.SystemContainer()
+        made = container.AddSystem()
+        last = populate(made, system, angles, cables)[-1].moved(np.array(place))
+        sensor = made.AddSensor(items.SensorBody(
+            bodyNumber=last.body, localPosition=last.place(), writeToFile=False, storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Position,
+        ))  # fmt: skip
+        made.Assemble()
+        return container, made, [sensor]
+
+    return Timed(build)
+
+
+def pendulum(gravity: float) -> Timed:
+    """A point of 1 kg at 1 m on a hinge about y, from the horizontal, in one coordinate: Exudyn's kinematic tree."""
+
+    def build() -> tuple[Any, Any, Sequence[Any]]:
+        container = exudyn.SystemContainer()
+        made = container.AddSystem()
+        node = made.AddNode(items.NodeGenericODE2(
+            referenceCoordinates=[0.0], initialCoordinates=[0.0], initialCoordinates_t=[0.0], numberOfODE2Coordinates=1,
+        ))  # fmt: skip
+        made.AddObject(items.ObjectKinematicTree(
+            nodeNumber=node, jointTypes=[exudyn.JointType.RevoluteY], linkParents=[-1],
+            jointTransformations=_ENGINE.Matrix3DList([np.eye(3)]), jointOffsets=_ENGINE.Vector3DList([[0, 0, 0]]),
+            linkInertiasCOM=_ENGINE.Matrix3DList([np.zeros((3, 3))]), linkCOMs=_ENGINE.Vector3DList([[1, 0, 0]]),
+            linkMasses=[1.0], baseOffset=[0, 0, 0], gravity=[0, 0, -gravity],
+        ))  # fmt: skip
+        sensor = made.AddSensor(items.SensorNode(
+            nodeNumber=node, writeToFile=False, storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Coordinates,
+        ))  # fmt: skip
+        made.Assemble()
+        return container, made, [sensor]
+
+    return Timed(build)
+
+
+def bars(links: Sequence[Link], hinges: Sequence[tuple[int, float, int, float]], grounded: Sequence[int]) -> Timed:
+    """Bars joined by hinges, as in `validation.adapters.exudyn.motion`, with the first bar's end as sensor."""
+
+    def build() -> tuple[Any, Any, Sequence[Any]]:
+        container, made, _ = linkage(links, hinges, grounded)
+        sensor = made.AddSensor(items.SensorBody(
+            bodyNumber=_FIRST_BAR, localPosition=[0.5, 0, 0], writeToFile=False, storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Position,
+        ))  # fmt: skip
+        made.Assemble()
+        return container, made, [sensor]
+
+    return Timed(build)
+
+
+def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Timed:
+    """A planar mechanism of rigid bodies at rest, its loops closed by hinges; the angles of its hinges as sensors.
+
+    Args:
+        system: Hinges about z, closures of two translations, springs between frames.
+        angles: Of the hinges, with which its loops are closed [rad].
+        torque: On the first body, about z [N m].
+    """
+    assembly = assemble(system)
+    numbers = system.parameter_values()
+    closures = [constraint for constraint in system.constraints if isinstance(constraint, sf.Closure)]
+
+    def build() -> tuple[Any, Any, Sequence[Any]]:
+        container = exudyn.SystemContainer()
+        made = container.AddSystem()
+        carriers = populate(made, system, angles, {})
+        ground = made.AddObject(items.ObjectGround())
+
+        def marker(anchor: Any) -> Any:
+            site = assembly.frames[anchor_name(assembly, anchor)]
+            if site.mover == BASE:
+                return made.AddMarker(items.MarkerBodyPosition(bodyNumber=ground, localPosition=list(site.X_BF.p)))
+            at = carriers[site.mover].moved(site.X_BF.p[:2])
+            return made.AddMarker(items.MarkerBodyPosition(bodyNumber=at.body, localPosition=at.place()))
+
+        for closure in closures:
+            made.AddObject(items.RevoluteJoint2D(markerNumbers=[marker(closure.first), marker(closure.second)]))
+        for spring in system.connections:
+            made.AddObject(items.SpringDamper(
+                markerNumbers=[marker(spring.first), marker(spring.second)],
+                stiffness=float(sf.evaluate(spring.stiffness, numbers)), damping=0.0,
+                referenceLength=float(sf.evaluate(spring.length, numbers)),
+            ))  # fmt: skip
+        driven = made.AddMarker(items.MarkerBodyRigid(bodyNumber=carriers[0].body))
+        made.AddLoad(items.LoadTorqueVector(markerNumber=driven, loadVector=[0.0, 0.0, torque]))
+        sensors = [
+            made.AddSensor(items.SensorNode(nodeNumber=carrier.node, writeToFile=False, storeInternal=True,
+                                            outputVariableType=exudyn.OutputVariableType.Coordinates))
+            for carrier in carriers
+        ]  # fmt: skip
+        made.Assemble()
+        return container, made, sensors
+
+    return Timed(build)
+
+
+def joint_angles(system: sf.System, angles: Mapping[str, float], values: Array) -> Array:
+    """The sensors' values of `looped` (n, 3 k) -> angles of the hinges (n, k) [rad]."""
+    turned = values[:, 2::3]
+    movers = assemble(system).movers
+    start = np.array([angles[mover.joint.name] for mover in movers])
+    base = np.zeros((len(values), 1))
+    parents = np.hstack([turned, base])[:, [mover.parent if mover.parent != BASE else -1 for mover in movers]]
+    return np.asarray(start + turned - parents)
+
+
+def held(system: sf.System, start: Array, targets: Array, stiffness: float, damping: float) -> Timed:
+    """A tree of hinges as Exudyn's kinematic tree, which has no constraints; its joints' angles as sensor.
+
+    Args:
+        system: Hinges about x, y or z of their frames.
+        start: Angles at the start, at rest (n) [rad].
+        targets: Where the tree's own springs on the joints rest (n) [rad].
+        stiffness: Of each [N m/rad].
+        damping: Of each [N m s/rad].
+    """
+    assembly = assemble(system)
+    n = len(assembly.movers)
+    masses = [mover.merged() for mover in assembly.movers]
+    axes = [_HINGES[tuple(np.round(mover.axis, 12).tolist())] for mover in assembly.movers]
+
+    def build() -> tuple[Any, Any, Sequence[Any]]:
+        container = exudyn.SystemContainer()
+        made = container.AddSystem()
+        node = made.AddNode(items.NodeGenericODE2(
+            referenceCoordinates=[0.0] * n, initialCoordinates=start.tolist(), initialCoordinates_t=[0.0] * n,
+            numberOfODE2Coordinates=n,
+        ))  # fmt: skip
+        made.AddObject(items.ObjectKinematicTree(
+            nodeNumber=node, jointTypes=axes, linkParents=[mover.parent for mover in assembly.movers],
+            jointTransformations=_ENGINE.Matrix3DList([mover.X_AP.R for mover in assembly.movers]),
+            jointOffsets=_ENGINE.Vector3DList([mover.X_AP.p for mover in assembly.movers]),
+            linkInertiasCOM=_ENGINE.Matrix3DList([mass.J_BC for mass in masses]),
+            linkCOMs=_ENGINE.Vector3DList([mass.p_BC for mass in masses]), linkMasses=[m.mass for m in masses],
+            baseOffset=[0, 0, 0], gravity=assembly.gravity.tolist(), jointPControlVector=[stiffness] * n,
+            jointDControlVector=[damping] * n, jointPositionOffsetVector=targets.tolist(),
+            jointVelocityOffsetVector=[0.0] * n,
+        ))  # fmt: skip
+        sensor = made.AddSensor(items.SensorNode(
+            nodeNumber=node, writeToFile=False, storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Coordinates,
+        ))  # fmt: skip
+        made.Assemble()
+        return container, made, [sensor]
+
+    return Timed(build)

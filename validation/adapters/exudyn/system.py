@@ -1,0 +1,92 @@
+"""An assembled Exudyn system as functions of its state, without its solvers (github.com/jgerstm/EXUDYN)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import exudyn
+import numpy as np
+
+from validation.mechanics.geometry import Array
+
+VERSION: str = exudyn.__version__
+
+# What a system is asked for again and again to be timed: its constraints' errors and Jacobian are "joints".
+Part = Literal["mass_matrix", "forces", "joints"]
+
+
+@dataclass(frozen=True)
+class ExudynSystem:
+    """What Exudyn computes of its second-order coordinates, which are counted from the reference configuration.
+
+    Attributes:
+        container: Owns the system, and must outlive it.
+        system: An assembled main system.
+        solver: Initialised for it.
+    """
+
+    container: Any
+    system: Any
+    solver: Any
+
+    def at(self, q: Array, v: Array) -> tuple[Array, Array]:
+        """Mass matrix (n, n) and the forces on the right-hand side (n,)."""
+        self._set(q, v)
+        self.solver.ComputeMassMatrix(self.system)
+        M = np.array(self.solver.GetSystemMassMatrix())
+        self.solver.ComputeODE2RHS(self.system)
+        # What follows the forces belongs to constraints, and is not computed here.
+        return M, np.array(self.solver.GetSystemResidual())[: len(q)]
+
+    def repeat(self, parts: Iterable[Part], calls: int) -> None:
+        """Compute parts so many times at the state set last; no result is read."""
+        solver = self.solver
+
+        def joints(system: Any) -> None:
+            solver.ComputeAlgebraicEquations(system)
+            solver.ComputeJacobianAE(system, scalarFactor_ODE2=1.0, scalarFactor_ODE2_t=0.0)
+
+        known = {"mass_matrix": solver.ComputeMassMatrix, "forces": solver.ComputeODE2RHS, "joints": joints}
+        chosen, system = [known[part] for part in parts], self.system
+        for _ in range(calls):
+            for compute in chosen:
+                compute(system)
+
+    def stiffness(self, q: Array) -> Array:
+        """Minus the derivative of the forces with respect to q, at rest (n, n)."""
+        self._set(q, np.zeros_like(q))
+        self.solver.ComputeJacobianODE2RHS(self.system, scalarFactor_ODE2=-1.0, scalarFactor_ODE2_t=0.0)
+        return np.array(self.solver.GetSystemJacobian())[: len(q), : len(q)]
+
+    def conditions(self, q: Array) -> Array:
+        """Residuals of the algebraic equations (m,); zero rows where a joint leaves a direction free."""
+        self._set(q, np.zeros_like(q))
+        self.solver.ComputeAlgebraicEquations(self.system)
+        return np.array(self.solver.GetSystemResidual())[len(q) :]
+
+    def jacobian(self, q: Array) -> Array:
+        """Their derivatives (m, n)."""
+        self._set(q, np.zeros_like(q))
+        # The next one adds to what is there, and what is there before is not a number.
+        self.solver.ComputeJacobianODE2RHS(self.system, scalarFactor_ODE2=0.0, scalarFactor_ODE2_t=0.0)
+        self.solver.ComputeJacobianAE(self.system)
+        return np.array(self.solver.GetSystemJacobian())[len(q) :, : len(q)]
+
+    def _set(self, q: Array, v: Array) -> None:
+        data, current = self.system.systemData, exudyn.ConfigurationType.Current
+        data.SetODE2Coordinates(q, configuration=current)
+        data.SetODE2Coordinates_t(v, configuration=current)
+
+
+def assembled(container: Any, system: Any) -> ExudynSystem:
+    """A container's system that has all its nodes and objects, ready to be evaluated."""
+    system.Assemble()
+    settings: Any = exudyn.SimulationSettings()
+    settings.solution.file.write, settings.solution.file.name = False, ""
+    # What has no inertia in some direction is no obstacle: nothing is solved for here.
+    settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
+    solver: Any = exudyn.MainSolverImplicitSecondOrder()
+    solver.InitializeSolver(system, settings)
+    return ExudynSystem(container, system, solver)

@@ -1,0 +1,1 @@
+"""Pinocchio: trees, loops, its own reading of URDF (github.com/stack-of-tasks/pinocchio)."""

@@ -1,0 +1,51 @@
+"""Pinocchio's own reading of a URDF file: a second opinion on our importer, not only on our equations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pinocchio as pin
+
+from validation.adapters.pinocchio.tree import PinocchioEngine
+from validation.contract.conventions import Chart, Slot
+from validation.contract.interface import Subject, Unsupported, UrdfSource
+from validation.contract.quantities import SECOND_ROUTE
+from validation.mechanics.assembly import Assembly, Mover, assemble
+
+NAME = "pinocchio-urdf"
+_ROOT_JOINT = "root_joint"
+
+
+def build(subject: Subject) -> PinocchioEngine | Unsupported:
+    """Pinocchio's model of the file that the description was read from."""
+    if subject.urdf is None:
+        return Unsupported("not read from a URDF file")
+    engine = _read(subject.urdf, assemble(subject.urdf.verbatim))
+    if isinstance(engine, Unsupported):
+        return Unsupported(f"its own reading of the file: {engine.reason}")
+    return engine
+
+
+def _read(source: UrdfSource, assembly: Assembly) -> PinocchioEngine | Unsupported:
+    root = (pin.JointModelFreeFlyer(), _ROOT_JOINT) if source.floating_base else ()
+    try:
+        model = pin.buildModelFromXML(source.text.decode(), *root)
+    except (ValueError, RuntimeError) as error:
+        return Unsupported(str(error))
+    model.gravity.linear = assembly.gravity
+    if model.nv != assembly.nv:
+        return Unsupported(f"{model.nv} speeds, ours has {assembly.nv}")
+    names = [mover.joint.name for mover in assembly.movers]
+    if source.floating_base:
+        names[0] = _ROOT_JOINT
+    for name in names:
+        if not model.existJointName(name):
+            return Unsupported(f"no joint '{name}'")
+    slots = tuple(_slot(model, mover, name) for mover, name in zip(assembly.movers, names, strict=True))
+    return PinocchioEngine(NAME, model, Chart(slots, model.nq, model.nv), capabilities=SECOND_ROUTE)
+
+
+def _slot(model: Any, mover: Mover, name: str) -> Slot:
+    joint = model.joints[model.getJointId(name)]
+    turns = mover.kind == "revolute" and joint.nq == 2
+    return Slot(mover, joint.idx_q, joint.idx_v, "cos_sin" if turns else "same")

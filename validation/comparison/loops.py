@@ -1,0 +1,81 @@
+"""States that keep a mechanism's constraints, for engines that close loops themselves."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+import symofros as sf
+from validation.adapters.closed import RANK, condition, of_clear_rank
+from validation.adapters.compiled import SymofrosEngine
+from validation.contract.conventions import times
+from validation.contract.interface import States
+from validation.mechanics.geometry import Array
+
+# Assembly is a search in Python, and some engines rebuild their model for each state.
+MOST = 40
+# Of the random states from which assembly starts, many lead nowhere.
+TRIED = 4 * MOST
+# By how much M, each speed measured by its own inertia, and the constraints amplify rounding. Beside a posture where a
+# joint's axes align or a loop is at its limit, engines differ by that, and by nothing of theirs.
+WORST_CONDITION_OF_M, WORST_CONDITION = 1e5, 2e4
+# Share of gamma that may be out of reach: what redundant conditions leave of the postures' own error.
+CONSISTENT = 1e-8
+
+
+# What assembly and the judgement of its postures take.
+FUNCTIONS = ("mass_matrix", "constraint", "constraint_rate", "constraint_jacobian", "constraint_bias", "frame_pose")
+
+
+def assembled_states(system: sf.System, states: States) -> States:
+    """Those of the states from which loops could be closed, with phi = 0 and G v = b; at most MOST.
+
+    Args:
+        system: With constraints.
+        states: Where to start; accelerations and inputs stay as they are, forces are to be found anew.
+    """
+    model = sf.compile(system, sf.Options(functions=FUNCTIONS))
+    found, kept = [], []
+    for i in range(min(len(states), TRIED)):
+        try:
+            found.append(sf.assemble(model, states.q[i], states.v[i], u=states.u[i]))
+        except sf.AssemblyError:
+            continue
+        kept.append(i)
+    if not kept:
+        return states[:0]
+    q, v = np.array([one.q for one in found]), np.array([one.v for one in found])
+    sound = _sound(model, q, states.u[kept])
+    sound[sound] = _consistent(model, q[sound], v[sound], states.u[kept][sound])
+    started = _chosen(states, np.array(kept)[sound])
+    return replace(started, q=q[sound], v=v[sound])[:MOST]
+
+
+def of_unique_multipliers(engine: SymofrosEngine, states: States) -> States:
+    """Those of the states where no condition repeats others."""
+    rank = engine.model.constrained_dynamics(states.q, states.v, states.u)[2]
+    return _chosen(states, rank == engine.model.nc)
+
+
+def _chosen(states: States, which: Any) -> States:
+    return States(*(getattr(states, item.name)[which] for item in fields(States)))
+
+
+def _consistent(model: sf.Model, q: Array, v: Array, u: Array) -> Array:
+    """Where an acceleration keeps the constraints; at a singular posture not every v with G v = b has one."""
+    G, gamma = model.constraint_jacobian(q, u=u), model.constraint_bias(q, v, u=u)
+    left = times(G @ np.asarray(np.linalg.pinv(G, rcond=RANK), dtype=np.float64), gamma) - gamma
+    return np.asarray(np.abs(left).max(axis=1) < CONSISTENT * (1.0 + np.abs(gamma).max(axis=1)))
+
+
+def _sound(model: sf.Model, q: Array, u: Array) -> Array:
+    M, G = model.mass_matrix(q, u=u), model.constraint_jacobian(q, u=u)
+    size = np.sqrt(np.diagonal(M, axis1=1, axis2=2))
+    scaled = M / (size[:, :, None] * size[:, None, :])
+    found = of_clear_rank(M, G)
+    for i in np.flatnonzero(found):
+        amplified = condition(M[i : i + 1], G[i : i + 1])
+        found[i] = np.linalg.cond(scaled[i]) < WORST_CONDITION_OF_M and amplified < WORST_CONDITION
+    return found

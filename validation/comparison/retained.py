@@ -1,0 +1,96 @@
+"""Beams of first and zeroth order against everything kept: by which power of the deflection they differ.
+
+An order keeps its terms up to a degree in elastic coordinates and speeds, so with these scaled by eps the difference
+to everything kept falls with the next power. Agreement of everything kept with an engine, and this power, together
+say that a model of lower order is right.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+import symofros as sf
+from validation.adapters.compiled import SymofrosEngine
+from validation.comparison.errors import Comparison
+from validation.contract.interface import States
+from validation.mechanics.assembly import Assembly
+from validation.mechanics.geometry import Array
+
+NAME = "retained_order"
+
+# The power of the first terms that an order leaves out.
+POWERS = {"zeroth_order": 1, "first_order": 2}
+# What the next power still adds at the coarse scale.
+MARGIN = 0.1
+COARSE, FINE = 1e-2, 1e-3
+# Differences below this, relative, are rounding of both sides, and have no power.
+ROUNDING_DIFFERENCE = 1e-13
+STATES = 50
+
+
+def left_out(system: sf.System) -> list[str]:
+    """The orders below "all" of beams that deform, lowest first."""
+    found = {body.retain for body in system.bodies if isinstance(body, sf.Beam) and body.modes}
+    return [order for order in POWERS if order in found]
+
+
+def judge_order(
+    label: str, order: str, assembly: Assembly, ours: SymofrosEngine, everything: SymofrosEngine, states: States
+) -> Comparison:
+    """Whether M, h and Q differ from those of everything kept by the power that an order states.
+
+    Args:
+        label: Of the model.
+        order: The lowest one of its beams.
+        assembly: Whose elastic coordinates and speeds are scaled.
+        ours: The model as described.
+        everything: The same with every term kept.
+        states: Some of these are scaled.
+    """
+    few = states[:STATES]
+    sizes = _sizes(everything, few)
+    at = {eps: _differences(ours, everything, _scaled(assembly, few, eps), sizes) for eps in (COARSE, FINE)}
+    powers = {
+        name: math.log(at[COARSE][name] / fine) / math.log(COARSE / FINE)
+        for name, fine in at[FINE].items() if fine > ROUNDING_DIFFERENCE
+    }  # fmt: skip
+    if not powers:
+        return Comparison(label, "symofros", NAME, "unsupported", note=f"{order} leaves out nothing that counts here")
+    name, power = min(powers.items(), key=lambda item: item[1])
+    factor = (FINE / COARSE) ** (POWERS[order] - MARGIN)
+    fine, allowed = at[FINE][name], at[COARSE][name] * factor
+    listed = ", ".join(f"{key} {value:.2f}" for key, value in powers.items())
+    return Comparison(
+        label, "symofros", NAME, "agree" if fine <= allowed else "disagree", len(few), fine, allowed,
+        note=f"{order} differs from everything kept by powers of the deflection: {listed}", extra={"power": power},
+    )  # fmt: skip
+
+
+def _scaled(assembly: Assembly, states: States, eps: float) -> States:
+    """The states with elastic coordinates and speeds times eps."""
+    q, v = states.q.copy(), states.v.copy()
+    for mover in assembly.movers:
+        if mover.kind == "elastic":
+            q[:, mover.q] *= eps
+            v[:, mover.v] *= eps
+    return replace(states, q=q, v=v)
+
+
+def _differences(
+    ours: SymofrosEngine, everything: SymofrosEngine, states: States, sizes: dict[str, float]
+) -> dict[str, float]:
+    """Of M, h and Q, relative to sizes that do not depend on the scale: some forces are elastic ones alone."""
+    one, other = _terms(ours, states), _terms(everything, states)
+    return {name: float(np.linalg.norm(one[name] - other[name])) / sizes[name] for name in one}
+
+
+def _sizes(engine: SymofrosEngine, states: States) -> dict[str, float]:
+    return {name: float(np.linalg.norm(value)) or 1.0 for name, value in _terms(engine, states).items()}
+
+
+def _terms(engine: SymofrosEngine, states: States) -> dict[str, Array]:
+    M, h, Q = engine.mass_matrix(states), engine.bias(states), engine.generalized_force(states)
+    return {"M": M, "h": h, "Q": Q}

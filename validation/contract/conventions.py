@@ -1,0 +1,214 @@
+"""Every difference of signs, orders, frames and quaternions between SYMOFROS and the engines, in one place.
+
+`DIFFERENCES` says them in words (reports print it); `Chart` does them. An engine's speeds are linear in ours,
+v_e = T(q) v, with T a permutation of blocks times rotations of the free joints' linear speeds, so T is orthogonal and
+
+    a_e = T a + T' v,   M = T^T M_e T,   h = T^T (h_e + M_e T' v),   Q_e = T Q,   J = J_e T,   J' = J_e' T + J_e T'.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from validation.mechanics.assembly import Assembly, Mover
+from validation.mechanics.geometry import (
+    Array,
+    Placement,
+    matrix_quaternion,
+    quaternion_matrix,
+    quaternion_product,
+    skew,
+)
+
+
+class Difference(NamedTuple):
+    """One thing that an engine states otherwise."""
+
+    engine: str
+    what: str
+    ours: str
+    theirs: str
+
+
+DIFFERENCES = (
+    Difference("mujoco", "quaternion", "(x, y, z, w)", "(w, x, y, z)"),
+    Difference("mujoco", "free joint, position", "of the body origin in the proximal frame P", "in the world frame"),
+    Difference("mujoco", "free joint, orientation", "R_PB", "R_WB"),
+    Difference("mujoco", "free joint, linear speed v", "in body axes", "in world axes: v_e = R_WB v"),
+    Difference("mujoco", "free joint, linear acceleration", "dv/dt of the body components", "R_WB (dv/dt + w x v)"),
+    Difference("mujoco", "free joint on a moving parent", "one joint", "three slides along P, then a ball joint"),
+    Difference("mujoco", "frame velocity and acceleration", "(linear; angular)", "(angular; linear)"),
+    Difference("mujoco", "frame acceleration", "d/dt of the frame velocity", "with -gravity added to the linear part"),
+    Difference("pinocchio", "frame acceleration", "d/dt of the frame velocity: classical", "spatial, unless asked"),
+    Difference("pinocchio", "kinetic energy with armatures", "counts them, like M", "depends on the kind of joint"),
+    Difference("pinocchio-loops", "multipliers", "forces on the second frame's body", "on the first one's"),
+    Difference("pinocchio-loops", "a hinge that closes a loop", "three translations, two rotations", "two points"),
+    Difference("pinocchio-urdf", "order of joints", "as in the file", "children sorted by name"),
+    Difference("pinocchio-urdf", "continuous joint", "q = angle", "q = (cos, sin)"),
+    Difference("mujoco-urdf", "angles in the model", "radians", "degrees, unless the compiler is told otherwise"),
+    Difference("mujoco-mjcf", "potential energy", "of what moves", "of everything with mass, moving or not"),
+    Difference("lagrangian", "terms of beams", "up to the order described", "all: compared with our model of all"),
+    Difference("lagrangian", "functions stated by the user's formulas", "interpolated", "differentiated as they are"),
+)
+
+Encoding = Literal["same", "cos_sin", "wxyz", "free_in_world", "free_in_parent"]
+
+
+@dataclass(frozen=True)
+class Slot:
+    """Where an engine keeps one of our joints.
+
+    Attributes:
+        mover: Our joint.
+        q: Start in the engine's coordinates.
+        v: Start in the engine's speeds.
+        encoding: "same"; "cos_sin" (of an angle); "wxyz" (quaternion); "free_in_world" (position, wxyz in the world)
+            or "free_in_parent" (the same in P). The last two have linear speeds along the axes they are stated in.
+    """
+
+    mover: Mover
+    q: int
+    v: int
+    encoding: Encoding = "same"
+
+
+def _in_world(mover: Mover, q: Array) -> Array:
+    return _free(mover.X_AP, q)
+
+
+def _in_parent(_: Mover, q: Array) -> Array:
+    return _free(Placement.identity(), q)
+
+
+def _free(X: Placement, q: Array) -> Array:
+    turned = quaternion_product(np.broadcast_to(matrix_quaternion(X.R), q[:, 3:].shape), q[:, 3:])
+    return np.concatenate([X.p + q[:, :3] @ X.R.T, xyzw_to_wxyz(turned)], axis=1)
+
+
+def xyzw_to_wxyz(quaternion: Array) -> Array:
+    """Scalar last -> scalar first (..., 4)."""
+    return np.roll(quaternion, 1, axis=-1)
+
+
+_ENCODE: Mapping[Encoding, Callable[[Mover, Array], Array]] = {
+    "same": lambda _, q: q,
+    "cos_sin": lambda _, q: np.concatenate([np.cos(q), np.sin(q)], axis=1),
+    "wxyz": lambda _, q: xyzw_to_wxyz(q),
+    "free_in_world": _in_world,
+    "free_in_parent": _in_parent,
+}
+
+
+@dataclass(frozen=True)
+class Chart:
+    """An engine's coordinates against ours; methods take and give batches (N, ...).
+
+    Attributes:
+        slots: One for each of our moving joints, in our order.
+        nq: Length of the engine's q.
+        nv: Length of the engine's v, and of ours.
+    """
+
+    slots: tuple[Slot, ...]
+    nq: int
+    nv: int
+
+    @staticmethod
+    def in_series(assembly: Assembly) -> Chart:
+        """For an engine that shares our conventions, and keeps one joint after the other."""
+        slots, q, v = [], 0, 0
+        for mover in assembly.movers:
+            slots.append(Slot(mover, q, v))
+            q, v = q + mover.part.coordinates, v + mover.part.speeds
+        return Chart(tuple(slots), q, v)
+
+    def coordinates(self, q: Array) -> Array:
+        """Our q -> the engine's."""
+        q_e = np.zeros((len(q), self.nq))
+        for slot in self.slots:
+            part = _ENCODE[slot.encoding](slot.mover, q[:, slot.mover.q])
+            q_e[:, slot.q : slot.q + part.shape[1]] = part
+        return q_e
+
+    def transform(self, q: Array) -> Array:
+        """T(q) (N, nv, nv): v_e = T v."""
+        T = np.zeros((len(q), self.nv, self.nv))
+        for slot in self.slots:
+            ours = slot.mover.v
+            size = ours.stop - ours.start
+            theirs = slice(slot.v, slot.v + size)
+            T[:, theirs, ours] = np.eye(size)
+            if slot.encoding.startswith("free"):
+                T[:, slot.v : slot.v + 3, ours.start : ours.start + 3] = self._free_rotation(slot, q)
+        return T
+
+    def transform_rate(self, q: Array, v: Array) -> Array:
+        """T'(q, v) (N, nv, nv): only free joints turn, R' = R [w]x."""
+        rate = np.zeros((len(q), self.nv, self.nv))
+        for slot in self.slots:
+            if slot.encoding.startswith("free"):
+                start = slot.mover.v.start
+                turning = self._free_rotation(slot, q) @ skew(v[:, start + 3 : start + 6])
+                rate[:, slot.v : slot.v + 3, start : start + 3] = turning
+        return rate
+
+    @staticmethod
+    def _free_rotation(slot: Slot, q: Array) -> Array:
+        R_PB = quaternion_matrix(q[:, slot.mover.q][:, 3:])
+        return slot.mover.X_AP.R @ R_PB if slot.encoding == "free_in_world" else R_PB
+
+    def mass_matrix(self, q: Array, M_e: Array) -> Array:
+        """M from the engine's."""
+        T = self.transform(q)
+        return _transposed(T) @ M_e @ T
+
+    def bias(self, q: Array, v: Array, h_e: Array, M_e: Array) -> Array:
+        """H from the engine's: the chart's own acceleration T' v is among our velocity terms."""
+        carried = times(M_e, times(self.transform_rate(q, v), v))
+        return times(_transposed(self.transform(q)), h_e + carried)
+
+    def speeds(self, q: Array, v: Array) -> Array:
+        """V_e from ours."""
+        return times(self.transform(q), v)
+
+    def accelerations(self, q: Array, v: Array, a: Array) -> Array:
+        """A_e from ours."""
+        return times(self.transform(q), a) + times(self.transform_rate(q, v), v)
+
+    def our_accelerations(self, q: Array, v: Array, a_e: Array) -> Array:
+        """Ours from a_e."""
+        return times(_transposed(self.transform(q)), a_e - times(self.transform_rate(q, v), v))
+
+    def forces(self, q: Array, Q: Array) -> Array:
+        """Q_e from ours; T is orthogonal, so forces turn like speeds."""
+        return times(self.transform(q), Q)
+
+    def our_forces(self, q: Array, Q_e: Array) -> Array:
+        """Ours from Q_e."""
+        return times(_transposed(self.transform(q)), Q_e)
+
+    def jacobian(self, q: Array, J_e: Array) -> Array:
+        """J (N, F, 6, nv) from the engine's."""
+        return J_e @ self.transform(q)[:, None]
+
+    def jacobian_rate(self, q: Array, v: Array, J_e: Array, J_e_rate: Array) -> Array:
+        """J' from the engine's J and J'."""
+        return J_e_rate @ self.transform(q)[:, None] + J_e @ self.transform_rate(q, v)[:, None]
+
+
+def angular_first_to_linear_first(spatial: Array) -> Array:
+    """(angular; linear) -> (linear; angular) (..., 6)."""
+    return np.roll(spatial, 3, axis=-1)
+
+
+def times(A: Array, x: Array) -> Array:
+    """Matrix times vector over the batch: (N, m, n), (N, n) -> (N, m)."""
+    return np.asarray((A @ x[..., None])[..., 0])
+
+
+def _transposed(A: Array) -> Array:
+    return A.swapaxes(-1, -2)

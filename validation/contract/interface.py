@@ -1,0 +1,182 @@
+"""What an engine is to the harness: a thing that turns a batch of states into the quantities of one system.
+
+Everything crosses this border in SYMOFROS conventions (`symofros/NOTATION.md`); `conventions` does the turning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Literal, Protocol
+
+import symofros as sf
+from validation.mechanics.geometry import Array
+
+# Of files that engines read themselves; "" for none.
+Format = Literal["", "urdf", "mjcf"]
+
+
+@dataclass(frozen=True)
+class Unsupported:
+    """An engine can't represent a system, or can't compute a quantity of it. Returned, so that others go on.
+
+    Attributes:
+        reason: Names the thing that is in the way, for people.
+    """
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class States:
+    """A batch of N states, the same for every engine.
+
+    Attributes:
+        q: Coordinates (N, nq).
+        v: Speeds (N, nv).
+        a: Rates of the speeds (N, nv).
+        u: Inputs (N, nu).
+        applied: Q(q, v, u) (N, nv), what forward dynamics gets: engines know no formulas of efforts.
+        passive: Q(q, v, 0) (N, nv), what inverse dynamics subtracts.
+    """
+
+    q: Array
+    v: Array
+    a: Array
+    u: Array
+    applied: Array
+    passive: Array
+
+    def __len__(self) -> int:
+        """The number of states."""
+        return len(self.q)
+
+    def __getitem__(self, chosen: slice) -> States:
+        """Some of the states."""
+        return States(*(getattr(self, item.name)[chosen] for item in fields(self)))
+
+    def at_rest(self) -> States:
+        """The same configurations with v = 0."""
+        return replace(self, v=self.v * 0.0)
+
+
+class Engine(Protocol):
+    """One engine's model of one system: a method for each of its capabilities, N states in, N results out.
+
+    Frame quantities are those of the F frames of the subject that the engine was built from, and stack
+    (linear; angular).
+    """
+
+    @property
+    def name(self) -> str:
+        """As tables show it."""
+
+    @property
+    def version(self) -> str:
+        """Of its package."""
+
+    @property
+    def capabilities(self) -> frozenset[str]:
+        """The quantities it offers (`quantities`); nobody else's comparison shrinks to them."""
+
+
+class TreeEngine(Engine, Protocol):
+    """An engine for rigid trees: everything but the forces, which only the description states."""
+
+    def mass_matrix(self, states: States) -> Array:
+        """M (N, nv, nv)."""
+
+    def bias(self, states: States) -> Array:
+        """Coriolis, centrifugal and gravity forces h (N, nv)."""
+
+    def kinetic_energy(self, states: States) -> Array:
+        """T (N,) [J]."""
+
+    def potential_energy(self, states: States) -> Array:
+        """V (N,) [J], zero where every mass centre is at the world's origin."""
+
+    def inverse_dynamics(self, states: States) -> Array:
+        """M a + h - passive (N, nv)."""
+
+    def forward_dynamics(self, states: States) -> Array:
+        """M^-1 (applied - h) (N, nv)."""
+
+    def frame_pose(self, states: States) -> Array:
+        """p_WF and the rows of R_WF (N, F, 12)."""
+
+    def frame_velocity(self, states: States) -> Array:
+        """Of the frame's origin, in world axes (N, F, 6)."""
+
+    def frame_acceleration(self, states: States) -> Array:
+        """The time derivative of frame_velocity (N, F, 6)."""
+
+    def frame_jacobian(self, states: States) -> Array:
+        """frame_velocity = J v (N, F, 6, nv)."""
+
+    def frame_jacobian_rate(self, states: States) -> Array:
+        """dJ/dt (N, F, 6, nv)."""
+
+
+@dataclass(frozen=True)
+class UrdfSource:
+    """The file that a system was read from, for engines that read it themselves.
+
+    Attributes:
+        text: Of the file, undecoded: its first line says how it is encoded.
+        verbatim: Our reading of it with every digit as it stands; reading it normally makes exact what was meant so.
+        floating_base: Whether reading it put a free joint under its root.
+    """
+
+    text: bytes
+    verbatim: sf.System
+    floating_base: bool = False
+
+
+@dataclass(frozen=True)
+class MjcfSource:
+    """The MJCF file that a system was read from; reading it has shown that it names no file outside of its folder.
+
+    Attributes:
+        path: Of the main file.
+        verbatim: Our reading of it with every digit as it stands.
+    """
+
+    path: Path
+    verbatim: sf.System
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What an engine is built from.
+
+    Attributes:
+        label: What the model is called in tables.
+        system: The description.
+        frames: The frames that frame quantities are compared at; none: the harness chooses.
+        urdf: Its file, if it came from one.
+        mjcf: Likewise.
+    """
+
+    label: str
+    system: sf.System
+    frames: tuple[str, ...] = ()
+    urdf: UrdfSource | None = None
+    mjcf: MjcfSource | None = None
+
+    @property
+    def format(self) -> Format:
+        """Of the file that engines can read themselves."""
+        return "urdf" if self.urdf is not None else "mjcf" if self.mjcf is not None else ""
+
+    @property
+    def verbatim(self) -> sf.System:
+        """The system with every digit of its file as it stands."""
+        source = self.urdf or self.mjcf
+        return self.system if source is None else source.verbatim
+
+
+class EngineFactory(Protocol):
+    """Builds an engine's model of a subject."""
+
+    def __call__(self, subject: Subject) -> Engine | Unsupported:
+        """The engine, or why it can't represent the subject."""

@@ -1,0 +1,1 @@
+"""What engines are asked about: models, states, frames."""

@@ -1,0 +1,148 @@
+"""What can be checked: files of the user, robots of the `example-robot-data` package, our reference models."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+
+import reference_models
+import symofros as sf
+from validation.contract.interface import MjcfSource, Subject, UrdfSource
+
+ROBOT_PACKAGE = "example-robot-data"
+
+
+@dataclass(frozen=True)
+class Case:
+    """A model to be loaded; small and picklable, so that the process that checks it also reads it.
+
+    Attributes:
+        label: In tables.
+        path: Of its file; None for a reference model.
+        floating_base: Whether a free joint goes under a URDF's root.
+    """
+
+    label: str
+    path: Path | None = None
+    floating_base: bool = False
+
+    @property
+    def weight(self) -> int:
+        """A guess at the work it makes: big files first keeps all workers busy to the end."""
+        return self.path.stat().st_size if self.path is not None and self.path.is_file() else 0
+
+    def load(self) -> Subject:
+        """Read it.
+
+        Raises:
+            DescriptionError: It is no legal description.
+            OSError: The file can't be read.
+        """
+        if self.path is None:
+            return Subject(self.label, reference_models.MODELS[self.label])
+        system = sf.load(self.path, floating_base=self.floating_base)
+        suffix = self.path.suffix.lower()
+        if suffix == ".xml":
+            return Subject(self.label, system, mjcf=MjcfSource(self.path, sf.load(self.path, snap_tol=0.0)))
+        if suffix != ".urdf":
+            return Subject(self.label, system)
+        verbatim = sf.load(self.path, floating_base=self.floating_base, snap_tol=0.0)
+        return Subject(self.label, system, urdf=UrdfSource(self.path.read_bytes(), verbatim, self.floating_base))
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot of the package.
+
+    Attributes:
+        file: Its path below the package's folder of robots.
+        floating_base: Whether nothing holds its root.
+        why: What it brings to the set.
+    """
+
+    file: str
+    floating_base: bool
+    why: str
+
+
+ROBOTS: dict[str, Robot] = {
+    "ur5": Robot("ur_description/urdf/ur5_robot.urdf", False, "arm, 6 revolute joints, angles given with ten digits"),
+    "panda": Robot("panda_description/urdf/panda.urdf", False, "arm with a gripper of two prismatic joints"),
+    "kinova": Robot("kinova_description/robots/kinova.urdf", False, "arm with continuous joints"),
+    "xarm7": Robot("xarm_description/urdf/xarm7.urdf", False, "arm"),
+    "allegro_hand": Robot("allegro_hand_description/urdf/allegro_right_hand.urdf", False, "hand, fingers of grams"),
+    "baxter": Robot("baxter_description/urdf/baxter.urdf", False, "two arms and a head"),
+    "anymal": Robot("anymal_b_simple_description/robots/anymal.urdf", True, "quadruped"),
+    "solo12": Robot("solo_description/robots/solo12.urdf", True, "quadruped"),
+    "hyq": Robot("hyq_description/robots/hyq_no_sensors.urdf", True, "quadruped"),
+    "go1": Robot("go1_description/urdf/go1.urdf", True, "quadruped with rotors as bodies"),
+    "bolt": Robot("bolt_description/robots/bolt.urdf", True, "biped"),
+    "simple_humanoid": Robot("simple_humanoid_description/urdf/simple_humanoid.urdf", True, "humanoid"),
+    "talos": Robot("talos_data/robots/talos_reduced.urdf", True, "humanoid, 38 speeds"),
+    "g1": Robot("g1_description/urdf/g1_29dof_rev_1_0.urdf", True, "humanoid, 35 speeds"),
+    "icub": Robot("icub_description/robots/icub.urdf", True, "humanoid; inertias that MuJoCo refuses"),
+    "centauro": Robot("centauro_description/urdf/centauro.urdf", True, "four wheeled legs and two arms, 45 speeds"),
+}
+
+
+def standard_set() -> list[Case]:
+    """The robots of the package and every reference model.
+
+    Raises:
+        FileNotFoundError: The package is not installed, or lacks a file.
+    """
+    return [*(robot_case(label) for label in ROBOTS), *(Case(label) for label in reference_models.MODELS)]
+
+
+def robot_case(label: str) -> Case:
+    """A robot of the package, found through the package's list of files, wherever it was installed.
+
+    Raises:
+        FileNotFoundError: The package is not installed, or lacks the file.
+    """
+    robot = ROBOTS[label]
+    try:
+        files = metadata.distribution(ROBOT_PACKAGE).files or []
+    except metadata.PackageNotFoundError:
+        raise FileNotFoundError(f"robot '{label}': package {ROBOT_PACKAGE} is not installed; "
+                                f"pip install {ROBOT_PACKAGE}") from None  # fmt: skip
+    for file in files:
+        if file.as_posix().endswith(f"/robots/{robot.file}"):
+            return Case(label, Path(str(file.locate())), robot.floating_base)
+    raise FileNotFoundError(f"robot '{label}': no {robot.file} in package {ROBOT_PACKAGE}")
+
+
+def named(names: list[str], floating_base: bool) -> list[Case]:
+    """The models that a user named: paths of files, or names of the standard set.
+
+    Args:
+        names: In the order to be reported.
+        floating_base: For the URDF files among them.
+
+    Raises:
+        LookupError: A name is neither.
+        FileNotFoundError: A robot's package is not installed.
+    """
+    cases = list(dict.fromkeys(_named(name, floating_base) for name in names))
+    labels = [case.label for case in cases]
+    return [
+        case if labels.count(case.label) == 1 or case.path is None
+        else Case(f"{case.path.parent.name}/{case.path.name}", case.path, case.floating_base)
+        for case in cases
+    ]  # fmt: skip
+
+
+def _named(name: str, floating_base: bool) -> Case:
+    path = Path(name)
+    if path.suffix or path.exists():
+        return Case(path.stem, path, floating_base and path.suffix.lower() == ".urdf")
+    if name in ROBOTS:
+        return robot_case(name)
+    if name in reference_models.MODELS:
+        return Case(name)
+    known = [*ROBOTS, *reference_models.MODELS]
+    near = difflib.get_close_matches(name, known, n=1)
+    remedy = f"did you mean '{near[0]}'?" if near else f"the standard set has {', '.join(known)}"
+    raise LookupError(f"'{name}' is neither a file nor a model of the standard set; {remedy}")
