@@ -77,6 +77,10 @@ class Graph:
         self.value[node] = size
         return node if value > 0.0 or value != value else -node
 
+    def forget(self, first: int) -> None:
+        """Make nodes from `first` on anew where equal ones are asked for: others are to have them to themselves."""
+        self._known = {key: node for key, node in self._known.items() if node < first}
+
     def input(self, group: str, index: int) -> Edge:
         """The edge of entry `index` of the input vector `group`."""
         slot = Slot(group, index)

@@ -28,7 +28,7 @@ class Lowering:
         """The edge of one value."""
         if not isinstance(value, Expression):
             return self.g.constant(value)
-        for name in value.symbols():
+        for name in sorted(value.symbols()):  # In one order, so that one description gives one text.
             self.symbol(name)
         return lower(value, self.g, self._bindings)
 

@@ -9,10 +9,10 @@ Post-condition: what a pack is the sum of is older than the sums it makes, as be
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import chain
 
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
@@ -22,9 +22,10 @@ from symofros.expr.program import Function, Program
 
 
 def chain_sums(program: Program) -> Program:
-    """Write every sum as a chain that starts with a term that is no product.
+    """Write the sums of every function as chains that start with a term that is no product.
 
-    Sums that packs make stay as they are: vectors form them, too, to the same bits.
+    Sums that packs make stay as they are: vectors form them, too, to the same bits. What parameters determine is not
+    worth it. Each function gets nodes of its own, so its results do not depend on what it is generated with.
 
     Args:
         program: Staged or not.
@@ -32,36 +33,51 @@ def chain_sums(program: Program) -> Program:
     Returns:
         The program over a graph of its own, which holds what the functions need; results differ by rounding.
     """
-    old, new, sums = program.graph, Graph(), _Sums(program)
+    old, new = program.graph, Graph()
     at: dict[int, Edge] = {ZERO: ZERO, ONE: ONE}
-    ages = [0] * len(old)  # How many nodes there were when a node's turn came.
-
-    def moved(edge: Edge) -> Edge:
-        return at[edge] if edge >= 0 else -at[-edge]
-
     for node in range(2, len(old)):
-        ages[node] = len(new)
         if node in old.value:
             at[node] = new.constant(old.value[node])
         elif node in old.slot:
             at[node] = new.input(old.slot[node].group, old.slot[node].index)
-        elif node in sums.whole:
-            at[node] = new.sum(map(moved, sums.terms(node)))
-        elif node in sums.nodes and node not in sums.parts:
-            at[node] = new.apply(old.op[node], *map(moved, old.args[node]))
-        if node in old.label and node in at:
-            new.name(at[node], old.label[node])
-    new.packs = list(_Packs(at, ages).of(old.packs))
+    for node in needed_nodes(old, program.init):
+        at[node] = new.apply(old.op[node], *(_moved(at, arg) for arg in old.args[node]))
+    # What parameters determine is kept without the sign that its node has got.
+    init = tuple(abs(_moved(at, edge)) for edge in program.init)
+    pre = {abs(at[node]): slot for node, slot in program.pre.items()}
+    common, packed, functions = len(new), frozenset(_packed(old)), []
+    for function in program.functions:
+        new.forget(common)
+        functions.append(_chained(program, function, packed, new, dict(at)))
+    return replace(program, graph=new, functions=tuple(functions), init=init, pre=pre)
 
-    def function(stated: Function) -> Function:
-        outputs = tuple(replace(o, edges=tuple(map(moved, o.edges))) for o in stated.outputs)
-        solver = stated.solver and replace(stated.solver, parts=tuple(map(function, stated.solver.parts)))
+
+def _chained(program: Program, function: Function, packed: frozenset[int], new: Graph, at: dict[int, Edge]) -> Function:
+    """One function, formed in another graph, where `at` has its leaves."""
+    old, sums = program.graph, _Sums(program, function, packed)
+    nodes = [node for node in sums.nodes if node not in sums.parts]
+    ages = []  # How many nodes there were when a node's turn came.
+    for node in nodes:
+        ages.append(len(new))
+        if node in sums.whole:
+            at[node] = new.sum(_moved(at, term) for term in sums.terms(node))
+        else:
+            at[node] = new.apply(old.op[node], *(_moved(at, arg) for arg in old.args[node]))
+        if node in old.label:
+            new.name(at[node], old.label[node])
+    ages.append(len(new))
+    new.packs += _Packs(at, nodes, ages).of(old.packs)
+
+    def rewritten(stated: Function) -> Function:
+        outputs = tuple(replace(o, edges=tuple(_moved(at, edge) for edge in o.edges)) for o in stated.outputs)
+        solver = stated.solver and replace(stated.solver, parts=tuple(map(rewritten, stated.solver.parts)))
         return replace(stated, outputs=outputs, solver=solver)
 
-    # What parameters determine is kept without the sign that its node has got.
-    init = tuple(abs(moved(edge)) for edge in program.init)
-    pre = {abs(moved(node)): slot for node, slot in program.pre.items()}
-    return replace(program, graph=new, functions=tuple(map(function, program.functions)), init=init, pre=pre)
+    return rewritten(function)
+
+
+def _moved(at: Mapping[int, Edge], edge: Edge) -> Edge:
+    return at[edge] if edge >= 0 else -at[-edge]
 
 
 def check_packs(program: Program) -> None:
@@ -78,32 +94,32 @@ def check_packs(program: Program) -> None:
 
 
 class _Sums:
-    """The sums of a program, and what they add up.
+    """The sums of a function, and what they add up.
 
     Args:
         program: Any.
+        function: One of its functions.
+        packed: Sums that stay.
 
     Attributes:
-        nodes: What is computed.
+        nodes: What is computed, operands first.
         whole: Sums, but for those that packs make.
         parts: Sums that are read once, by one of those.
     """
 
-    def __init__(self, program: Program) -> None:
-        self._graph, given = program.graph, program.pre
+    def __init__(self, program: Program, function: Function, packed: frozenset[int]) -> None:
+        self._graph, edges = program.graph, function.edges()
         op, args, label = program.graph.op, program.graph.args, program.graph.label
-        outputs = [edge for function in program.functions for edge in function.edges()]
-        self.nodes = {*needed_nodes(self._graph, outputs, given), *needed_nodes(self._graph, program.init)}
-        packed = set(_packed(self._graph))
+        self.nodes = needed_nodes(self._graph, edges, program.pre)
         free = {node for node in self.nodes if op[node] == ADD and node not in packed}
         read = Counter(abs(arg) for node in self.nodes for arg in args[node])
-        read.update(map(abs, chain(outputs, program.init)))
+        read.update(map(abs, edges))
         added = Counter(abs(arg) for node in self.nodes if op[node] == ADD for arg in args[node])
         summed = {abs(arg) for node in free for arg in args[node]}
-        # A name would be lost with a part, and so would a place among what parameters determine.
-        self.parts = {n for n in free & summed if read[n] == 1 and n not in given and n not in label}
+        # A name would be lost with a part.
+        self.parts = {node for node in free & summed if read[node] == 1 and node not in label}
         self.whole = free - self.parts
-        self._products = {n for n in self.nodes if op[n] == MUL and read[n] == added[n] and n not in given}
+        self._products = {node for node in self.nodes if op[node] == MUL and read[node] == added[node]}
 
     def terms(self, whole: int) -> list[Edge]:
         """What a sum adds up, in the order in which it was made, but for what a chain starts with.
@@ -138,18 +154,20 @@ class _Packs:
 
     Args:
         at: Node -> edge in the other graph, of all that is needed.
-        ages: For each node how many nodes the other graph had before it.
+        nodes: What moved, in order.
+        ages: How many nodes the other graph had before each of them, and in the end.
     """
 
-    def __init__(self, at: dict[int, Edge], ages: Sequence[int]) -> None:
-        self._at, self._ages = at, ages
+    def __init__(self, at: Mapping[int, Edge], nodes: Sequence[int], ages: Sequence[int]) -> None:
+        self._at, self._nodes, self._ages = at, nodes, ages
         self._known: dict[int, Pack] = {id(EMPTY): EMPTY}
 
     def of(self, packs: Iterable[Pack]) -> Iterator[Pack]:
-        """The same over there; those whose factors no function needs are left out."""
+        """The same over there, as far as the function needs them."""
         for pack in packs:
-            if all(abs(factor) in self._at for factor, _ in pack.terms):
-                yield self._one(pack)
+            moved = self._one(pack)
+            if len(moved.own) > 1:
+                yield moved
 
     def _one(self, pack: Pack) -> Pack:
         waiting = [pack]
@@ -165,22 +183,19 @@ class _Packs:
     def _moved(self, pack: Pack) -> Pack:
         """A pack whose operands are there; lanes that no function needs are empty."""
         at, known = self._at, self._known
-        lanes = tuple(self._edge(edge) if abs(edge) in at else ZERO for edge in pack.lanes)
+        lanes = tuple(_moved(at, edge) if abs(edge) in at else ZERO for edge in pack.lanes)
         base = None if pack.base is None or self._confuses(pack, pack.base) else known[id(pack.base)]
         if not all(abs(factor) in at for factor, _ in pack.terms):
             return Pack(lanes, base=base)
-        start = self._ages[pack.start] if pack.terms else 0
+        start = self._ages[bisect_left(self._nodes, pack.start)] if pack.terms else 0
         given = [pack, *(operand for _, operand in pack.terms)]
         literal = frozenset(lane for lane in pack.literal if all(abs(one.lanes[lane]) in at for one in given))
         return replace(
             pack, lanes=lanes, base=base, start=start, literal=literal,
-            terms=tuple((self._edge(factor), known[id(operand)]) for factor, operand in pack.terms),
+            terms=tuple((_moved(at, factor), known[id(operand)]) for factor, operand in pack.terms),
             own=frozenset(lane for lane in pack.own & literal if abs(lanes[lane]) >= start),
         )  # fmt: skip
 
     def _confuses(self, pack: Pack, base: Pack) -> bool:
         """Whether a lane that is zero would be taken from one that is empty only because nobody needs it."""
         return any(a == ZERO and abs(b) not in self._at for a, b in zip(pack.lanes, base.lanes, strict=True))
-
-    def _edge(self, edge: Edge) -> Edge:
-        return self._at[edge] if edge >= 0 else -self._at[-edge]

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import hashlib
 import math
+import os
+import re
 import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -24,6 +26,7 @@ from symofros.runtime.toolchain import DEFAULT_FLAGS, Toolchain, find_toolchain
 _STATES, _ROUNDS = 64, 15
 # A clock's reading costs less than a thousandth of this [ns].
 _LEAST = 200_000
+_CALLED = re.compile(r"^\S*(cc|clang)(-\d+)?\s")
 # clang contracts across statements only if it is told to; gcc does by itself.
 _CONTRACTED = "-ffp-contract=fast"
 
@@ -50,8 +53,8 @@ def builds(options: Options, toolchain: Toolchain, in_lanes: bool = False) -> li
     """
     found = [toolchain]
     if options.compiler is None:
-        found += [other for name in ("gcc", "clang") if shutil.which(name) and (other := find_toolchain(name))]
-    by_version = {tool.identity.partition(" ")[2]: tool for tool in reversed(found)}
+        found += [other for name in _compilers() if (other := find_toolchain(name))]
+    by_version = {_version(tool): tool for tool in reversed(found)}
     packs = (True, False) if options.packs and not in_lanes else (options.packs,)
     return [
         Build(tool, flags, packed)
@@ -59,6 +62,26 @@ def builds(options: Options, toolchain: Toolchain, in_lanes: bool = False) -> li
         for flags in ([options.flags] if options.flags is not None else _flags(tool))
         for packed in packs
     ]
+
+
+def _version(toolchain: Toolchain) -> str:
+    """What a compiler says of itself, but for the name that it was called by: cc and gcc are one."""
+    return _CALLED.sub("", toolchain.identity.partition(" ")[2])
+
+
+def _compilers() -> list[str]:
+    """Names on the path: gcc and clang, and the newest of those that have their version in the name (clang-19)."""
+    found = []
+    for kind in ("gcc", "clang"):
+        versions = {
+            int(path.name.rpartition("-")[2])
+            for folder in os.get_exec_path()
+            for path in Path(folder).glob(f"{kind}-*")
+            if path.name.rpartition("-")[2].isdecimal() and path.name.count("-") == 1
+        }
+        newest = [f"{kind}-{max(versions)}"] if versions else []
+        found += [name for name in (kind, *newest) if shutil.which(name)]
+    return found
 
 
 def _flags(toolchain: Toolchain) -> list[tuple[str, ...] | None]:

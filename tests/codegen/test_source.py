@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -176,3 +178,23 @@ def test_every_operation_prints_what_it_computes() -> None:
             names |= {"asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "abs": abs}
             names |= {"sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh, "min": min, "max": max, "u1": u1, "u2": u2}
             assert value == pytest.approx(eval(formula.replace("^", "**"), {}, names), rel=1e-13, abs=1e-13), formula
+
+
+def test_one_description_gives_one_text() -> None:
+    """Whatever the order in which a process keeps its sets of names: libraries are known by their text."""
+    program = (
+        "import hashlib, symofros as sf; from tests.codegen.test_source import source_of_functions;"
+        "joint = sf.Joint('q', 'revolute', effort=('b*a - c*(a + q) - (d*c - b*q)',));"
+        "inputs = [sf.Input(name) for name in 'abcd'];"
+        "body = sf.RigidBody('body', joint, sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)));"
+        "text = source_of_functions(sf.System('s', [body], inputs=inputs), ('generalized_force',));"
+        "print(hashlib.sha256(text.encode()).hexdigest())"
+    )
+    said = {
+        subprocess.run(
+            [sys.executable, "-c", program], cwd=Path(__file__).parents[2], env=os.environ | {"PYTHONHASHSEED": seed},
+            capture_output=True, text=True, check=True,
+        ).stdout
+        for seed in ("1", "2", "3", "4")
+    }  # fmt: skip
+    assert len(said) == 1

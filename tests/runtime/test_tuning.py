@@ -66,6 +66,23 @@ def test_what_is_stated_is_kept() -> None:
     assert {build.packs for build in free} == {True, False}
 
 
+def test_each_compiler_is_tried_once() -> None:
+    """cc, gcc and gcc-12 are one compiler; of those with a version in the name the newest counts."""
+    toolchain = find_toolchain()
+    assert toolchain is not None
+    tried = [(build.toolchain.identity.split()[-1], build.flags, build.packs)
+             for build in builds(sf.Options(tune=True), toolchain)]  # fmt: skip
+    assert len(tried) == len(set(tried))
+
+
+def test_newest_of_several_versions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("clang", "clang-9", "clang-14", "clang-scan-3", "gcc-12", "clang-tidy"):
+        (tmp_path / name).write_text("#!/bin/sh\n")
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert tuning._compilers() == ["gcc-12", "clang", "clang-14"]
+
+
 def test_slower_builds_lose() -> None:
     """Without optimisation, everything takes several times as long."""
     system, stated = MODELS["spdm"], {}
