@@ -121,8 +121,14 @@ def _near(name: str, real: str = "double", word: str = "uint64_t", to_word: str 
     return Template(template("sincos.c.in")).substitute(
         name=name, real=real, word=word, to_word=to_word, to_real=to_real, two_by_pi=repr(TWO_BY_PI),
         rounder=repr(ROUNDER), half_pi_0=repr(HALF_PI[0]), half_pi_1=repr(HALF_PI[1]), half_pi_2=repr(HALF_PI[2]),
-        sine=_polynomial(SINE), cosine=_polynomial(COSINE),
+        sine=_in_pairs(SINE), cosine=_in_pairs(COSINE),
     )  # fmt: skip
+
+
+def _in_pairs(coefficients: tuple[float, ...]) -> str:
+    """(c0 + z * c1) + zz * ((c2 + z * c3) + zz * (c4 + z * c5)): a shorter wait than one after the other."""
+    first, second, third = (f"({a!r} + z * {b!r})" for a, b in zip(coefficients[::2], coefficients[1::2], strict=True))
+    return f"{first} + zz * ({second} + zz * {third})"
 
 
 def _polynomial(coefficients: tuple[float, ...], suffix: str = "") -> str:
