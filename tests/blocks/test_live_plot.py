@@ -7,6 +7,7 @@ import socket
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,10 +31,22 @@ def shown() -> Iterator[LivePlot]:
     live.__dict__["_page"].close()
 
 
-def test_the_page_tells_what_was_sent(shown: LivePlot) -> None:
+def told(shown: LivePlot) -> tuple[dict[str, Any], list[Any]]:
+    """What the page knows of the run and its rows, once it knows that the run is over."""
+    head: dict[str, Any] = {}
+    rows: list[Any] = []
     with urllib.request.urlopen(shown.url + "rows", timeout=10) as stream:
-        message = json.loads(stream.readline().decode().removeprefix("data: "))
-    head, rows = message["head"], message["rows"]
+        for line in stream:
+            if line.startswith(b"data: "):
+                message = json.loads(line.decode().removeprefix("data: "))
+                head, rows = message.get("head", head), rows + message["rows"]
+                if head.get("done"):
+                    break
+    return head, rows
+
+
+def test_the_page_tells_what_was_sent(shown: LivePlot) -> None:
+    head, rows = told(shown)
     assert head["labels"] == ["a[0]", "a[1]", "b[0]", "b[1]"] and head["title"] == "A <b>run</b>" and head["done"]
     # What was sent before the page's program knew what it is, is not shown.
     assert len(rows) > 40 and rows[-1] == [0.5, [0.5, 1.0, 0.5, 1.0]]
@@ -57,9 +70,7 @@ def test_packets_of_others_are_dropped(shown: LivePlot) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         for data in (b"", b"SYMO", pack(1, 1, 9.0, np.zeros(3)), pack(1, 1, 9.0, np.full(4, np.nan))):
             other.sendto(data, ("127.0.0.1", shown.__dict__["_page"].port))
-    with urllib.request.urlopen(shown.url + "rows", timeout=10) as stream:
-        rows = json.loads(stream.readline().decode().removeprefix("data: "))["rows"]
-    assert rows[-1][0] == 0.5
+    assert told(shown)[1][-1][0] == 0.5
 
 
 def test_rows_are_bounded_and_thinned() -> None:
