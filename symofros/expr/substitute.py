@@ -46,10 +46,10 @@ def transplant(graph: Graph, edges: Sequence[Edge], replacement: Mapping[Edge, E
     for node in nodes:
         packs.form(node)
         if node not in new:
-            new[node] = into.apply(graph.op[node], *(_known(new, arg) for arg in graph.args[node]))
+            new[node] = into.apply(graph.op[node], *(carried(new, arg) for arg in graph.args[node]))
         if node in graph.label:
             into.name(new[node], graph.label[node])
-    return [_known(new, edge) for edge in edges]
+    return [carried(new, edge) for edge in edges]
 
 
 class _Packs:
@@ -81,7 +81,7 @@ class _Packs:
 
     def _combine(self, pack: Pack, lanes: Sequence[int]) -> None:
         new = self._new | {ONE: ONE}
-        terms = [(_known(new, factor), self._operand(term, lanes)) for factor, term in pack.terms]
+        terms = [(carried(new, factor), self._operand(term, lanes)) for factor, term in pack.terms]
         if any(term is None for _, term in terms):
             return
         found = combined(self._into, [(f, t) for f, t in terms if t is not None], lanes, pack.least)
@@ -96,7 +96,7 @@ class _Packs:
         new = self._new | {ONE: ONE}
         if any(abs(pack.lanes[lane]) not in new for lane in lanes):
             return None
-        edges = {lane: _known(new, pack.lanes[lane]) for lane in lanes}
+        edges = {lane: carried(new, pack.lanes[lane]) for lane in lanes}
         sign, formed = self._moved.get(id(pack), (ONE, None))
         if formed is not None and all(self._into.mul(sign, formed.lanes[lane]) == edges[lane] for lane in lanes):
             return sign, formed
@@ -109,5 +109,6 @@ def _at(new: Mapping[int, Edge], edge: Edge) -> Edge:
     return found if edge > 0 else -found
 
 
-def _known(new: Mapping[int, Edge], edge: Edge) -> Edge:
+def carried(new: Mapping[int, Edge], edge: Edge) -> Edge:
+    """An edge over there, of a node that is there: what its node became, with its sign."""
     return new[edge] if edge >= 0 else -new[-edge]

@@ -19,13 +19,15 @@ from symofros.expr.graph import ONE, ZERO, Edge, Graph
 from symofros.expr.ops import ADD, MUL
 from symofros.expr.packs import EMPTY, Pack
 from symofros.expr.program import Function, Program
+from symofros.expr.substitute import carried
 
 
 def chain_sums(program: Program) -> Program:
     """Write the sums of every function as chains that start with a term that is no product.
 
     Sums that packs make stay as they are: vectors form them, too, to the same bits. What parameters determine is not
-    worth it. Each function gets nodes of its own, so its results do not depend on what it is generated with.
+    worth it. Each function gets nodes of its own, because it is evaluated by itself: what another reads is no reason to
+    keep a part. Terms stand in the order of their ages, so the last bits depend on what was formed before.
 
     Args:
         program: Staged or not.
@@ -41,9 +43,9 @@ def chain_sums(program: Program) -> Program:
         elif node in old.slot:
             at[node] = new.input(old.slot[node].group, old.slot[node].index)
     for node in needed_nodes(old, program.init):
-        at[node] = new.apply(old.op[node], *(_moved(at, arg) for arg in old.args[node]))
+        at[node] = new.apply(old.op[node], *(carried(at, arg) for arg in old.args[node]))
     # What parameters determine is kept without the sign that its node has got.
-    init = tuple(abs(_moved(at, edge)) for edge in program.init)
+    init = tuple(abs(carried(at, edge)) for edge in program.init)
     pre = {abs(at[node]): slot for node, slot in program.pre.items()}
     common, packed, functions = len(new), frozenset(_packed(old)), []
     for function in program.functions:
@@ -60,24 +62,20 @@ def _chained(program: Program, function: Function, packed: frozenset[int], new: 
     for node in nodes:
         ages.append(len(new))
         if node in sums.whole:
-            at[node] = new.sum(_moved(at, term) for term in sums.terms(node))
+            at[node] = new.sum(carried(at, term) for term in sums.terms(node))
         else:
-            at[node] = new.apply(old.op[node], *(_moved(at, arg) for arg in old.args[node]))
+            at[node] = new.apply(old.op[node], *(carried(at, arg) for arg in old.args[node]))
         if node in old.label:
             new.name(at[node], old.label[node])
     ages.append(len(new))
     new.packs += _Packs(at, nodes, ages).of(old.packs)
 
     def rewritten(stated: Function) -> Function:
-        outputs = tuple(replace(o, edges=tuple(_moved(at, edge) for edge in o.edges)) for o in stated.outputs)
+        outputs = tuple(replace(o, edges=tuple(carried(at, edge) for edge in o.edges)) for o in stated.outputs)
         solver = stated.solver and replace(stated.solver, parts=tuple(map(rewritten, stated.solver.parts)))
         return replace(stated, outputs=outputs, solver=solver)
 
     return rewritten(function)
-
-
-def _moved(at: Mapping[int, Edge], edge: Edge) -> Edge:
-    return at[edge] if edge >= 0 else -at[-edge]
 
 
 def check_packs(program: Program) -> None:
@@ -183,7 +181,7 @@ class _Packs:
     def _moved(self, pack: Pack) -> Pack:
         """A pack whose operands are there; lanes that no function needs are empty."""
         at, known = self._at, self._known
-        lanes = tuple(_moved(at, edge) if abs(edge) in at else ZERO for edge in pack.lanes)
+        lanes = tuple(carried(at, edge) if abs(edge) in at else ZERO for edge in pack.lanes)
         base = None if pack.base is None or self._confuses(pack, pack.base) else known[id(pack.base)]
         if not all(abs(factor) in at for factor, _ in pack.terms):
             return Pack(lanes, base=base)
@@ -192,7 +190,7 @@ class _Packs:
         literal = frozenset(lane for lane in pack.literal if all(abs(one.lanes[lane]) in at for one in given))
         return replace(
             pack, lanes=lanes, base=base, start=start, literal=literal,
-            terms=tuple((_moved(at, factor), known[id(operand)]) for factor, operand in pack.terms),
+            terms=tuple((carried(at, factor), known[id(operand)]) for factor, operand in pack.terms),
             own=frozenset(lane for lane in pack.own & literal if abs(lanes[lane]) >= start),
         )  # fmt: skip
 

@@ -140,7 +140,8 @@ def test_packs_come_along() -> None:
     assert lanes[:2] == lanes[2:] and min(lanes) > 100
 
 
-def test_a_function_has_its_bits_whatever_it_is_generated_with() -> None:
+def test_what_other_functions_read_does_not_split_sums() -> None:
+    """Of a tree whose energy is formed in the same order with and without the other functions."""
     tree = plan(system("tree0"))
     names = ("dynamics", "kinetic_energy", "mass_matrix")
     alone, among = (
