@@ -57,20 +57,15 @@ from symofros.expr.expression import evaluate as evaluate
 from symofros.options import Options as Options
 
 if TYPE_CHECKING:
-    from symofros.advice.advice import Advice as Advice
-    from symofros.advice.scene import Output as Output
-    from symofros.advice.scene import Scene as Scene
-    from symofros.advice.scene_file import load_scene as load_scene
-    from symofros.advice.search import advise as advise
     from symofros.compiler import compile_library as compile_library
     from symofros.compiler import compile_system
     from symofros.compiler import program_of as program_of
-    from symofros.diagram_files.reader import load_diagram as load_diagram
-    from symofros.diagram_files.writer import save_diagram as save_diagram
     from symofros.diagrams.diagram import Diagram as Diagram
+    from symofros.diagrams.files.reader import load_diagram as load_diagram
+    from symofros.diagrams.files.writer import save_diagram as save_diagram
     from symofros.diagrams.result import DiagramRun as DiagramRun
     from symofros.diagrams.simulation import Simulation as Simulation
-    from symofros.exporting import export as export
+    from symofros.exports.exporting import export as export
     from symofros.loading import load as load
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
@@ -89,9 +84,14 @@ if TYPE_CHECKING:
     from symofros.simulation.state_space import state_space as state_space
     from symofros.simulation.trajectories import Trajectories as Trajectories
     from symofros.simulation.trajectory import Trajectory as Trajectory
-    from symofros.viewing.record import record as record
-    from symofros.viewing.view import view as view
-    from symofros.viewing.viewer import Viewer as Viewer
+    from symofros.studio.advice.advice import Advice as Advice
+    from symofros.studio.advice.scene import Output as Output
+    from symofros.studio.advice.scene import Scene as Scene
+    from symofros.studio.advice.scene_file import load_scene as load_scene
+    from symofros.studio.advice.search import advise as advise
+    from symofros.studio.viewer.record import record as record
+    from symofros.studio.viewer.view import view as view
+    from symofros.studio.viewer.viewer import Viewer as Viewer
 
     compile = compile_system
 
@@ -105,19 +105,19 @@ _LAZY = {
     "compile": ("symofros.compiler", "compile_system"),
     "compile_library": ("symofros.compiler", "compile_library"),
     "program_of": ("symofros.compiler", "program_of"),
-    "export": ("symofros.exporting", "export"),
-    "load_diagram": ("symofros.diagram_files.reader", "load_diagram"),
-    "save_diagram": ("symofros.diagram_files.writer", "save_diagram"),
+    "export": ("symofros.exports.exporting", "export"),
+    "load_diagram": ("symofros.diagrams.files.reader", "load_diagram"),
+    "save_diagram": ("symofros.diagrams.files.writer", "save_diagram"),
     "Diagram": ("symofros.diagrams.diagram", "Diagram"),
     "DiagramRun": ("symofros.diagrams.result", "DiagramRun"),
     "Simulation": ("symofros.diagrams.simulation", "Simulation"),
     "load": ("symofros.loading", "load"),
     "save": ("symofros.loading", "save"),
-    "advise": ("symofros.advice.search", "advise"),
-    "Advice": ("symofros.advice.advice", "Advice"),
-    "Scene": ("symofros.advice.scene", "Scene"),
-    "Output": ("symofros.advice.scene", "Output"),
-    "load_scene": ("symofros.advice.scene_file", "load_scene"),
+    "advise": ("symofros.studio.advice.search", "advise"),
+    "Advice": ("symofros.studio.advice.advice", "Advice"),
+    "Scene": ("symofros.studio.advice.scene", "Scene"),
+    "Output": ("symofros.studio.advice.scene", "Output"),
+    "load_scene": ("symofros.studio.advice.scene_file", "load_scene"),
     "Model": ("symofros.runtime.model", "Model"),
     "assemble": ("symofros.simulation.assembly", "assemble"),
     "base_parameters": ("symofros.simulation.base_parameters", "base_parameters"),
@@ -134,9 +134,9 @@ _LAZY = {
     "Trajectories": ("symofros.simulation.trajectories", "Trajectories"),
     "Trajectory": ("symofros.simulation.trajectory", "Trajectory"),
     "state_space": ("symofros.simulation.state_space", "state_space"),
-    "record": ("symofros.viewing.record", "record"),
-    "view": ("symofros.viewing.view", "view"),
-    "Viewer": ("symofros.viewing.viewer", "Viewer"),
+    "record": ("symofros.studio.viewer.record", "record"),
+    "view": ("symofros.studio.viewer.view", "view"),
+    "Viewer": ("symofros.studio.viewer.viewer", "Viewer"),
 }
 
 

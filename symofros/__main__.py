@@ -8,7 +8,7 @@ from symofros.commands.models import compile_command, info
 from symofros.commands.motion import simulate
 from symofros.commands.shared import BAD_INPUT, load
 from symofros.commands.uses import advise, edit, export_command
-from symofros.viewing.command import add_view
+from symofros.studio.viewer.command import add_view
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, help="Symbolic multibody models as fast C code.")
 app.command()(info)

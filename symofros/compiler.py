@@ -22,20 +22,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from symofros.beams.deformation import small_coordinates
-from symofros.codegen.dispatch import dispatch_source
-from symofros.codegen.effort import cheapest
-from symofros.codegen.interpreted import InterpretedUnit
-from symofros.codegen.model import model_source
-from symofros.codegen.names import identifier
-from symofros.codegen.templates import template
 from symofros.description.beam import Beam
 from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
 from symofros.description.values import as_value
-from symofros.dynamics.formulas import formula_program
-from symofros.dynamics.functions import Request, methods, write_program
-from symofros.dynamics.wrenches import acts_on_bodies
 from symofros.errors import (
     CompileError,
     CompilerMissingWarning,
@@ -47,9 +37,22 @@ from symofros.errors import (
 )
 from symofros.expr.expression import evaluate
 from symofros.expr.program import Program
-from symofros.kinematics.joint import neutral_coordinates
+from symofros.generator.codegen.dispatch import dispatch_source
+from symofros.generator.codegen.effort import cheapest
+from symofros.generator.codegen.interpreted import InterpretedUnit
+from symofros.generator.codegen.model import model_source
+from symofros.generator.codegen.names import identifier
+from symofros.generator.passes import run_passes
+from symofros.mechanics.beams.deformation import small_coordinates
+from symofros.mechanics.dynamics.formulas import formula_program
+from symofros.mechanics.dynamics.functions import Request, methods, write_program
+from symofros.mechanics.dynamics.wrenches import acts_on_bodies
+from symofros.mechanics.kinematics.joint import neutral_coordinates
+from symofros.mechanics.topology.coordinates import angles, joint_sizes
+from symofros.mechanics.topology.graph import check
+from symofros.mechanics.topology.tree import SpanningTree, build_tree, frame_of
+from symofros.native import native_text
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS, Options
-from symofros.passes import run_passes
 from symofros.runtime.build import build_library, recall_library
 from symofros.runtime.functions import Rate
 from symofros.runtime.kernel import Lanes, Precision, Unit
@@ -58,9 +61,6 @@ from symofros.runtime.model import Key, Model
 from symofros.runtime.record import ClosureRecord, ModelRecord, Segment, SegmentKind
 from symofros.runtime.toolchain import Toolchain, find_toolchain
 from symofros.runtime.tuning import Build, builds, fastest
-from symofros.topology.coordinates import angles, joint_sizes
-from symofros.topology.graph import check
-from symofros.topology.tree import SpanningTree, build_tree, frame_of
 
 GENERATOR = "symofros 0.1.0"
 _EAGER = (Request("dynamics"),)
@@ -129,7 +129,7 @@ def compile_library(
     def made(build: Build) -> Path:
         source = model_source(program, record, GENERATOR, lanes, packs=build.packs)
         how = build.toolchain, build.flags, _dispatch(options, symbol), symbol
-        return build_library(source, template("symofros_model.h"), *how)
+        return build_library(source, native_text("model/symofros_model.h"), *how)
 
     return _chosen(made, options, toolchain, lanes, symbol, record.hash), symbol
 
@@ -145,7 +145,7 @@ def _chosen(
     for build in others:
         with suppress(CompileError):  # It was only worth a try.
             libraries.append(made(build))
-    return fastest(libraries, lambda path: CompiledUnit(path, symbol, template("symofros_model.h"), of))
+    return fastest(libraries, lambda path: CompiledUnit(path, symbol, native_text("model/symofros_model.h"), of))
 
 
 def _dispatch(options: Options, symbol: str) -> str:
@@ -217,8 +217,9 @@ def _warn_inconsistent(system: System) -> None:
                 f"beam '{body.name}': first order without foreshortening keeps the softening of a spinning beam and"
                 " drops its stiffening: it diverges at its first natural frequency. For studies only; otherwise turn"
                 " foreshortening on, or use retain: zeroth_order.",
-                InconsistentModelWarning, stacklevel=3,
-            )  # fmt: skip
+                InconsistentModelWarning,
+                stacklevel=3,
+            )
 
 
 class _Builder:
@@ -251,18 +252,26 @@ class _Builder:
         return self._compiled((what, "one by one"), program, self._toolchain, None, in_lanes)
 
     def _compiled(
-        self, what: object, program: Callable[[], Program], toolchain: Toolchain, vectors: Lanes | None,
+        self,
+        what: object,
+        program: Callable[[], Program],
+        toolchain: Toolchain,
+        vectors: Lanes | None,
         in_lanes: Callable[[Key, Lanes], CompiledKernel | None] | None = None,
-    ) -> CompiledUnit:  # fmt: skip
-        header = template("symofros_model.h")
+    ) -> CompiledUnit:
+        header = native_text("model/symofros_model.h")
         symbol = f"{identifier(self._record.name)}_model"
 
         def made(build: Build) -> Path:
             return recall_library(
                 f"{self._stated}{what!r}{build.packs}",
                 lambda: model_source(program(), self._record, GENERATOR, vectors, packs=build.packs),
-                header, build.toolchain, build.flags, _dispatch(self._options, symbol), symbol,
-            )  # fmt: skip
+                header,
+                build.toolchain,
+                build.flags,
+                _dispatch(self._options, symbol),
+                symbol,
+            )
 
         path = _chosen(made, self._options, toolchain, vectors, symbol, self._record.hash)
         return CompiledUnit(path, symbol, header, self._record.hash, in_lanes)
@@ -292,8 +301,9 @@ def _choose_toolchain(options: Options) -> Toolchain | None:
         warnings.warn(
             "no C compiler found: models run on the NumPy interpreter, some thousand times slower."
             " Install gcc or clang, or `pip install ziglang`.",
-            CompilerMissingWarning, stacklevel=4,
-        )  # fmt: skip
+            CompilerMissingWarning,
+            stacklevel=4,
+        )
     elif toolchain.is_fallback:
         _warn_fallback()
     return toolchain
@@ -304,8 +314,9 @@ def _warn_fallback() -> None:
     """Once a process: that the slower-compiling fallback is in use."""
     warnings.warn(
         "no system C compiler found: using the ziglang package, which compiles more slowly. Install gcc or clang.",
-        CompilerMissingWarning, stacklevel=5,
-    )  # fmt: skip
+        CompilerMissingWarning,
+        stacklevel=5,
+    )
 
 
 def requested(tree: SpanningTree, options: Options) -> list[Request]:
@@ -323,8 +334,9 @@ def requested(tree: SpanningTree, options: Options) -> list[Request]:
     frames = [frame.name for frame in tree.frames]
     for name in options.frames or ():
         if not any(name in (frame.name, frame.qualified) for frame in tree.frames):
-            raise UnknownNameError(f"system '{tree.system.name}': no frame '{name}'\n"
-                                   f"  remedy: {did_you_mean(name, frames)}")  # fmt: skip
+            raise UnknownNameError(
+                f"system '{tree.system.name}': no frame '{name}'\n  remedy: {did_you_mean(name, frames)}"
+            )
     wanted = [tree.frame(name).name for name in options.frames] if options.frames is not None else frames
     requests = [Request(name) for name in options.functions if name in MODEL_FUNCTIONS]
     requests += [Request(name, frame) for name in options.functions if name in FRAME_FUNCTIONS for frame in wanted]
@@ -368,19 +380,25 @@ def describe(tree: SpanningTree, options: Options) -> ModelRecord:
     return ModelRecord(
         name=tree.system.name,
         hash=_hash(tree.system, options),
-        q_names=names.q, v_names=names.v, u_names=names.u, par_names=names.par,
+        q_names=names.q,
+        v_names=names.v,
+        u_names=names.u,
+        par_names=names.par,
         frame_names=tuple(frame.name for frame in tree.frames),
         frame_aliases={frame.qualified: frame.name for frame in tree.frames},
         u_default=(0.0,) * names.efforts + tuple(driven),
         par_default=names.par_default,
-        q_neutral=tuple(neutral), q_lower=tuple(lower), q_upper=tuple(upper),
-        segments=_segments(tree), periodic=tuple(periodic),
+        q_neutral=tuple(neutral),
+        q_lower=tuple(lower),
+        q_upper=tuple(upper),
+        segments=_segments(tree),
+        periodic=tuple(periodic),
         constraint_names=tuple(name for item in tree.system.constraints for name in item.conditions),
         speed_conditions=tuple(name for item in tree.system.constraints for name in item.on_speeds),
         wrench_names=tuple(acts_on_bodies(tree.system.constraints)),
         closures=tuple(_closure(tree, item) for item in tree.system.constraints if isinstance(item, Closure)),
         driven=len(driven),
-    )  # fmt: skip
+    )
 
 
 def _closure(tree: SpanningTree, closure: Closure) -> ClosureRecord:

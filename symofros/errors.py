@@ -45,9 +45,15 @@ def first_of(problems: Iterable[Problem]) -> list[Problem]:
     endless = iter(problems)
     first = list(islice(endless, MAX_PROBLEMS))
     if next(endless, None) is not None:
-        first.append(Problem("there are more faults than are listed", f"more than {MAX_PROBLEMS}",
-                             f"the first {MAX_PROBLEMS} of a kind are listed", "mend these first",
-                             first[-1].where))  # fmt: skip
+        first.append(
+            Problem(
+                "there are more faults than are listed",
+                f"more than {MAX_PROBLEMS}",
+                f"the first {MAX_PROBLEMS} of a kind are listed",
+                "mend these first",
+                first[-1].where,
+            )
+        )
     return first
 
 

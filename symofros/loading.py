@@ -9,16 +9,16 @@ from pathlib import Path
 
 from symofros.atomic import write_atomically
 from symofros.description.mjcf.reader import read_mjcf
-from symofros.description.native import files
-from symofros.description.native.files import read_yaml, write_yaml
 from symofros.description.reading import Reading, in_order
 from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
 from symofros.description.urdf.reader import SNAP_TOL, read_urdf
+from symofros.description.yaml import files
+from symofros.description.yaml.files import read_yaml, write_yaml
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.topology.graph import find_problems
-from symofros.topology.numbers import Numbers
-from symofros.topology.physics import inertia_problems
+from symofros.mechanics.topology.graph import find_problems
+from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology.physics import inertia_problems
 
 _PATHS = "check the path; a relative one starts at the current folder"
 _READABLE = (*files.SUFFIXES, ".urdf", ".xml")
@@ -56,9 +56,13 @@ def load(
 def _waived(reading: Reading, waive: Collection[str]) -> Reading:
     for unknown in sorted(set(waive) - WAIVERS.keys()):
         raise DescriptionError(
-            Problem(f"waive: no check '{unknown}'", f"'{unknown}'", f"one of {', '.join(WAIVERS)}",
-                    did_you_mean(unknown, WAIVERS))
-        )  # fmt: skip
+            Problem(
+                f"waive: no check '{unknown}'",
+                f"'{unknown}'",
+                f"one of {', '.join(WAIVERS)}",
+                did_you_mean(unknown, WAIVERS),
+            )
+        )
     if reading.system is None or not waive:
         return reading
     bodies = tuple(replace(body, waive=(*body.waive, *waive)) for body in reading.system.bodies)
@@ -73,9 +77,13 @@ def _read(file: Path, floating_base: bool, snap_tol: float) -> Reading:
         return _accept_inertias(read_urdf(file, floating_base=floating_base, snap_tol=snap_tol))
     if floating_base:
         raise DescriptionError(
-            Problem("floating_base applies to URDF files only", f"'{file}'", "other descriptions state their joints",
-                    "give the base a free joint in the file")
-        )  # fmt: skip
+            Problem(
+                "floating_base applies to URDF files only",
+                f"'{file}'",
+                "other descriptions state their joints",
+                "give the base a free joint in the file",
+            )
+        )
     if file.suffix.lower() == ".xml":
         return _accept_inertias(read_mjcf(file, snap_tol=snap_tol))
     return read_yaml(file)
@@ -100,20 +108,29 @@ def save(system: System, path: str | os.PathLike[str]) -> None:
 def _refuse_suffix(file: Path, known: tuple[str, ...], verb: str) -> None:
     if file.suffix.lower() not in known:
         raise DescriptionError(
-            Problem(f"'{file}' can't be {verb}: unknown format", file.suffix or "no suffix",
-                    f"the suffix is one of {', '.join(known)}", did_you_mean(file.suffix.lower(), known))
-        )  # fmt: skip
+            Problem(
+                f"'{file}' can't be {verb}: unknown format",
+                file.suffix or "no suffix",
+                f"the suffix is one of {', '.join(known)}",
+                did_you_mean(file.suffix.lower(), known),
+            )
+        )
 
 
 def _missing(file: Path) -> Problem:
     try:
         there = sorted(other.name for other in file.parent.iterdir() if other.suffix.lower() in _READABLE)
     except OSError:
-        return Problem(f"'{file}' does not exist", f"nor does the folder '{file.parent}'",
-                       "a description is an existing file", _PATHS)  # fmt: skip
+        return Problem(
+            f"'{file}' does not exist",
+            f"nor does the folder '{file.parent}'",
+            "a description is an existing file",
+            _PATHS,
+        )
     found = f"in its folder: {', '.join(there[:12])}" if there else "no description in its folder"
-    return Problem(f"'{file}' does not exist", found, "a description is an existing file",
-                   did_you_mean(file.name, there) or _PATHS)  # fmt: skip
+    return Problem(
+        f"'{file}' does not exist", found, "a description is an existing file", did_you_mean(file.name, there) or _PATHS
+    )
 
 
 def _accept_inertias(reading: Reading) -> Reading:

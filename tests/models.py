@@ -14,10 +14,29 @@ TREES |= {f"parametrised{seed}": seed for seed in range(3)}
 TREES |= {f"joints{seed}": 100 + seed for seed in range(8)}
 # Every reference model of rigid bodies in tree topology.
 REFERENCES = (
-    "pendulum", "double_pendulum", "cart_pole", "rx90", "open_chain_5r", "space_arm", "chain7", "chain22",
-    "torque_free_body", "heavy_top", "gyroscope", "puma560", "stanford_arm", "friction_arm", "joint_zoo", "car",
-    "ssrms", "spdm", "mss", "random_tree1", "random_tree4", "random_tree70",
-)  # fmt: skip
+    "pendulum",
+    "double_pendulum",
+    "cart_pole",
+    "rx90",
+    "open_chain_5r",
+    "space_arm",
+    "chain7",
+    "chain22",
+    "torque_free_body",
+    "heavy_top",
+    "gyroscope",
+    "puma560",
+    "stanford_arm",
+    "friction_arm",
+    "joint_zoo",
+    "car",
+    "ssrms",
+    "spdm",
+    "mss",
+    "random_tree1",
+    "random_tree4",
+    "random_tree70",
+)
 CASES = (*TREES, *REFERENCES)
 
 # Mechanisms with constraints -> where to begin with closing their loops.
@@ -60,14 +79,23 @@ def parametrised(system: sf.System, seed: int = 0) -> sf.System:
         inertia = body.inertia
         if inertia is not None:
             inertia = sf.Inertia(
-                named(inertia.mass), tuple(map(named, inertia.center_of_mass)), tuple(map(named, inertia.moments)),
-                inertia.about, inertia.rotation,
-            )  # fmt: skip
+                named(inertia.mass),
+                tuple(map(named, inertia.center_of_mass)),
+                tuple(map(named, inertia.moments)),
+                inertia.about,
+                inertia.rotation,
+            )
         joint = body.joint
         if joint is not None:
             joint = sf.Joint(
-                joint.name, joint.kind, joint.parent, joint.frame, tuple(map(named, joint.position)), joint.rotation,
-                joint.axis, joint.actuated,
-            )  # fmt: skip
+                joint.name,
+                joint.kind,
+                joint.parent,
+                joint.frame,
+                tuple(map(named, joint.position)),
+                joint.rotation,
+                joint.axis,
+                joint.actuated,
+            )
         bodies.append(sf.RigidBody(body.name, joint, inertia, body.frames))
     return sf.System(system.name, bodies, parameters, gravity=system.gravity)

@@ -116,9 +116,14 @@ def _chosen(engines: list[str] | None) -> tuple[str, ...] | None:
 
 
 def _run(
-    models: list[str], floating_base: bool, settings: Settings, as_json: bool, junit: Path | None, report: Path,
+    models: list[str],
+    floating_base: bool,
+    settings: Settings,
+    as_json: bool,
+    junit: Path | None,
+    report: Path,
     workers: int,
-) -> None:  # fmt: skip
+) -> None:
     try:
         cases = named(models, floating_base) if models else standard_set()
     except (LookupError, FileNotFoundError) as error:

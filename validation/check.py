@@ -309,10 +309,15 @@ class _Check:
     def _result(self, engines: Sequence[Engine]) -> ModelResult:
         model, system = self.ours.model, self.subject.system
         return ModelResult(
-            self.subject.label, tuple(self.rows), description_hash(system),
+            self.subject.label,
+            tuple(self.rows),
+            description_hash(system),
             {"nq": model.nq, "nv": model.nv, "nu": model.nu, "bodies": len(system.bodies)},
-            self.subject.frames, system.notes, {engine.name: engine.version for engine in engines}, self.seconds,
-        )  # fmt: skip
+            self.subject.frames,
+            system.notes,
+            {engine.name: engine.version for engine in engines},
+            self.seconds,
+        )
 
 
 def _corner(element: object) -> str:

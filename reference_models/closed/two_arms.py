@@ -26,21 +26,26 @@ def two_arms() -> sf.System:
     """Six springs, a rolling trunk, two arms of seven joints, a payload; a closure that holds the left hand."""
     bodies = [*_mount(), *two_arm_bodies("mount", None)]
     payload = sf.RigidBody(
-        "payload", sf.Joint("grip", "fixed", "spdm_right_link7", "end"),
-        sf.Inertia(200.0, (0.4, 0.0, 0.0), (30.0, 35.0, 35.0)), (sf.Frame("center", (0.4, 0.0, 0.0)),),
-    )  # fmt: skip
+        "payload",
+        sf.Joint("grip", "fixed", "spdm_right_link7", "end"),
+        sf.Inertia(200.0, (0.4, 0.0, 0.0), (30.0, 35.0, 35.0)),
+        (sf.Frame("center", (0.4, 0.0, 0.0)),),
+    )
     p, R = hand(HOLD)
     ground = sf.RigidBody("station", None, frames=(sf.Frame("point", p, sf.Rotation.matrix(R)),))
-    hold = sf.Closure("stabilisation", ("station", "point"), ("spdm_left_link7", "end"), ("x", "y", "z"),
-                      ("x", "y", "z"))  # fmt: skip
+    hold = sf.Closure(
+        "stabilisation", ("station", "point"), ("spdm_left_link7", "end"), ("x", "y", "z"), ("x", "y", "z")
+    )
     return sf.System("two_arms", (ground, *bodies, payload), gravity=(0.0, 0.0, 0.0), constraints=(hold,))
 
 
 def two_arms_guess(names: tuple[str, ...]) -> list[float]:
     """Coordinates at which the left hand is at its point and the right arm is about to pick."""
     arms = {"left": HOLD, "right": PICK}
-    return [arms[name.split("_")[1]][int(name[-1]) - 1] if name[:5] == "spdm_" and name[-2] == "q" else 0.0
-            for name in names]  # fmt: skip
+    return [
+        arms[name.split("_")[1]][int(name[-1]) - 1] if name[:5] == "spdm_" and name[-2] == "q" else 0.0
+        for name in names
+    ]
 
 
 def _mount() -> list[sf.RigidBody]:

@@ -40,17 +40,28 @@ def working(grips: bool = True, period: float = 1e-3) -> sf.Diagram:
     diagram = sf.Diagram("two_arms")
     diagram.add_model("plant", two_arms(), start)
     diagram.add_model("control", controlled(), start)
-    points = [[0.0, *left, *right] for left, right in ((STOWED, PICK), (HOLD, PICK), (HOLD, PICK), (HOLD, PLACE),
-                                                       (HOLD, PLACE))]  # fmt: skip
+    points = [
+        [0.0, *left, *right]
+        for left, right in ((STOWED, PICK), (HOLD, PICK), (HOLD, PICK), (HOLD, PLACE), (HOLD, PLACE))
+    ]
     diagram.add(blocks.JointTrajectory(name="path", points=points, times=[0.0, REACHED, LIFTED, PLACED, T_END]))
-    diagram.add(blocks.InverseDynamics(name="feedforward", model="control", period=period),
-                q="path.q", v="path.v", a="path.a")  # fmt: skip
+    diagram.add(
+        blocks.InverseDynamics(name="feedforward", model="control", period=period), q="path.q", v="path.v", a="path.a"
+    )
     for name, source in (("q", "plant.q"), ("v", "plant.v")):
         diagram.add(blocks.Pick(name=name, entries="actuated", model="plant", of=name), u=source)
-    diagram.add(blocks.JointPD(name="pd", kp=KP, kd=KD, period=period),
-                q_desired="path.q", v_desired="path.v", q="q", v="v")  # fmt: skip
-    diagram.add(blocks.Step(name="stiffness", time=GRIPPED, before=[1.0] * 15, period=period,
-                            after=[1.0] + [LOCKED if grips else 1.0] * 7 + [1.0] * 7))  # fmt: skip
+    diagram.add(
+        blocks.JointPD(name="pd", kp=KP, kd=KD, period=period), q_desired="path.q", v_desired="path.v", q="q", v="v"
+    )
+    diagram.add(
+        blocks.Step(
+            name="stiffness",
+            time=GRIPPED,
+            before=[1.0] * 15,
+            period=period,
+            after=[1.0] + [LOCKED if grips else 1.0] * 7 + [1.0] * 7,
+        )
+    )
     diagram.add(blocks.Product(name="held", period=period), u1="pd.effort", u2="stiffness")
     diagram.add(blocks.Sum(name="effort", period=period), u1="held", u2="feedforward.tau")
     diagram.add(blocks.Step(name="grip", time=GRIPPED, before=[0.0], after=[1.0 if grips else 0.0], period=period))

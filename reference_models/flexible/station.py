@@ -52,6 +52,18 @@ def _boom(body: sf.RigidBody, joint: sf.Joint, bending: int, twist: int) -> sf.B
     assert body.inertia is not None and isinstance(body.inertia.mass, float) and isinstance(end.position[0], float)
     rhoA = body.inertia.mass / end.position[0]
     return sf.Beam(
-        body.name, joint, end.position[0], rhoA, EI_z=_EI, EI_y=_EI, GJ=_GJ, rhoJ=rhoA * _RADIUS**2,
-        bend_y=bending, bend_z=bending, twist=twist, family="legendre", damping=1e-3, frames=(sf.Frame("end"),),
-    )  # fmt: skip
+        body.name,
+        joint,
+        end.position[0],
+        rhoA,
+        EI_z=_EI,
+        EI_y=_EI,
+        GJ=_GJ,
+        rhoJ=rhoA * _RADIUS**2,
+        bend_y=bending,
+        bend_z=bending,
+        twist=twist,
+        family="legendre",
+        damping=1e-3,
+        frames=(sf.Frame("end"),),
+    )

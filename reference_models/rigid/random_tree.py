@@ -85,18 +85,28 @@ def _general_joint(rng: np.random.Generator, i: int) -> dict[str, Any]:
     a, b, c = (f"x{i}", f"y{i}", f"z{i}")
     forms: list[dict[str, Any]] = [
         # Euler angles and a translation: six coordinates.
-        {"coordinates": (a, b, c, f"a{i}", f"b{i}", f"c{i}"), "moving_position": (a, b, c),
-         "moving_rotation": sf.Rotation.rpy(f"a{i}", f"b{i}", f"c{i}")},
+        {
+            "coordinates": (a, b, c, f"a{i}", f"b{i}", f"c{i}"),
+            "moving_position": (a, b, c),
+            "moving_rotation": sf.Rotation.rpy(f"a{i}", f"b{i}", f"c{i}"),
+        },
         # A point on a helix, turned by a matrix.
-        {"coordinates": (a,), "moving_position": (f"0.3*cos({a})", f"0.3*sin({a})", f"0.1*{a}"),
-         "moving_rotation": sf.Rotation.matrix([[f"cos(2*{a})", f"-sin(2*{a})", 0],
-                                                [f"sin(2*{a})", f"cos(2*{a})", 0], [0, 0, 1]])},
+        {
+            "coordinates": (a,),
+            "moving_position": (f"0.3*cos({a})", f"0.3*sin({a})", f"0.1*{a}"),
+            "moving_rotation": sf.Rotation.matrix(
+                [[f"cos(2*{a})", f"-sin(2*{a})", 0], [f"sin(2*{a})", f"cos(2*{a})", 0], [0, 0, 1]]
+            ),
+        },
         # A turn about an axis that is not a coordinate axis, coupled to a slide.
-        {"coordinates": (a, b), "moving_position": (0, f"{a}*{b}", f"{b}^2"),
-         "moving_rotation": sf.Rotation.axis_angle((1, 2, -1), f"{a} + sin({b})")},
+        {
+            "coordinates": (a, b),
+            "moving_position": (0, f"{a}*{b}", f"{b}^2"),
+            "moving_rotation": sf.Rotation.axis_angle((1, 2, -1), f"{a} + sin({b})"),
+        },
         # No turn at all.
         {"coordinates": (a, b), "moving_position": (f"sin({a})", f"{b}", f"{a}*{b}")},
-    ]  # fmt: skip
+    ]
     return forms[int(rng.integers(len(forms)))]
 
 

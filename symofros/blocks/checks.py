@@ -32,8 +32,13 @@ def numbers(name: str, field: str, values: Any, shape: Sequence[int | None] | No
     try:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
-        raise refuse(name, f"{field} is not numbers", repr(values), "an array of finite numbers",
-                     "write numbers, rows of equal length") from None  # fmt: skip
+        raise refuse(
+            name,
+            f"{field} is not numbers",
+            repr(values),
+            "an array of finite numbers",
+            "write numbers, rows of equal length",
+        ) from None
     if not np.all(np.isfinite(array)):
         raise refuse(name, f"{field} is not finite", array, "an array of finite numbers", "replace inf and nan")
     if shape is not None:
@@ -76,8 +81,9 @@ def whole(name: str, field: str, value: Any, low: int, high: int) -> int:
         DescriptionError: It is none, or out of bounds.
     """
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
-        raise refuse(name, f"{field} is out of bounds", repr(value), f"a whole number from {low} to {high}",
-                     "choose one")  # fmt: skip
+        raise refuse(
+            name, f"{field} is out of bounds", repr(value), f"a whole number from {low} to {high}", "choose one"
+        )
     return int(value)
 
 
@@ -89,8 +95,13 @@ def increasing(name: str, field: str, values: Any, least: int = 2) -> Array:
     """
     array = numbers(name, field, values, (None,))
     if len(array) < least or not np.all(np.diff(array) > 0.0):
-        raise refuse(name, f"{field} does not increase", array, f"{least} numbers or more, each above the one before",
-                     "sort them and drop what is repeated")  # fmt: skip
+        raise refuse(
+            name,
+            f"{field} does not increase",
+            array,
+            f"{least} numbers or more, each above the one before",
+            "sort them and drop what is repeated",
+        )
     return array
 
 
@@ -102,8 +113,13 @@ def choice(name: str, field: str, value: Any, known: Iterable[str]) -> str:
     """
     words = list(known)
     if value not in words:
-        raise refuse(name, f"unknown {field}", repr(value), f"{field} is one of {', '.join(words)}",
-                     did_you_mean(str(value), words))  # fmt: skip
+        raise refuse(
+            name,
+            f"unknown {field}",
+            repr(value),
+            f"{field} is one of {', '.join(words)}",
+            did_you_mean(str(value), words),
+        )
     return str(value)
 
 
@@ -114,6 +130,11 @@ def known_name(name: str, what: str, value: object, known: Collection[str]) -> s
         DescriptionError: It does not.
     """
     if value not in known:
-        raise refuse(name, f"no {what} '{value!s:.60}'", repr(value), f"known: {', '.join(list(known)[:12]) or 'none'}",
-                     did_you_mean(str(value), known) or "see model.names")  # fmt: skip
+        raise refuse(
+            name,
+            f"no {what} '{value!s:.60}'",
+            repr(value),
+            f"known: {', '.join(list(known)[:12]) or 'none'}",
+            did_you_mean(str(value), known) or "see model.names",
+        )
     return str(value)

@@ -47,12 +47,21 @@ class ForwardDynamics(Block):
         names = _constraints(record.constraint_names)
         if self.engaged:
             if not names:
-                raise DescriptionError(Problem(f"block '{self.name}': nothing to engage", f"model '{self.model}'",
-                                               "engaged belongs to a model with constraints",
-                                               "leave it out, or add a closure"))  # fmt: skip
+                raise DescriptionError(
+                    Problem(
+                        f"block '{self.name}': nothing to engage",
+                        f"model '{self.model}'",
+                        "engaged belongs to a model with constraints",
+                        "leave it out, or add a closure",
+                    )
+                )
             inputs.append(Port("engaged", (len(dict.fromkeys(names)),)))
-        outputs = [Port("q", (len(record.q_names),), q), Port("v", (nv,), v), Port("a", (nv,), a),
-                   Port("friction", (nv,), effort)]  # fmt: skip
+        outputs = [
+            Port("q", (len(record.q_names),), q),
+            Port("v", (nv,), v),
+            Port("a", (nv,), a),
+            Port("friction", (nv,), effort),
+        ]
         return Ports(tuple(inputs), (*outputs, Port("lam", (record.nc,))) if record.nc else tuple(outputs))
 
     def motion(self, at: At) -> Terms:
@@ -112,8 +121,10 @@ class InverseDynamics(Block):
         record = known.model(self.model)
         q, v, a, effort = joint_units(record)
         nv = len(record.v_names)
-        return Ports((Port("q", (len(record.q_names),), q), Port("v", (nv,), v), Port("a", (nv,), a)),
-                     (Port("tau", (nv,), effort),))  # fmt: skip
+        return Ports(
+            (Port("q", (len(record.q_names),), q), Port("v", (nv,), v), Port("a", (nv,), a)),
+            (Port("tau", (nv,), effort),),
+        )
 
     def compute(self, at: At) -> Values:
         """By the model's own inverse dynamics."""

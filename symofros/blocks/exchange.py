@@ -38,12 +38,23 @@ class Exchange(OpaqueBlock):
         try:
             ipaddress.ip_address(host)
         except ValueError:
-            raise DescriptionError(Problem(f"block '{self.name}': no address '{host:.60}'", f"'{host:.60}'",
-                                           "a host is an IP address", "127.0.0.1 is this machine"
-                                           )) from None  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"block '{self.name}': no address '{host:.60}'",
+                    f"'{host:.60}'",
+                    "a host is an IP address",
+                    "127.0.0.1 is this machine",
+                )
+            ) from None
         if not 1 <= port <= 65535:
-            raise DescriptionError(Problem(f"block '{self.name}': no port {port}", f"{port}",
-                                           "a port is from 1 to 65535", "choose one above 1023"))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"block '{self.name}': no port {port}",
+                    f"{port}",
+                    "a port is from 1 to 65535",
+                    "choose one above 1023",
+                )
+            )
 
     def reaches(self) -> str:
         """The address, if it is another machine's or others can reach it."""
@@ -127,6 +138,11 @@ def check_size(name: str, size: int) -> None:
         DescriptionError: Out of 1 to MAX_VALUES.
     """
     if not 1 <= size <= MAX_VALUES:
-        raise DescriptionError(Problem(f"block '{name}': {size} values a packet", f"{size}",
-                                       f"a packet holds 1 to {MAX_VALUES} values", "send less, or by several blocks"
-                                       ))  # fmt: skip
+        raise DescriptionError(
+            Problem(
+                f"block '{name}': {size} values a packet",
+                f"{size}",
+                f"a packet holds 1 to {MAX_VALUES} values",
+                "send less, or by several blocks",
+            )
+        )

@@ -20,9 +20,14 @@ from symofros.runtime.kernel import Array
 def open_ports(name: str, signals: tuple[str, ...], known: Known) -> Ports:
     """An input for each name, of any shape."""
     if not signals or len(set(signals)) < len(signals) or not all(signal.isidentifier() for signal in signals):
-        raise DescriptionError(Problem(f"block '{name}': no inputs can be named so", f"{list(signals)}"[:80],
-                                       "signals are different names, one an input", "for example [desired, actual]"
-                                       ))  # fmt: skip
+        raise DescriptionError(
+            Problem(
+                f"block '{name}': no inputs can be named so",
+                f"{list(signals)}"[:80],
+                "signals are different names, one an input",
+                "for example [desired, actual]",
+            )
+        )
     return Ports(tuple(Port(signal, known.inputs.get(signal)) for signal in signals))
 
 
@@ -64,9 +69,14 @@ class Store(OpaqueBlock):
     def ports(self, known: Known) -> Ports:
         """The signals."""
         if "t" in self.signals or self.most < 1:
-            raise DescriptionError(Problem(f"block '{self.name}': can't store that", f"{self.signals}, {self.most}",
-                                           "t is the name of the times, and at least one sample is kept",
-                                           "rename the signal"))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"block '{self.name}': can't store that",
+                    f"{self.signals}, {self.most}",
+                    "t is the name of the times, and at least one sample is kept",
+                    "rename the signal",
+                )
+            )
         return open_ports(self.name, self.signals, known)
 
     def begin(self, known: Known) -> Running:

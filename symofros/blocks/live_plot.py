@@ -117,14 +117,25 @@ class _Page:
         self.stream, self.sequence, self.dropped = secrets.randbits(32), 0, 0
         if self.process is not None and self.process.poll() is None:
             return
-        self.process = subprocess.Popen([sys.executable, "-m", "symofros.blocks.live_page"], text=True,
-                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE)  # fmt: skip
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "symofros.blocks.live_page"],
+            text=True,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+        )
         assert self.process.stdout is not None
         line = self.process.stdout.readline()
         if not line:
-            raise SymofrosError(str(Problem(f"block '{name}': the page does not start", "its program ended",
-                                            "python -m symofros.blocks.live_page serves it",
-                                            "see what it wrote to standard error")))  # fmt: skip
+            raise SymofrosError(
+                str(
+                    Problem(
+                        f"block '{name}': the page does not start",
+                        "its program ended",
+                        "python -m symofros.blocks.live_page serves it",
+                        "see what it wrote to standard error",
+                    )
+                )
+            )
         told = json.loads(line)
         self.port, self.url = told["udp"], told["url"]
         print(f"{name}: {self.url}", file=sys.stderr)

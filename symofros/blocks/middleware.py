@@ -45,9 +45,14 @@ class _ByZenoh(Exchange):
         super().check()
         key = self.key
         if not key or key.startswith("/") or key.endswith("/") or "//" in key or any(c in key for c in "?#$\0"):
-            raise DescriptionError(Problem(f"block '{self.name}': no key '{key:.60}'", f"'{key:.60}'",
-                                           "names joined by '/', none of them empty", "for example arm/state"
-                                           ))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"block '{self.name}': no key '{key:.60}'",
+                    f"'{key:.60}'",
+                    "names joined by '/', none of them empty",
+                    "for example arm/state",
+                )
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,26 +158,50 @@ def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
     try:
         zenoh = import_module("zenoh")
     except ImportError:
-        raise SymofrosError(str(Problem(f"block '{name}': Zenoh is not installed", "no module zenoh",
-                                        "network blocks of middleware are an extra", "pip install 'symofros[network]'")
-                                )) from None  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    f"block '{name}': Zenoh is not installed",
+                    "no module zenoh",
+                    "network blocks of middleware are an extra",
+                    "pip install 'symofros[network]'",
+                )
+            )
+        ) from None
     config = zenoh.Config()
     ends, listens = [f"tcp/{address}"], block.listens
     for key, value in (
-        ("mode", "peer"), ("scouting/multicast/enabled", False), ("scouting/gossip/enabled", False),
-        ("listen/endpoints", ends if listens else []), ("connect/endpoints", [] if listens else ends),
-    ):  # fmt: skip
+        ("mode", "peer"),
+        ("scouting/multicast/enabled", False),
+        ("scouting/gossip/enabled", False),
+        ("listen/endpoints", ends if listens else []),
+        ("connect/endpoints", [] if listens else ends),
+    ):
         config.insert_json5(key, json.dumps(value))
     try:
         session = zenoh.open(config)
     except zenoh.ZError as error:
-        raise SymofrosError(str(Problem(f"block '{name}': can't open {address}", f"{error}".split(" at /")[0][:200],
-                                        "one program listens at an address of this machine",
-                                        "choose another port, or let one side listen and the other connect")
-                                )) from None  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    f"block '{name}': can't open {address}",
+                    f"{error}".split(" at /")[0][:200],
+                    "one program listens at an address of this machine",
+                    "choose another port, or let one side listen and the other connect",
+                )
+            )
+        ) from None
     try:
         return session, declare(session)
     except zenoh.ZError as error:
         session.close()
-        raise SymofrosError(str(Problem(f"block '{name}': no key '{block.key:.60}'", f"{error}".split(" at /")[0][:200],
-                                        "a key as Zenoh has them", "for example arm/state"))) from None  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    f"block '{name}': no key '{block.key:.60}'",
+                    f"{error}".split(" at /")[0][:200],
+                    "a key as Zenoh has them",
+                    "for example arm/state",
+                )
+            )
+        ) from None

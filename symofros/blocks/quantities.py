@@ -38,8 +38,13 @@ def frame_ports(block: str, prefix: str, frames: Sequence[str]) -> dict[str, str
     """
     ports = {prefix + re.sub(r"\W", "_", frame): frame for frame in frames}
     if len(ports) < len(frames):
-        raise refuse(block, "two frames have one port", ", ".join(frames), "different names, dots read as underscores",
-                     "leave out those that stand twice, or rename one")  # fmt: skip
+        raise refuse(
+            block,
+            "two frames have one port",
+            ", ".join(frames),
+            "different names, dots read as underscores",
+            "leave out those that stand twice, or rename one",
+        )
     return ports
 
 

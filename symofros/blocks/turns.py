@@ -20,10 +20,16 @@ class Turn:
             SymofrosError: Another run has begun and not ended.
         """
         if not self._taken.acquire(blocking=False):
-            raise SymofrosError(str(Problem(f"block '{block}': its page shows another run", "two runs at once",
-                                            "a page shows one run at a time",
-                                            "let the other end first, or give this diagram a block of its own"
-                                            )))  # fmt: skip
+            raise SymofrosError(
+                str(
+                    Problem(
+                        f"block '{block}': its page shows another run",
+                        "two runs at once",
+                        "a page shows one run at a time",
+                        "let the other end first, or give this diagram a block of its own",
+                    )
+                )
+            )
 
     def leave(self) -> None:
         """End: the next may begin."""

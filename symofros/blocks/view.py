@@ -20,8 +20,8 @@ from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.kernel import Array
-from symofros.viewing.of_run import chosen_block
-from symofros.viewing.viewer import Viewer
+from symofros.studio.viewer.of_run import chosen_block
+from symofros.studio.viewer.viewer import Viewer
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,14 +55,19 @@ class View3D(OpaqueBlock):
     def ports(self, known: Known) -> Ports:
         """Coordinates q (nq); inputs u (nu), which matter where they prescribe motion."""
         if not (np.isfinite(self.exaggeration) and 0 <= self.port <= 65535):
-            raise DescriptionError(Problem(f"block '{self.name}': can't show that",
-                                           f"exaggeration {self.exaggeration}, port {self.port}",
-                                           "exaggeration is a finite number, a port is from 0 to 65535",
-                                           "port 0 is any free one"))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"block '{self.name}': can't show that",
+                    f"exaggeration {self.exaggeration}, port {self.port}",
+                    "exaggeration is a finite number, a port is from 0 to 65535",
+                    "port 0 is any free one",
+                )
+            )
         record = known.model(self.model)
         q, _, _, effort = joint_units(record)
-        return Ports((Port("q", (len(record.q_names),), q),
-                      Port("u", (len(record.u_names),), effort, record.u_default)))  # fmt: skip
+        return Ports(
+            (Port("q", (len(record.q_names),), q), Port("u", (len(record.u_names),), effort, record.u_default))
+        )
 
     def begin(self, known: Known) -> Running:
         """Serve the page, or take over that of the run before.

@@ -13,14 +13,14 @@ from rich.tree import Tree
 
 import symofros as sf
 from symofros.atomic import write_atomically
-from symofros.codegen.names import identifier
-from symofros.codegen.templates import template
 from symofros.commands.shared import AsJson, FilePath, Floating, ModelPath, Network, load, out, refuse
 from symofros.compiler import compile_system, describe, generate, plan, requested
-from symofros.diagram_files import command as diagrams
+from symofros.diagrams.files import command as diagrams
+from symofros.generator.codegen.names import identifier
+from symofros.generator.passes.count import Operations, count_program
+from symofros.mechanics.topology.tree import BASE, SpanningTree
+from symofros.native import native_text
 from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
-from symofros.passes.count import Operations, count_program
-from symofros.topology.tree import BASE, SpanningTree
 
 
 def info(model: FilePath, floating_base: Floating = False, network: Network = False, as_json: AsJson = False) -> None:
@@ -39,8 +39,12 @@ def info(model: FilePath, floating_base: Floating = False, network: Network = Fa
     if as_json:
         operations = {name: vars_of(count) for name, count in counts.items()}
         frames = [frame.name for frame in tree.frames]
-        print(json.dumps({"name": system.name, **sizes, "frames": frames, "operations": operations,
-                          "notes": list(system.notes)}, indent=1))  # fmt: skip
+        print(
+            json.dumps(
+                {"name": system.name, **sizes, "frames": frames, "operations": operations, "notes": list(system.notes)},
+                indent=1,
+            )
+        )
         return
     out.print(_draw(tree))
     out.print(", ".join(f"{key} {value}" for key, value in sizes.items()), markup=False)
@@ -105,14 +109,17 @@ def compile_command(
     done = time.perf_counter()
     total = sum(count.total for key, count in count_program(program).items() if key[0] != "init")
     result: dict[str, Any] = {
-        "name": system.name, "operations": total, "bytes": len(text),
-        "generate_s": generated - start, "compile_s": done - generated,
-    }  # fmt: skip
+        "name": system.name,
+        "operations": total,
+        "bytes": len(text),
+        "generate_s": generated - start,
+        "compile_s": done - generated,
+    }
     if output is not None:
         output.mkdir(parents=True, exist_ok=True)
         name = identifier(system.name)
         write_atomically(output / f"{name}.c", text)
-        write_atomically(output / "symofros_model.h", template("symofros_model.h"))
+        write_atomically(output / "symofros_model.h", native_text("model/symofros_model.h"))
         result["files"] = [str(output / f"{name}.c"), str(output / "symofros_model.h")]
     if as_json:
         print(json.dumps(result, indent=1))

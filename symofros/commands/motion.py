@@ -12,7 +12,7 @@ import typer
 from rich.table import Table
 
 import symofros as sf
-from symofros import watching
+from symofros.commands import watching
 from symofros.commands.shared import (
     BAD_INPUT,
     AsJson,
@@ -30,7 +30,7 @@ from symofros.commands.shared import (
 )
 from symofros.compiler import compile_system
 from symofros.description.system import System
-from symofros.diagram_files import command as diagrams
+from symofros.diagrams.files import command as diagrams
 from symofros.errors import did_you_mean
 from symofros.runtime.kernel import Array
 from symofros.simulation.methods import METHODS
@@ -44,8 +44,12 @@ def simulate(
     dt: Annotated[float | None, typer.Option(help="Step [s]; the first one of adaptive methods.")] = None,
     rtol: Annotated[float | None, typer.Option(help="Relative error of a step, adaptive methods.")] = None,
     given: Annotated[
-        list[str], typer.Option("--set", help="NAME=NUMBER: a first coordinate or speed (dNAME); of a diagram "
-                                "BLOCK.FIELD=NUMBER or NUMBER,NUMBER: a run-time parameter.")
+        list[str],
+        typer.Option(
+            "--set",
+            help="NAME=NUMBER: a first coordinate or speed (dNAME); of a diagram "
+            "BLOCK.FIELD=NUMBER or NUMBER,NUMBER: a run-time parameter.",
+        ),
     ] = [],  # noqa: B006
     inputs: Annotated[list[str], typer.Option("--input", help="NAME=FORMULA of coordinates, speeds and t.")] = [],  # noqa: B006
     every: Annotated[
@@ -62,8 +66,11 @@ def simulate(
     ] = None,
     jitter: Annotated[Path | None, typer.Option(help="Of a diagram: picture of how late instants were.")] = None,
     view: Annotated[
-        bool, typer.Option("--view", help="Play the run in three dimensions in the browser; of a diagram that keeps "
-                           "pace, show it as it goes.")
+        bool,
+        typer.Option(
+            "--view",
+            help="Play the run in three dimensions in the browser; of a diagram that keeps pace, show it as it goes.",
+        ),
     ] = False,
     view_block: Annotated[str, typer.Option(help="Of a diagram with several mechanisms: whose is shown.")] = "",
     record_view: Annotated[
@@ -72,7 +79,7 @@ def simulate(
     exaggeration: Annotated[float, typer.Option(help="Multiplies the elastic coordinates in the picture.")] = 1.0,
     network: Network = False,
     as_json: AsJson = False,
-) -> None:  # fmt: skip
+) -> None:
     """Move a model or a diagram through time, and say how it went."""
     pace = speed or float(realtime)
     settings = {"method": method, "dt": dt, "rtol": rtol}
@@ -114,16 +121,29 @@ def simulate(
 
 
 def _simulated(
-    system: System, t_end: float | None, given: list[str], inputs: list[str], every: float | None, pace: float,
-    settings: dict[str, Any], progress: bool,
-) -> sf.Trajectory:  # fmt: skip
+    system: System,
+    t_end: float | None,
+    given: list[str],
+    inputs: list[str],
+    every: float | None,
+    pace: float,
+    settings: dict[str, Any],
+    progress: bool,
+) -> sf.Trajectory:
     """The run of one model."""
     compiled = compile_system(system)
     q, v = _first_state(compiled, assignments(given, "--set"))
     return sf.simulate(
-        compiled, q, v, 1.0 if t_end is None else t_end, u=assignments(inputs, "--input") or None, output=every,
-        realtime=pace, progress=progress, **settings,
-    )  # fmt: skip
+        compiled,
+        q,
+        v,
+        1.0 if t_end is None else t_end,
+        u=assignments(inputs, "--input") or None,
+        output=every,
+        realtime=pace,
+        progress=progress,
+        **settings,
+    )
 
 
 def _first_state(model: sf.Model, given: dict[str, str]) -> tuple[Array, Array]:
@@ -152,10 +172,26 @@ def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:
     cost, drift = run.statistics, float(run.energy[-1] - run.energy[0])
     last = {name: float(column[-1]) for name, column in run.columns().items()}
     if as_json:
-        outcome = {"kind": run.outcome.kind, "t": run.outcome.t, "reason": run.outcome.reason,
-                   "advice": run.outcome.advice, "notes": list(run.outcome.notes)}  # fmt: skip
-        print(json.dumps({"ok": run.outcome.ok, "outcome": outcome, "statistics": asdict(cost), "last": last,
-                          "energy_change": drift, "files": files}, indent=1))  # fmt: skip
+        outcome = {
+            "kind": run.outcome.kind,
+            "t": run.outcome.t,
+            "reason": run.outcome.reason,
+            "advice": run.outcome.advice,
+            "notes": list(run.outcome.notes),
+        }
+        print(
+            json.dumps(
+                {
+                    "ok": run.outcome.ok,
+                    "outcome": outcome,
+                    "statistics": asdict(cost),
+                    "last": last,
+                    "energy_change": drift,
+                    "files": files,
+                },
+                indent=1,
+            )
+        )
         return
     out.print(str(run.outcome), markup=False, highlight=False, soft_wrap=True)
     table = Table("name", "first", "last", title=f"{len(run)} states, t = {run.t[0]:g} to {run.t[-1]:g} s")
@@ -163,7 +199,10 @@ def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:
         table.add_row(name, f"{column[0]:.6g}", f"{column[-1]:.6g}")
     out.print(table)
     speed = (run.t[-1] - run.t[0]) / max(cost.seconds, 1e-9)
-    out.print(f"{cost.steps} steps, {cost.rejected} rejected, {cost.evaluations} evaluations; {cost.seconds:.3g} s,"
-               f" {speed:.3g} times real time; energy changed by {drift:.3g} J", markup=False)  # fmt: skip
+    out.print(
+        f"{cost.steps} steps, {cost.rejected} rejected, {cost.evaluations} evaluations; {cost.seconds:.3g} s,"
+        f" {speed:.3g} times real time; energy changed by {drift:.3g} J",
+        markup=False,
+    )
     for file in files:
         out.print(f"wrote {file}", markup=False)

@@ -9,7 +9,6 @@ from typing import Annotated, Any, cast
 import typer
 
 import symofros as sf
-from symofros.advice.report import table_of
 from symofros.commands.shared import (
     BAD_INPUT,
     AsJson,
@@ -24,8 +23,9 @@ from symofros.commands.shared import (
     out,
     refuse,
 )
-from symofros.diagram_files import command as diagrams
-from symofros.exporting import TARGETS
+from symofros.diagrams.files import command as diagrams
+from symofros.exports.exporting import TARGETS
+from symofros.studio.advice.report import table_of
 
 
 def advise(
@@ -83,14 +83,30 @@ def export_command(
     start = {key: number(key, text) for key, text in assignments(given, "--set").items()}
     try:
         done = sf.export(
-            described, cast(Any, target), output, name=name, frames=names_of(frames), outputs=names_of(outputs),
-            start=start, method=method, dt=dt,
-        )  # fmt: skip
+            described,
+            cast(Any, target),
+            output,
+            name=name,
+            frames=names_of(frames),
+            outputs=names_of(outputs),
+            start=start,
+            method=method,
+            dt=dt,
+        )
     except sf.SymofrosError as error:
         raise refuse(error) from None
     if as_json:
-        print(json.dumps({"target": done.target, "name": done.name, "files": [str(file) for file in done.files],
-                          "notes": list(done.notes)}, indent=1))  # fmt: skip
+        print(
+            json.dumps(
+                {
+                    "target": done.target,
+                    "name": done.name,
+                    "files": [str(file) for file in done.files],
+                    "notes": list(done.notes),
+                },
+                indent=1,
+            )
+        )
         return
     for file in done.files:
         out.print(f"wrote {file}", markup=False, highlight=False, soft_wrap=True)
@@ -106,7 +122,7 @@ def edit(
 ) -> None:
     """Draw, edit, check, compile and simulate a model in the browser."""
     try:
-        from symofros.gui.command import serve
+        from symofros.studio.editor.command import serve
     except ModuleNotFoundError as error:
         if error.name not in ("starlette", "uvicorn", "anyio"):
             raise

@@ -43,11 +43,13 @@ class Samples:
         rising = all(a < b for a, b in zip(self.xi, self.xi[1:], strict=False))
         if len(self.xi) < 4 or len(self.xi) != len(self.values) or not rising or (self.xi[0], self.xi[-1]) != (0, 1):
             raise DescriptionError(
-                Problem("sampled shape function: unusable stations",
-                        f"{len(self.xi)} stations, {len(self.values)} values",
-                        "at least 4 stations that rise from 0 to 1, and one value for each",
-                        "sort the stations, divide them by the length, and give each its value")
-            )  # fmt: skip
+                Problem(
+                    "sampled shape function: unusable stations",
+                    f"{len(self.xi)} stations, {len(self.values)} values",
+                    "at least 4 stations that rise from 0 to 1, and one value for each",
+                    "sort the stations, divide them by the length, and give each its value",
+                )
+            )
 
 
 UserShape = Value | Samples
@@ -163,15 +165,23 @@ class Beam:
         for label, choice, known in (("family", self.family, FAMILIES), ("retain", self.retain, RETAIN)):
             if choice not in known:
                 raise DescriptionError(
-                    Problem(f"{what}: unknown {label}", f"'{choice}'", f"one of {', '.join(known)}",
-                            did_you_mean(str(choice), known))
-                )  # fmt: skip
+                    Problem(
+                        f"{what}: unknown {label}",
+                        f"'{choice}'",
+                        f"one of {', '.join(known)}",
+                        did_you_mean(str(choice), known),
+                    )
+                )
         for key in given:
             if key not in DIRECTIONS:
                 raise DescriptionError(
-                    Problem(f"{what}: shapes for an unknown direction", f"'{key}'", f"one of {', '.join(DIRECTIONS)}",
-                            did_you_mean(str(key), DIRECTIONS))
-                )  # fmt: skip
+                    Problem(
+                        f"{what}: shapes for an unknown direction",
+                        f"'{key}'",
+                        f"one of {', '.join(DIRECTIONS)}",
+                        did_you_mean(str(key), DIRECTIONS),
+                    )
+                )
         for direction in DIRECTIONS:
             count = getattr(self, direction)
             if isinstance(count, bool) or not isinstance(count, int) or count < 0:

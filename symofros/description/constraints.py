@@ -18,9 +18,13 @@ def _axes(stated: Any, what: str) -> tuple[AxisName, ...]:
     for name in stated:
         if name not in AXES:
             raise DescriptionError(
-                Problem(f"{what}: unknown direction", f"'{name}'", "blocked directions are x, y, z of the first frame",
-                        did_you_mean(str(name), AXES))
-            )  # fmt: skip
+                Problem(
+                    f"{what}: unknown direction",
+                    f"'{name}'",
+                    "blocked directions are x, y, z of the first frame",
+                    did_you_mean(str(name), AXES),
+                )
+            )
     return tuple(axis for axis in AXES if axis in stated)
 
 
@@ -49,8 +53,14 @@ class Closure:
         object.__setattr__(self, "translations", _axes(self.translations, f"{what}: translations"))
         object.__setattr__(self, "rotations", _axes(self.rotations, f"{what}: rotations"))
         if not self.translations and not self.rotations:
-            raise DescriptionError(Problem(f"{what}: blocks nothing", "no directions", "a closure blocks at least one",
-                                           "name translations, rotations or both"))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"{what}: blocks nothing",
+                    "no directions",
+                    "a closure blocks at least one",
+                    "name translations, rotations or both",
+                )
+            )
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -150,9 +160,13 @@ class Rolling:
             object.__setattr__(self, label, as_value(getattr(self, label), f"{what}: {label}"))
         if self.shape not in ("disc", "sphere"):
             raise DescriptionError(
-                Problem(f"{what}: unknown shape", f"'{self.shape}'", "a rolling body is a disc or a sphere",
-                        did_you_mean(str(self.shape), ("disc", "sphere")))
-            )  # fmt: skip
+                Problem(
+                    f"{what}: unknown shape",
+                    f"'{self.shape}'",
+                    "a rolling body is a disc or a sphere",
+                    did_you_mean(str(self.shape), ("disc", "sphere")),
+                )
+            )
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -187,8 +201,9 @@ class Nonholonomic:
         object.__setattr__(self, "coefficients", tuple((str(k), as_value(x, f"{what}: {k}")) for k, x in pairs))
         object.__setattr__(self, "right", as_value(self.right, f"{what}: right"))
         if not self.coefficients:
-            raise DescriptionError(Problem(f"{what}: binds no speed", "no coefficients",
-                                           "a constraint has at least one", "name a speed"))  # fmt: skip
+            raise DescriptionError(
+                Problem(f"{what}: binds no speed", "no coefficients", "a constraint has at least one", "name a speed")
+            )
 
     @property
     def conditions(self) -> tuple[str, ...]:

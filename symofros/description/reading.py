@@ -71,8 +71,9 @@ def refuse_size(path: Path, data: bytes, limit: int) -> None:
     if len(data) > limit:
         raise DescriptionError(
             Problem(
-                f"'{path}' is too large", f"more than {limit} bytes",
+                f"'{path}' is too large",
+                f"more than {limit} bytes",
                 "a description with all it includes is at most 4 MiB long, a URDF 16 MiB",
                 "check that it is the file you meant",
             )
-        )  # fmt: skip
+        )

@@ -20,9 +20,18 @@ from symofros.description.visual import Visual
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 JointKind = Literal[
-    "fixed", "revolute", "continuous", "prismatic", "screw", "cylindrical", "universal", "planar", "ball", "free",
+    "fixed",
+    "revolute",
+    "continuous",
+    "prismatic",
+    "screw",
+    "cylindrical",
+    "universal",
+    "planar",
+    "ball",
+    "free",
     "general",
-]  # fmt: skip
+]
 JOINT_KINDS: tuple[JointKind, ...] = get_args(JointKind)
 WORLD = "world"
 
@@ -178,9 +187,13 @@ class Joint:
         what = f"joint '{self.name}'"
         if self.kind not in JOINT_KINDS:
             raise DescriptionError(
-                Problem(f"{what}: unknown kind", f"'{self.kind}'", f"one of {', '.join(JOINT_KINDS)}",
-                        did_you_mean(str(self.kind), JOINT_KINDS))
-            )  # fmt: skip
+                Problem(
+                    f"{what}: unknown kind",
+                    f"'{self.kind}'",
+                    f"one of {', '.join(JOINT_KINDS)}",
+                    did_you_mean(str(self.kind), JOINT_KINDS),
+                )
+            )
         object.__setattr__(self, "position", as_vector(self.position, f"{what}: position"))
         object.__setattr__(self, "axis", as_vector(self.axis, f"{what}: axis"))
         object.__setattr__(self, "axis2", as_vector(self.axis2, f"{what}: axis2"))
@@ -220,9 +233,13 @@ class RigidBody:
         object.__setattr__(self, "waive", tuple(sorted(set(self.waive))))
         for unknown in sorted(set(self.waive) - WAIVERS.keys()):
             raise DescriptionError(
-                Problem(f"body '{self.name}': unknown waiver", f"'{unknown}'", f"one of {', '.join(WAIVERS)}",
-                        did_you_mean(unknown, WAIVERS))
-            )  # fmt: skip
+                Problem(
+                    f"body '{self.name}': unknown waiver",
+                    f"'{unknown}'",
+                    f"one of {', '.join(WAIVERS)}",
+                    did_you_mean(unknown, WAIVERS),
+                )
+            )
 
 
 Body = RigidBody | Beam
@@ -262,8 +279,16 @@ class System:
 
     def __post_init__(self) -> None:
         """Freeze the collections and convert the gravity."""
-        for name in ("bodies", "parameters", "inputs", "connections", "virtual_power", "potentials", "constraints",
-                     "notes"):  # fmt: skip
+        for name in (
+            "bodies",
+            "parameters",
+            "inputs",
+            "connections",
+            "virtual_power",
+            "potentials",
+            "constraints",
+            "notes",
+        ):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         # Those that bind coordinates come first, as they do in files.
         ordered = sorted(self.constraints, key=lambda item: not isinstance(item, (Closure, Rod)))
@@ -275,9 +300,19 @@ class System:
     def __reduce__(self) -> Any:
         """Pickle without the read-only views, which can't be pickled."""
         return System, (
-            self.name, self.bodies, self.parameters, self.inputs, self.gravity, self.connections, self.virtual_power,
-            self.potentials, self.constraints, self.notes, dict(self.origin), dict(self.visuals),
-        )  # fmt: skip
+            self.name,
+            self.bodies,
+            self.parameters,
+            self.inputs,
+            self.gravity,
+            self.connections,
+            self.virtual_power,
+            self.potentials,
+            self.constraints,
+            self.notes,
+            dict(self.origin),
+            dict(self.visuals),
+        )
 
     def body(self, name: str) -> Body:
         """The body of that name.
@@ -289,9 +324,13 @@ class System:
             if body.name == name:
                 return body
         raise DescriptionError(
-            Problem(f"system '{self.name}': no body '{name}'", ", ".join(b.name for b in self.bodies),
-                    "a body is found by its name", did_you_mean(name, [b.name for b in self.bodies]))
-        )  # fmt: skip
+            Problem(
+                f"system '{self.name}': no body '{name}'",
+                ", ".join(b.name for b in self.bodies),
+                "a body is found by its name",
+                did_you_mean(name, [b.name for b in self.bodies]),
+            )
+        )
 
     def with_bodies(self, *bodies: Body) -> System:
         """The system with these bodies added; a body of the same name is replaced in its place."""

@@ -69,13 +69,24 @@ def parse_xml(data: bytes, file: str) -> Element:
         if builder.open:
             found += f"; <{builder.open[-1].tag:.60}> of line {builder.open[-1].line} is not closed"
         raise XmlFault(
-            Problem("the text is not well-formed XML", found,
-                    "a robot file is one XML document", "mind unclosed elements and quotes near this line",
-                    f"{file}:{error.lineno}")
-        ) from None  # fmt: skip
+            Problem(
+                "the text is not well-formed XML",
+                found,
+                "a robot file is one XML document",
+                "mind unclosed elements and quotes near this line",
+                f"{file}:{error.lineno}",
+            )
+        ) from None
     except (LookupError, ValueError) as error:
-        raise XmlFault(Problem("the text's encoding is unknown", str(error), "the encoding is one that Python knows",
-                               "save the file as UTF-8", f"{file}:1")) from None  # fmt: skip
+        raise XmlFault(
+            Problem(
+                "the text's encoding is unknown",
+                str(error),
+                "the encoding is one that Python knows",
+                "save the file as UTF-8",
+                f"{file}:1",
+            )
+        ) from None
     assert builder.root is not None  # Expat has found the document well-formed.
     return builder.root
 
@@ -94,8 +105,12 @@ class _Builder:
         return XmlFault(Problem(what, found, rule, remedy, f"{self.file}:{self.parser.CurrentLineNumber}"))
 
     def doctype(self, name: str, *_: object) -> None:
-        raise self.fault("document types are refused", f"<!DOCTYPE {name:.60}", "a robot file defines no entities",
-                         "remove the declaration")  # fmt: skip
+        raise self.fault(
+            "document types are refused",
+            f"<!DOCTYPE {name:.60}",
+            "a robot file defines no entities",
+            "remove the declaration",
+        )
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         if len(self.open) >= MAX_DEPTH:

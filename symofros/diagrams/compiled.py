@@ -8,10 +8,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from symofros.codegen.interpreted import InterpretedUnit
-from symofros.codegen.model import model_source
-from symofros.codegen.names import identifier
-from symofros.codegen.templates import template
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.fuse import Fuser
 from symofros.diagrams.layout import Layout, Part, lay_out
@@ -22,8 +18,12 @@ from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.program import Program
+from symofros.generator.codegen.interpreted import InterpretedUnit
+from symofros.generator.codegen.model import model_source
+from symofros.generator.codegen.names import identifier
+from symofros.generator.passes import run_passes
+from symofros.native import native_text
 from symofros.options import Options
-from symofros.passes import run_passes
 from symofros.runtime.build import build_library
 from symofros.runtime.kernel import Kernel, Unit
 from symofros.runtime.library import CompiledUnit
@@ -77,9 +77,15 @@ def resolve(diagram: Diagram) -> Resolved:
             problems += located(error.problems, diagram.where(name))
         except (ValueError, IndexError, TypeError) as error:  # Fields that do not fit what is connected.
             shapes = ", ".join(f"{port.name} {port.shape}" for port in wired.ports[name].inputs)
-            problems.append(Problem(f"block '{name}': its fields do not fit its inputs", f"{error}"[:200],
-                                    f"inputs here: {shapes or 'none'}", "mend the shapes of its fields",
-                                    diagram.where(name)))  # fmt: skip
+            problems.append(
+                Problem(
+                    f"block '{name}': its fields do not fit its inputs",
+                    f"{error}"[:200],
+                    f"inputs here: {shapes or 'none'}",
+                    "mend the shapes of its fields",
+                    diagram.where(name),
+                )
+            )
     if problems:
         raise DescriptionError(problems)
     order = order_of(wired, pieces)
@@ -138,13 +144,22 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
     """
     options = options or Options()
     if options.backend != "c":
-        raise CompileError(str(Problem(f"diagram '{resolved.wired.name}': backend '{options.backend}'",
-                                       "a loop of compiled functions", "a compiled diagram is C",
-                                       "interpret it: Simulation.interpret(compiled=False)")))  # fmt: skip
+        raise CompileError(
+            str(
+                Problem(
+                    f"diagram '{resolved.wired.name}': backend '{options.backend}'",
+                    "a loop of compiled functions",
+                    "a compiled diagram is C",
+                    "interpret it: Simulation.interpret(compiled=False)",
+                )
+            )
+        )
     toolchain = find_toolchain(options.compiler)
     if toolchain is None:
-        raise CompileError("a compiled diagram needs a C compiler\n"
-                           "  remedy: install gcc or clang, or `pip install ziglang`, or interpret it")  # fmt: skip
+        raise CompileError(
+            "a compiled diagram needs a C compiler\n"
+            "  remedy: install gcc or clang, or `pip install ziglang`, or interpret it"
+        )
     write = fuser(resolved)
     parts, texts = [], []
     for part in resolved.layout.parts:
@@ -182,7 +197,7 @@ def unit_of(
     """The functions of a program, and their C text; without a compiler NumPy interprets them."""
     if toolchain is None:
         return InterpretedUnit(program), ""
-    header = template("symofros_model.h")
+    header = native_text("model/symofros_model.h")
     text = model_source(program, record, GENERATOR, packs=options.packs if options else False)
     path = build_library(text, header, toolchain, options.flags if options else None)
     return CompiledUnit(path, f"{identifier(record.name)}_model", header, record.hash), text
@@ -201,18 +216,42 @@ def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
     names = tuple(layout.condition_names[of.conditions])
     stated = repr((resolved.wired.name, layout.q_names, layout.v_names, layout.u_names, layout.par_names))
     return ModelRecord(
-        name=resolved.wired.name, hash=hashlib.sha256(stated.encode()).hexdigest()[:16],
-        q_names=tuple(layout.q_names[q]), v_names=tuple(layout.v_names[v]), u_names=tuple(layout.u_names),
-        par_names=tuple(layout.par_names), frame_names=(), frame_aliases={}, u_default=tuple(layout.u0),
-        par_default=tuple(layout.par), q_neutral=tuple(layout.q0[q]), q_lower=(-np.inf,) * nq, q_upper=(np.inf,) * nq,
-        segments=segments, periodic=(False,) * nq, constraint_names=names,
+        name=resolved.wired.name,
+        hash=hashlib.sha256(stated.encode()).hexdigest()[:16],
+        q_names=tuple(layout.q_names[q]),
+        v_names=tuple(layout.v_names[v]),
+        u_names=tuple(layout.u_names),
+        par_names=tuple(layout.par_names),
+        frame_names=(),
+        frame_aliases={},
+        u_default=tuple(layout.u0),
+        par_default=tuple(layout.par),
+        q_neutral=tuple(layout.q0[q]),
+        q_lower=(-np.inf,) * nq,
+        q_upper=(np.inf,) * nq,
+        segments=segments,
+        periodic=(False,) * nq,
+        constraint_names=names,
         speed_conditions=tuple(name for name in names if name in layout.speed_conditions),
-    )  # fmt: skip
+    )
 
 
 def bare_record(name: str) -> ModelRecord:
     """Of functions that belong to no mechanism."""
     return ModelRecord(
-        name=name, hash="", q_names=(), v_names=(), u_names=(), par_names=(), frame_names=(), frame_aliases={},
-        u_default=(), par_default=(), q_neutral=(), q_lower=(), q_upper=(), segments=(), periodic=(),
-    )  # fmt: skip
+        name=name,
+        hash="",
+        q_names=(),
+        v_names=(),
+        u_names=(),
+        par_names=(),
+        frame_names=(),
+        frame_aliases={},
+        u_default=(),
+        par_default=(),
+        q_neutral=(),
+        q_lower=(),
+        q_upper=(),
+        segments=(),
+        periodic=(),
+    )

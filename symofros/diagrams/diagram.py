@@ -66,10 +66,14 @@ class Diagram:
         return self.origin.get(("input", block, port)) or self.origin.get(("block", block), "")
 
     def add_model(
-        self, name: str, system: System, start: Mapping[str, float] | None = None,
-        parameters: Mapping[str, float] | None = None, functions: int | None = None,
+        self,
+        name: str,
+        system: System,
+        start: Mapping[str, float] | None = None,
+        parameters: Mapping[str, float] | None = None,
+        functions: int | None = None,
         file: ModelFile | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """State a model.
 
         Args:
@@ -104,13 +108,23 @@ class Diagram:
         """
         block, _, port = target.rpartition(".")
         if not block or not port:
-            raise DescriptionError(Problem(f"diagram '{self.name}': no input '{target}'", "no block and port",
-                                           "an input is written block.port", "for example pd.desired"))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"diagram '{self.name}': no input '{target}'",
+                    "no block and port",
+                    "an input is written block.port",
+                    "for example pd.desired",
+                )
+            )
         if (block, port) in self.wires:
-            raise DescriptionError(Problem(
-                f"diagram '{self.name}': input '{target}' is fed twice", f"by {self.wires[block, port]} and {source}",
-                "an input has one source", "add the signals in a block of their own",
-            ))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"diagram '{self.name}': input '{target}' is fed twice",
+                    f"by {self.wires[block, port]} and {source}",
+                    "an input has one source",
+                    "add the signals in a block of their own",
+                )
+            )
         self.wires[block, port] = source
 
     def include(self, name: str, part: Diagram, models: Mapping[str, str] | None = None, **inputs: str) -> None:
@@ -138,10 +152,14 @@ class Diagram:
             self.wires[f"{name}{INSIDE}{block_name}", port] = f"{name}{INSIDE}{source}"
         for inlet, source in inputs.items():
             if inlet not in part.inlets:
-                raise DescriptionError(Problem(
-                    f"diagram '{self.name}': part '{name}' has no inlet '{inlet}'", f"'{inlet}'",
-                    f"inlets: {', '.join(part.inlets) or 'none'}", did_you_mean(inlet, part.inlets),
-                ))  # fmt: skip
+                raise DescriptionError(
+                    Problem(
+                        f"diagram '{self.name}': part '{name}' has no inlet '{inlet}'",
+                        f"'{inlet}'",
+                        f"inlets: {', '.join(part.inlets) or 'none'}",
+                        did_you_mean(inlet, part.inlets),
+                    )
+                )
             for target in part.inlets[inlet]:
                 self.connect(source, f"{name}{INSIDE}{target}")
         for outlet, source in part.outlets.items():
@@ -153,18 +171,32 @@ class Diagram:
     def with_model(self, name: str, setup: ModelSetup) -> Diagram:
         """The same diagram about another model: rigid in place of flexible, say."""
         if name not in self.models:
-            raise DescriptionError(Problem(f"diagram '{self.name}': no model '{name}'", f"'{name}'",
-                                           f"models: {', '.join(self.models) or 'none'}",
-                                           did_you_mean(name, self.models)))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"diagram '{self.name}': no model '{name}'",
+                    f"'{name}'",
+                    f"models: {', '.join(self.models) or 'none'}",
+                    did_you_mean(name, self.models),
+                )
+            )
         return replace(self, models={**self.models, name: setup})
 
     def _refuse_name(self, what: str, name: str, taken: Any) -> None:
         if not _NAME.match(name):
-            raise DescriptionError(Problem(f"diagram '{self.name}': {what} '{name:.60}'", "not a name",
-                                           "letters, digits and underscores, a letter first", "rename it"))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"diagram '{self.name}': {what} '{name:.60}'",
+                    "not a name",
+                    "letters, digits and underscores, a letter first",
+                    "rename it",
+                )
+            )
         if name in taken:
-            raise DescriptionError(Problem(f"diagram '{self.name}': two {what}s named '{name}'", f"'{name}'",
-                                           "names are unique", "rename one"))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"diagram '{self.name}': two {what}s named '{name}'", f"'{name}'", "names are unique", "rename one"
+                )
+            )
 
 
 def _renamed(block: Block, part: str, models: Mapping[str, str]) -> Block:

@@ -36,9 +36,16 @@ class Point:
     """
 
     def __init__(
-        self, wired: Wired, pieces: Mapping[str, Piece], layout: Layout, order: Sequence[Source], g: Graph,
-        due: frozenset[str] = frozenset(), part: Part | None = None, after: bool = False,
-    ) -> None:  # fmt: skip
+        self,
+        wired: Wired,
+        pieces: Mapping[str, Piece],
+        layout: Layout,
+        order: Sequence[Source],
+        g: Graph,
+        due: frozenset[str] = frozenset(),
+        part: Part | None = None,
+        after: bool = False,
+    ) -> None:
         self.g = g
         self._wired, self._pieces, self._layout = wired, pieces, layout
         self._rank = {source: i for i, source in enumerate(order)}
@@ -114,11 +121,14 @@ class Point:
             return [self.g.input("gains", i) for i in (*rows, *(self._nc + i for i in rows))]
         if group in ("a", "lam"):
             if not self._after:
-                raise DescriptionError(Problem(
-                    f"block '{name}': accelerations or constraint forces are needed between samples", f"'{group}'",
-                    "under constraints they are known once the equations of the instant are solved",
-                    "take them through a sampled block (a hold with a period)",
-                ))  # fmt: skip
+                raise DescriptionError(
+                    Problem(
+                        f"block '{name}': accelerations or constraint forces are needed between samples",
+                        f"'{group}'",
+                        "under constraints they are known once the equations of the instant are solved",
+                        "take them through a sampled block (a hold with a period)",
+                    )
+                )
             place = layout.v[name] if group == "a" else layout.lam[name]
             return self.input(group, place, self._v if group == "a" else self._lam).flat
         if group.startswith(INPUT):
@@ -142,9 +152,7 @@ class Fuser:
         order: All outputs, each after what it depends on.
     """
 
-    def __init__(
-        self, wired: Wired, pieces: Mapping[str, Piece], layout: Layout, order: Sequence[Source]
-    ) -> None:  # fmt: skip
+    def __init__(self, wired: Wired, pieces: Mapping[str, Piece], layout: Layout, order: Sequence[Source]) -> None:
         self._wired, self._pieces, self._layout, self._order = wired, pieces, layout, order
 
     def _at(self, g: Graph, due: Iterable[str] = (), part: Part | None = None, after: bool = False) -> Point:
@@ -152,8 +160,17 @@ class Fuser:
 
     def _program(self, name: str, g: Graph, functions: Iterable[Function], part: Part | None = None) -> Program:
         layout, of = self._layout, part or self._layout.whole
-        sizes = {"q": of.nq, "v": of.nv, "u": len(layout.u0), "t": 1, "par": len(layout.par), "a": of.nv, "lam": of.nc,
-                 "gains": 2 * of.nc, "step": of.nv}  # fmt: skip
+        sizes = {
+            "q": of.nq,
+            "v": of.nv,
+            "u": len(layout.u0),
+            "t": 1,
+            "par": len(layout.par),
+            "a": of.nv,
+            "lam": of.nc,
+            "gains": 2 * of.nc,
+            "step": of.nv,
+        }
         return Program(name, g, sizes, tuple(functions))
 
     # Motion of a part.
@@ -163,8 +180,11 @@ class Fuser:
         g = Graph()
         at = self._at(g, part=part)
         functions = self._constrained(at, part) if part.nc else [self._free(at, part)]
-        values = [edge for name, which in watched(self._pieces) for edge in
-                  at.edges(self._pieces[name], self._pieces[name].crossings[which].value.flat)]  # fmt: skip
+        values = [
+            edge
+            for name, which in watched(self._pieces)
+            for edge in at.edges(self._pieces[name], self._pieces[name].crossings[which].value.flat)
+        ]
         if values:
             functions.append(Function("formulas", "", AT, (_vector("value", values),)))
         return self._program(self._wired.name, g, functions, part)
@@ -214,8 +234,9 @@ class Fuser:
         binds = [ZERO if edge == ZERO else ONE for edge in phi]
         terms_of = (_matrix("M", M, nv), _vector("r", r), _matrix("G", G, nv), _vector("c", c))
         solved = (("a", (nv,)), ("lam", (nc,)), ("rank", ()))
-        forward = Function("forward_dynamics", "", ("q", "v", "u", "gains", "t"), terms_of,
-                           Solver("constrained", solved))  # fmt: skip
+        forward = Function(
+            "forward_dynamics", "", ("q", "v", "u", "gains", "t"), terms_of, Solver("constrained", solved)
+        )
         q_moved = self._moved(at, part)
         move = Function("move", "", ("q", "step"), (_vector("q_moved", q_moved),))
         projected = (("q_on", (part.nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()))

@@ -16,7 +16,7 @@ from symofros.diagrams.pieces import INPUT, MEMORY, PARAMETER, STATE, Piece
 from symofros.diagrams.surroundings import parameter_group
 from symofros.diagrams.wiring import Source
 from symofros.expr.program import Function, Output, Program
-from symofros.passes import run_passes
+from symofros.generator.passes import run_passes
 from symofros.runtime.constrained import constrained, project
 from symofros.runtime.kernel import Array
 from symofros.runtime.toolchain import Toolchain
@@ -264,9 +264,15 @@ def _project(blocks: Blocks, part: Part) -> None:
 
 
 def run_interpreted(
-    blocks: Blocks, called: Called, instants: Sequence[tuple[float, frozenset[str], bool]], t_end: float, dt: float,
-    tableau: Tableau, projects: bool, show: Callable[[float], None],
-) -> InterpretedRun:  # fmt: skip
+    blocks: Blocks,
+    called: Called,
+    instants: Sequence[tuple[float, frozenset[str], bool]],
+    t_end: float,
+    dt: float,
+    tableau: Tableau,
+    projects: bool,
+    show: Callable[[float], None],
+) -> InterpretedRun:
     """Run from the first state.
 
     Args:

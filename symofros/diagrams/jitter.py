@@ -39,8 +39,10 @@ class Jitter:
         """For people."""
         values = (self.minimum, self.median, self.p999, self.maximum)
         least, middle, most, worst = (f"{1e6 * value:.1f}" for value in values)
-        return (f"{self.instants} instants began late by: least {least}, median {middle}, 99.9 % {most}, worst {worst}"
-                f" microseconds; {self.missed} missed the next instant, {1e3 * self.spacing:g} ms later")  # fmt: skip
+        return (
+            f"{self.instants} instants began late by: least {least}, median {middle}, 99.9 % {most}, worst {worst}"
+            f" microseconds; {self.missed} missed the next instant, {1e3 * self.spacing:g} ms later"
+        )
 
 
 def jitter_of(cost: Cost) -> Jitter:
@@ -51,8 +53,16 @@ def jitter_of(cost: Cost) -> Jitter:
     """
     late = cost.late
     if not late.size:
-        raise SymofrosError(str(Problem("jitter: no instants were timed", "0", "a run in real time times its instants",
-                                        "run with realtime=True")))  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    "jitter: no instants were timed",
+                    "0",
+                    "a run in real time times its instants",
+                    "run with realtime=True",
+                )
+            )
+        )
     missed = int(np.sum(late >= cost.spacing))
     low, middle, high, worst = (float(value) for value in np.quantile(late, [0.0, 0.5, 0.999, 1.0]))
     return Jitter(low, middle, high, worst, len(late), missed, cost.spacing)

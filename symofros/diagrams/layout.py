@@ -150,9 +150,14 @@ def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence
         for port in piece.block.engaging():
             place = layout.held.get(wired.sources.get((name, port), ("", "")))
             if place is None:
-                raise DescriptionError(Problem(f"block '{name}': input '{port}' is not held between samples",
-                                               "a continuous signal", "constraints engage at samples",
-                                               "put a hold with a period before it"))  # fmt: skip
+                raise DescriptionError(
+                    Problem(
+                        f"block '{name}': input '{port}' is not held between samples",
+                        "a continuous signal",
+                        "constraints engage at samples",
+                        "put a hold with a period before it",
+                    )
+                )
             layout.engaging += range(place.start, place.start + place.size)
     for model in wired.models.names:
         names = wired.models.record(model).par_names

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from symofros.diagrams.layout import Layout, Place
 from symofros.diagrams.rates import Schedule
 from symofros.errors import CompileError
+from symofros.native import native_text
 from symofros.runtime.kernel import Array
 from symofros.runtime.library import CompiledKernel
 from symofros.simulation.stepper import Stepper, bound, native_headers, native_source
@@ -24,7 +24,7 @@ _PORTION = 4096
 
 
 def _native(name: str) -> str:
-    return (files("symofros.diagrams") / "native" / name).read_text(encoding="utf-8")
+    return native_text(f"diagrams/{name}")
 
 
 def loop_headers() -> dict[str, str]:
@@ -74,10 +74,19 @@ class Loop:
     """
 
     def __init__(
-        self, layout: Layout, parts: Sequence[Stepper], schedule: Schedule, stages: Sequence[Sequence[Stage]],
-        crossings: Sequence[Stage], par: Array, u0: Array, opaque: Callable[[int, float, Array], Array],
-        places: Sequence[Sequence[Place]], heard: Sequence[int], looks_back: bool,
-    ) -> None:  # fmt: skip
+        self,
+        layout: Layout,
+        parts: Sequence[Stepper],
+        schedule: Schedule,
+        stages: Sequence[Sequence[Stage]],
+        crossings: Sequence[Stage],
+        par: Array,
+        u0: Array,
+        opaque: Callable[[int, float, Array], Array],
+        places: Sequence[Sequence[Place]],
+        heard: Sequence[int],
+        looks_back: bool,
+    ) -> None:
         self.ffi, self.native = library()
         self._keep: list[Any] = [parts]
         self._opaque, self._places, self._heard = opaque, places, heard
@@ -86,8 +95,13 @@ class Loop:
         self.d = self.ffi.new("sym_diagram *")
         d, ffi = self.d, self.ffi
         d.nq, d.nv, d.nu, d.nc = len(layout.q0), len(layout.v0), len(layout.u0), len(layout.condition_names)
-        for name, values in (("q", layout.q0), ("v", layout.v0), ("t", [0.0]), ("a", [0.0] * d.nv),
-                             ("lam", [0.0] * d.nc)):  # fmt: skip
+        for name, values in (
+            ("q", layout.q0),
+            ("v", layout.v0),
+            ("t", [0.0]),
+            ("a", [0.0] * d.nv),
+            ("lam", [0.0] * d.nc),
+        ):
             setattr(d, name, self._numbers(values)[0])
         d.u, self._u = self._numbers(u0)
         self._join(layout, parts)
@@ -122,13 +136,18 @@ class Loop:
             stepper.scene.constant = stepper.ffi.cast("double *", inputs)
             runs.append(ffi.cast("sym_run *", int(stepper.ffi.cast("uintptr_t", stepper.run))))
         d.n_parts, d.parts = len(parts), self._own("sym_run *[]", runs)
-        for name, places in (("q_at", [part.q for part in layout.parts]), ("v_at", [part.v for part in layout.parts]),
-                             ("c_at", [part.conditions for part in layout.parts])):  # fmt: skip
+        for name, places in (
+            ("q_at", [part.q for part in layout.parts]),
+            ("v_at", [part.v for part in layout.parts]),
+            ("c_at", [part.conditions for part in layout.parts]),
+        ):
             setattr(d, name, self._own("int32_t[]", [place.start for place in places]))
 
     def _sample(self, layout: Layout) -> None:
-        rows = [(i, int(linear), len(t), self._numbers(t)[0], self._numbers(values)[0])
-                for i, t, values, linear in layout.signals]  # fmt: skip
+        rows = [
+            (i, int(linear), len(t), self._numbers(t)[0], self._numbers(values)[0])
+            for i, t, values, linear in layout.signals
+        ]
         self.d.n_signals, self.d.signals = len(rows), self._own("sym_signal[]", rows)
 
     def _plan(self, schedule: Schedule, stages: Sequence[Sequence[Stage]], par: Array) -> None:

@@ -42,9 +42,12 @@ class Called:
             SymofrosError: It returned what its ports do not promise.
         """
         ports = self._wired.ports[name]
-        inputs = {port.name: heard[port.name] if port.name in heard else
-                  np.broadcast_to(np.asarray(port.default, dtype=np.float64), port.shape or ())
-                  for port in ports.inputs}  # fmt: skip
+        inputs = {
+            port.name: heard[port.name]
+            if port.name in heard
+            else np.broadcast_to(np.asarray(port.default, dtype=np.float64), port.shape or ())
+            for port in ports.inputs
+        }
         found = self._running[name].call(t, inputs)
         return {port.name: _output(name, found, port.name, port.shape or ()) for port in ports.outputs}
 
@@ -56,9 +59,16 @@ class Called:
 def _output(name: str, found: Mapping[str, object], port: str, shape: tuple[int, ...]) -> Array:
     value = np.asarray(found.get(port, np.nan), dtype=np.float64)
     if port not in found or value.shape != shape:
-        raise SymofrosError(str(Problem(f"block '{name}': output '{port}' does not fit",
-                                        f"{value.shape}" if port in found else "nothing", f"{shape}",
-                                        "return it so from call")))  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    f"block '{name}': output '{port}' does not fit",
+                    f"{value.shape}" if port in found else "nothing",
+                    f"{shape}",
+                    "return it so from call",
+                )
+            )
+        )
     return value
 
 
@@ -90,8 +100,10 @@ class Opaque:
         self._writer = fuser(resolved)
         self.names = list(dict.fromkeys(name for due in resolved.schedule.sets for name in self.due(due)))
         wired = resolved.wired
-        self._heard = [[(port.name, port.shape or ()) for port in wired.ports[name].inputs
-                        if (name, port.name) in wired.sources] for name in self.names]  # fmt: skip
+        self._heard = [
+            [(port.name, port.shape or ()) for port in wired.ports[name].inputs if (name, port.name) in wired.sources]
+            for name in self.names
+        ]
 
     def due(self, due: frozenset[str]) -> list[str]:
         """Those of a set, in the order in which they are called."""

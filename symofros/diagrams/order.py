@@ -44,12 +44,15 @@ def _loop(wired: Wired, path: Sequence[Source]) -> DescriptionError:
     """The stack runs against the flow of signals."""
     forward = [*reversed(path), path[-1]]
     text = " -> ".join(".".join(source) for source in forward)
-    return DescriptionError(Problem(
-        f"diagram '{wired.name}': an algebraic loop", text,
-        "a signal does not depend on itself at the same instant",
-        "break the loop by a delay, an integrator or a filter, or sample one of its blocks before the other",
-        wired.origin.get(("block", forward[0][0]), ""),
-    ))  # fmt: skip
+    return DescriptionError(
+        Problem(
+            f"diagram '{wired.name}': an algebraic loop",
+            text,
+            "a signal does not depend on itself at the same instant",
+            "break the loop by a delay, an integrator or a filter, or sample one of its blocks before the other",
+            wired.origin.get(("block", forward[0][0]), ""),
+        )
+    )
 
 
 def groups_in_motion(wired: Wired, pieces: Mapping[str, Piece]) -> list[list[str]]:

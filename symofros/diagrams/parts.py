@@ -61,9 +61,16 @@ def place_parts(
     for part, model in zip(layout.parts, compiled.parts, strict=True):
         settings = settings_of(model)
         if settings.method.kind not in ("explicit", "semi_implicit"):
-            raise SymofrosError(str(Problem(f"diagram '{name}': method '{settings.method.name}'", "an implicit method",
-                                            "diagrams step by explicit methods",
-                                            "use rk4, dopri5 or dop853")))  # fmt: skip
+            raise SymofrosError(
+                str(
+                    Problem(
+                        f"diagram '{name}': method '{settings.method.name}'",
+                        "an implicit method",
+                        "diagrams step by explicit methods",
+                        "use rk4, dopri5 or dop853",
+                    )
+                )
+            )
         stepper = Stepper(model, settings.method, InputPlan(u0.copy(), list(layout.signals)), events, par)
         settings.apply(stepper, t0, t_end, 0.0)
         stepper.run.every = 0  # Instants are recorded by the diagram's own loop.
@@ -81,10 +88,16 @@ def start(parts: list[Placed], name: str) -> None:
     """
     for part in parts:
         if part.stepper.start(part.q, part.v, 1) < 0:
-            raise SymofrosError(str(Problem(f"diagram '{name}': the first accelerations are not finite",
-                                            ", ".join(part.stepper.model.names.v[:6]), "the start is one that moves",
-                                            "look for a mass of zero or a first state that is not a number"
-                                            )))  # fmt: skip
+            raise SymofrosError(
+                str(
+                    Problem(
+                        f"diagram '{name}': the first accelerations are not finite",
+                        ", ".join(part.stepper.model.names.v[:6]),
+                        "the start is one that moves",
+                        "look for a mass of zero or a first state that is not a number",
+                    )
+                )
+            )
 
 
 def _first(q0: list[float], v0: list[float], part: Part) -> tuple[Array, Array]:
@@ -98,8 +111,14 @@ def _close(model: Model, name: str, t0: float, placed: Placed, u: Array, par: Ar
     inputs = [np.ascontiguousarray(given[group]).reshape(1, -1) for group, _ in kernel.signature.inputs]
     q_on, v_on, residual, _ = kernel.run(1, kernel.prepare(par.reshape(1, -1)), inputs)
     if not residual[0] <= CLOSED:
-        raise AssemblyError(str(Problem(
-            f"diagram '{name}': the first state does not close the loops", f"|phi| = {residual[0]:.3g}",
-            f"at most {CLOSED:g} after projection", "start nearer: see sf.assemble",
-        )))  # fmt: skip
+        raise AssemblyError(
+            str(
+                Problem(
+                    f"diagram '{name}': the first state does not close the loops",
+                    f"|phi| = {residual[0]:.3g}",
+                    f"at most {CLOSED:g} after projection",
+                    "start nearer: see sf.assemble",
+                )
+            )
+        )
     return q_on[0], v_on[0]

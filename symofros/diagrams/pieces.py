@@ -108,8 +108,14 @@ def piece_of(wired: Wired, name: str) -> Piece:
     parameters = block.parameters()
     for key, value in parameters.items():
         if np.any(np.isnan(value)):  # Of None, too.
-            raise DescriptionError(Problem(f"block '{name}': {key} is not a number", f"{getattr(block, key)}"[:80],
-                                           "a parameter is one number or an array of them", "state it"))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"block '{name}': {key} is not a number",
+                    f"{getattr(block, key)}"[:80],
+                    "a parameter is one number or an array of them",
+                    "state it",
+                )
+            )
     mechanism = block.mechanism()
     nq = nv = 0
     q0, v0 = np.zeros(0), np.zeros(0)
@@ -119,24 +125,41 @@ def piece_of(wired: Wired, name: str) -> Piece:
         nq, nv, nc = len(record.q_names), len(record.v_names), record.nc
         q0, v0 = known.start(mechanism)
     at = At(
-        g, Tensor.inputs(g, "t", ()),
+        g,
+        Tensor.inputs(g, "t", ()),
         {port.name: _given(g, wired, name, port) for port in wired.ports[name].inputs},
         {key: Tensor.inputs(g, STATE + key, value.shape) for key, value in states.items()},
         {key: Tensor.inputs(g, MEMORY + key, value.shape) for key, value in memory.items()},
         {key: Tensor.inputs(g, PARAMETER + key, value.shape) for key, value in parameters.items()},
-        Tensor.inputs(g, "q", (nq,)), Tensor.inputs(g, "v", (nv,)), Tensor.inputs(g, "gains", (2 * nc,)),
+        Tensor.inputs(g, "q", (nq,)),
+        Tensor.inputs(g, "v", (nv,)),
+        Tensor.inputs(g, "gains", (2 * nc,)),
         lambda model, function, frame="", **groups: wired.models.call(g, model, function, frame, **groups),
-        wired.models.solved, Tensor.inputs(g, "a", (nv,)), Tensor.inputs(g, "lam", (nc,)), known,
-    )  # fmt: skip
+        wired.models.solved,
+        Tensor.inputs(g, "a", (nv,)),
+        Tensor.inputs(g, "lam", (nc,)),
+        known,
+    )
     terms = block.motion(at)
     if terms.a is not None:  # Else they are known after the constraints' equations are solved.
         at = replace(at, a=terms.a)
     outputs = {} if isinstance(block, OpaqueBlock) else dict(block.compute(at))
     crossings = dict(block.crossings(at))
     piece = Piece(
-        block, g, outputs, dict(block.rates(at)), dict(block.update(at)), terms, crossings,
-        {which: dict(block.crossed(at, which)) for which in crossings}, states, memory, parameters, q0, v0,
-    )  # fmt: skip
+        block,
+        g,
+        outputs,
+        dict(block.rates(at)),
+        dict(block.update(at)),
+        terms,
+        crossings,
+        {which: dict(block.crossed(at, which)) for which in crossings},
+        states,
+        memory,
+        parameters,
+        q0,
+        v0,
+    )
     _fit(wired, piece)
     if piece.is_opaque:
         needs = {port.name: frozenset(p.name for p in wired.ports[name].inputs) for port in wired.ports[name].outputs}
@@ -170,21 +193,41 @@ def _fit(wired: Wired, piece: Piece) -> None:
         _same(name, f"crossing '{which}' changes", jump, {key: changed.get(key, "not stated") for key in jump})
     moving = bool(piece.states or block.mechanism() or piece.crossings)
     if piece.is_discrete and moving:
-        raise DescriptionError(Problem(f"block '{name}' is sampled and moves between samples",
-                                       f"period {block.period}", "continuous states belong to continuous blocks",
-                                       "leave the period out"))  # fmt: skip
+        raise DescriptionError(
+            Problem(
+                f"block '{name}' is sampled and moves between samples",
+                f"period {block.period}",
+                "continuous states belong to continuous blocks",
+                "leave the period out",
+            )
+        )
     watched = {key for jump in piece.jumps.values() for key in jump}
     if not piece.is_discrete and piece.memory.keys() - watched:
-        raise DescriptionError(Problem(f"block '{name}' has memory and no sample time", ", ".join(piece.memory),
-                                       "memory changes at samples or at crossings", "give a period"))  # fmt: skip
+        raise DescriptionError(
+            Problem(
+                f"block '{name}' has memory and no sample time",
+                ", ".join(piece.memory),
+                "memory changes at samples or at crossings",
+                "give a period",
+            )
+        )
     if piece.is_opaque and not piece.is_discrete:
-        raise DescriptionError(Problem(f"block '{name}' calls Python and has no sample time", "period None",
-                                       "Python is called at samples", "give a period"))  # fmt: skip
+        raise DescriptionError(
+            Problem(
+                f"block '{name}' calls Python and has no sample time",
+                "period None",
+                "Python is called at samples",
+                "give a period",
+            )
+        )
 
 
 def _same(name: str, what: str, found: Values, shapes: Mapping[str, object]) -> None:
     for key in found.keys() | shapes.keys():
         shape = found[key].shape if key in found else "nothing"
         if key not in shapes or shape != shapes[key]:
-            raise DescriptionError(Problem(f"block '{name}': {what} '{key}'", f"{shape}",
-                                           f"{shapes.get(key, 'not stated')}", "mend the block"))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"block '{name}': {what} '{key}'", f"{shape}", f"{shapes.get(key, 'not stated')}", "mend the block"
+                )
+            )

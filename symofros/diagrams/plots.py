@@ -44,8 +44,16 @@ def draw(run: DiagramRun, plots: Sequence[Plot], figure: Any = None) -> Any:
         SymofrosError: Matplotlib is not installed, or there is no such signal.
     """
     if not plots:
-        raise SymofrosError(str(Problem("plot: there is nothing to draw", "no signals",
-                                        "a plot shows outputs of blocks", "add a block with an output")))  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    "plot: there is nothing to draw",
+                    "no signals",
+                    "a plot shows outputs of blocks",
+                    "add a block with an output",
+                )
+            )
+        )
     if figure is None:
         figure = figure_class()(figsize=(8.0, 1.0 + 2.2 * len(plots)), layout="constrained")
     run.compute([run.compiled.resolved.wired.output(split(text)[0]) for plot in plots for text in plot.signals])
@@ -75,7 +83,15 @@ def show_window(run: DiagramRun, *signals: str) -> None:
     pyplot = import_module("matplotlib.pyplot")
     backend = pyplot.get_backend()
     if backend.lower() in _PAPER:
-        raise SymofrosError(str(Problem("plot: no window can be opened", f"Matplotlib draws by '{backend}'",
-                                        "a window needs a screen", "write a picture: --plot run.png")))  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    "plot: no window can be opened",
+                    f"Matplotlib draws by '{backend}'",
+                    "a window needs a screen",
+                    "write a picture: --plot run.png",
+                )
+            )
+        )
     run.plot(*signals, figure=pyplot.figure(layout="constrained"))
     pyplot.show()

@@ -78,7 +78,11 @@ def _exact(seconds: float) -> Fraction:
 
 def _too_many(name: str, exact: list[tuple[str, Fraction, Fraction]], found: str, rule: str) -> DescriptionError:
     periods = sorted({float(period) for _, period, _ in exact})
-    return DescriptionError(Problem(
-        f"diagram '{name}': sample times do not fit together", f"{found}; periods {periods[:6]}", rule,
-        "choose periods that are multiples of each other",
-    ))  # fmt: skip
+    return DescriptionError(
+        Problem(
+            f"diagram '{name}': sample times do not fit together",
+            f"{found}; periods {periods[:6]}",
+            rule,
+            "choose periods that are multiples of each other",
+        )
+    )

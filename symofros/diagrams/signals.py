@@ -31,5 +31,11 @@ def check_entry(text: str, index: tuple[int, ...] | None, shape: Shape) -> None:
         DescriptionError: With its shape.
     """
     if index is not None and (len(index) != len(shape) or any(i >= n for i, n in zip(index, shape, strict=True))):
-        raise DescriptionError(Problem(f"signal '{text:.80}': no such entry", f"[{','.join(map(str, index))}]",
-                                       f"the signal has shape {shape}", "entries count from 0"))  # fmt: skip
+        raise DescriptionError(
+            Problem(
+                f"signal '{text:.80}': no such entry",
+                f"[{','.join(map(str, index))}]",
+                f"the signal has shape {shape}",
+                "entries count from 0",
+            )
+        )

@@ -76,19 +76,24 @@ def run_compiled(
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
 
     def settings_of(model: Model) -> Settings:
-        return Settings.of(
-            model, method, dt, t0, t_end, rtol, atol, None, math.inf, None, 1, stabilisation, gains
-        )  # fmt: skip
+        return Settings.of(model, method, dt, t0, t_end, rtol, atol, None, math.inf, None, 1, stabilisation, gains)
 
     parts = place_parts(compiled, settings_of, t0, t_end, par)
     with begun(resolved.wired) as called:
         opaque = Opaque(resolved, called)
         loop = Loop(
-            resolved.layout, [part.stepper for part in parts], plan, _stages(compiled, plan, opaque),
-            [Stage(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))], par,
-            np.array(resolved.layout.u0, dtype=np.float64), opaque.call, opaque.places(), opaque.lengths(),
+            resolved.layout,
+            [part.stepper for part in parts],
+            plan,
+            _stages(compiled, plan, opaque),
+            [Stage(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
+            par,
+            np.array(resolved.layout.u0, dtype=np.float64),
+            opaque.call,
+            opaque.places(),
+            opaque.lengths(),
             compiled.looks_back,
-        )  # fmt: skip
+        )
         with closing(loop):
             start(parts, name)
             run = _drive(compiled, loop, plan, t0, t_end, par, float(realtime), threads, progress)
@@ -111,16 +116,25 @@ def _stages(compiled: CompiledDiagram, plan: Schedule, opaque: Opaque) -> list[l
             found.append([])
             continue
         i = known[own]
-        stages = [Stage(_kernel(compiled, f"heard_{i}_{j}"), opaque.names.index(name))
-                  for j, name in enumerate(opaque.due(own))]  # fmt: skip
+        stages = [
+            Stage(_kernel(compiled, f"heard_{i}_{j}"), opaque.names.index(name))
+            for j, name in enumerate(opaque.due(own))
+        ]
         found.append([*stages, Stage(_kernel(compiled, f"due_{i}"))])
     return found
 
 
 def _drive(
-    compiled: CompiledDiagram, loop: Loop, plan: Schedule, t0: float, t_end: float, par: Array,
-    realtime: float, threads: int, progress: bool,
-) -> DiagramRun:  # fmt: skip
+    compiled: CompiledDiagram,
+    loop: Loop,
+    plan: Schedule,
+    t0: float,
+    t_end: float,
+    par: Array,
+    realtime: float,
+    threads: int,
+    progress: bool,
+) -> DiagramRun:
     span = float(plan.base) * plan.cycle
     instants = int((t_end - t0) / span + 2) * len(plan.instants)
     loop.start(t0, t_end, realtime, threads, instants)
@@ -150,8 +164,9 @@ def _drive(
     looked_for = watched(compiled.resolved.pieces)
     crossings = tuple(Crossed(*looked_for[which], when) for when, which in met)
     d = loop.d
-    cost = Cost(int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, loop.late,
-                plan.spacing / (realtime or 1.0))  # fmt: skip
+    cost = Cost(
+        int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, loop.late, plan.spacing / (realtime or 1.0)
+    )
     return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost)
 
 

@@ -59,10 +59,18 @@ class Simulation:
         return run_compiled(self.compiled, _end(self.diagram, t_end), **{**stated.keywords(), **settings})
 
     def interpret(
-        self, t_end: float, *, t0: float = 0.0, method: str = "rk4", dt: float = 1e-3, record: float | None = None,
-        parameters: Mapping[str, Any] | None = None, gains: tuple[float, float] | None = None, compiled: bool = True,
+        self,
+        t_end: float,
+        *,
+        t0: float = 0.0,
+        method: str = "rk4",
+        dt: float = 1e-3,
+        record: float | None = None,
+        parameters: Mapping[str, Any] | None = None,
+        gains: tuple[float, float] | None = None,
+        compiled: bool = True,
         progress: bool = False,
-    ) -> InterpretedRun:  # fmt: skip
+    ) -> InterpretedRun:
         """Run it block by block from Python: the reference of `run`, and some hundred times slower.
 
         Args:
@@ -81,11 +89,27 @@ class Simulation:
         """
         resolved = self.resolved
         if METHODS[method].kind != "explicit" or METHODS[method].adaptive:
-            raise SymofrosError(str(Problem(f"diagram: method '{method}' interpreted", "not of fixed explicit steps",
-                                            "an interpreted run steps by rk4 or euler", "use run")))  # fmt: skip
+            raise SymofrosError(
+                str(
+                    Problem(
+                        f"diagram: method '{method}' interpreted",
+                        "not of fixed explicit steps",
+                        "an interpreted run steps by rk4 or euler",
+                        "use run",
+                    )
+                )
+            )
         if any(piece.crossings for piece in resolved.pieces.values()):
-            raise SymofrosError(str(Problem(f"diagram '{resolved.wired.name}': crossings", "an interpreted run",
-                                            "it does not locate crossings", "use run")))  # fmt: skip
+            raise SymofrosError(
+                str(
+                    Problem(
+                        f"diagram '{resolved.wired.name}': crossings",
+                        "an interpreted run",
+                        "it does not locate crossings",
+                        "use run",
+                    )
+                )
+            )
         par = parameter_values(resolved, parameters or {})
         toolchain = find_toolchain(self.options.compiler) if compiled else None
         blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
@@ -99,9 +123,16 @@ class Simulation:
 def _end(diagram: Diagram, t_end: float | None) -> float:
     end = t_end if t_end is not None else diagram.simulation.t_end
     if end is None:
-        raise SymofrosError(str(Problem(f"diagram '{diagram.name}': no end of time", "t_end is not stated",
-                                        "a run ends somewhere", "give t_end, or state it under simulation")
-                                ))  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    f"diagram '{diagram.name}': no end of time",
+                    "t_end is not stated",
+                    "a run ends somewhere",
+                    "give t_end, or state it under simulation",
+                )
+            )
+        )
     return end
 
 

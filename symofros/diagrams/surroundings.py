@@ -13,21 +13,21 @@ from symofros.description.system import System
 from symofros.diagrams.block import ModelSetup
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.variants import FRICTION, friction_only
-from symofros.dynamics.constraints import moved
-from symofros.dynamics.equations import Equations
-from symofros.dynamics.forward import Factors
-from symofros.dynamics.functions import Request, formed
 from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
 from symofros.expr.graph import Edge, Graph
 from symofros.expr.program import Program
 from symofros.expr.substitute import transplant
-from symofros.kinematics.links import set_in_motion
+from symofros.mechanics.dynamics.constraints import moved
+from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.dynamics.forward import Factors
+from symofros.mechanics.dynamics.functions import Request, formed
+from symofros.mechanics.kinematics.links import set_in_motion
+from symofros.mechanics.topology.tree import SpanningTree
 from symofros.options import FRAME_FUNCTIONS, Options
 from symofros.runtime.kernel import Array
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.assembly import assemble
 from symofros.simulation.state_space import StateSpace, state_space
-from symofros.topology.tree import SpanningTree
 
 
 def parameter_group(model: str) -> str:
@@ -66,10 +66,14 @@ class Models:
             stated = self.setup(name.removesuffix(FRICTION))
             return replace(stated, system=friction_only(stated.system))
         if name not in self._setups:
-            raise DescriptionError(Problem(
-                f"diagram '{self._diagram}': no model '{name}'", f"'{name}'",
-                f"models: {', '.join(self._setups) or 'none'}", did_you_mean(name, self._setups) or "add the model",
-            ))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"diagram '{self._diagram}': no model '{name}'",
+                    f"'{name}'",
+                    f"models: {', '.join(self._setups) or 'none'}",
+                    did_you_mean(name, self._setups) or "add the model",
+                )
+            )
         return self._setups[name]
 
     def system(self, name: str) -> System:
@@ -124,10 +128,14 @@ class Models:
 
     def _index(self, model: str, what: str, name: str, known: tuple[str, ...]) -> int:
         if name not in known:
-            raise DescriptionError(Problem(
-                f"diagram '{self._diagram}': model '{model}' has no {what} '{name}'", f"'{name}'",
-                f"known: {', '.join(known[:12]) or 'none'}", did_you_mean(name, known) or "see model.names",
-            ))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"diagram '{self._diagram}': model '{model}' has no {what} '{name}'",
+                    f"'{name}'",
+                    f"known: {', '.join(known[:12]) or 'none'}",
+                    did_you_mean(name, known) or "see model.names",
+                )
+            )
         return known.index(name)
 
     def frame(self, model: str, frame: str) -> str:
@@ -192,8 +200,9 @@ class Models:
         motion = set_in_motion(Graph(), self.tree(model))
         edges = moved(motion)
         groups = {"q": q, "step": step}
-        replacement = {motion.g.input(group, i): edge for group, values in groups.items()
-                       for i, edge in enumerate(values.flat)}  # fmt: skip
+        replacement = {
+            motion.g.input(group, i): edge for group, values in groups.items() for i, edge in enumerate(values.flat)
+        }
         return Tensor.of(g, transplant(motion.g, edges, replacement, g), (len(edges),))
 
     def _bound(
@@ -206,8 +215,16 @@ class Models:
             size = program.sizes[name]
             if name not in given or given[name].size != size:
                 shape = given[name].shape if name in given else "nothing"
-                raise ShapeError(str(Problem(f"model '{model}': {name} of {program.functions[0].name}", f"{shape}",
-                                             f"({size})", "give it that shape")))  # fmt: skip
+                raise ShapeError(
+                    str(
+                        Problem(
+                            f"model '{model}': {name} of {program.functions[0].name}",
+                            f"{shape}",
+                            f"({size})",
+                            "give it that shape",
+                        )
+                    )
+                )
             replacement |= {program.graph.input(name, i): edge for i, edge in enumerate(given[name].flat)}
         own = {program.graph.input("par", i): g.input(parameter_group(model), i) for i in range(program.sizes["par"])}
         return replacement | own

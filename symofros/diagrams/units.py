@@ -32,13 +32,25 @@ def _unit(scale: float = 1.0, **powers: int) -> Unit:
 
 NAMES: dict[str, Unit] = {
     **{name: _unit(**{name: 1}) for name in _BASE},
-    "g": _unit(1e-3, kg=1), "mm": _unit(1e-3, m=1), "cm": _unit(1e-2, m=1), "km": _unit(1e3, m=1),
-    "ms": _unit(1e-3, s=1), "us": _unit(1e-6, s=1), "min": _unit(60.0, s=1), "h": _unit(3600.0, s=1),
-    "Hz": _unit(s=-1), "N": _unit(kg=1, m=1, s=-2), "kN": _unit(1e3, kg=1, m=1, s=-2),
-    "J": _unit(kg=1, m=2, s=-2), "W": _unit(kg=1, m=2, s=-3), "Pa": _unit(kg=1, m=-1, s=-2),
-    "V": _unit(kg=1, m=2, s=-3, A=-1), "deg": _unit(math.pi / 180.0, rad=1), "rev": _unit(2.0 * math.pi, rad=1),
+    "g": _unit(1e-3, kg=1),
+    "mm": _unit(1e-3, m=1),
+    "cm": _unit(1e-2, m=1),
+    "km": _unit(1e3, m=1),
+    "ms": _unit(1e-3, s=1),
+    "us": _unit(1e-6, s=1),
+    "min": _unit(60.0, s=1),
+    "h": _unit(3600.0, s=1),
+    "Hz": _unit(s=-1),
+    "N": _unit(kg=1, m=1, s=-2),
+    "kN": _unit(1e3, kg=1, m=1, s=-2),
+    "J": _unit(kg=1, m=2, s=-2),
+    "W": _unit(kg=1, m=2, s=-3),
+    "Pa": _unit(kg=1, m=-1, s=-2),
+    "V": _unit(kg=1, m=2, s=-3, A=-1),
+    "deg": _unit(math.pi / 180.0, rad=1),
+    "rev": _unit(2.0 * math.pi, rad=1),
     "%": _unit(1e-2),
-}  # fmt: skip
+}
 
 
 def parse(text: str) -> Unit:
@@ -57,10 +69,14 @@ def parse(text: str) -> Unit:
         match = _FACTOR.match(part)
         unit = NAMES.get(match["name"]) if match else None
         if match is None or unit is None:
-            raise DescriptionError(Problem(
-                f"unit '{text:.60}'", f"'{part:.40}'", f"products of powers of {', '.join(NAMES)}",
-                "write for example N m, rad/s, kg m^2; leave it out where any unit will do",
-            ))  # fmt: skip
+            raise DescriptionError(
+                Problem(
+                    f"unit '{text:.60}'",
+                    f"'{part:.40}'",
+                    f"products of powers of {', '.join(NAMES)}",
+                    "write for example N m, rad/s, kg m^2; leave it out where any unit will do",
+                )
+            )
         power = int(match["power"] or 1)
         found = found * unit ** (-power if inverse else power)
     return found

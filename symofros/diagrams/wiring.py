@@ -172,10 +172,14 @@ def _sampling(name: str, block: Block) -> list[Problem]:
     period, offset = block.period, block.offset
     good = period is None or (math.isfinite(period) and period > 0.0)
     if not good or not 0.0 <= offset < (period or 1e-300):
-        return [Problem(f"diagram '{name}': block '{block.name}' has no sample time",
-                        f"period {period}, offset {offset}",
-                        "a period above zero, an offset from zero to less than the period",
-                        "leave both out for a continuous block")]  # fmt: skip
+        return [
+            Problem(
+                f"diagram '{name}': block '{block.name}' has no sample time",
+                f"period {period}, offset {offset}",
+                "a period above zero, an offset from zero to less than the period",
+                "leave both out for a continuous block",
+            )
+        ]
     return []
 
 
@@ -195,17 +199,27 @@ def _sources(
     sources = {}
     for (block, port), text in diagram.wires.items():
         if block not in diagram.blocks:
-            problems.append(Problem(f"diagram '{diagram.name}': no block '{block}'", f"'{block}.{port}' is fed",
-                                    "wires end at blocks of the diagram",
-                                    did_you_mean(block, diagram.blocks) or "add the block",
-                                    diagram.where(block, port)))  # fmt: skip
+            problems.append(
+                Problem(
+                    f"diagram '{diagram.name}': no block '{block}'",
+                    f"'{block}.{port}' is fed",
+                    "wires end at blocks of the diagram",
+                    did_you_mean(block, diagram.blocks) or "add the block",
+                    diagram.where(block, port),
+                )
+            )
             continue
         known = [item.name for item in ports[block].inputs]
         if port not in known:
-            problems.append(Problem(f"diagram '{diagram.name}': block '{block}' has no input '{port}'", f"'{port}'",
-                                    f"inputs: {', '.join(known) or 'none'}",
-                                    did_you_mean(port, known) or "feed one of them",
-                                    diagram.where(block, port)))  # fmt: skip
+            problems.append(
+                Problem(
+                    f"diagram '{diagram.name}': block '{block}' has no input '{port}'",
+                    f"'{port}'",
+                    f"inputs: {', '.join(known) or 'none'}",
+                    did_you_mean(port, known) or "feed one of them",
+                    diagram.where(block, port),
+                )
+            )
             continue
         where = diagram.where(block, port)
         source = _collected(problems, where, diagram.name, text, diagram.blocks, ports, outlets)
@@ -214,11 +228,15 @@ def _sources(
     for block, found in ports.items():
         for item in found.inputs:
             if item.default is None and (block, item.name) not in diagram.wires:
-                problems.append(Problem(
-                    f"diagram '{diagram.name}': input '{block}.{item.name}' is not connected", "nothing",
-                    "an input without a default has a source", f"connect a signal{_in_unit(item)} to it",
-                    diagram.where(block),
-                ))  # fmt: skip
+                problems.append(
+                    Problem(
+                        f"diagram '{diagram.name}': input '{block}.{item.name}' is not connected",
+                        "nothing",
+                        "an input without a default has a source",
+                        f"connect a signal{_in_unit(item)} to it",
+                        diagram.where(block),
+                    )
+                )
     return sources
 
 
@@ -243,25 +261,37 @@ def _output(
     block, _, port = text.rpartition(".") if "." in text else (text, "", "")
     if block not in blocks:
         known = [*blocks, *outlets]
-        raise DescriptionError(Problem(f"diagram '{name}': no block '{block:.80}'", f"source '{text:.80}'",
-                                       "a source is written block.port",
-                                       did_you_mean(block, known) or "add the block"))  # fmt: skip
+        raise DescriptionError(
+            Problem(
+                f"diagram '{name}': no block '{block:.80}'",
+                f"source '{text:.80}'",
+                "a source is written block.port",
+                did_you_mean(block, known) or "add the block",
+            )
+        )
     there = [item.name for item in ports[block].outputs]
     if not port and len(there) == 1:
         return block, there[0]
     if port not in there:
         fault = f"has no output '{port}'" if port else f"has {len(there)} outputs, and none is named"
-        raise DescriptionError(Problem(
-            f"diagram '{name}': block '{block}' {fault}", f"source '{text}'",
-            f"outputs: {', '.join(there) or 'none'}", did_you_mean(port, there) or "name one of them",
-        ))  # fmt: skip
+        raise DescriptionError(
+            Problem(
+                f"diagram '{name}': block '{block}' {fault}",
+                f"source '{text}'",
+                f"outputs: {', '.join(there) or 'none'}",
+                did_you_mean(port, there) or "name one of them",
+            )
+        )
     return block, port
 
 
 def _settle(
-    diagram: Diagram, models: Models, ports: dict[str, Ports], sources: Mapping[Source, Source],
+    diagram: Diagram,
+    models: Models,
+    ports: dict[str, Ports],
+    sources: Mapping[Source, Source],
     problems: list[Problem],
-) -> dict[str, Ports]:  # fmt: skip
+) -> dict[str, Ports]:
     """Carry shapes along the wires until nothing changes."""
     for _ in range(len(ports) + 1):
         shapes = {(block, item.name): item.shape for block, found in ports.items() for item in found.outputs}
@@ -278,8 +308,9 @@ def _settle(
             except DescriptionError as error:
                 problems += located(error.problems, diagram.where(name))
                 return ports
-            arrived = [replace(item, shape=inputs.get(item.name)) if item.shape is None else item
-                       for item in found.inputs]  # fmt: skip
+            arrived = [
+                replace(item, shape=inputs.get(item.name)) if item.shape is None else item for item in found.inputs
+            ]
             now[name] = Ports(tuple(arrived), found.outputs)
         if now == ports:
             break
@@ -301,11 +332,15 @@ def _check(
                 problems.append(replace(one, what=what, where=diagram.where(block, item.name)))
         unknown = [item.name for item in found.outputs if item.shape is None]
         if unknown:
-            problems.append(Problem(
-                f"diagram '{diagram.name}': the shape of '{block}.{unknown[0]}' is unknown", "a loop of open shapes",
-                "the shape of a signal follows from one of its sources", "give a block of the loop a first value",
-                diagram.where(block),
-            ))  # fmt: skip
+            problems.append(
+                Problem(
+                    f"diagram '{diagram.name}': the shape of '{block}.{unknown[0]}' is unknown",
+                    "a loop of open shapes",
+                    "the shape of a signal follows from one of its sources",
+                    "give a block of the loop a first value",
+                    diagram.where(block),
+                )
+            )
     if problems:
         return
     for (block, port), source in sources.items():
@@ -313,9 +348,22 @@ def _check(
         given = outputs[source]
         wire = f"diagram '{diagram.name}': {'.'.join(source)} -> {block}.{port}"
         if item.shape != given.shape:
-            problems.append(Problem(f"{wire}: shapes differ", f"{given.shape}", f"the input takes {item.shape}",
-                                    "pick or join entries in a block between",
-                                    diagram.where(block, port)))  # fmt: skip
+            problems.append(
+                Problem(
+                    f"{wire}: shapes differ",
+                    f"{given.shape}",
+                    f"the input takes {item.shape}",
+                    "pick or join entries in a block between",
+                    diagram.where(block, port),
+                )
+            )
         if not agree(given.unit, item.unit):
-            problems.append(Problem(f"{wire}: units differ", f"{given.unit}", f"the input takes {item.unit}",
-                                    "convert by a gain with units", diagram.where(block, port)))  # fmt: skip
+            problems.append(
+                Problem(
+                    f"{wire}: units differ",
+                    f"{given.unit}",
+                    f"the input takes {item.unit}",
+                    "convert by a gain with units",
+                    diagram.where(block, port),
+                )
+            )

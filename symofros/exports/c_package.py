@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from string import Template
 
-from symofros.codegen.templates import template
-from symofros.exports.c_text import comment, hand_written
+from symofros.exports.c_text import comment
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
 from symofros.exports.plant import header_text, plant_text, selftest_text
+from symofros.native import native_text
 from symofros.simulation.stepper import native_headers, native_source
 
 # Two back ends, two compilers, and the conditioning of a robot's mass matrix lie between the points and the C code.
@@ -23,7 +23,7 @@ def model_files(material: Material) -> dict[str, str]:
         f"{name}.c": material.source,
         f"{name}.h": header_text(material),
         f"{name}_plant.c": plant_text(material),
-        "symofros_model.h": template("symofros_model.h"),
+        "symofros_model.h": native_text("model/symofros_model.h"),
         **native_headers(),
         "symofros_stepper.c": native_source(),
     }
@@ -37,9 +37,14 @@ def write_c_package(material: Material, folder: Path) -> Exported:
     """
     name = material.c_name
     version = material.generator.rpartition(" ")[2]
-    words = {"name": name, "generator": material.generator, "version": version, "tolerance": SELFTEST_TOLERANCE,
-             "title": comment(material.record.name)}  # fmt: skip
+    words = {
+        "name": name,
+        "generator": material.generator,
+        "version": version,
+        "tolerance": SELFTEST_TOLERANCE,
+        "title": comment(material.record.name),
+    }
     filled = {"main.c": "main.c.in", "CMakeLists.txt": "CMakeLists.txt.in", f"{name}.pc.in": "model.pc.in"}
     files = model_files(material) | {f"{name}_selftest.c": selftest_text(material)}
-    files |= {file: Template(hand_written(source)).substitute(words) for file, source in filled.items()}
+    files |= {file: Template(native_text(f"exports/{source}")).substitute(words) for file, source in filled.items()}
     return write_folder(folder, "c", name, files, material.generator, material.notes)

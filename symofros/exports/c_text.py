@@ -4,18 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from functools import cache
-from importlib.resources import files
 
-from symofros.codegen.names import c_string
+from symofros.generator.codegen.names import c_string
 
 _WIDTH = 8
-
-
-@cache
-def hand_written(name: str) -> str:
-    """A file of exports/native."""
-    return (files("symofros.exports") / "native" / name).read_text(encoding="utf-8")
 
 
 def doubles(values: Iterable[float]) -> str:

@@ -10,9 +10,6 @@ from string import Template
 
 import numpy as np
 
-from symofros.codegen.model import model_source
-from symofros.codegen.names import c_string, identifier
-from symofros.codegen.templates import template
 from symofros.diagrams.compiled import Resolved, compile_diagram, fuser, looks_back, record_of
 from symofros.diagrams.loop import loop_headers, program_source
 from symofros.diagrams.opaque_block import OpaqueBlock
@@ -20,11 +17,14 @@ from symofros.diagrams.pieces import watched
 from symofros.diagrams.simulate import run_compiled
 from symofros.diagrams.wiring import Source
 from symofros.errors import ExportError, Problem
-from symofros.exports.c_text import comment, doubles, hand_written, integers, strings
+from symofros.exports.c_text import comment, doubles, integers, strings
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Stepping
 from symofros.exports.plant import plant_text
-from symofros.passes import run_passes
+from symofros.generator.codegen.model import model_source
+from symofros.generator.codegen.names import c_string, identifier
+from symofros.generator.passes import run_passes
+from symofros.native import native_text
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.methods import METHODS
 from symofros.simulation.stepper import native_headers
@@ -67,11 +67,27 @@ def write_diagram(
     wired, layout = resolved.wired, resolved.layout
     opaque = [name for name, block in wired.blocks.items() if isinstance(block, OpaqueBlock)]
     if opaque:
-        raise ExportError(str(Problem(f"diagram '{wired.name}': no C program", f"block '{opaque[0]}' calls Python",
-                                      "a program of its own has no Python in it", "leave the block out")))  # fmt: skip
+        raise ExportError(
+            str(
+                Problem(
+                    f"diagram '{wired.name}': no C program",
+                    f"block '{opaque[0]}' calls Python",
+                    "a program of its own has no Python in it",
+                    "leave the block out",
+                )
+            )
+        )
     if METHODS[method].kind not in ("explicit", "semi_implicit"):
-        raise ExportError(str(Problem(f"diagram '{wired.name}': method '{method}'", "an implicit method",
-                                      "diagrams step by explicit methods", "use rk4 or dopri5")))  # fmt: skip
+        raise ExportError(
+            str(
+                Problem(
+                    f"diagram '{wired.name}': method '{method}'",
+                    "an implicit method",
+                    "diagrams step by explicit methods",
+                    "use rk4 or dopri5",
+                )
+            )
+        )
     name = identifier(wired.name)
     sources = [wired.output(text) for text in outputs]
     write, stepping = fuser(resolved), Stepping(METHODS[method], dt, 1e-6, 1e-9)
@@ -79,8 +95,9 @@ def write_diagram(
     for i, part in enumerate(layout.parts):
         record, c_name = record_of(resolved, part), f"{name}_part{i}"
         text = model_source(run_passes(write.motion(part)), record, generator, c_name=c_name)
-        material = PartMaterial(c_name, record, stepping, (), tuple(layout.q0[part.q]), tuple(layout.v0[part.v]),
-                                generator)  # fmt: skip
+        material = PartMaterial(
+            c_name, record, stepping, (), tuple(layout.q0[part.q]), tuple(layout.v0[part.v]), generator
+        )
         files |= {f"{c_name}.c": text, f"{c_name}.h": _part_header(c_name), f"{c_name}_plant.c": plant_text(material)}
     instants = run_passes(write.samples(resolved.schedule.sets, sources))
     files[f"{name}_instants.c"] = model_source(
@@ -89,13 +106,18 @@ def write_diagram(
     files[f"{name}_program.c"] = _program(resolved, name, sources, looks_back(instants), generator)
     until, values = _reference(resolved, outputs, method, dt)
     words = {
-        "name": name, "generator": generator, "version": generator.rpartition(" ")[2], "until": repr(until),
-        "reference": doubles(values), "tolerance": _TOLERANCE, "step": repr(dt),
+        "name": name,
+        "generator": generator,
+        "version": generator.rpartition(" ")[2],
+        "until": repr(until),
+        "reference": doubles(values),
+        "tolerance": _TOLERANCE,
+        "step": repr(dt),
         "sources": " ".join(file for file in files if file.endswith(".c")),
-    }  # fmt: skip
-    files["main.c"] = Template(hand_written("diagram_main.c.in")).substitute(words)
-    files["CMakeLists.txt"] = Template(hand_written("diagram_CMakeLists.txt.in")).substitute(words)
-    files |= {"symofros_model.h": template("symofros_model.h"), **native_headers(), **loop_headers()}
+    }
+    files["main.c"] = Template(native_text("exports/diagram_main.c.in")).substitute(words)
+    files["CMakeLists.txt"] = Template(native_text("exports/diagram_CMakeLists.txt.in")).substitute(words)
+    files |= {"symofros_model.h": native_text("model/symofros_model.h"), **native_headers(), **loop_headers()}
     files["symofros_loop.c"] = program_source()
     notes = () if layout.condition_names else ("no constraints: accelerations are in closed form",)
     return write_folder(folder, "c", name, files, generator, notes)
@@ -111,38 +133,70 @@ def _reference(resolved: Resolved, outputs: Sequence[str], method: str, dt: floa
 
 def _header(name: str, title: str, generator: str) -> str:
     guard = f"SYMOFROS_PROGRAM_{name.upper()}_H"
-    return "\n".join([
-        f"/* {comment(title)}: a diagram as a program; generated by {generator}. */",
-        f"#ifndef {guard}", f"#define {guard}", "", '#include "symofros_program.h"', "",
-        "#ifdef __cplusplus", 'extern "C" {', "#endif",
-        f"const sym_program *{name}_program(void);",
-        "#ifdef __cplusplus", "}", "#endif", "#endif", "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"/* {comment(title)}: a diagram as a program; generated by {generator}. */",
+            f"#ifndef {guard}",
+            f"#define {guard}",
+            "",
+            '#include "symofros_program.h"',
+            "",
+            "#ifdef __cplusplus",
+            'extern "C" {',
+            "#endif",
+            f"const sym_program *{name}_program(void);",
+            "#ifdef __cplusplus",
+            "}",
+            "#endif",
+            "#endif",
+            "",
+        ]
+    )
 
 
 def _part_header(c_name: str) -> str:
     guard = f"SYMOFROS_PART_{c_name.upper()}_H"
-    return "\n".join([
-        f"#ifndef {guard}", f"#define {guard}", '#include "symofros_instance.h"',
-        f"const sym_model *{c_name}_model(void);", f"const sym_plant *{c_name}_plant(void);", "#endif", "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"#ifndef {guard}",
+            f"#define {guard}",
+            '#include "symofros_instance.h"',
+            f"const sym_model *{c_name}_model(void);",
+            f"const sym_plant *{c_name}_plant(void);",
+            "#endif",
+            "",
+        ]
+    )
 
 
 def _program(resolved: Resolved, name: str, sources: Sequence[Source], back: bool, generator: str) -> str:
     """NAME_program.c: the constants of symofros_program.h."""
     wired, layout, plan = resolved.wired, resolved.layout, resolved.schedule
     parts = layout.parts
-    directions = [_DIRECTIONS[resolved.pieces[block].crossings[which].direction]
-                  for block, which in watched(resolved.pieces)]  # fmt: skip
+    directions = [
+        _DIRECTIONS[resolved.pieces[block].crossings[which].direction] for block, which in watched(resolved.pieces)
+    ]
     lines = [
         f"/* {comment(wired.name)} as a program. Generated by {generator}. */",
-        "#include <math.h>", f'#include "{name}.h"', *(f'#include "{name}_part{i}.h"' for i in range(len(parts))), "",
+        "#include <math.h>",
+        f'#include "{name}.h"',
+        *(f'#include "{name}_part{i}.h"' for i in range(len(parts))),
+        "",
         f"const sym_model *{name}_instants_model(void);",
-        _array("const sym_plant *(*const", "parts)(void)", ", ".join(f"{name}_part{i}_plant" for i in range(len(parts)))
-               or "NULL"),
-        *(_array("const int32_t", f"{key}_at", integers(places)) for key, places in (
-            ("q", [part.q.start for part in parts]), ("v", [part.v.start for part in parts]),
-            ("c", [part.conditions.start for part in parts]), ("u", layout.engaging))),
+        _array(
+            "const sym_plant *(*const",
+            "parts)(void)",
+            ", ".join(f"{name}_part{i}_plant" for i in range(len(parts))) or "NULL",
+        ),
+        *(
+            _array("const int32_t", f"{key}_at", integers(places))
+            for key, places in (
+                ("q", [part.q.start for part in parts]),
+                ("v", [part.v.start for part in parts]),
+                ("c", [part.conditions.start for part in parts]),
+                ("u", layout.engaging),
+            )
+        ),
         _array("const double", "u_start", doubles(layout.u0)),
         *_signals(layout.signals),
         _array("const int32_t", "directions", integers(directions)),
@@ -157,9 +211,11 @@ def _program(resolved: Resolved, name: str, sources: Sequence[Source], back: boo
         "    signals, u_at, directions, all_end,",
         f"    {float(plan.base.numerator)!r}, {float(plan.base.denominator)!r}, {plan.cycle}, {len(plan.instants)},",
         f"    instant, set, {len(plan.sets)}, {len(list(_entries(resolved, sources)))}, due, output_names",
-        "};", "",
-        f"const sym_program *{name}_program(void) {{ return &{name}_program_struct; }}", "",
-    ]  # fmt: skip
+        "};",
+        "",
+        f"const sym_program *{name}_program(void) {{ return &{name}_program_struct; }}",
+        "",
+    ]
     return "\n".join(lines)
 
 

@@ -12,16 +12,17 @@ from datetime import UTC, datetime
 from pathlib import Path
 from uuid import UUID
 
-from symofros.codegen.names import c_string
 from symofros.errors import ExportError, Problem
 from symofros.exports.c_package import model_files
-from symofros.exports.c_text import comment, hand_written, strings
+from symofros.exports.c_text import comment, strings
 from symofros.exports.compiling import shared_library
 from symofros.exports.fmu_description import build_xml, description_xml
 from symofros.exports.fmu_variables import variables
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
 from symofros.exports.unity import unity
+from symofros.generator.codegen.names import c_string
+from symofros.native import native_text
 
 _MACHINES = {"x86_64": "x86_64", "amd64": "x86_64", "aarch64": "aarch64", "arm64": "aarch64"}
 _SYSTEMS = {"linux": ("linux", ".so"), "darwin": ("darwin", ".dylib"), "win32": ("windows", ".dll")}
@@ -48,7 +49,7 @@ def _write(material: Material, folder: Path, version: int) -> Exported:
     token = _token(material, sources, version)
     sources[f"{name}_fmi{version}.c"] = _glue(material, version, token)
     for file in (*_HEADERS, *_INTERFACE[version]):
-        sources[file] = hand_written(file)
+        sources[file] = native_text(f"exports/{file}")
     library = shared_library(sources, f"{name}_fmi{version}.c", [fmi_headers()])
     place, suffix = _platform(version)
     found = variables(material)
@@ -59,8 +60,9 @@ def _write(material: Material, folder: Path, version: int) -> Exported:
     }
     if version == 3:
         entries["sources/buildDescription.xml"] = build_xml(name)
-    return write_folder(folder, f"fmu{version}", name, {f"{name}.fmu": _archive(entries)}, material.generator,
-                        material.notes)  # fmt: skip
+    return write_folder(
+        folder, f"fmu{version}", name, {f"{name}.fmu": _archive(entries)}, material.generator, material.notes
+    )
 
 
 def fmi_headers() -> Path:
@@ -71,8 +73,16 @@ def fmi_headers() -> Path:
     """
     spec = importlib.util.find_spec("fmpy")
     if spec is None or spec.origin is None:
-        raise ExportError(str(Problem("an FMU needs the headers of the FMI standard", "no package fmpy",
-                                      "they are read from the package FMPy", "pip install symofros[fmi]")))  # fmt: skip
+        raise ExportError(
+            str(
+                Problem(
+                    "an FMU needs the headers of the FMI standard",
+                    "no package fmpy",
+                    "they are read from the package FMPy",
+                    "pip install symofros[fmi]",
+                )
+            )
+        )
     return Path(spec.origin).parent / "c-code"
 
 
@@ -80,14 +90,17 @@ def _glue(material: Material, version: int, token: str) -> str:
     name = material.c_name
     frames = strings(material.outputs) if material.outputs else "NULL"
     return unity(
-        name, f"{comment(material.record.name)} as an FMU of FMI {version}.0, by {material.generator}.",
+        name,
+        f"{comment(material.record.name)} as an FMU of FMI {version}.0, by {material.generator}.",
         [
-            f"#define SYM_FMU_PLANT {name}_plant", f"#define SYM_FMU_TOKEN {c_string(token)}",
+            f"#define SYM_FMU_PLANT {name}_plant",
+            f"#define SYM_FMU_TOKEN {c_string(token)}",
             f"#define SYM_FMU_FRAMES {len(material.outputs)}",
-            f"static const char *const sym_fmu_frames[] = {{{frames}}};", *(f'#include "{file}"' for file in _HEADERS),
+            f"static const char *const sym_fmu_frames[] = {{{frames}}};",
+            *(f'#include "{file}"' for file in _HEADERS),
         ],
         [f'#include "fmi{version}Functions.h"', *(f'#include "{file}"' for file in _INTERFACE[version])],
-    )  # fmt: skip
+    )
 
 
 def _token(material: Material, sources: dict[str, str], version: int) -> str:

@@ -9,11 +9,18 @@ from symofros.exports.fmu_variables import Variable
 from symofros.exports.material import Material
 
 _BASES: dict[str, dict[str, str]] = {
-    "s": {"s": "1"}, "m": {"m": "1"}, "m/s": {"m": "1", "s": "-1"}, "m/s2": {"m": "1", "s": "-2"},
-    "rad": {"rad": "1"}, "rad/s": {"rad": "1", "s": "-1"}, "rad/s2": {"rad": "1", "s": "-2"},
-    "N": {"kg": "1", "m": "1", "s": "-2"}, "N.m": {"kg": "1", "m": "2", "s": "-2"},
-    "J": {"kg": "1", "m": "2", "s": "-2"}, "kg": {"kg": "1"},
-}  # fmt: skip
+    "s": {"s": "1"},
+    "m": {"m": "1"},
+    "m/s": {"m": "1", "s": "-1"},
+    "m/s2": {"m": "1", "s": "-2"},
+    "rad": {"rad": "1"},
+    "rad/s": {"rad": "1", "s": "-1"},
+    "rad/s2": {"rad": "1", "s": "-2"},
+    "N": {"kg": "1", "m": "1", "s": "-2"},
+    "N.m": {"kg": "1", "m": "2", "s": "-2"},
+    "J": {"kg": "1", "m": "2", "s": "-2"},
+    "kg": {"kg": "1"},
+}
 
 
 def description_xml(material: Material, found: Sequence[Variable], version: int, token: str, created: str) -> str:
@@ -27,12 +34,14 @@ def description_xml(material: Material, found: Sequence[Variable], version: int,
         created: Date and time, ISO.
     """
     head = {
-        "fmiVersion": "2.0" if version == 2 else "3.0", "modelName": material.record.name,
+        "fmiVersion": "2.0" if version == 2 else "3.0",
+        "modelName": material.record.name,
         "guid" if version == 2 else "instantiationToken": token,
         "description": f"{len(material.record.v_names)} speeds, {material.record.nc} constraints",
-        "generationTool": material.generator, "generationDateAndTime": created,
+        "generationTool": material.generator,
+        "generationDateAndTime": created,
         "variableNamingConvention": "structured",
-    }  # fmt: skip
+    }
     if version == 2:
         head["numberOfEventIndicators"] = "0"
     root = Tree.Element("fmiModelDescription", head)
@@ -93,8 +102,12 @@ def _typed(variable: Variable) -> dict[str, str]:
 
 
 def _common(variable: Variable) -> dict[str, str]:
-    common = {"name": variable.name, "valueReference": str(variable.reference), "causality": variable.causality,
-              "variability": variable.variability}  # fmt: skip
+    common = {
+        "name": variable.name,
+        "valueReference": str(variable.reference),
+        "causality": variable.causality,
+        "variability": variable.variability,
+    }
     if variable.initial:
         common["initial"] = variable.initial
     if variable.about:
@@ -122,12 +135,16 @@ def _groups(found: Sequence[Variable]) -> list[tuple[str, str, list[Variable]]]:
     states = {variable.derivative for variable in derivatives}
     outputs = [variable for variable in found if variable.causality == "output"]
     unknown = [
-        variable for variable in found
+        variable
+        for variable in found
         if variable.initial in ("approx", "calculated")
         and (variable.causality == "output" or variable.derivative is not None or variable.reference in states)
-    ]  # fmt: skip
-    return [("Outputs", "Output", outputs), ("Derivatives", "ContinuousStateDerivative", derivatives),
-            ("InitialUnknowns", "InitialUnknown", unknown)]  # fmt: skip
+    ]
+    return [
+        ("Outputs", "Output", outputs),
+        ("Derivatives", "ContinuousStateDerivative", derivatives),
+        ("InitialUnknowns", "InitialUnknown", unknown),
+    ]
 
 
 def _structure2(root: Tree.Element, found: Sequence[Variable]) -> None:

@@ -68,27 +68,73 @@ def _variables(material: Material) -> Iterator[Variable]:
     initial = "approx" if record.nc else "exact"
     yield Variable(0, "time", "independent", "continuous", unit="s")
     for i, name in enumerate(record.q_names):
-        yield Variable(at_q + i, f"q.{quoted(name)}", "output", "continuous", initial, material.q_start[i],
-                       units.get(name, ""), depends=(at_q + i,))  # fmt: skip
+        yield Variable(
+            at_q + i,
+            f"q.{quoted(name)}",
+            "output",
+            "continuous",
+            initial,
+            material.q_start[i],
+            units.get(name, ""),
+            depends=(at_q + i,),
+        )
     for i, name in enumerate(record.v_names):
-        yield Variable(at_v + i, f"v.{quoted(name)}", "output", "continuous", initial, material.v_start[i],
-                       _per(units.get(name, ""), "s"), depends=(at_v + i,))  # fmt: skip
+        yield Variable(
+            at_v + i,
+            f"v.{quoted(name)}",
+            "output",
+            "continuous",
+            initial,
+            material.v_start[i],
+            _per(units.get(name, ""), "s"),
+            depends=(at_v + i,),
+        )
     rates = _rate_dependencies(material, at_q, at_v)
     for i, name in enumerate(record.q_names):
-        yield Variable(at_v + nv + i, f"der(q.{quoted(name)})", "local", "continuous", "calculated",
-                       unit=_per(units.get(name, ""), "s"), derivative=at_q + i, depends=rates[i])  # fmt: skip
+        yield Variable(
+            at_v + nv + i,
+            f"der(q.{quoted(name)})",
+            "local",
+            "continuous",
+            "calculated",
+            unit=_per(units.get(name, ""), "s"),
+            derivative=at_q + i,
+            depends=rates[i],
+        )
     for i, name in enumerate(record.v_names):
-        yield Variable(at_v + nv + nq + i, f"der(v.{quoted(name)})", "local", "continuous", "calculated",
-                       unit=_per(units.get(name, ""), "s2"), derivative=at_v + i)  # fmt: skip
+        yield Variable(
+            at_v + nv + nq + i,
+            f"der(v.{quoted(name)})",
+            "local",
+            "continuous",
+            "calculated",
+            unit=_per(units.get(name, ""), "s2"),
+            derivative=at_v + i,
+        )
     for i, name in enumerate(record.u_names):
-        yield Variable(at_u + i, f"u.{quoted(name)}", "input", "continuous", "", record.u_default[i],
-                       _effort(units.get(name, "")) if i < nu - record.driven else "")  # fmt: skip
+        yield Variable(
+            at_u + i,
+            f"u.{quoted(name)}",
+            "input",
+            "continuous",
+            "",
+            record.u_default[i],
+            _effort(units.get(name, "")) if i < nu - record.driven else "",
+        )
     reference = at_u + nu
     stated = {parameter.name: parameter for parameter in material.system.parameters}
     for i, name in enumerate(record.par_names):
         unit, about = (stated[name].unit, stated[name].description) if name in stated else ("", "")
-        yield Variable(reference + i, f"par.{quoted(name)}", "parameter", "tunable", "exact", record.par_default[i],
-                       unit, about=about)  # fmt: skip
+        yield Variable(
+            reference + i,
+            f"par.{quoted(name)}",
+            "parameter",
+            "tunable",
+            "exact",
+            record.par_default[i],
+            unit,
+            about=about,
+        )
     reference += len(record.par_names)
     for i, name in enumerate(record.constraint_names):
         yield Variable(reference + i, f"lam.{quoted(name)}", "local", "continuous", "calculated")
@@ -99,8 +145,15 @@ def _variables(material: Material) -> Iterator[Variable]:
     prescribed = tuple(range(at_u + nu - record.driven, at_u + nu))
     for frame in material.outputs:
         for i, axis in enumerate("xyz"):
-            yield Variable(reference + i, f"p.{quoted(frame)}.{axis}", "output", "continuous", "calculated", unit="m",
-                           depends=_moved_by(material, frame, i, at_q) + prescribed)  # fmt: skip
+            yield Variable(
+                reference + i,
+                f"p.{quoted(frame)}.{axis}",
+                "output",
+                "continuous",
+                "calculated",
+                unit="m",
+                depends=_moved_by(material, frame, i, at_q) + prescribed,
+            )
         reference += 3
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from symofros.codegen.names import c_string
 from symofros.description.beam import Beam
 from symofros.exports.c_package import model_files
-from symofros.exports.c_text import comment, hand_written
+from symofros.exports.c_text import comment
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
 from symofros.exports.unity import unity
+from symofros.generator.codegen.names import c_string
+from symofros.native import native_text
 
 _HELP = """{name}  {title}: {nq} coordinates, {nv} speeds, {nu} inputs, {npar} parameters, {nc} constraints.
 
@@ -51,9 +52,14 @@ def write_mex(material: Material, folder: Path) -> Exported:
     """
     name, record = material.c_name, material.record
     text = _HELP.format(
-        name=name, title=comment(record.name), nq=len(record.q_names), nv=len(record.v_names), nu=len(record.u_names),
-        npar=len(record.par_names), nc=record.nc,
-    )  # fmt: skip
+        name=name,
+        title=comment(record.name),
+        nq=len(record.q_names),
+        nv=len(record.v_names),
+        nu=len(record.u_names),
+        npar=len(record.par_names),
+        nc=record.nc,
+    )
     shown = "\n".join(f"    {c_string(line)} {c_string(chr(10))}" for line in text.splitlines())
     beams = [body for body in material.system.bodies if isinstance(body, Beam) and body.modes]
     rows = [
@@ -61,9 +67,11 @@ def write_mex(material: Material, folder: Path) -> Exported:
     ]
     listed = ",\n".join(rows) or "    {NULL, 0, 0}"
     glue = unity(
-        name, f"{comment(record.name)} as a function of Matlab or Octave, by {material.generator}.",
+        name,
+        f"{comment(record.name)} as a function of Matlab or Octave, by {material.generator}.",
         [
-            f"#define SYM_MEX_PLANT {name}_plant", f"#define SYM_MEX_NAME {c_string(name)}",
+            f"#define SYM_MEX_PLANT {name}_plant",
+            f"#define SYM_MEX_NAME {c_string(name)}",
             f"#define SYM_MEX_BEAMS {len(beams)}",
             "static const struct {\n    const char *name;\n    int32_t first, count;\n} "
             f"sym_mex_beams[] = {{\n{listed}\n}};",
@@ -72,15 +80,20 @@ def write_mex(material: Material, folder: Path) -> Exported:
         [
             "#if defined(__GNUC__) && !defined(_WIN32)",
             '#define SYM_MEX_EXPORT __attribute__((visibility("default")))',
-            "#else", "#define SYM_MEX_EXPORT", "#endif", '#include "symofros_mex.c"',
+            "#else",
+            "#define SYM_MEX_EXPORT",
+            "#endif",
+            '#include "symofros_mex.c"',
         ],
         ['"mex.h"'],
-    )  # fmt: skip
+    )
     commented = "".join(f"% {line}".rstrip() + "\n" for line in text.splitlines())
     files = {
-        f"{name}_mex.c": glue, "symofros_mex.c": hand_written("symofros_mex.c"),
-        f"build_{name}.m": _BUILD.format(name=name), f"{name}.m": commented + _UNBUILT.format(name=name),
-    }  # fmt: skip
+        f"{name}_mex.c": glue,
+        "symofros_mex.c": native_text("exports/symofros_mex.c"),
+        f"build_{name}.m": _BUILD.format(name=name),
+        f"{name}.m": commented + _UNBUILT.format(name=name),
+    }
     return write_folder(folder, "mex", name, files | model_files(material), material.generator, material.notes)
 
 

@@ -7,13 +7,13 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
-from symofros.codegen.names import identifier
 from symofros.description.constraints import Closure
 from symofros.description.forces import Anchor, Damper, Spring
 from symofros.description.system import Joint, System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.rigid import Array, RigidLink, numbers_text, rigid_links
-from symofros.topology.numbers import Numbers
+from symofros.generator.codegen.names import identifier
+from symofros.mechanics.topology.numbers import Numbers
 
 # Of a moment of inertia, of the largest one or of 1 kg m^2; MuJoCo's own bound is 1e-14.
 _LEAST = 1e-12
@@ -36,8 +36,9 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
     thin = [link.name for link in links if link.mass and _positive(link.inertia) is not link.inertia]
     odd = [link.name for link in links if link.mass and _impossible(_positive(link.inertia))]
     if odd:
-        notes.append("MuJoCo refuses inertias that no body can have (its option balanceinertia changes them): "
-                     + ", ".join(odd))  # fmt: skip
+        notes.append(
+            "MuJoCo refuses inertias that no body can have (its option balanceinertia changes them): " + ", ".join(odd)
+        )
     if thin:
         notes.append(f"moments of inertia near zero raised to {_LEAST:g}: " + ", ".join(thin))
     for link in _parents_first(links[1:], links[0].name):
@@ -85,12 +86,14 @@ def _pose(position: Array, rotation: Array) -> dict[str, str]:
 
 def _quaternion(R: Array) -> Array:
     """Scalar first; by the largest of its entries, which loses no digits."""
-    K = np.array([
-        [R[0, 0] - R[1, 1] - R[2, 2], R[0, 1] + R[1, 0], R[0, 2] + R[2, 0], R[2, 1] - R[1, 2]],
-        [0.0, R[1, 1] - R[0, 0] - R[2, 2], R[1, 2] + R[2, 1], R[0, 2] - R[2, 0]],
-        [0.0, 0.0, R[2, 2] - R[0, 0] - R[1, 1], R[1, 0] - R[0, 1]],
-        [0.0, 0.0, 0.0, R[0, 0] + R[1, 1] + R[2, 2]],
-    ])  # fmt: skip
+    K = np.array(
+        [
+            [R[0, 0] - R[1, 1] - R[2, 2], R[0, 1] + R[1, 0], R[0, 2] + R[2, 0], R[2, 1] - R[1, 2]],
+            [0.0, R[1, 1] - R[0, 0] - R[2, 2], R[1, 2] + R[2, 1], R[0, 2] - R[2, 0]],
+            [0.0, 0.0, R[2, 2] - R[0, 0] - R[1, 1], R[1, 0] - R[0, 1]],
+            [0.0, 0.0, 0.0, R[0, 0] + R[1, 1] + R[2, 2]],
+        ]
+    )
     outer = K + K.T - np.diag(np.diag(K)) + np.eye(4)  # 4 q q^T, of q = (x, y, z, w).
     largest = int(np.argmax(np.diag(outer)))
     x, y, z, w = outer[largest] / np.linalg.norm(outer[largest])
@@ -108,8 +111,11 @@ def _body(into: Tree.Element, link: RigidLink, numbers: Numbers) -> Tree.Element
     if link.mass != 0.0 or link.inertia.any():
         inertia = _positive(link.inertia)
         moments = [*np.diag(inertia), inertia[0, 1], inertia[0, 2], inertia[1, 2]]
-        Tree.SubElement(body, "inertial", {"pos": numbers_text(link.center), "mass": numbers_text(link.mass),
-                                           "fullinertia": numbers_text(moments)})  # fmt: skip
+        Tree.SubElement(
+            body,
+            "inertial",
+            {"pos": numbers_text(link.center), "mass": numbers_text(link.mass), "fullinertia": numbers_text(moments)},
+        )
     if link.joint.kind in ("free", "ball"):
         Tree.SubElement(body, "joint", {"name": link.joint.name, "type": link.joint.kind})
     for i, axis in enumerate(link.axes):

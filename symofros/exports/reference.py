@@ -57,6 +57,11 @@ def _point(record: ModelRecord, rng: np.random.Generator) -> dict[str, Array]:
     efforts = len(u) - record.driven
     u[:efforts] = rng.standard_normal(efforts)
     return {
-        "q": q, "v": v, "a": rng.standard_normal(nv), "u": u, "lam": rng.standard_normal(nc),
-        "gains": rng.uniform(0.0, 5.0, 2 * nc), "t": np.array([0.25]),
-    }  # fmt: skip
+        "q": q,
+        "v": v,
+        "a": rng.standard_normal(nv),
+        "u": u,
+        "lam": rng.standard_normal(nc),
+        "gains": rng.uniform(0.0, 5.0, 2 * nc),
+        "t": np.array([0.25]),
+    }

@@ -12,8 +12,8 @@ from symofros.description.beam import STATION, Beam
 from symofros.description.forces import Damper
 from symofros.description.system import WORLD, Body, Inertia, Joint, RigidBody, System
 from symofros.errors import ExportError, Problem
-from symofros.topology.coordinates import coordinate_names
-from symofros.topology.numbers import Numbers, skew
+from symofros.mechanics.topology.coordinates import coordinate_names
+from symofros.mechanics.topology.numbers import Numbers, skew
 
 Array = npt.NDArray[np.float64]
 
@@ -82,9 +82,16 @@ def rigid_links(system: System, kinds: tuple[str, ...], form: str) -> tuple[list
     beyond = [body.joint for body in system.bodies if body.joint is not None and _beyond(body.joint, kinds)]
     if beyond:
         listed = ", ".join(f"'{joint.name}' ({'prescribed' if joint.prescribed else joint.kind})" for joint in beyond)
-        raise ExportError(str(Problem(f"system '{system.name}': joints that {form} can't hold", listed,
-                                      "a file without formulas holds turns and slides, and joints made of them",
-                                      "export the model as an FMU, or replace these joints")))  # fmt: skip
+        raise ExportError(
+            str(
+                Problem(
+                    f"system '{system.name}': joints that {form} can't hold",
+                    listed,
+                    "a file without formulas holds turns and slides, and joints made of them",
+                    "export the model as an FMU, or replace these joints",
+                )
+            )
+        )
     names = {body.name for body in system.bodies}
     base = {body.name for body in system.bodies if body.joint is None} | {WORLD}
     found = []
@@ -117,8 +124,9 @@ def _link(body: Body, parent: str | None, system: System, numbers: Numbers, name
         names.add(frame.name)
     axes = () if body.joint is None else _axes(body.joint, numbers)
     damping = () if body.joint is None else _damping(body.joint, max(1, len(axes)), numbers)
-    return RigidLink(body.name, parent, body.joint, axes, position, rotation, mass, center, inertia, tuple(frames),
-                     damping)  # fmt: skip
+    return RigidLink(
+        body.name, parent, body.joint, axes, position, rotation, mass, center, inertia, tuple(frames), damping
+    )
 
 
 def _placed(joint: Joint, system: System, numbers: Numbers) -> tuple[Array, Array]:
@@ -142,10 +150,13 @@ def _axes(joint: Joint, numbers: Numbers) -> tuple[Axis, ...]:
 
     first, second, e = numbers.values(joint.axis), numbers.values(joint.axis2), np.eye(3)
     stated = {
-        "revolute": [(True, first)], "continuous": [(True, first)], "prismatic": [(False, first)],
-        "cylindrical": [(True, first), (False, first)], "universal": [(True, first), (True, second)],
+        "revolute": [(True, first)],
+        "continuous": [(True, first)],
+        "prismatic": [(False, first)],
+        "cylindrical": [(True, first), (False, first)],
+        "universal": [(True, first), (True, second)],
         "planar": [(False, e[0]), (False, e[1]), (True, e[2])],
-    }.get(joint.kind, [])  # fmt: skip
+    }.get(joint.kind, [])
     if len(stated) == 1:
         return (axis(joint.name, *stated[0]),)
     return tuple(axis(name, *item) for name, item in zip(coordinate_names(joint), stated, strict=False))

@@ -8,11 +8,11 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
-from symofros.codegen.names import identifier
 from symofros.description.forces import Damper
 from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.rigid import Array, Axis, RigidLink, numbers_text, rigid_links
+from symofros.generator.codegen.names import identifier
 
 # URDF wants limits of slides; these bind nothing.
 _FAR = 1e9
@@ -72,8 +72,12 @@ def _link(root: Tree.Element, link: RigidLink) -> None:
         inertial = Tree.SubElement(into, "inertial")
         _origin(inertial, link.center, np.eye(3))
         Tree.SubElement(inertial, "mass", {"value": numbers_text(link.mass)})
-        moments = {f"i{a}{b}": numbers_text(link.inertia[i, j]) for i, a in enumerate("xyz") for j, b in
-                   enumerate("xyz") if i <= j}  # fmt: skip
+        moments = {
+            f"i{a}{b}": numbers_text(link.inertia[i, j])
+            for i, a in enumerate("xyz")
+            for j, b in enumerate("xyz")
+            if i <= j
+        }
         Tree.SubElement(inertial, "inertia", moments)
     for name, position, rotation in link.frames:
         Tree.SubElement(root, "link", {"name": name})
@@ -107,9 +111,15 @@ def _joints(root: Tree.Element, link: RigidLink) -> None:
 
 
 def _single(
-    root: Tree.Element, link: RigidLink, axis: Axis, index: int, parent: str, child: str, position: Array,
+    root: Tree.Element,
+    link: RigidLink,
+    axis: Axis,
+    index: int,
+    parent: str,
+    child: str,
+    position: Array,
     rotation: Array,
-) -> None:  # fmt: skip
+) -> None:
     assert link.joint is not None
     limits = link.joint.limits if len(link.axes) == 1 else None
     bounded = limits is not None and limits.lower is not None and limits.upper is not None
@@ -121,7 +131,15 @@ def _single(
         effort = _FAR if limits is None or limits.effort is None else limits.effort
         speed = _FAR if limits is None or limits.velocity is None else limits.velocity
         assert lower is not None and upper is not None
-        Tree.SubElement(into, "limit", {"lower": numbers_text(lower), "upper": numbers_text(upper),
-                                        "effort": numbers_text(effort), "velocity": numbers_text(speed)})  # fmt: skip
+        Tree.SubElement(
+            into,
+            "limit",
+            {
+                "lower": numbers_text(lower),
+                "upper": numbers_text(upper),
+                "effort": numbers_text(effort),
+                "velocity": numbers_text(speed),
+            },
+        )
     if link.damping[index] != 0.0:
         Tree.SubElement(into, "dynamics", {"damping": numbers_text(link.damping[index])})

@@ -29,9 +29,11 @@ def directional(graph: Graph, edges: Sequence[Edge], seeds: Mapping[Edge, Edge])
 
 
 def along(
-    graph: Graph, edges: Sequence[Edge], directions: Sequence[Mapping[Edge, Edge]],
+    graph: Graph,
+    edges: Sequence[Edge],
+    directions: Sequence[Mapping[Edge, Edge]],
     groups: Sequence[Sequence[int]] | None = None,
-) -> list[list[Edge]]:  # fmt: skip
+) -> list[list[Edge]]:
     """The derivatives of some edges along several directions.
 
     Args:

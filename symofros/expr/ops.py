@@ -154,17 +154,40 @@ OPS: dict[str, Op] = {
         Op("sqrt", 1, _sqrt, "sqrt({0})", lambda g, x, y, i: g.div(g.constant(0.5), y), "div"),
         Op("exp", 1, _libm(math.exp), "exp({0})", lambda g, x, y, i: y),
         Op("log", 1, _libm(_log), "log({0})", lambda g, x, y, i: g.div(1, x[0])),
-        Op("sin", 1, _polynomial(math.sin, trigonometry.sine), "sin({0})",
-           lambda g, x, y, i: g.call("cos", x[0]), parity="odd"),
-        Op("cos", 1, _polynomial(math.cos, trigonometry.cosine), "cos({0})",
-           lambda g, x, y, i: -g.call("sin", x[0]), parity="even"),
+        Op(
+            "sin",
+            1,
+            _polynomial(math.sin, trigonometry.sine),
+            "sin({0})",
+            lambda g, x, y, i: g.call("cos", x[0]),
+            parity="odd",
+        ),
+        Op(
+            "cos",
+            1,
+            _polynomial(math.cos, trigonometry.cosine),
+            "cos({0})",
+            lambda g, x, y, i: -g.call("sin", x[0]),
+            parity="even",
+        ),
         Op("tan", 1, _libm(math.tan), "tan({0})", lambda g, x, y, i: g.add(1, g.mul(y, y)), parity="odd"),
-        Op("asin", 1, _libm(math.asin), "asin({0})",
-           lambda g, x, y, i: g.div(1, g.sqrt(_one_minus_square(g, x[0]))), parity="odd"),
-        Op("acos", 1, _libm(math.acos), "acos({0})",
-           lambda g, x, y, i: -g.div(1, g.sqrt(_one_minus_square(g, x[0])))),
-        Op("atan", 1, _libm(math.atan), "atan({0})",
-           lambda g, x, y, i: g.div(1, g.add(1, g.mul(x[0], x[0]))), parity="odd"),
+        Op(
+            "asin",
+            1,
+            _libm(math.asin),
+            "asin({0})",
+            lambda g, x, y, i: g.div(1, g.sqrt(_one_minus_square(g, x[0]))),
+            parity="odd",
+        ),
+        Op("acos", 1, _libm(math.acos), "acos({0})", lambda g, x, y, i: -g.div(1, g.sqrt(_one_minus_square(g, x[0])))),
+        Op(
+            "atan",
+            1,
+            _libm(math.atan),
+            "atan({0})",
+            lambda g, x, y, i: g.div(1, g.add(1, g.mul(x[0], x[0]))),
+            parity="odd",
+        ),
         Op("atan2", 2, _libm(math.atan2), "atan2({0}, {1})", _d_atan2),
         Op("sinh", 1, _libm(_sinh), "sinh({0})", lambda g, x, y, i: g.call("cosh", x[0]), parity="odd"),
         Op("cosh", 1, _libm(math.cosh), "cosh({0})", lambda g, x, y, i: g.call("sinh", x[0]), parity="even"),
@@ -179,6 +202,6 @@ OPS: dict[str, Op] = {
         # Its operand, as a constant for derivatives.
         Op(HELD, 1, np.positive, "{0}", lambda g, x, y, i: 0, "none", parity="odd", is_function=False),
     )
-}  # fmt: skip
+}
 
 FUNCTIONS: dict[str, Op] = {name: op for name, op in OPS.items() if op.is_function}

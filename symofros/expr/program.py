@@ -27,7 +27,7 @@ class Solver:
     """What finishes a function that its outputs only begin.
 
     Attributes:
-        routine: The hand-written routine: codegen/templates/ROUTINE.c.in, and its twin in runtime/.
+        routine: The hand-written routine: native/model/ROUTINE.c.in, and its twin in runtime/.
         returns: (name, shape) of what it makes of the outputs.
         parts: Further functions that the routine calls.
     """

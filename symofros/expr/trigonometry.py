@@ -1,4 +1,4 @@
-"""Sine and cosine by polynomials: the NumPy twin of codegen/templates/sincos.c.in, and the numbers of both.
+"""Sine and cosine by polynomials: the NumPy twin of native/model/sincos.c.in, and the numbers of both.
 
 x = n pi/2 + r, |r| <= pi/4, pi/2 as a sum of three parts: products of n with the first two are exact, so that r and
 what is left beyond its last digit are right even where x is next to a multiple of pi/2. Then polynomials in r^2. Every
@@ -23,14 +23,32 @@ ROUNDER = 6755399441055744.0  # 1.5 * 2^52
 HALF_PI = tuple(map(float.fromhex, ("0x1.921fb5444p+0", "0x1.68c234c4cp-39", "0x1.98a2e03707345p-77")))
 # Minimax fits on |r| <= pi/4 (Remez in 60 digits): (sin r - r)/r^3 to 2^-58 of sin r / r,
 # (cos r - 1 + r^2/2)/r^4 to 2^-64 of cos r.
-SINE = tuple(map(float.fromhex, (
-    "-0x1.5555555555549p-3", "0x1.111111110f87fp-7", "-0x1.a01a019c12422p-13",
-    "0x1.71de35784f52fp-19", "-0x1.ae5e66b6b8f45p-26", "0x1.5d93263960a76p-33",
-)))  # fmt: skip
-COSINE = tuple(map(float.fromhex, (
-    "0x1.555555555554cp-5", "-0x1.6c16c16c15183p-10", "0x1.a01a019cb24c3p-16",
-    "-0x1.27e4f80a5c2cep-22", "0x1.1ee9ec3537108p-29", "-0x1.8faec545de228p-37",
-)))  # fmt: skip
+SINE = tuple(
+    map(
+        float.fromhex,
+        (
+            "-0x1.5555555555549p-3",
+            "0x1.111111110f87fp-7",
+            "-0x1.a01a019c12422p-13",
+            "0x1.71de35784f52fp-19",
+            "-0x1.ae5e66b6b8f45p-26",
+            "0x1.5d93263960a76p-33",
+        ),
+    )
+)
+COSINE = tuple(
+    map(
+        float.fromhex,
+        (
+            "0x1.555555555554cp-5",
+            "-0x1.6c16c16c15183p-10",
+            "0x1.a01a019cb24c3p-16",
+            "-0x1.27e4f80a5c2cep-22",
+            "0x1.1ee9ec3537108p-29",
+            "-0x1.8faec545de228p-37",
+        ),
+    )
+)
 # Of floats, fitted likewise: to 2^-27.9 of sin r / r, to 2^-33 of cos r.
 SINE_SINGLE = tuple(map(float.fromhex, ("-0x1.555546p-3", "0x1.11073ap-7", "-0x1.994388p-13")))
 COSINE_SINGLE = tuple(map(float.fromhex, ("0x1.55554ap-5", "-0x1.6c0c32p-10", "0x1.99eb4ap-16")))

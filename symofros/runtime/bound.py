@@ -67,8 +67,9 @@ def bind(kernel: Kernel, par: Array, given: Mapping[str, Array], defaults: Mappi
         raise _misfit(signature, "par", f"{par.ndim} dimensions", f"parameters of one state, of shape {par.shape[-1:]}")
     for name, array in given.items():
         if not (isinstance(array, np.ndarray) and array.shape == shapes[name] and _plain(array)):
-            raise _misfit(signature, name, _seen(array),
-                          f"a writeable C-contiguous float64 array of shape {shapes[name]}")  # fmt: skip
+            raise _misfit(
+                signature, name, _seen(array), f"a writeable C-contiguous float64 array of shape {shapes[name]}"
+            )
     arrays = {name: given.get(name, np.zeros(shape)) for name, shape in shapes.items()}
     _fill(arrays, given, defaults)
     pre = kernel.prepare(par[None])
@@ -77,9 +78,14 @@ def bind(kernel: Kernel, par: Array, given: Mapping[str, Array], defaults: Mappi
 
 
 def bind_batch(
-    kernel: Kernel, n: int, layout: Layout, par: Array, given: Mapping[str, Array], defaults: Mapping[str, Array],
+    kernel: Kernel,
+    n: int,
+    layout: Layout,
+    par: Array,
+    given: Mapping[str, Array],
+    defaults: Mapping[str, Array],
     threads: int,
-) -> Bound:  # fmt: skip
+) -> Bound:
     """A function of a model with its memory, for n states: the results of the plain call, bit for bit.
 
     Args:
@@ -101,15 +107,20 @@ def bind_batch(
         raise _misfit(signature, "layout", repr(layout)[:80], "'rows' or 'columns'", "leave it out for rows")
     shapes = _shapes(signature, given)
     if par.ndim != 1 and par.shape != (n, par.shape[-1]):
-        raise _misfit(signature, "par", f"shape {par.shape}",
-                      f"shape {par.shape[-1:]}, or {(n, par.shape[-1])}: of each state")  # fmt: skip
+        raise _misfit(
+            signature, "par", f"shape {par.shape}", f"shape {par.shape[-1:]}, or {(n, par.shape[-1])}: of each state"
+        )
     shared = {group for group, _ in signature.inputs}
     for name, array in given.items():
         if not _fits(array, n, shapes[name], name in shared):
             also = f", or {shapes[name]} for all states" if name in shared else ""
-            raise _misfit(signature, name, _seen(array),
-                          f"a writeable float64 array of shape {(n, *shapes[name])}{also}, by rows or by columns",
-                          "bind np.zeros(shape), or leave it out, and write into it")  # fmt: skip
+            raise _misfit(
+                signature,
+                name,
+                _seen(array),
+                f"a writeable float64 array of shape {(n, *shapes[name])}{also}, by rows or by columns",
+                "bind np.zeros(shape), or leave it out, and write into it",
+            )
     arrays = {name: given[name] if name in given else _room(n, shape, layout) for name, shape in shapes.items()}
     _fill(arrays, given, defaults)
     pre = kernel.prepare(np.atleast_2d(par))
@@ -138,8 +149,16 @@ def _shapes(signature: Signature, given: Mapping[str, Array]) -> dict[str, tuple
     for name in given:
         if name not in shapes:
             what = f"{signature.name}: neither input nor output '{name}'"
-            raise UnknownNameError(str(Problem(what, ", ".join(shapes), "arrays are bound by these names",
-                                               did_you_mean(name, shapes) or "leave it out")))  # fmt: skip
+            raise UnknownNameError(
+                str(
+                    Problem(
+                        what,
+                        ", ".join(shapes),
+                        "arrays are bound by these names",
+                        did_you_mean(name, shapes) or "leave it out",
+                    )
+                )
+            )
     return shapes
 
 
@@ -158,8 +177,13 @@ def _count(signature: Signature, n: object) -> int:
     except TypeError:
         count = 0
     if count < 1 or isinstance(n, bool):
-        raise _misfit(signature, "n", repr(n)[:80], "a number of states, a whole one from 1 on",
-                      "leave n out for one state without a batch dimension")  # fmt: skip
+        raise _misfit(
+            signature,
+            "n",
+            repr(n)[:80],
+            "a number of states, a whole one from 1 on",
+            "leave n out for one state without a batch dimension",
+        )
     return count
 
 

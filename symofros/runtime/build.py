@@ -38,9 +38,14 @@ def cache_folder() -> Path:
 
 
 def recall_library(
-    recipe: str, source: Callable[[], str], header: str, toolchain: Toolchain, flags: Sequence[str] | None = None,
-    dispatch: str = "", symbol: str = "",
-) -> Path:  # fmt: skip
+    recipe: str,
+    source: Callable[[], str],
+    header: str,
+    toolchain: Toolchain,
+    flags: Sequence[str] | None = None,
+    dispatch: str = "",
+    symbol: str = "",
+) -> Path:
     """The library of what a recipe states; its C text is only asked for where no library is known.
 
     Args:
@@ -82,9 +87,13 @@ def _chosen(flags: Sequence[str] | None, dispatch: str) -> tuple[str, ...]:
 
 
 def build_library(
-    source: str, header: str, toolchain: Toolchain, flags: Sequence[str] | None = None, dispatch: str = "",
+    source: str,
+    header: str,
+    toolchain: Toolchain,
+    flags: Sequence[str] | None = None,
+    dispatch: str = "",
     symbol: str = "",
-) -> Path:  # fmt: skip
+) -> Path:
     """The shared library of a C file, compiled unless it is in the cache.
 
     Args:

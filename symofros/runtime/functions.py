@@ -78,9 +78,13 @@ class Functions:
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
         self._prepared: dict[Key, Array] = {}
         self.names = Names(
-            record.q_names, record.v_names, record.u_names, record.par_names, record.frame_names,
+            record.q_names,
+            record.v_names,
+            record.u_names,
+            record.par_names,
+            record.frame_names,
             record.constraint_names,
-        )  # fmt: skip
+        )
 
     def __repr__(self) -> str:
         """Name and sizes."""
@@ -126,8 +130,12 @@ class Functions:
         par = self._par.copy()
         for name, value in values.items():
             if name not in self.record.par_names:
-                raise self._unknown("run-time parameter", name, self.record.par_names,
-                                    "constants are hard-coded: change them in the description")  # fmt: skip
+                raise self._unknown(
+                    "run-time parameter",
+                    name,
+                    self.record.par_names,
+                    "constants are hard-coded: change them in the description",
+                )
             par[self.record.par_names.index(name)] = self._finite(name, value)
         return self._like(par=par)
 
@@ -143,9 +151,16 @@ class Functions:
             ValueError: Not a whole number above 0.
         """
         if not isinstance(threads, int) or threads < 1:
-            raise ValueError(str(Problem(f"model '{self.record.name}': not a number of threads", repr(threads)[:80],
-                                         "threads is a whole number, 1 or more", "os.cpu_count() at most pays"
-                                         )))  # fmt: skip
+            raise ValueError(
+                str(
+                    Problem(
+                        f"model '{self.record.name}': not a number of threads",
+                        repr(threads)[:80],
+                        "threads is a whole number, 1 or more",
+                        "os.cpu_count() at most pays",
+                    )
+                )
+            )
         return self._like(threads=threads)
 
     @property
@@ -168,17 +183,29 @@ class Functions:
             ValueError: Neither of them.
         """
         if precision not in ("double", "single"):
-            raise ValueError(str(Problem(f"model '{self.record.name}': no such precision", repr(precision)[:80],
-                                         "precision is 'double' or 'single'", "numpy.float32 is 'single'"
-                                         )))  # fmt: skip
+            raise ValueError(
+                str(
+                    Problem(
+                        f"model '{self.record.name}': no such precision",
+                        repr(precision)[:80],
+                        "precision is 'double' or 'single'",
+                        "numpy.float32 is 'single'",
+                    )
+                )
+            )
         return self if precision == self._precision else self._like(precision=precision)
 
     def _like(self, par: Array | None = None, threads: int | None = None, precision: Precision | None = None) -> Self:
         """The same but for what is given."""
         other = type(self)(
-            self.record, self._build, (), self._par if par is None else par, self._build_formulas,
-            threads or self._threads, precision or self._precision,
-        )  # fmt: skip
+            self.record,
+            self._build,
+            (),
+            self._par if par is None else par,
+            self._build_formulas,
+            threads or self._threads,
+            precision or self._precision,
+        )
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
 
@@ -238,8 +265,16 @@ class Functions:
             number = np.nan
         if not np.isfinite(number):
             what = f"model '{self.record.name}': parameter '{name}' is not a finite number"
-            raise ValueError(str(Problem(what, repr(value)[:80], "a parameter is one finite number",
-                                         "pass par=… to a function for values that vary by state")))  # fmt: skip
+            raise ValueError(
+                str(
+                    Problem(
+                        what,
+                        repr(value)[:80],
+                        "a parameter is one finite number",
+                        "pass par=… to a function for values that vary by state",
+                    )
+                )
+            )
         return number
 
     def _one(self, name: str, given: Mapping[str, Given | None], par: Given | None, frame: str = "") -> Numbers:

@@ -52,9 +52,13 @@ class CompiledUnit:
     """
 
     def __init__(
-        self, path: Path, symbol: str, header: str, expected_hash: str,
+        self,
+        path: Path,
+        symbol: str,
+        header: str,
+        expected_hash: str,
         in_lanes: Callable[[tuple[str, str], Lanes], CompiledKernel | None] | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.in_lanes = in_lanes
         self.ffi = _interface(header)
         self.nowhere = self.ffi.cast("char *", 0)
@@ -193,10 +197,12 @@ class CompiledKernel:
 
         def part(first: int, end: int) -> None:
             self._function.batch(
-                end - first, ffi.new("double *[]", [x + first * by for x, by in zip(rows_in, strides, strict=True)]),
-                stride, ffi.new("double *[]", [y + first * by for y, by in zip(rows_out, steps, strict=True)]),
+                end - first,
+                ffi.new("double *[]", [x + first * by for x, by in zip(rows_in, strides, strict=True)]),
+                stride,
+                ffi.new("double *[]", [y + first * by for y, by in zip(rows_out, steps, strict=True)]),
                 self._own_work(),
-            )  # fmt: skip
+            )
 
         share(n, threads, part)
         return outputs

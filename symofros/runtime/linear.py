@@ -79,11 +79,16 @@ def linearize(
 
 def _unknown(output: Output) -> UnknownNameError:
     known = (*_PLAIN, *_OF_FRAMES)
-    return UnknownNameError(str(Problem(
-        "linearize: no such output", repr(output)[:80],
-        "an output is q, v, a, lam, or (frame_pose, frame_velocity or frame_acceleration, frame)",
-        did_you_mean(str(output if isinstance(output, str) else output[0]), known) or "name one of these",
-    )))  # fmt: skip
+    return UnknownNameError(
+        str(
+            Problem(
+                "linearize: no such output",
+                repr(output)[:80],
+                "an output is q, v, a, lam, or (frame_pose, frame_velocity or frame_acceleration, frame)",
+                did_you_mean(str(output if isinstance(output, str) else output[0]), known) or "name one of these",
+            )
+        )
+    )
 
 
 def _of_frame(model: Model, output: tuple[str, str], state: State, a_rows: Array, par: Given | None, t: Given) -> Array:

@@ -52,9 +52,15 @@ class Model(Functions):
     # Calls without checks.
 
     def bind(
-        self, name: str, frame: str = "", *, n: int | None = None, layout: Layout = "rows", par: Given | None = None,
+        self,
+        name: str,
+        frame: str = "",
+        *,
+        n: int | None = None,
+        layout: Layout = "rows",
+        par: Given | None = None,
         **arrays: Array,
-    ) -> Bound:  # fmt: skip
+    ) -> Bound:
         """A function bound to fixed memory: a call takes a fraction of a microsecond more than its C.
 
         `M = model.bind("mass_matrix")`, then write into `M.inputs["q"]`, call `M()`, read `M.outputs["M"]`.
@@ -318,8 +324,12 @@ class Model(Functions):
         The force on the second frame of a rod points to the first where the rod pulls: its size is the tension.
         """
         if name not in self.record.wrench_names:
-            raise self._unknown("constraint with a wrench", name, self.record.wrench_names,
-                                "conditions by formula have a generalized force G^T lam alone")  # fmt: skip
+            raise self._unknown(
+                "constraint with a wrench",
+                name,
+                self.record.wrench_names,
+                "conditions by formula have a generalized force G^T lam alone",
+            )
         found = self._call("closure_wrenches", "", {"q": q, "lam": lam, "u": u, "t": t}, par)
         wrench: Array = found[0 if on == "second" else 1][..., self.record.wrench_names.index(name), :]
         return wrench

@@ -17,16 +17,24 @@ from pathlib import Path
 from symofros.errors import CompileError
 
 # -fno-math-errno lets sqrt and sincos be instructions and single calls; -ffast-math was measured and gains nothing.
-# What can share vectors does so already (codegen/packs.py): the compiler's own search for more costs up to a quarter.
+# Packs (generator/codegen/packs.py) share vectors already: the compiler's own search for more costs up to a quarter.
 DEFAULT_FLAGS = ("-O2", "-march=native", "-fno-math-errno", "-fno-tree-slp-vectorize")
 # Kinds of x86 processors, the best first: name, what it must have, its flags.
 KINDS: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
-    ("avx512", ("avx512f", "avx512dq", "avx512vl", "avx2", "fma"), (
-        "-mavx512f", "-mavx512dq", "-mavx512vl", "-mavx2", "-mfma",
-    )),
+    (
+        "avx512",
+        ("avx512f", "avx512dq", "avx512vl", "avx2", "fma"),
+        (
+            "-mavx512f",
+            "-mavx512dq",
+            "-mavx512vl",
+            "-mavx2",
+            "-mfma",
+        ),
+    ),
     ("avx2", ("avx2", "fma"), ("-mavx2", "-mfma")),
     ("baseline", (), ()),
-)  # fmt: skip
+)
 SHARED_FLAGS = ("-shared", "-fPIC", "-fvisibility=hidden", "-std=gnu99")
 _SHOWN_LINES = 12
 

@@ -89,18 +89,30 @@ def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
     if isinstance(u, Mapping):
         return _by_name(model, u)
     if callable(u):
-        raise SymofrosError(str(Problem(
-            "simulate_batch: inputs by a Python function", repr(u)[:80], "a batch steps in C alone",
-            "give formulas or Signals, or run sf.simulate for each",
-        )))  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    "simulate_batch: inputs by a Python function",
+                    repr(u)[:80],
+                    "a batch steps in C alone",
+                    "give formulas or Signals, or run sf.simulate for each",
+                )
+            )
+        )
     if u is None:
         return GivenInputs(None, {}, {})
     values = np.asarray(u, dtype=np.float64)
     if values.ndim == 0 or values.shape[-1] != model.nu:
-        raise ShapeError(str(Problem(
-            f"model '{model.record.name}': u has the wrong shape", str(values.shape),
-            f"constant inputs have shape (..., {model.nu})", "one row a trajectory, or one for all",
-        )))  # fmt: skip
+        raise ShapeError(
+            str(
+                Problem(
+                    f"model '{model.record.name}': u has the wrong shape",
+                    str(values.shape),
+                    f"constant inputs have shape (..., {model.nu})",
+                    "one row a trajectory, or one for all",
+                )
+            )
+        )
     return GivenInputs(values.reshape(-1, model.nu)[0] if values.size else None, {-1: values}, {})
 
 

@@ -62,9 +62,16 @@ class Ends:
         """Room for n trajectories of so many samples, none of which is reached yet."""
         q, v, u = (np.full((n, samples, size), np.nan) for size in (model.nq, model.nv, model.nu))
         return cls(
-            np.zeros(n, dtype=np.int32), np.zeros(n), np.zeros((n, model.nq)), np.zeros((n, model.nv)),
-            np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64), q, v, u,
-        )  # fmt: skip
+            np.zeros(n, dtype=np.int32),
+            np.zeros(n),
+            np.zeros((n, model.nq)),
+            np.zeros((n, model.nv)),
+            np.zeros(n, dtype=np.int64),
+            np.zeros(n, dtype=np.int64),
+            q,
+            v,
+            u,
+        )
 
 
 class Crew:
@@ -82,9 +89,16 @@ class Crew:
     """
 
     def __init__(
-        self, model: Model, settings: Settings, starts: Starts, ends: Ends, t_end: float, max_steps: int | None,
-        first: int, by: int,
-    ) -> None:  # fmt: skip
+        self,
+        model: Model,
+        settings: Settings,
+        starts: Starts,
+        ends: Ends,
+        t_end: float,
+        max_steps: int | None,
+        first: int,
+        by: int,
+    ) -> None:
         self.single = Stepper(model, settings.method, starts.inputs.plan, (), starts.par[0])
         settings.apply(self.single, starts.t, t_end, 0.0)
         self._native, self._ffi = self.single.native, self.single.ffi
@@ -108,9 +122,21 @@ class Crew:
         crew.whose, crew.status = single.own("int64_t[]", slots), single.own("int32_t[]", slots)
         n, stages = 2 * model.nv, max(1, len(settings.method.tableau.b))
         widths = {
-            "q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "states": model.nq + model.nv, "step": 1, "end": 1,
-            "y1": n, "stage": n, "size": n, "dense": n, "base": n, "length": n, "k": stages * n,
-        }  # fmt: skip
+            "q": model.nq,
+            "v": model.nv,
+            "u": model.nu,
+            "t": 1,
+            "states": model.nq + model.nv,
+            "step": 1,
+            "end": 1,
+            "y1": n,
+            "stage": n,
+            "size": n,
+            "dense": n,
+            "base": n,
+            "length": n,
+            "k": stages * n,
+        }
         for name, width in widths.items():
             setattr(crew, name, single.numbers(np.zeros(slots * width)))
         single.run.y = single.numbers(np.zeros(self._native.sym_work_size(single.run)))
@@ -143,11 +169,20 @@ class Crew:
             into = getattr(crew, name)
             into.at, into.stride = single.shared(rows), rows.shape[1] if len(rows) > 1 else 0
         crew.signal_stride = single.own("int64_t[]", list(starts.inputs.strides) or 1)
-        for name, array in (("last_t", ends.t), ("last_q", ends.q), ("last_v", ends.v), ("record_q", ends.q_samples),
-                            ("record_v", ends.v_samples), ("record_u", ends.u_samples)):  # fmt: skip
+        for name, array in (
+            ("last_t", ends.t),
+            ("last_q", ends.q),
+            ("last_v", ends.v),
+            ("record_q", ends.q_samples),
+            ("record_v", ends.v_samples),
+            ("record_u", ends.u_samples),
+        ):
             setattr(crew, name, single.shared(array))
-        for name, kind, whole in (("ended", "int32_t *", ends.status), ("steps", "int64_t *", ends.steps),
-                                  ("rejected", "int64_t *", ends.rejected)):  # fmt: skip
+        for name, kind, whole in (
+            ("ended", "int32_t *", ends.status),
+            ("steps", "int64_t *", ends.steps),
+            ("rejected", "int64_t *", ends.rejected),
+        ):
             single.keep(whole)
             setattr(crew, name, self._ffi.cast(kind, self._ffi.from_buffer(whole)))
 

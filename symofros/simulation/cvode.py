@@ -34,9 +34,16 @@ def _sundials() -> Any:
     try:
         return {name: import_module(f"fmpy.sundials.{name}") for name in names}
     except (ImportError, OSError, AttributeError) as error:
-        raise SymofrosError(str(Problem("simulation: CVODE is not at hand", str(error), "it comes with FMPy's wheel",
-                                        "pip install 'symofros[cvode]', or use rodas4 or dop853")
-                                )) from None  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    "simulation: CVODE is not at hand",
+                    str(error),
+                    "it comes with FMPy's wheel",
+                    "pip install 'symofros[cvode]', or use rodas4 or dop853",
+                )
+            )
+        ) from None
 
 
 class Cvode:
@@ -119,12 +126,24 @@ class Cvode:
     def advance(self, t: float | None) -> tuple[int, list[int]]:
         """On to a time, or by one step; to the next event at most. Returns a status, and the events met there."""
         reached = ctypes.c_double()
-        step = self._function("CVode", ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p,
-                              ctypes.POINTER(ctypes.c_double), ctypes.c_int)  # fmt: skip
+        step = self._function(
+            "CVode",
+            ctypes.c_int,
+            ctypes.c_void_p,
+            ctypes.c_double,
+            ctypes.c_void_p,
+            ctypes.POINTER(ctypes.c_double),
+            ctypes.c_int,
+        )
         run = self.stepper.run
         mode = _ONE_STEP if t is None else _NORMAL
-        code = step(self._memory, run.t_end if t is None else t, ctypes.cast(self.y, ctypes.c_void_p),
-                    ctypes.byref(reached), mode)  # fmt: skip
+        code = step(
+            self._memory,
+            run.t_end if t is None else t,
+            ctypes.cast(self.y, ctypes.c_void_p),
+            ctypes.byref(reached),
+            mode,
+        )
         if code < 0:
             failed = self.stepper.failure is not None
             return (native.CALLBACK if failed else _STATUS.get(code, native.DIVERGED)), []

@@ -43,25 +43,37 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
     if status == native.CALLBACK:
         return outcome("input failed", f"the input function raised {failure!r}", "call it by itself at this state")
     if status == native.DIVERGED and _immobile(stepper, q):
-        return outcome("singular", "the mass matrix is singular: a speed moves no mass",
-                       "give every speed an inertia; look for a mass that a parameter sets to zero")  # fmt: skip
+        return outcome(
+            "singular",
+            "the mass matrix is singular: a speed moves no mass",
+            "give every speed an inertia; look for a mass that a parameter sets to zero",
+        )
     if status == native.DIVERGED:
         return outcome("diverged", f"a state is no longer finite; {_largest(stepper, q, v)}", _steady(settings))
     if status == native.NO_MOTION:
-        return outcome("singular", "the mass matrix is singular beyond what the constraints bind",
-                       "give every speed an inertia or a constraint")  # fmt: skip
+        return outcome(
+            "singular",
+            "the mass matrix is singular beyond what the constraints bind",
+            "give every speed an inertia or a constraint",
+        )
     if status == native.TINY_STEP:
-        return outcome("step too small", f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below"
-                       f" rounding; {_largest(stepper, q, v)}",
-                       "look for a force that jumps or a singular posture here; loosen rtol")  # fmt: skip
+        return outcome(
+            "step too small",
+            f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below"
+            f" rounding; {_largest(stepper, q, v)}",
+            "look for a force that jumps or a singular posture here; loosen rtol",
+        )
     if status == native.NO_CONVERGENCE:
         return outcome("not converged", "the equations of an implicit step were not solved", "a smaller dt")
     if status == native.OFF:
         phi = stepper.model.constraint(q, u=stepper.inputs_now, par=stepper.par, t=t)
         worst = int(np.argmax(np.abs(phi)))
         name = stepper.model.names.constraints[worst]
-        return outcome("constraints lost", f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it",
-                       "a smaller step; the loop may be stretched to its end")  # fmt: skip
+        return outcome(
+            "constraints lost",
+            f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it",
+            "a smaller step; the loop may be stretched to its end",
+        )
     if status == native.GOING and t < float(run.t_end):
         return outcome("interrupted", f"max_steps: {int(run.steps)} steps are done")
     return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")
@@ -101,15 +113,19 @@ def _notes(stepper: Stepper, states: Sequence[Array]) -> tuple[str, ...]:
     run = stepper.run
     notes = []
     if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
-        notes.append(f"a singular posture was passed at t = {run.t_rank:.6g} s: the constraints' rank fell from"
-                     f" {run.rank_max} to {run.rank_min}")  # fmt: skip
+        notes.append(
+            f"a singular posture was passed at t = {run.t_rank:.6g} s: the constraints' rank fell from"
+            f" {run.rank_max} to {run.rank_min}"
+        )
     elif stepper.model.nc:
         t, q, _, u = states
         close = nearest_to_singular(stepper.model, t, q, u, stepper.par, int(run.rank_max))
         if close:
             when, share = close
-            notes.append(f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of"
-                         " their strength: compare with another step")  # fmt: skip
+            notes.append(
+                f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of"
+                " their strength: compare with another step"
+            )
     if run.late_steps:
         notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")
     return tuple(notes)

@@ -30,8 +30,9 @@ class Event:
     def __post_init__(self) -> None:
         """The direction must be known."""
         if self.direction not in _SIGNS:
-            raise ValueError(str(Problem("event: unknown direction", repr(self.direction), ", ".join(_SIGNS),
-                                         "use one of them")))  # fmt: skip
+            raise ValueError(
+                str(Problem("event: unknown direction", repr(self.direction), ", ".join(_SIGNS), "use one of them"))
+            )
 
     @property
     def sign(self) -> int:

@@ -58,8 +58,13 @@ METHODS: dict[str, Method] = {
 
 # Which loop of native/, as C numbers them.
 KIND_CODES: dict[Kind, int] = {
-    "explicit": 0, "semi_implicit": 1, "rosenbrock": 2, "alpha": 3, "variational": 4, "cvode": 0,
-}  # fmt: skip
+    "explicit": 0,
+    "semi_implicit": 1,
+    "rosenbrock": 2,
+    "alpha": 3,
+    "variational": 4,
+    "cvode": 0,
+}
 # Functions that each kind of method calls besides forward_dynamics: the slot of sym_scene, and the function's name.
 NEEDS: dict[str, dict[str, str]] = {
     "rosenbrock": {"terms": "implicit_terms"},

@@ -6,9 +6,16 @@ from dataclasses import dataclass
 from typing import Literal
 
 Kind = Literal[
-    "finished", "event", "interrupted", "diverged", "singular", "step too small", "input failed", "not converged",
+    "finished",
+    "event",
+    "interrupted",
+    "diverged",
+    "singular",
+    "step too small",
+    "input failed",
+    "not converged",
     "constraints lost",
-]  # fmt: skip
+]
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,12 @@ def figure_class() -> Any:
     try:
         return import_module("matplotlib.figure").Figure
     except ImportError:
-        missing = Problem("plot: Matplotlib is not installed", "no module matplotlib", "pictures are an extra",
-                          "pip install 'symofros[plots]'")  # fmt: skip
+        missing = Problem(
+            "plot: Matplotlib is not installed",
+            "no module matplotlib",
+            "pictures are an extra",
+            "pip install 'symofros[plots]'",
+        )
         raise SymofrosError(str(missing)) from None
 
 

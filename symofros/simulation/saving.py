@@ -25,8 +25,16 @@ def refuse_suffix(path: Path, what: str) -> None:
         SymofrosError: Another suffix than SUFFIXES.
     """
     if path.suffix not in SUFFIXES:
-        raise SymofrosError(str(Problem(f"{what}: can't save as '{path.name}'", path.suffix or "no suffix",
-                                        ".npz, .csv or .parquet", "choose one of them")))  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    f"{what}: can't save as '{path.name}'",
+                    path.suffix or "no suffix",
+                    ".npz, .csv or .parquet",
+                    "choose one of them",
+                )
+            )
+        )
 
 
 def write_npz(path: Path, arrays: Mapping[str, Any]) -> None:
@@ -63,9 +71,16 @@ def _parquet(columns: Mapping[str, Array], what: str, units: Mapping[str, str]) 
         pyarrow = import_module("pyarrow")  # An extra: 40 MB that only this needs.
         parquet = import_module("pyarrow.parquet")
     except ImportError:
-        raise SymofrosError(str(Problem(f"{what}: Parquet needs pyarrow", "it is not installed",
-                                        "pyarrow writes Parquet", "pip install pyarrow, or save as .npz")
-                                )) from None  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    f"{what}: Parquet needs pyarrow",
+                    "it is not installed",
+                    "pyarrow writes Parquet",
+                    "pip install pyarrow, or save as .npz",
+                )
+            )
+        ) from None
     fields = [
         pyarrow.field(name, pyarrow.float64(), metadata={"unit": units[name]} if units.get(name) else None)
         for name in columns

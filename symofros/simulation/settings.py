@@ -31,9 +31,16 @@ def vector(model: Model, name: str, values: Given, size: int) -> Array:
     array = np.asarray(values, dtype=np.float64)
     if array.shape != (size,) or not np.all(np.isfinite(array)):
         found = str(array.shape) if array.shape != (size,) else "a number that is not finite"
-        raise ShapeError(str(Problem(f"model '{model.record.name}': {name} does not fit", found,
-                                     f"{name} is a finite array of shape ({size},)",
-                                     "one state a run: see model.nq, model.nv")))  # fmt: skip
+        raise ShapeError(
+            str(
+                Problem(
+                    f"model '{model.record.name}': {name} does not fit",
+                    found,
+                    f"{name} is a finite array of shape ({size},)",
+                    "one state a run: see model.nq, model.nv",
+                )
+            )
+        )
     return array
 
 
@@ -72,10 +79,21 @@ class Settings:
 
     @classmethod
     def of(
-        cls, model: Model, method: str, dt: float | None, t0: float, t_end: float, rtol: float, atol: float,
-        adaptive: bool | None, max_step: float, output: float | Given | None, every: int, stabilisation: str,
+        cls,
+        model: Model,
+        method: str,
+        dt: float | None,
+        t0: float,
+        t_end: float,
+        rtol: float,
+        atol: float,
+        adaptive: bool | None,
+        max_step: float,
+        output: float | Given | None,
+        every: int,
+        stabilisation: str,
         gains: Given | None,
-    ) -> Settings:  # fmt: skip
+    ) -> Settings:
         """Settings from what `simulate` was given.
 
         Raises:
@@ -83,9 +101,16 @@ class Settings:
             SymofrosError: A number is out of its range, or settings contradict each other.
         """
         if method not in METHODS:
-            raise UnknownNameError(str(Problem(f"simulation: no method '{method}'", ", ".join(METHODS),
-                                               "a method has one of these names", did_you_mean(method, METHODS))
-                                       ))  # fmt: skip
+            raise UnknownNameError(
+                str(
+                    Problem(
+                        f"simulation: no method '{method}'",
+                        ", ".join(METHODS),
+                        "a method has one of these names",
+                        did_you_mean(method, METHODS),
+                    )
+                )
+            )
         chosen = METHODS[method]
         if not (math.isfinite(t0) and math.isfinite(t_end) and t_end >= t0):
             raise _wrong("no span of time", f"t0 = {t0}, t_end = {t_end}", "t_end is not before t0", "set t_end")
@@ -97,23 +122,43 @@ class Settings:
         if every < 1:
             raise _wrong("nothing would be recorded", f"every = {every}", "every >= 1", "use output= for times")
         if stabilisation not in _STABILISATIONS:
-            raise _wrong(f"unknown stabilisation '{stabilisation}'", stabilisation, ", ".join(_STABILISATIONS),
-                         did_you_mean(stabilisation, _STABILISATIONS))  # fmt: skip
+            raise _wrong(
+                f"unknown stabilisation '{stabilisation}'",
+                stabilisation,
+                ", ".join(_STABILISATIONS),
+                did_you_mean(stabilisation, _STABILISATIONS),
+            )
         if gains is not None and stabilisation != "baumgarte":
-            raise _wrong("gains without Baumgarte", f"stabilisation '{stabilisation}'",
-                         "gains act in Baumgarte's stabilisation only", "stabilisation='baumgarte'")  # fmt: skip
+            raise _wrong(
+                "gains without Baumgarte",
+                f"stabilisation '{stabilisation}'",
+                "gains act in Baumgarte's stabilisation only",
+                "stabilisation='baumgarte'",
+            )
         if adaptive and not chosen.adaptive:
-            raise _wrong(f"'{method}' does not adapt its steps", "adaptive=True", "it estimates no error",
-                         "use dopri5, dop853 or rodas4")  # fmt: skip
+            raise _wrong(
+                f"'{method}' does not adapt its steps",
+                "adaptive=True",
+                "it estimates no error",
+                "use dopri5, dop853 or rodas4",
+            )
         # Where all motion is given there is no error to adapt to.
         adapts = model.nv > 0 and (chosen.adaptive if adaptive is None else adaptive)
         step = dt if dt is not None else 0.0 if adapts else 1e-3
         longest = max_step if math.isfinite(max_step) else 0.0
         return cls(
-            chosen, adapts, stabilisation, step, rtol, atol, longest, every if output is None else 0,
-            _grid(output, t0, t_end), model.nc > 0 and stabilisation == "projection",
+            chosen,
+            adapts,
+            stabilisation,
+            step,
+            rtol,
+            atol,
+            longest,
+            every if output is None else 0,
+            _grid(output, t0, t_end),
+            model.nc > 0 and stabilisation == "projection",
             _gains(model, stabilisation, gains, step),
-        )  # fmt: skip
+        )
 
     def apply(self, stepper: Stepper, t0: float, t_end: float, realtime: float) -> None:
         """Write the settings into a run."""
@@ -136,19 +181,33 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
     name = settings.method.name
     implicit = settings.method.kind in ("rosenbrock", "alpha", "variational")
     if implicit and inputs.callback is not None:
-        raise _wrong(f"'{name}' needs the derivatives of the inputs", "a Python function",
-                     "implicit methods differentiate what they step", "give formulas or Signals")  # fmt: skip
+        raise _wrong(
+            f"'{name}' needs the derivatives of the inputs",
+            "a Python function",
+            "implicit methods differentiate what they step",
+            "give formulas or Signals",
+        )
     if implicit and settings.stabilisation == "baumgarte" and model.nc:
-        raise _wrong(f"'{name}' with Baumgarte's stabilisation", "gains", "implicit methods keep constraints by"
-                     " projection or by their equations", "stabilisation='projection'")  # fmt: skip
+        raise _wrong(
+            f"'{name}' with Baumgarte's stabilisation",
+            "gains",
+            "implicit methods keep constraints by projection or by their equations",
+            "stabilisation='projection'",
+        )
     if settings.method.kind == "cvode" and (settings.project or not settings.adaptive):
-        raise _wrong(f"'{name}' with projection or fixed steps", "a history of steps that would be cut",
-                     "CVODE chooses its steps, and keeps constraints by Baumgarte's gains",
-                     "stabilisation='baumgarte', or rodas4 with projection")  # fmt: skip
+        raise _wrong(
+            f"'{name}' with projection or fixed steps",
+            "a history of steps that would be cut",
+            "CVODE chooses its steps, and keeps constraints by Baumgarte's gains",
+            "stabilisation='baumgarte', or rodas4 with projection",
+        )
     if settings.method.kind == "variational" and (model.nc or model.record.driven):
-        raise _wrong("'variational' steps trees of free motion only", f"model '{model.record.name}' has constraints or"
-                     " prescribed joints", "its discrete principle is written for free coordinates",
-                     "use generalized_alpha, or rk4 with projection")  # fmt: skip
+        raise _wrong(
+            "'variational' steps trees of free motion only",
+            f"model '{model.record.name}' has constraints or prescribed joints",
+            "its discrete principle is written for free coordinates",
+            "use generalized_alpha, or rk4 with projection",
+        )
 
 
 # Beyond, a first state is a mistake and not what drift leaves.
@@ -164,15 +223,22 @@ def check_start(model: Model, settings: Settings, t: float, q: Array, v: Array, 
     if not model.nc or settings.stabilisation == "baumgarte":
         return
     for what, values in (
-        ("phi", model.constraint(q, u=u, par=par, t=t)), ("G v - b", model.constraint_rate(q, v, u=u, par=par, t=t)),
-    ):  # fmt: skip
+        ("phi", model.constraint(q, u=u, par=par, t=t)),
+        ("G v - b", model.constraint_rate(q, v, u=u, par=par, t=t)),
+    ):
         worst = int(np.argmax(np.abs(values)))
+        condition = model.names.constraints[worst]
         if not abs(values[worst]) <= CLOSED:
-            raise AssemblyError(str(Problem(
-                f"model '{model.record.name}': the first state does not keep '{model.names.constraints[worst]}'",
-                f"{what} = {values[worst]:.3g}", f"|{what}| <= {CLOSED:g} at the start",
-                "start from sf.assemble(model, q0, v0), or pull it in by stabilisation='baumgarte'",
-            )))  # fmt: skip
+            raise AssemblyError(
+                str(
+                    Problem(
+                        f"model '{model.record.name}': the first state does not keep '{condition}'",
+                        f"{what} = {values[worst]:.3g}",
+                        f"|{what}| <= {CLOSED:g} at the start",
+                        "start from sf.assemble(model, q0, v0), or pull it in by stabilisation='baumgarte'",
+                    )
+                )
+            )
 
 
 def _grid(output: float | Given | None, t0: float, t_end: float) -> Array:
@@ -186,8 +252,16 @@ def _grid(output: float | Given | None, t0: float, t_end: float) -> Array:
         count = math.floor((t_end - t0) / interval * (1 + 1e-12))
         return np.asarray(t0 + interval * np.arange(count + 1), dtype=np.float64)
     if times.ndim != 1 or not np.all(np.diff(times) > 0) or times.size == 0 or times[0] < t0 or times[-1] > t_end:
-        raise ShapeError(str(Problem("simulation: output times do not fit", f"shape {times.shape}",
-                                     f"times (n) increase from {t0} to {t_end} at most", "sort them")))  # fmt: skip
+        raise ShapeError(
+            str(
+                Problem(
+                    "simulation: output times do not fit",
+                    f"shape {times.shape}",
+                    f"times (n) increase from {t0} to {t_end} at most",
+                    "sort them",
+                )
+            )
+        )
     return times
 
 
@@ -199,7 +273,14 @@ def _gains(model: Model, stabilisation: str, gains: Given | None, step: float) -
     given = np.asarray(gains, dtype=np.float64)
     given = np.repeat(given, model.nc) if given.shape == (2,) else given
     if given.shape != (2 * model.nc,) or not np.all(given >= 0):
-        raise ShapeError(str(Problem("simulation: gains do not fit", str(given.shape),
-                                     f"(alpha, beta), or ({2 * model.nc},): alphas, then betas, none negative",
-                                     "give two numbers")))  # fmt: skip
+        raise ShapeError(
+            str(
+                Problem(
+                    "simulation: gains do not fit",
+                    str(given.shape),
+                    f"(alpha, beta), or ({2 * model.nc},): alphas, then betas, none negative",
+                    "give two numbers",
+                )
+            )
+        )
     return given

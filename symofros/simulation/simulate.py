@@ -116,7 +116,15 @@ def _statistics(stepper: Stepper, seconds: float, worked: float) -> Statistics:
     paced = max(1, int(run.paced_steps))
     ranks = (int(run.rank_min), int(run.rank_max)) if stepper.model.nc else (-1, -1)
     return Statistics(
-        stepper.method.name, int(run.steps), int(run.rejected), int(run.evaluations), int(run.jacobians), seconds,
-        int(run.late_steps), float(run.late_max), float(run.late_sum) / paced, *ranks,
+        stepper.method.name,
+        int(run.steps),
+        int(run.rejected),
+        int(run.evaluations),
+        int(run.jacobians),
+        seconds,
+        int(run.late_steps),
+        float(run.late_max),
+        float(run.late_sum) / paced,
+        *ranks,
         worked,
-    )  # fmt: skip
+    )

@@ -83,19 +83,37 @@ def simulate_batch(
         SymofrosError: The settings contradict each other, or the method is implicit.
     """
     settings = Settings.of(
-        model, method, dt, t0, t_end, rtol, atol, adaptive, max_step, [t_end] if output is None else output, 1,
-        stabilisation, gains,
-    )  # fmt: skip
+        model,
+        method,
+        dt,
+        t0,
+        t_end,
+        rtol,
+        atol,
+        adaptive,
+        max_step,
+        [t_end] if output is None else output,
+        1,
+        stabilisation,
+        gains,
+    )
     if settings.method.kind not in _KINDS:
         explicit = [name for name, one in METHODS.items() if one.kind in _KINDS]
-        raise SymofrosError(str(Problem(
-            f"simulate_batch: '{method}' solves equations in each step", method, "batches take explicit methods: "
-            + ", ".join(explicit), "run sf.simulate for each state",
-        )))  # fmt: skip
+        raise SymofrosError(
+            str(
+                Problem(
+                    f"simulate_batch: '{method}' solves equations in each step",
+                    method,
+                    "batches take explicit methods: " + ", ".join(explicit),
+                    "run sf.simulate for each state",
+                )
+            )
+        )
     count = model.threads if threads is None else threads
     if count < 1:
-        raise SymofrosError(str(Problem("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1",
-                                        "leave it out")))  # fmt: skip
+        raise SymofrosError(
+            str(Problem("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1", "leave it out"))
+        )
     given = sort_inputs(model, u)
     rows = {
         "q0": _rows(model, "q0", model.neutral() if q0 is None else q0, model.nq),
@@ -118,18 +136,36 @@ def simulate_batch(
     shared = rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar))
     q, v, u_samples = (_shaped(array, shape) for array in (ends.q_samples, ends.v_samples, ends.u_samples))
     return Trajectories(
-        model, settings.grid, q, v, u_samples, shared, _shaped(ends.t, shape), _shaped(ends.q, shape),
-        _shaped(ends.v, shape), ends.status.reshape(shape), ends.steps.reshape(shape), ends.rejected.reshape(shape),
-        method, *seconds,
-    )  # fmt: skip
+        model,
+        settings.grid,
+        q,
+        v,
+        u_samples,
+        shared,
+        _shaped(ends.t, shape),
+        _shaped(ends.q, shape),
+        _shaped(ends.v, shape),
+        ends.status.reshape(shape),
+        ends.steps.reshape(shape),
+        ends.rejected.reshape(shape),
+        method,
+        *seconds,
+    )
 
 
 def _rows(model: Model, name: str, values: Given, size: int) -> Array:
     array = np.asarray(values, dtype=np.float64)
     if array.ndim == 0 or array.shape[-1] != size:
-        raise ShapeError(str(Problem(f"model '{model.record.name}': {name} has the wrong shape", str(array.shape),
-                                     f"{name} has shape (..., {size})", "one row a trajectory, or one for all"
-                                     )))  # fmt: skip
+        raise ShapeError(
+            str(
+                Problem(
+                    f"model '{model.record.name}': {name} has the wrong shape",
+                    str(array.shape),
+                    f"{name} has shape (..., {size})",
+                    "one row a trajectory, or one for all",
+                )
+            )
+        )
     return array
 
 
@@ -138,11 +174,16 @@ def _batch_shape(rows: dict[str, Array], inputs: list[Shape]) -> Shape:
         return np.broadcast_shapes(*(array.shape[:-1] for array in rows.values()), *inputs)
     except ValueError:
         found = [f"{name} {array.shape}" for name, array in rows.items()] + [f"inputs {shape}" for shape in inputs]
-        raise ShapeError(str(Problem(
-            "simulate_batch: batch dimensions do not broadcast", ", ".join(found),
-            "all but the last dimension of each array broadcast together",
-            "give each array the same leading dimensions, or none",
-        ))) from None  # fmt: skip
+        raise ShapeError(
+            str(
+                Problem(
+                    "simulate_batch: batch dimensions do not broadcast",
+                    ", ".join(found),
+                    "all but the last dimension of each array broadcast together",
+                    "give each array the same leading dimensions, or none",
+                )
+            )
+        ) from None
 
 
 def _shaped(rows: Array, shape: Shape) -> Array:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import cffi
 import numpy as np
 
-from symofros.codegen.templates import template
 from symofros.errors import CompileError, Problem, SymofrosError
+from symofros.native import native_text
 from symofros.runtime.build import build_library
 from symofros.runtime.kernel import Array, Kernel
 from symofros.runtime.library import CompiledKernel
@@ -46,7 +45,7 @@ DIVERGED, NO_MOTION, TINY_STEP, CALLBACK, NO_CONVERGENCE, OFF = -1, -2, -3, -4, 
 
 
 def _native(name: str) -> str:
-    return (files("symofros.simulation") / "native" / name).read_text(encoding="utf-8")
+    return native_text(f"stepping/{name}")
 
 
 def native_headers() -> dict[str, str]:
@@ -83,9 +82,11 @@ def bound(source: str, headers: Mapping[str, str], *flags: str) -> tuple[Any, An
     """
     toolchain = find_toolchain(None)
     if toolchain is None:
-        raise CompileError("simulation steps in C, and no C compiler was found\n"
-                           "  remedy: install gcc or clang, or `pip install ziglang`")  # fmt: skip
-    header, ffi = template("symofros_model.h"), cffi.FFI()
+        raise CompileError(
+            "simulation steps in C, and no C compiler was found\n"
+            "  remedy: install gcc or clang, or `pip install ziglang`"
+        )
+    header, ffi = native_text("model/symofros_model.h"), cffi.FFI()
     for text in (header, *headers.values()):
         match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", text, re.DOTALL)
         if match is not None:
@@ -143,8 +144,16 @@ class Stepper:
         scene.nq, scene.nv, scene.nu, scene.nc = model.nq, model.nv, model.nu, model.nc
         segments = [(_SEGMENTS[s.kind], s.q, s.v, s.size) for s in model.record.segments]
         scene.n_segments, scene.segments = len(segments), self.own("sym_segment[]", segments)
-        for name, size in (("q", model.nq), ("v", model.nv), ("u", model.nu), ("t", 1), ("gains", 2 * model.nc),
-                           ("a", model.nv), ("lam", model.nc), ("rank", 1)):  # fmt: skip
+        for name, size in (
+            ("q", model.nq),
+            ("v", model.nv),
+            ("u", model.nu),
+            ("t", 1),
+            ("gains", 2 * model.nc),
+            ("a", model.nv),
+            ("lam", model.nc),
+            ("rank", 1),
+        ):
             setattr(scene, name, self.numbers(np.zeros(size)))
         scene.constant = self.numbers(inputs.constant)
         signals = []
@@ -180,10 +189,16 @@ class Stepper:
     def _bind(self, slot: str, kernel: Kernel, outputs: dict[str, Any]) -> None:
         """Make a model's function callable from the loop; outputs that are not placed get arrays of their own."""
         if not isinstance(kernel, CompiledKernel):
-            raise SymofrosError(str(Problem(
-                f"model '{self.model.record.name}': simulation steps in C", "an interpreted model",
-                "the loop calls compiled functions", "compile with backend='c'",
-            )))  # fmt: skip
+            raise SymofrosError(
+                str(
+                    Problem(
+                        f"model '{self.model.record.name}': simulation steps in C",
+                        "an interpreted model",
+                        "the loop calls compiled functions",
+                        "compile with backend='c'",
+                    )
+                )
+            )
         call = getattr(self.scene, slot)
         call.function = self.ffi.cast("sym_function *", kernel.address)
         call.pre = self.numbers(kernel.prepare(self.par.reshape(1, -1)))
@@ -239,8 +254,9 @@ class Stepper:
         run.pivots = self.own("int32_t[]", [0] * (2 * (model.nv + model.nc)))
         run.event = self.numbers(np.zeros(3 * max(1, len(self.events))))
         run.capacity, run.event_capacity = capacity, max(64, 2 * len(self.events))
-        self._records = self._room(capacity, ("record_t", 1), ("record_q", model.nq), ("record_v", model.nv),
-                                   ("record_u", model.nu))  # fmt: skip
+        self._records = self._room(
+            capacity, ("record_t", 1), ("record_q", model.nq), ("record_v", model.nv), ("record_u", model.nu)
+        )
         self._found = self._room(run.event_capacity, ("found_t", 1), ("found_q", model.nq), ("found_v", model.nv))
         self._which = np.zeros(run.event_capacity, dtype=np.int32)
         run.found_which = self.ffi.cast("int32_t *", self.ffi.from_buffer(self._which))

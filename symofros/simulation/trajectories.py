@@ -20,15 +20,27 @@ Index = int | tuple[int, ...]
 _ENDS: dict[int, tuple[Kind, str, str]] = {
     native.DONE: ("finished", "the end asked for", ""),
     native.GOING: ("interrupted", "max_steps are done, or Ctrl-C", ""),
-    native.DIVERGED: ("diverged", "a state is no longer finite",
-                      "a smaller dt or an adaptive method; sf.simulate from this state says more"),
-    native.NO_MOTION: ("singular", "the mass matrix is singular beyond what the constraints bind",
-                       "give every speed an inertia or a constraint"),
-    native.TINY_STEP: ("step too small", "the error bounds ask for steps below rounding",
-                       "look for a force that jumps or a singular posture here; loosen rtol"),
-    native.OFF: ("constraints lost", "the state is off the constraints and projection does not mend it",
-                 "start from sf.assemble; a smaller step; the loop may be stretched to its end"),
-}  # fmt: skip
+    native.DIVERGED: (
+        "diverged",
+        "a state is no longer finite",
+        "a smaller dt or an adaptive method; sf.simulate from this state says more",
+    ),
+    native.NO_MOTION: (
+        "singular",
+        "the mass matrix is singular beyond what the constraints bind",
+        "give every speed an inertia or a constraint",
+    ),
+    native.TINY_STEP: (
+        "step too small",
+        "the error bounds ask for steps below rounding",
+        "look for a force that jumps or a singular posture here; loosen rtol",
+    ),
+    native.OFF: (
+        "constraints lost",
+        "the state is off the constraints and projection does not mend it",
+        "start from sf.assemble; a smaller step; the loop may be stretched to its end",
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -95,8 +107,17 @@ class Trajectories:
         reached &= ~np.isnan(self.q[index]).any(axis=-1)
         par = self.par[index] if self.par.ndim > 1 else self.par
         statistics = Statistics(self.method, int(self.steps[index]), int(self.rejected[index]), -1, -1, self.seconds)
-        return Trajectory(self.model, self.t[reached], self.q[index][reached], self.v[index][reached],
-                          self.u[index][reached], par, self.outcome(index), (), statistics)  # fmt: skip
+        return Trajectory(
+            self.model,
+            self.t[reached],
+            self.q[index][reached],
+            self.v[index][reached],
+            self.u[index][reached],
+            par,
+            self.outcome(index),
+            (),
+            statistics,
+        )
 
     def __len__(self) -> int:
         """Number of runs."""

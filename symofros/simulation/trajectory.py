@@ -181,8 +181,10 @@ class Trajectory:
         if path.suffix == ".npz":
             arrays: dict[str, Any] = {"t": self.t, "q": self.q, "v": self.v, "u": self.u, "par": self.par}
             names = self.model.names
-            write_npz(path, {**arrays, "names_q": names.q, "names_v": names.v, "names_u": names.u,
-                             "outcome": str(self.outcome)})  # fmt: skip
+            write_npz(
+                path,
+                {**arrays, "names_q": names.q, "names_v": names.v, "names_u": names.u, "outcome": str(self.outcome)},
+            )
         else:
             write_columns(path, self.columns(), "trajectory")
         return path

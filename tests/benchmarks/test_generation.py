@@ -11,7 +11,7 @@ import symofros as sf
 from reference_models import MODELS
 from reference_models.rigid.chain import chain
 from symofros.compiler import describe, generate, plan
-from symofros.passes.count import count_program
+from symofros.generator.passes.count import count_program
 
 FUNCTIONS = (("mass_matrix", ""), ("bias", ""))
 

@@ -17,9 +17,18 @@ from validation.inputs.cases import named
 
 # Of a 7-joint arm with its two fingers. "M and h" is one C file; the others are those that a first call makes.
 FUNCTIONS = (
-    ("mass_matrix", "bias"), ("dynamics",), ("mass_matrix",), ("bias",), ("generalized_force",), ("forward_dynamics",),
-    ("inverse_dynamics",), ("kinetic_energy",), ("potential_energy",), ("frame_pose",), ("frame_jacobian",),
-)  # fmt: skip
+    ("mass_matrix", "bias"),
+    ("dynamics",),
+    ("mass_matrix",),
+    ("bias",),
+    ("generalized_force",),
+    ("forward_dynamics",),
+    ("inverse_dynamics",),
+    ("kinetic_energy",),
+    ("potential_energy",),
+    ("frame_pose",),
+    ("frame_jacobian",),
+)
 
 
 @pytest.fixture(scope="module")
@@ -49,9 +58,12 @@ def test_import(benchmark: BenchmarkFixture, code: str) -> None:
 
 @pytest.mark.parametrize("functions", FUNCTIONS, ids="+".join)
 def test_generation_and_compilation(
-    benchmark: BenchmarkFixture, panda: sf.System, functions: tuple[str, ...], tmp_path: Path,
+    benchmark: BenchmarkFixture,
+    panda: sf.System,
+    functions: tuple[str, ...],
+    tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-) -> None:  # fmt: skip
+) -> None:
     """Nothing cached; frame functions of one frame."""
     run = iter(range(10**6))
     last = (panda.bodies[-1].name,)

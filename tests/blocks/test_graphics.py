@@ -14,7 +14,7 @@ from symofros.diagrams.block import Block
 from symofros.diagrams.plots import plots_of
 from symofros.diagrams.settings import Plot, RunSettings
 from tests.blocks.sources import Ramp
-from tests.diagram_files.cases import ARM
+from tests.diagrams.files.cases import ARM
 
 
 def arm(*blocks: tuple[Block, dict[str, str]]) -> sf.Simulation:
@@ -59,9 +59,12 @@ def test_what_is_drawn() -> None:
     )
     found = [(plot.title, plot.signals) for plot in plots_of(simulation.resolved.wired)]
     assert found == [
-        ("Two", ("plant.q", "ramp.y")), ("states: coordinates", ("plant.q",)), ("states: speeds", ("plant.v",)),
-        ("ends: elbow", ("ends.p_elbow",)), ("ends: tip", ("ends.p_tip",)),
-    ]  # fmt: skip
+        ("Two", ("plant.q", "ramp.y")),
+        ("states: coordinates", ("plant.q",)),
+        ("states: speeds", ("plant.v",)),
+        ("ends: elbow", ("ends.p_elbow",)),
+        ("ends: tip", ("ends.p_tip",)),
+    ]
     run = simulation.run(0.05, dt=1e-3)
     model = sf.compile(sf.load(ARM))
     assert np.allclose(run["ends.p_tip"], model.frame_pose("tip", run["plant.q"])[0], rtol=0, atol=1e-15)

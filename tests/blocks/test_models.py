@@ -125,8 +125,11 @@ def test_inverse_dynamics_and_compensations(name: str) -> None:
 
 def friction(name: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Forces of friction (nv), by a model whose joints have no others."""
-    rubbing = [body.joint.name for body in MODELS[name].bodies
-               if body.joint and any(isinstance(element, Friction) for element in body.joint.elements)]  # fmt: skip
+    rubbing = [
+        body.joint.name
+        for body in MODELS[name].bodies
+        if body.joint and any(isinstance(element, Friction) for element in body.joint.elements)
+    ]
     if not rubbing:
         return 0 * v
     only = sf.compile(friction_only(MODELS[name]))

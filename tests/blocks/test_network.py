@@ -84,8 +84,13 @@ def heard_from(sender: str, receiver: Block, t_end: float) -> DiagramRun:
     d.add(Ramp(name="clock"))
     simulation = sf.Simulation(d)
     simulation.run(0.01, dt=1e-3)
-    child = subprocess.Popen([sys.executable, "-c", SENDER.format(block=sender)], stdin=subprocess.PIPE,
-                             stdout=subprocess.PIPE, text=True, cwd=ROOT)  # fmt: skip
+    child = subprocess.Popen(
+        [sys.executable, "-c", SENDER.format(block=sender)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        cwd=ROOT,
+    )
     assert child.stdin and child.stdout
     try:
         assert child.stdout.readline() == "ready\n"
@@ -115,8 +120,14 @@ def test_a_lossy_line_is_survived_and_its_losses_counted() -> None:
     counts = {name: int(value) for name, value in run.kept["rx"].items()}
     dropped = int(relay.drops.sum())
     assert dropped >= 4
-    assert counts == {"received": PACKETS - dropped, "lost": dropped, "late": 0, "duplicate": 0, "malformed": 0,
-                      "foreign": 0}  # fmt: skip
+    assert counts == {
+        "received": PACKETS - dropped,
+        "lost": dropped,
+        "late": 0,
+        "duplicate": 0,
+        "malformed": 0,
+        "foreign": 0,
+    }
     signal, stamp, age, alive = (run[f"rx.{name}"] for name in ("signal", "stamp", "age", "alive"))
     assert np.array_equal(signal[:, 0], stamp) and np.array_equal(signal[:, 1], 2.0 * stamp)
     assert alive[0] == 0.0 and not signal[0].any()
@@ -130,8 +141,16 @@ def test_a_lossy_line_is_survived_and_its_losses_counted() -> None:
 
 def test_zenoh_between_two_processes() -> None:
     address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
-    receiver = ZenohSubscriber(name="rx", key="arm/state", size=2, address=address, period=1e-3, timeout=TIMEOUT,
-                               on_silence="value", fallback=-1.0)  # fmt: skip
+    receiver = ZenohSubscriber(
+        name="rx",
+        key="arm/state",
+        size=2,
+        address=address,
+        period=1e-3,
+        timeout=TIMEOUT,
+        on_silence="value",
+        fallback=-1.0,
+    )
     sender = f'ZenohPublisher(name="tx", key="arm/state", address="{address}", period={PERIOD})'
     run = heard_from(sender, receiver, 2.0)
     assert run.outcome.ok
@@ -170,9 +189,10 @@ def test_a_port_in_use_is_told_before_the_run() -> None:
 def test_what_is_sent_in_a_loop_arrives_and_both_ways_of_running_agree() -> None:
     port = free_port()
     simulation = loop_of(
-        UdpTransmitter(name="tx", port=port, period=0.01), UdpReceiver(name="rx", port=port, size=2, period=0.01,
-                                                                      offset=0.005), signal="ramp.y",
-    )  # fmt: skip
+        UdpTransmitter(name="tx", port=port, period=0.01),
+        UdpReceiver(name="rx", port=port, size=2, period=0.01, offset=0.005),
+        signal="ramp.y",
+    )
     for run in (simulation.run(0.2, dt=1e-3, record=0.01), simulation.interpret(0.2, dt=1e-3, record=0.01)):
         assert np.array_equal(run["rx.signal"][1:, 0], run.t[:-1]) and np.all(run["rx.age"][1:] == 0.0)
         assert run.kept["tx"]["sent"] == 21 and run.kept["rx"]["received"] == 20
@@ -181,8 +201,9 @@ def test_what_is_sent_in_a_loop_arrives_and_both_ways_of_running_agree() -> None
 def test_hostile_packets_neither_stop_the_loop_nor_get_in(rng: np.random.Generator) -> None:
     port = free_port()
     simulation = loop_of(
-        UdpReceiver(name="rx", port=port, size=2, period=0.01, fallback=3.0), Flood(name="tx", port=port, period=0.01),
-    )  # fmt: skip
+        UdpReceiver(name="rx", port=port, size=2, period=0.01, fallback=3.0),
+        Flood(name="tx", port=port, period=0.01),
+    )
     run = simulation.run(0.1, dt=1e-3, record=0.01)
     assert run.outcome.ok and np.all(run["rx.signal"][1:] == 3.0) and np.all(run["rx.alive"] == 0.0)
     assert run.kept["rx"]["received"] == 0 and run.kept["rx"]["malformed"] > 100

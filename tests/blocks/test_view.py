@@ -15,7 +15,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import ForwardDynamics, Sequence, View3D
 from symofros.blocks.view import with_view
-from symofros.diagram_files.registry import kind_of
+from symofros.diagrams.files.registry import kind_of
 
 PATIENCE = 10.0
 

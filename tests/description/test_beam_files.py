@@ -10,10 +10,20 @@ import pytest
 import symofros as sf
 
 FULL: dict[str, Any] = {
-    "EI_z": "E*(1 - x/(2*L))", "EI_y": 2.0, "GJ": "E", "rhoJ": 0.01, "rhoI_y": 0.004, "rhoI_z": 0.006,
-    "bend_y": 2, "bend_z": 1, "twist": 1, "damping": 0.001, "rotary_inertia": True, "retain": "all",
+    "EI_z": "E*(1 - x/(2*L))",
+    "EI_y": 2.0,
+    "GJ": "E",
+    "rhoJ": 0.01,
+    "rhoI_y": 0.004,
+    "rhoI_z": 0.006,
+    "bend_y": 2,
+    "bend_z": 1,
+    "twist": 1,
+    "damping": 0.001,
+    "rotary_inertia": True,
+    "retain": "all",
     "loads": [sf.BeamLoad((0, "u*sin(x)", 0)), sf.BeamLoad(torque=(1, 0, 0), at=0.5, axes="world")],
-}  # fmt: skip
+}
 
 
 def system(**changed: Any) -> sf.System:
@@ -28,11 +38,16 @@ def system(**changed: Any) -> sf.System:
     [
         {},
         {"family": "legendre", "foreshortening": False},
-        {"family": "user", "shapes": {
-            "bend_y": ["xi^2", "xi^3*(1 - xi/2)"], "bend_z": [sf.Samples((0, 0.2, 0.6, 1), (0, 0.04, 0.3, 1.0))],
-            "twist": ["sin(pi*xi/2)"]}},
+        {
+            "family": "user",
+            "shapes": {
+                "bend_y": ["xi^2", "xi^3*(1 - xi/2)"],
+                "bend_z": [sf.Samples((0, 0.2, 0.6, 1), (0, 0.04, 0.3, 1.0))],
+                "twist": ["sin(pi*xi/2)"],
+            },
+        },
     ],
-)  # fmt: skip
+)
 def test_written_and_read(tmp_path: Path, changed: dict[str, Any]) -> None:
     stated = system(**changed)
     sf.save(stated, tmp_path / "arm.yaml")
@@ -64,7 +79,7 @@ bodies:
         ("beam: {length: 1, rhoA: 1, EI_z: 1, bend_y: -1}", "bend_y"),
         ("beam: {length: 1, rhoA: 1, EI_z: 1, family: user, shapes: {bend_y: [{xi: [0], values: [0]}]}}", "xi"),
     ],
-)  # fmt: skip
+)
 def test_faults_name_line_and_rule(tmp_path: Path, entry: str, said: str) -> None:
     (tmp_path / "bad.yaml").write_text(f"symofros: 1\nbodies:\n  b:\n    joint: {{kind: revolute}}\n    {entry}\n")
     with pytest.raises(sf.DescriptionError) as caught:

@@ -11,9 +11,9 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from reference_models.rigid.random_tree import MORE_KINDS, random_tree
-from symofros.description.native.files import MAX_BYTES, read_yaml
-from symofros.description.native.yaml_nodes import compose_text
-from symofros.description.native.yaml_writer import write_yaml
+from symofros.description.yaml.files import MAX_BYTES, read_yaml
+from symofros.description.yaml.yaml_nodes import compose_text
+from symofros.description.yaml.yaml_writer import write_yaml
 
 HEAD = "symofros: 1\nsystem: {name: arm}\n"
 LINK = "  link: {joint: {name: q1, kind: revolute}, inertia: {mass: 1, moments: [1, 1, 1]}}\n"
@@ -89,7 +89,7 @@ def test_yaml_1_2_numbers(tmp_path: Path) -> None:
         ("- 1\n- 2\n", 1, []),
         ("a: " + "[" * 80 + "]" * 80, 1, ["deep"]),
     ],
-)  # fmt: skip
+)
 def test_each_fault_names_its_line(text: str, line: int, parts: list[str], tmp_path: Path) -> None:
     message = faults(tmp_path, text)
     assert f"arm.yaml:{line}" in message, message
@@ -238,7 +238,7 @@ def test_all_forces_in_one_file(tmp_path: Path) -> None:
         ("[cos(a), sin(a), 0.1*a]", "[cos(a), sin(q), 0.1*a]", 0, ["'q' may not be used here"]),
         ("prescribed: true", "prescribed: true, actuated: true", 0, ["prescribed motion"]),
     ],
-)  # fmt: skip
+)
 def test_faults_of_forces(old: str, new: str, line: int, parts: list[str], tmp_path: Path) -> None:
     assert old in EVERYTHING
     message = faults(tmp_path, EVERYTHING.replace(old, new))
@@ -262,8 +262,10 @@ def test_a_text_that_is_not_written_yet_is_read_as_if_it_were(tmp_path: Path) ->
 def test_nodes_know_their_place_in_the_text() -> None:
     text = "a: 1  # c\nb c: {x: 'y', z: [1, 2]}\nd: |\n  e\nf:\n  - g\n"
     root, _ = compose_text(text, "x")
-    places = {key: (text[node.key_start : node.key_end], text[node.start : node.end], node.style)
-              for key, node in root.value.items()}  # fmt: skip
+    places = {
+        key: (text[node.key_start : node.key_end], text[node.start : node.end], node.style)
+        for key, node in root.value.items()
+    }
     assert places["a"] == ("a", "1", "plain") and places["b c"] == ("b c", "{x: 'y', z: [1, 2]}", "flow")
     assert places["d"][1:] == ("|\n  e\n", "|") and places["f"][2] == "block"
     inner = root.value["b c"].value["x"]

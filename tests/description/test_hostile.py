@@ -17,8 +17,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
-from symofros.description.native import files, yaml_nodes
 from symofros.description.urdf import reader as urdf
+from symofros.description.yaml import files, yaml_nodes
 from symofros.errors import MAX_PROBLEMS
 
 SECONDS = 120.0
@@ -87,13 +87,19 @@ CASES: dict[str, tuple[str, Callable[[], str], str]] = {
     "tag": ("yaml", lambda: "symofros: !!python/object/apply:os.system ['touch ran']", "tags are refused"),
     "bodies without number": ("yaml", lambda: bodies(*(f"  b{i}:\n" for i in range(10_001))), "at most 10000"),
     "faults without number": (
-        "yaml", lambda: bodies(*(body(f"b{i}", f"c{i}") for i in range(2500))), "there are more faults than are listed",
+        "yaml",
+        lambda: bodies(*(body(f"b{i}", f"c{i}") for i in range(2500))),
+        "there are more faults than are listed",
     ),
     "wrong entries without number": (
-        "yaml", lambda: bodies(*(f"  b{i}: {{jont: 1}}\n" for i in range(5000))), "there are more faults",
+        "yaml",
+        lambda: bodies(*(f"  b{i}: {{jont: 1}}\n" for i in range(5000))),
+        "there are more faults",
     ),
     "a cycle of thousands": (
-        "yaml", lambda: bodies(*(body(f"b{i}", f"b{(i + 1) % 2500}") for i in range(2500))), "2500 bodies",
+        "yaml",
+        lambda: bodies(*(body(f"b{i}", f"b{(i + 1) % 2500}") for i in range(2500))),
+        "2500 bodies",
     ),
     "duplicates without number": ("yaml", lambda: "symofros: 1\n" * 20_000, "appears twice"),
     "NUL": ("yaml", lambda: formula("1").replace("mass", "ma\0ss"), "not YAML"),
@@ -101,22 +107,28 @@ CASES: dict[str, tuple[str, Callable[[], str], str]] = {
     "gigantic": ("yaml", lambda: "# " + "x" * (5 << 20), "too large"),
     "entities": ("urdf", lambda: XML_BOMB, "document types are refused"),
     "outer entity": (
-        "urdf", lambda: '<!DOCTYPE r [<!ENTITY a SYSTEM "/etc/passwd">]><robot name="&a;"/>', "document types",
+        "urdf",
+        lambda: '<!DOCTYPE r [<!ENTITY a SYSTEM "/etc/passwd">]><robot name="&a;"/>',
+        "document types",
     ),
     "deep elements": ("urdf", lambda: '<robot name="r">' + "<a>" * 5000 + "</a>" * 5000, "nested deeper than 100"),
     "links without number": (
-        "urdf", lambda: '<robot name="r">' + "".join(link(f"l{i}") for i in range(10_001)) + "</robot>",
+        "urdf",
+        lambda: '<robot name="r">' + "".join(link(f"l{i}") for i in range(10_001)) + "</robot>",
         "too many links",
     ),
     "wrong joints without number": (
         "urdf",
-        lambda: '<robot name="r">'
-        + "".join(link(f"l{i}") + joint(f"j{i}", "l0", f"c{i}") for i in range(5000)) + "</robot>",
+        lambda: (
+            '<robot name="r">'
+            + "".join(link(f"l{i}") + joint(f"j{i}", "l0", f"c{i}") for i in range(5000))
+            + "</robot>"
+        ),
         "there are more faults",
     ),
     "NUL in XML": ("urdf", lambda: '<robot name="r\0"/>', "not well-formed"),
     "gigantic XML": ("urdf", lambda: '<robot name="r">' + " " * (17 << 20) + "</robot>", "too large"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -125,9 +137,13 @@ def test_refused_in_bounded_time_and_memory(name: str, tmp_path: Path) -> None:
     path = tmp_path / f"hostile.{suffix}"
     path.write_text(content())
     done = subprocess.run(
-        [sys.executable, "-c", _READ, path.name], cwd=tmp_path, capture_output=True, text=True, timeout=SECONDS,
+        [sys.executable, "-c", _READ, path.name],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=SECONDS,
         env={**os.environ, "PYTHONPATH": os.pathsep.join([_ROOT, *filter(None, sys.path)])},
-    )  # fmt: skip
+    )
     assert done.returncode == 0, done.stderr[-2000:]
     answer, peak = json.loads(done.stdout)
     assert part in answer, answer[:1000]
@@ -142,9 +158,10 @@ SOUND = (Path(__file__).parent.parent.parent / "validation" / "corpus" / "everyt
 
 @settings(max_examples=200, deadline=None)
 @given(
-    at=st.integers(0, len(SOUND)), length=st.integers(0, 40),
+    at=st.integers(0, len(SOUND)),
+    length=st.integers(0, 40),
     put=st.text(max_size=20) | st.sampled_from(["{", "[", ": ", "\n", "&a", "!!x", "1e999", "q", "- ", "'", "#"]),
-)  # fmt: skip
+)
 def test_a_changed_file_is_read_or_refused(
     at: int, length: int, put: str, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
@@ -202,7 +219,7 @@ def test_a_long_chain_is_checked_in_linear_time() -> None:
     """Each body's mass was once summed by a walk to the root."""
     chain = [sf.RigidBody(f"b{i}", sf.Joint(f"q{i}", "revolute", f"b{i - 1}" if i else "world")) for i in range(3000)]
     chain[-1] = sf.RigidBody("b2999", chain[-1].joint, sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
-    from symofros.topology.graph import find_problems
+    from symofros.mechanics.topology.graph import find_problems
 
     assert find_problems(sf.System("chain", chain)) == []
     assert len(find_problems(sf.System("chain", chain[:-1]))) == MAX_PROBLEMS + 1

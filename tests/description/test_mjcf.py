@@ -11,7 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.mjcf import files as mjcf_files
-from symofros.description.native.files import read_yaml
+from symofros.description.yaml.files import read_yaml
 from tests.description.mjcf_models import MODELS, document
 from validation.mechanics.geometry import quaternion_matrix
 
@@ -191,9 +191,7 @@ def test_what_is_ignored_is_said(tmp_path: Path, text: str, said: str) -> None:
 
 # Meshes.
 
-TETRAHEDRON = "\n".join(
-    ["v 0 0 0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "f 1 3 2", "f 1 2 4", "f 1 4 3", "f 2 3 4"]
-)  # fmt: skip
+TETRAHEDRON = "\n".join(["v 0 0 0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "f 1 3 2", "f 1 2 4", "f 1 4 3", "f 2 3 4"])
 MESH_BODY = '<body name="a"><joint name="q"/>{inertial}<geom type="mesh" mesh="part" {extra}/></body>'
 INERTIAL = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
 
@@ -328,9 +326,11 @@ def test_nothing_outside_of_the_folder_is_read(cage: Path, where: str, kind: str
     text = {
         "include": world(f'<include file="{where}.xml"/>'),
         "mesh": with_mesh(file=f"{where}.obj"),
-        "meshdir": with_mesh(file="secret.obj" if "link" not in where else "link_secret.obj",
-                             compiler=f'meshdir="{where.removesuffix("secret").removesuffix("link_")}"'),
-    }[kind]  # fmt: skip
+        "meshdir": with_mesh(
+            file="secret.obj" if "link" not in where else "link_secret.obj",
+            compiler=f'meshdir="{where.removesuffix("secret").removesuffix("link_")}"',
+        ),
+    }[kind]
     assert "leaves the model's folder" in faults(write(cage, text))
 
 

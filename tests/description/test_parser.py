@@ -18,12 +18,31 @@ NAMES = {"a": 0.7, "b": -1.3, "c": 2.1}
 @pytest.mark.parametrize(
     ("text", "value"),
     [
-        ("2 + 3*4", 14), ("2*3 + 4", 10), ("(2 + 3)*4", 20), ("7 - 2 - 1", 4), ("7 - (2 - 1)", 6), ("8/4/2", 1),
-        ("8/(4/2)", 4), ("-2^2", -4), ("(-2)^2", 4), ("2^-1", 0.5), ("2^3^2", 512), ("2**3", 8), ("--2", 2),
-        ("2*-3", -6), ("+a", 0.7), ("1e-3", 1e-3), (".5", 0.5), ("2.", 2), ("pi", 3.141592653589793),
-        ("sin(pi/2)", 1), ("atan2(1, 1)*4/pi", 1), ("max(a, b)", 0.7), ("abs(b) + sqrt(4)", 3.3),
+        ("2 + 3*4", 14),
+        ("2*3 + 4", 10),
+        ("(2 + 3)*4", 20),
+        ("7 - 2 - 1", 4),
+        ("7 - (2 - 1)", 6),
+        ("8/4/2", 1),
+        ("8/(4/2)", 4),
+        ("-2^2", -4),
+        ("(-2)^2", 4),
+        ("2^-1", 0.5),
+        ("2^3^2", 512),
+        ("2**3", 8),
+        ("--2", 2),
+        ("2*-3", -6),
+        ("+a", 0.7),
+        ("1e-3", 1e-3),
+        (".5", 0.5),
+        ("2.", 2),
+        ("pi", 3.141592653589793),
+        ("sin(pi/2)", 1),
+        ("atan2(1, 1)*4/pi", 1),
+        ("max(a, b)", 0.7),
+        ("abs(b) + sqrt(4)", 3.3),
     ],
-)  # fmt: skip
+)
 def test_grammar(text: str, value: float) -> None:
     assert evaluate(parse(text), NAMES) == pytest.approx(value, rel=1e-15)
 
@@ -55,12 +74,55 @@ def test_text_round_trips(expression: Expression) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "__import__('os').system('x')", "a.__class__", "().__class__.__bases__", "lambda: 0", "a if b else c", "[1, 2]",
-        "{1: 2}", "'text'", "a; b", "a = 1", "a == b", "a & b", "a @ b", "open(1)", "exec(a)", "print(1)", "f(a)(b)",
-        "a[b]", "1_000", "0x10", "1j", "a b", "2a", "sin", "sin()", "sin(1, 2)", "", "   ", "(", ")", "1 +", "* 2",
-        "a,b", "x\x00y", "π", "ａ", "1e999", "a..b", ".a", "..", "__a", "a__", "sin(x", "∞", "nan(1)", "#", "a\n#b",
+        "__import__('os').system('x')",
+        "a.__class__",
+        "().__class__.__bases__",
+        "lambda: 0",
+        "a if b else c",
+        "[1, 2]",
+        "{1: 2}",
+        "'text'",
+        "a; b",
+        "a = 1",
+        "a == b",
+        "a & b",
+        "a @ b",
+        "open(1)",
+        "exec(a)",
+        "print(1)",
+        "f(a)(b)",
+        "a[b]",
+        "1_000",
+        "0x10",
+        "1j",
+        "a b",
+        "2a",
+        "sin",
+        "sin()",
+        "sin(1, 2)",
+        "",
+        "   ",
+        "(",
+        ")",
+        "1 +",
+        "* 2",
+        "a,b",
+        "x\x00y",
+        "π",
+        "ａ",
+        "1e999",
+        "a..b",
+        ".a",
+        "..",
+        "__a",
+        "a__",
+        "sin(x",
+        "∞",
+        "nan(1)",
+        "#",
+        "a\n#b",
     ],
-)  # fmt: skip
+)
 def test_anything_else_is_refused(text: str) -> None:
     with pytest.raises(ExpressionError) as caught:
         parse(text)
@@ -77,10 +139,19 @@ def test_the_reason_and_the_place_are_told() -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["9**9**9", "9^9^9^9^9", "(" * 5000 + "1" + ")" * 5000, "-" * 5000 + "1", "1+" * 4000 + "1", "a" * 10_000_000,
-     "1" * 9000, "sin(" * 3000 + "1" + ")" * 3000, "2^" * 3000 + "2"],
+    [
+        "9**9**9",
+        "9^9^9^9^9",
+        "(" * 5000 + "1" + ")" * 5000,
+        "-" * 5000 + "1",
+        "1+" * 4000 + "1",
+        "a" * 10_000_000,
+        "1" * 9000,
+        "sin(" * 3000 + "1" + ")" * 3000,
+        "2^" * 3000 + "2",
+    ],
     ids=["tower", "tower4", "parentheses", "signs", "sum", "10 MB", "digits", "calls", "powers"],
-)  # fmt: skip
+)
 def test_hostile_sizes_take_bounded_time(text: str) -> None:
     start = time.process_time()
     try:
@@ -93,10 +164,13 @@ def test_hostile_sizes_take_bounded_time(text: str) -> None:
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("2 kg", "'kg' unexpected"), ("25kg", "'25kg' is neither a number nor a name"), ("0.5m/s", "'0.5m' is neither"),
-        ("1e5x", "'1e5x' is neither"), ("1.2.3", "'1.2.3' is neither"),
+        ("2 kg", "'kg' unexpected"),
+        ("25kg", "'25kg' is neither a number nor a name"),
+        ("0.5m/s", "'0.5m' is neither"),
+        ("1e5x", "'1e5x' is neither"),
+        ("1.2.3", "'1.2.3' is neither"),
     ],
-)  # fmt: skip
+)
 def test_a_number_with_its_unit_is_told_to_do_without(text: str, reason: str) -> None:
     with pytest.raises(ExpressionError) as caught:
         parse(text)
@@ -145,7 +219,16 @@ def test_tokens_are_a_partition_of_the_text() -> None:
     text = " 2.5e-1*sin( q.x[3] ) ^ -dq "
     tokens = tokenize(text)
     assert [kind for kind, _, _ in tokens] == [
-        "number", "sign", "name", "sign", "name", "sign", "sign", "sign", "name", "end"
-    ]  # fmt: skip
+        "number",
+        "sign",
+        "name",
+        "sign",
+        "name",
+        "sign",
+        "sign",
+        "sign",
+        "name",
+        "end",
+    ]
     assert all(text[start : start + len(token)] == token for _, token, start in tokens)
     assert "".join(token for _, token, _ in tokens) == text.replace(" ", "")

@@ -10,13 +10,13 @@ import pytest
 from ruamel.yaml import YAML
 
 import reference_models
-from symofros.description.native.schema import SCHEMA_FILE, json_schema, schema_text
+from symofros.description.yaml.schema import SCHEMA_FILE, json_schema, schema_text
 
 FILES = sorted((Path(reference_models.__file__).parent).glob("*/*.yaml"))
 
 
 def test_the_published_schema_is_current() -> None:
-    assert SCHEMA_FILE.read_text(encoding="utf-8") == schema_text(), "run: python -m symofros.description.native.schema"
+    assert SCHEMA_FILE.read_text(encoding="utf-8") == schema_text(), "run: python -m symofros.description.yaml.schema"
 
 
 def test_it_is_a_legal_schema() -> None:

@@ -115,7 +115,7 @@ def test_impossible_inertias_load_with_a_note(tmp_path: Path) -> None:
         (("</robot>", '<link name="island"/></robot>'), 8, "two bases"),
         ((INERTIAL, ""), 0, "moves no mass"),
     ],
-)  # fmt: skip
+)
 def test_each_fault_names_its_line(change: tuple[str, str], line: int, part: str, tmp_path: Path) -> None:
     message = faults(tmp_path, ROBOT.replace(*change))
     assert part in message, message

@@ -10,7 +10,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.visual import MOST_VISUALS, Visual
-from symofros.topology.numbers import Numbers
+from symofros.mechanics.topology.numbers import Numbers
 
 ROBOT = """<robot name="arm"><material name="sky"><color rgba="0 0.5 1 1"/></material>
 <link name="base"/>
@@ -79,9 +79,22 @@ def test_meshes_are_found_in_the_folder_and_the_package(stated: str, where: str,
 
 
 @pytest.mark.parametrize(
-    "stated", ["../secret.stl", "/etc/passwd", "file:///etc/passwd", "package://robot/../secret.stl", "link.stl",
-               "package://../secret.stl", "missing.stl", "", "http://example.org/x.stl", "x" * 5000, "loop.stl", "package://a//etc/passwd"],
-)  # fmt: skip
+    "stated",
+    [
+        "../secret.stl",
+        "/etc/passwd",
+        "file:///etc/passwd",
+        "package://robot/../secret.stl",
+        "link.stl",
+        "package://../secret.stl",
+        "missing.stl",
+        "",
+        "http://example.org/x.stl",
+        "x" * 5000,
+        "loop.stl",
+        "package://a//etc/passwd",
+    ],
+)
 def test_meshes_elsewhere_are_left_alone(stated: str, tmp_path: Path) -> None:
     for place in (tmp_path / "secret.stl", tmp_path / "robot" / "secret.stl"):
         place.parent.mkdir(exist_ok=True)
@@ -95,10 +108,19 @@ def test_meshes_elsewhere_are_left_alone(stated: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "inside",
-    ["<visual/>", "<visual><geometry/></visual>", visual("<torus/>"), visual('<box size="1 2"/>'), visual("<sphere/>"),
-     visual('<box size="1 2 0"/>'), visual('<sphere radius="nan"/>'), visual('<cylinder radius="1"/>'),
-     visual(BOX, '<origin xyz="1 2"/>'), visual(BOX, '<origin rpy="a b c"/>')],
-)  # fmt: skip
+    [
+        "<visual/>",
+        "<visual><geometry/></visual>",
+        visual("<torus/>"),
+        visual('<box size="1 2"/>'),
+        visual("<sphere/>"),
+        visual('<box size="1 2 0"/>'),
+        visual('<sphere radius="nan"/>'),
+        visual('<cylinder radius="1"/>'),
+        visual(BOX, '<origin xyz="1 2"/>'),
+        visual(BOX, '<origin rpy="a b c"/>'),
+    ],
+)
 def test_what_is_not_understood_is_no_fault(inside: str, tmp_path: Path) -> None:
     system = load(tmp_path, inside)
     assert not system.visuals and any("can't be drawn ignored: 1 link (upper)" in note for note in system.notes)

@@ -171,8 +171,12 @@ def arm(model: sf.System, period: float | None = 1e-3, **start: float) -> sf.Dia
     diagram.add_model("plant", model, start=start)
     diagram.add(blocks.ForwardDynamics(name="plant", model="plant"), u="pd.effort")
     diagram.add(Number(name="goal", value=[0.5, -0.2]))
-    diagram.add(blocks.JointPD(name="pd", kp=[50.0, 30.0], kd=[5.0, 3.0], period=period),
-                q="plant.q", v="plant.v", q_desired="goal")  # fmt: skip
+    diagram.add(
+        blocks.JointPD(name="pd", kp=[50.0, 30.0], kd=[5.0, 3.0], period=period),
+        q="plant.q",
+        v="plant.v",
+        q_desired="goal",
+    )
     return diagram
 
 

@@ -116,8 +116,16 @@ def test_what_began_ends_where_another_does_not_begin() -> None:
 
     d = sf.Diagram("cable")
     for name, begins in (("first", lambda: heard.append("begin")), ("second", fails)):
-        d.add(PythonBlock(name=name, function=lambda t, inputs: {"y": 0.0}, outputs={"y": ()}, period=PERIOD,
-                          on_begin=begins, on_end=lambda name=name: heard.append(f"end {name}")))  # fmt: skip
+        d.add(
+            PythonBlock(
+                name=name,
+                function=lambda t, inputs: {"y": 0.0},
+                outputs={"y": ()},
+                period=PERIOD,
+                on_begin=begins,
+                on_end=lambda name=name: heard.append(f"end {name}"),
+            )
+        )
     d.add(Counter(name="ticks", period=PERIOD))
     simulation = sf.Simulation(d)
     for run in (simulation.run, simulation.interpret):

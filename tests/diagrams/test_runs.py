@@ -60,8 +60,9 @@ def test_a_sampled_controller_is_that_of_a_loop_around_simulate() -> None:
     assert np.abs(run["plant.q"][-1] - q).max() < 1e-13
 
 
-@pytest.mark.parametrize("name", ["rigid/torque_free_body", "rigid/gyroscope", "closed/slider_crank",
-                                  "flexible/flexible_pendulum"])  # fmt: skip
+@pytest.mark.parametrize(
+    "name", ["rigid/torque_free_body", "rigid/gyroscope", "closed/slider_crank", "flexible/flexible_pendulum"]
+)
 def test_mechanisms_of_every_kind_move_alike(name: str) -> None:
     """Quaternions, loops and beams; the plain simulation is the third witness."""
     system = sf.load(MODELS / f"{name}.yaml")
@@ -219,8 +220,12 @@ def test_parts_that_meet_at_samples_move_apart_and_on_any_number_of_threads() ->
         diagram.add_model(side, PENDULUM, start={"q1": 0.3 if side == "left" else -0.4})
         diagram.add(blocks.ForwardDynamics(name=side, model=side), u=f"pd_{side}.effort")
         other = "right" if side == "left" else "left"
-        diagram.add(blocks.JointPD(name=f"pd_{side}", kp=[50.0, 30.0], kd=[5.0, 3.0], period=0.002),
-                    q=f"{side}.q", v=f"{side}.v", q_desired=f"{other}.q")  # fmt: skip
+        diagram.add(
+            blocks.JointPD(name=f"pd_{side}", kp=[50.0, 30.0], kd=[5.0, 3.0], period=0.002),
+            q=f"{side}.q",
+            v=f"{side}.v",
+            q_desired=f"{other}.q",
+        )
     simulation = sf.Simulation(diagram)
     assert len(simulation.resolved.layout.parts) == 2
     alone = simulation.run(0.5, record=0.01)
@@ -243,8 +248,9 @@ def test_a_perturbation_is_a_load_of_the_model() -> None:
     diagram.add_model("plant", PENDULUM)
     wrench = [1.0, -2.0, 0.5, 0.0, 0.3, 0.1]
     diagram.add(Number(name="wrench", value=wrench))
-    diagram.add(blocks.ForwardDynamics(name="plant", model="plant", perturbed=(frame,)),
-                **{f"wrench_{frame}": "wrench"})  # fmt: skip
+    diagram.add(
+        blocks.ForwardDynamics(name="plant", model="plant", perturbed=(frame,)), **{f"wrench_{frame}": "wrench"}
+    )
     run = agree(diagram, 0.1, ["plant.q"], 100.0)
     q, v = run.motion("plant")
     a = run["plant.a"]

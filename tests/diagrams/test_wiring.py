@@ -144,8 +144,12 @@ def test_no_such_coordinate_at_the_start() -> None:
 
 def test_names() -> None:
     diagram = arm(PENDULUM)
-    for add in (lambda: diagram.add(Number(name="pd", value=1.0)), lambda: diagram.add(Number(name="1 x", value=1.0)),
-                lambda: diagram.connect("goal", "pd.q_desired"), lambda: diagram.connect("goal", "pd")):  # fmt: skip
+    for add in (
+        lambda: diagram.add(Number(name="pd", value=1.0)),
+        lambda: diagram.add(Number(name="1 x", value=1.0)),
+        lambda: diagram.connect("goal", "pd.q_desired"),
+        lambda: diagram.connect("goal", "pd"),
+    ):
         with pytest.raises(sf.DescriptionError, match=r"rule:[\s\S]*remedy:"):
             add()
 

@@ -124,8 +124,18 @@ def test_two_models_in_threads_under_checkers(tmp_path: Path, checker: str) -> N
         run("gcc", *flags, "-o", "threads", "threads.c", *files, "four_bar/symofros_stepper.c", "-lm", cwd=tmp_path)
         out = run("valgrind", "--error-exitcode=9", "--leak-check=full", "-q", "./threads", cwd=tmp_path)
     else:
-        run("clang", *flags, *sanitizers("clang", checker), "-o", "threads", "threads.c", *files,
-            "four_bar/symofros_stepper.c", "-lm", cwd=tmp_path)  # fmt: skip
+        run(
+            "clang",
+            *flags,
+            *sanitizers("clang", checker),
+            "-o",
+            "threads",
+            "threads.c",
+            *files,
+            "four_bar/symofros_stepper.c",
+            "-lm",
+            cwd=tmp_path,
+        )
         out = run("./threads", cwd=tmp_path)
     assert out == "0 bad\n"
 

@@ -14,8 +14,22 @@ FOUR_BAR = "reference_models/closed/four_bar.yaml"
 
 
 def test_it_writes_a_package(tmp_path: Path) -> None:
-    done = CliRunner().invoke(app, ["export", FOUR_BAR, "--target", "c", "-o", str(tmp_path / "out"), "--set", "q1=1.2",
-                                    "--frames", "rocker", "--json"])  # fmt: skip
+    done = CliRunner().invoke(
+        app,
+        [
+            "export",
+            FOUR_BAR,
+            "--target",
+            "c",
+            "-o",
+            str(tmp_path / "out"),
+            "--set",
+            "q1=1.2",
+            "--frames",
+            "rocker",
+            "--json",
+        ],
+    )
     assert done.exit_code == 0, done.output
     told = json.loads(done.output)
     assert told["name"] == "four_bar"
@@ -23,11 +37,14 @@ def test_it_writes_a_package(tmp_path: Path) -> None:
     assert "1.2" in (tmp_path / "out" / "four_bar_plant.c").read_text()
 
 
-@pytest.mark.parametrize(("words", "says"), [
-    (["--target", "excel"], "no target 'excel'"),
-    (["--target", "c", "--set", "q9=1"], "no coordinate or speed 'q9'"),
-    (["--target", "c", "--frames", "nowhere"], "no frame 'nowhere'"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--target", "excel"], "no target 'excel'"),
+        (["--target", "c", "--set", "q9=1"], "no coordinate or speed 'q9'"),
+        (["--target", "c", "--frames", "nowhere"], "no frame 'nowhere'"),
+    ],
+)
 def test_bad_words(tmp_path: Path, words: list[str], says: str) -> None:
     done = CliRunner().invoke(app, ["export", FOUR_BAR, *words, "-o", str(tmp_path / "out")])
     assert done.exit_code == 2

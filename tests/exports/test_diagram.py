@@ -155,5 +155,9 @@ def test_names_that_c_does_not_take(tmp_path: Path) -> None:
     diagram = sf.Diagram("for")
     diagram.add(Number(name="while", value=1.0))
     diagram.add(Lag(name="double"), x="while")
-    assert subprocess.run([built(sf.export(diagram, "c", tmp_path / "c", outputs=["double"]).folder), "--check"],
-                          capture_output=True).returncode == 0  # fmt: skip
+    assert (
+        subprocess.run(
+            [built(sf.export(diagram, "c", tmp_path / "c", outputs=["double"]).folder), "--check"], capture_output=True
+        ).returncode
+        == 0
+    )

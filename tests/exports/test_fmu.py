@@ -26,22 +26,45 @@ MODEL_EXCHANGE = 1e-6
 # Central differences of a function of size 1 by a step of 1e-6.
 DIFFERENCES = 1e-6
 
-FLOATING = sf.System("floating", (
-    sf.RigidBody("hull", sf.Joint("float", "free"), sf.Inertia(2.0, (0.1, 0, 0), (1, 2, 1.5)),
-                 (sf.Frame("top", (1, 0, 0)),)),
-    sf.RigidBody("arm", sf.Joint("s", "ball", "hull", "top"), sf.Inertia(1.0, (0.1, 0.2, 0), (1, 2, 1.5)),
-                 (sf.Frame("end", (1, 0, 0.2)),)),
-))  # fmt: skip
+FLOATING = sf.System(
+    "floating",
+    (
+        sf.RigidBody(
+            "hull", sf.Joint("float", "free"), sf.Inertia(2.0, (0.1, 0, 0), (1, 2, 1.5)), (sf.Frame("top", (1, 0, 0)),)
+        ),
+        sf.RigidBody(
+            "arm",
+            sf.Joint("s", "ball", "hull", "top"),
+            sf.Inertia(1.0, (0.1, 0.2, 0), (1, 2, 1.5)),
+            (sf.Frame("end", (1, 0, 0.2)),),
+        ),
+    ),
+)
 
 # The importer moves the first joint and the last; the tip moves with them.
-DRIVEN = sf.System("driven", (
-    sf.RigidBody("base", sf.Joint("crank", "revolute", axis=(1, 0.5, 0), prescribed=True), None,
-                 (sf.Frame("end", (0.7, 0, 0.1)),)),
-    sf.RigidBody("arm", sf.Joint("q1", "revolute", "base", "end", axis=(0, 1, 0), actuated=True),
-                 sf.Inertia(1.0, (0.3, 0.1, 0)), (sf.Frame("end", (0.8, 0, 0)),)),
-    sf.RigidBody("head", sf.Joint("neck", "universal", "arm", "end", prescribed=True), sf.Inertia(0.5, (0.1, 0, 0.2)),
-                 (sf.Frame("tip", (0.2, 0.3, 0.1)),)),
-))  # fmt: skip
+DRIVEN = sf.System(
+    "driven",
+    (
+        sf.RigidBody(
+            "base",
+            sf.Joint("crank", "revolute", axis=(1, 0.5, 0), prescribed=True),
+            None,
+            (sf.Frame("end", (0.7, 0, 0.1)),),
+        ),
+        sf.RigidBody(
+            "arm",
+            sf.Joint("q1", "revolute", "base", "end", axis=(0, 1, 0), actuated=True),
+            sf.Inertia(1.0, (0.3, 0.1, 0)),
+            (sf.Frame("end", (0.8, 0, 0)),),
+        ),
+        sf.RigidBody(
+            "head",
+            sf.Joint("neck", "universal", "arm", "end", prescribed=True),
+            sf.Inertia(0.5, (0.1, 0, 0.2)),
+            (sf.Frame("tip", (0.2, 0.3, 0.1)),),
+        ),
+    ),
+)
 OWN = {"floating": FLOATING, "driven": DRIVEN}
 
 
@@ -89,8 +112,9 @@ def test_co_simulation_moves_as_python_does(made: Any, name: str, version: int) 
 
 @pytest.mark.parametrize("name", [*MODELS, *OWN])
 def test_model_exchange_moves_as_python_does(made: Any, name: str, version: int) -> None:
-    found = fmpy.simulate_fmu(str(made(name, version)), fmi_type="ModelExchange", stop_time=0.2, output_interval=0.01,
-                              relative_tolerance=1e-9)  # fmt: skip
+    found = fmpy.simulate_fmu(
+        str(made(name, version)), fmi_type="ModelExchange", stop_time=0.2, output_interval=0.01, relative_tolerance=1e-9
+    )
     model = sf.compile(system_called(name))
     q, v = first_state(model, name) if name in STARTS else (model.neutral(), np.zeros(model.nv))
     wanted = sf.simulate(model, q, v, 0.2, dt=1e-4)
@@ -99,8 +123,9 @@ def test_model_exchange_moves_as_python_does(made: Any, name: str, version: int)
 
 def test_inputs_act(made: Any, version: int) -> None:
     drive = np.array([(0.0, 0.5), (1.0, 0.5)], dtype=[("time", float), ("u.q1", float)])
-    found = fmpy.simulate_fmu(str(made("planar_robot", version)), fmi_type="CoSimulation", stop_time=0.05,
-                              output_interval=0.01, input=drive)  # fmt: skip
+    found = fmpy.simulate_fmu(
+        str(made("planar_robot", version)), fmi_type="CoSimulation", stop_time=0.05, output_interval=0.01, input=drive
+    )
     model = sf.compile(system_of("planar_robot"))
     wanted = sf.simulate(model, *first_state(model, "planar_robot"), 0.05, u=[0.5, 0.0, 0.0], dt=1e-4)
     assert relative(columns(found, "q."), wanted.q[-1]) < SAME
@@ -110,8 +135,17 @@ def test_sources_compile_elsewhere(made: Any, version: int, tmp_path: Path) -> N
     """The sources that travel with it, as an importer builds them, under the strictest flags."""
     fmpy.extract(str(made("four_bar", version)), tmp_path)
     headers = Path(fmpy.__file__).parent / "c-code"
-    run("gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{headers}", f"four_bar_fmi{version}.c",
-        cwd=tmp_path / "sources")  # fmt: skip
+    run(
+        "gcc",
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-fsyntax-only",
+        f"-I{headers}",
+        f"four_bar_fmi{version}.c",
+        cwd=tmp_path / "sources",
+    )
 
 
 def test_only_the_interface_is_visible(made: Any, version: int, tmp_path: Path) -> None:
@@ -130,8 +164,12 @@ class Unit:
         self.version, self.description = version, fmpy.read_model_description(str(path))
         kind: Any = {(2, 0): FMU2Model, (2, 1): FMU2Slave, (3, 0): FMU3Model, (3, 1): FMU3Slave}[version, int(cosim)]
         interface = self.description.coSimulation if cosim else self.description.modelExchange
-        self.fmu = kind(guid=self.description.guid, unzipDirectory=str(folder), instanceName="it",
-                        modelIdentifier=interface.modelIdentifier)  # fmt: skip
+        self.fmu = kind(
+            guid=self.description.guid,
+            unzipDirectory=str(folder),
+            instanceName="it",
+            modelIdentifier=interface.modelIdentifier,
+        )
         self.fmu.instantiate()
         self.references = {variable.name: variable.valueReference for variable in self.description.modelVariables}
 
@@ -209,8 +247,11 @@ def test_states_are_saved_and_restored(unit: Any) -> None:
     it.fmu.doStep(0.0, 0.01)
     get, put = ("getFMUstate", "setFMUstate") if it.version == 2 else ("getFMUState", "setFMUState")
     saved = getattr(it.fmu, get)()
-    pack, unpack = (("serializeFMUstate", "deSerializeFMUstate") if it.version == 2 else
-                    ("serializeFMUState", "deserializeFMUState"))  # fmt: skip
+    pack, unpack = (
+        ("serializeFMUstate", "deSerializeFMUstate")
+        if it.version == 2
+        else ("serializeFMUState", "deserializeFMUState")
+    )
     text = getattr(it.fmu, pack)(saved)
     names = it.named("q.")
     it.fmu.doStep(0.01, 0.02)

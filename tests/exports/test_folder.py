@@ -9,8 +9,8 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.codegen.names import identifier
 from symofros.exports.folder import MANIFEST, write_folder
+from symofros.generator.codegen.names import identifier
 
 PENDULUM = MODELS["pendulum"]
 

@@ -17,15 +17,34 @@ SAME = 1e-12
 # MuJoCo diagonalises inertias, and gets a moment of 1e-12 where a bar has none.
 MUJOCO = 1e-10
 
-WRIST = sf.System("wrist", (
-    sf.RigidBody("slide", sf.Joint("tube", "cylindrical", axis=(0, 1, 1), position=(0.1, 0, 0.2)),
-                 sf.Inertia(2.0, (0.1, 0.2, 0), (0.1, 0.2, 0.15, 0.01, 0.02, 0.03)), (sf.Frame("end", (0.3, 0, 0)),)),
-    sf.RigidBody("hand", sf.Joint("cross", "universal", "slide", "end", axis=(1, 0, 0), axis2=(0, 1, 0),
-                                  rotation=sf.Rotation.rpy(0.3, 0.2, 0.1), elements=(sf.Damper(0.4, coordinate=1),)),
-                 sf.Inertia(1.0, (0.1, 0, 0.2), (0.01, 0.02, 0.015))),
-    sf.RigidBody("puck", sf.Joint("table", "planar", position=(0, 1, 0)),
-                 sf.Inertia(1.0, (0.1, 0, 0), (0.1, 0.1, 0.1))),
-))  # fmt: skip
+WRIST = sf.System(
+    "wrist",
+    (
+        sf.RigidBody(
+            "slide",
+            sf.Joint("tube", "cylindrical", axis=(0, 1, 1), position=(0.1, 0, 0.2)),
+            sf.Inertia(2.0, (0.1, 0.2, 0), (0.1, 0.2, 0.15, 0.01, 0.02, 0.03)),
+            (sf.Frame("end", (0.3, 0, 0)),),
+        ),
+        sf.RigidBody(
+            "hand",
+            sf.Joint(
+                "cross",
+                "universal",
+                "slide",
+                "end",
+                axis=(1, 0, 0),
+                axis2=(0, 1, 0),
+                rotation=sf.Rotation.rpy(0.3, 0.2, 0.1),
+                elements=(sf.Damper(0.4, coordinate=1),),
+            ),
+            sf.Inertia(1.0, (0.1, 0, 0.2), (0.01, 0.02, 0.015)),
+        ),
+        sf.RigidBody(
+            "puck", sf.Joint("table", "planar", position=(0, 1, 0)), sf.Inertia(1.0, (0.1, 0, 0), (0.1, 0.1, 0.1))
+        ),
+    ),
+)
 
 
 def original(name: str) -> sf.System:
@@ -105,8 +124,12 @@ def test_mujoco_agrees(tmp_path: Path, name: str, rng: np.random.Generator) -> N
 
 def test_losses_are_listed(tmp_path: Path) -> None:
     urdf = "\n".join(sf.export(system_of("planar_robot"), "urdf", tmp_path / "urdf").notes)
-    for words in ("beams as rigid bodies, without their elastic coordinates: link1, link2", "rotors dropped: q1",
-                  "springs, stops and friction of joints dropped: q1, e1", "parameters as the numbers"):  # fmt: skip
+    for words in (
+        "beams as rigid bodies, without their elastic coordinates: link1, link2",
+        "rotors dropped: q1",
+        "springs, stops and friction of joints dropped: q1, e1",
+        "parameters as the numbers",
+    ):
         assert words in urdf
     mjcf = "\n".join(sf.export(system_of("four_bar"), "mjcf", tmp_path / "mjcf").notes)
     assert "closure 'loop' also holds y" in mjcf

@@ -104,29 +104,44 @@ show('heavy', four_bar(1, X4, [], [2, 1])); show('light', four_bar(1, X4));
     p, R = model.frame_pose("tool", q)
     A, B = model.linearize(q, v, u)
     wanted = {
-        "a": a, "a4": a4, "lam4": lam4, "tau": model.inverse_dynamics(q, v, a), "p": p, "R": R,
-        "V": model.frame_velocity("tool", q, v), "J": model.frame_jacobian("tool", q),
-        "dJ": model.frame_jacobian_rate("tool", q, v), "phi": bar.constraint(q4 + 0.1),
-        "G": bar.constraint_jacobian(q4 + 0.1), "gamma": bar.constraint_bias(q4 + 0.1, v4 + 0.1),
-        "energy": np.array([bar.kinetic_energy(q4, v4), bar.potential_energy(q4)]), "A": A, "B": B,
-        "heavy": 2 * bar.mass_matrix(q4), "light": bar.mass_matrix(q4), "none": np.array([0, 3]),
-    }  # fmt: skip
+        "a": a,
+        "a4": a4,
+        "lam4": lam4,
+        "tau": model.inverse_dynamics(q, v, a),
+        "p": p,
+        "R": R,
+        "V": model.frame_velocity("tool", q, v),
+        "J": model.frame_jacobian("tool", q),
+        "dJ": model.frame_jacobian_rate("tool", q, v),
+        "phi": bar.constraint(q4 + 0.1),
+        "G": bar.constraint_jacobian(q4 + 0.1),
+        "gamma": bar.constraint_bias(q4 + 0.1, v4 + 0.1),
+        "energy": np.array([bar.kinetic_energy(q4, v4), bar.potential_energy(q4)]),
+        "A": A,
+        "B": B,
+        "heavy": 2 * bar.mass_matrix(q4),
+        "light": bar.mass_matrix(q4),
+        "none": np.array([0, 3]),
+    }
     for key, value in wanted.items():
         value = np.asarray(value).ravel()
         assert np.abs(found[key] - value).max() < SAME * max(1.0, np.abs(value).max()), key
 
 
-@pytest.mark.parametrize(("call", "says"), [
-    ("four_bar(11)", "symofros:four_bar:flag no such flag"),
-    ("four_bar('x')", "symofros:four_bar:flag the flag is no number"),
-    ("four_bar(1)", "symofros:four_bar:missing X = [q; v]; it has 6 entries"),
-    ("four_bar(1, [1 2])", "symofros:four_bar:size X = [q; v]; it is a real, full array of 6 doubles"),
-    ("four_bar(1, zeros(6, 1), [], [1 2 3])", "symofros:four_bar:size Parameters"),
-    ("four_bar(4, zeros(6, 1), 'nowhere')", "symofros:four_bar:frame no such frame"),
-    ("four_bar(4, zeros(6, 1), 99)", "symofros:four_bar:frame no such frame"),
-    ("four_bar(9, zeros(6, 1), [], [], [0 1 0])", "symofros:four_bar:span"),
-    ("[a, b, c] = four_bar(1, zeros(6, 1))", "symofros:four_bar:outputs"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        ("four_bar(11)", "symofros:four_bar:flag no such flag"),
+        ("four_bar('x')", "symofros:four_bar:flag the flag is no number"),
+        ("four_bar(1)", "symofros:four_bar:missing X = [q; v]; it has 6 entries"),
+        ("four_bar(1, [1 2])", "symofros:four_bar:size X = [q; v]; it is a real, full array of 6 doubles"),
+        ("four_bar(1, zeros(6, 1), [], [1 2 3])", "symofros:four_bar:size Parameters"),
+        ("four_bar(4, zeros(6, 1), 'nowhere')", "symofros:four_bar:frame no such frame"),
+        ("four_bar(4, zeros(6, 1), 99)", "symofros:four_bar:frame no such frame"),
+        ("four_bar(9, zeros(6, 1), [], [], [0 1 0])", "symofros:four_bar:span"),
+        ("[a, b, c] = four_bar(1, zeros(6, 1))", "symofros:four_bar:outputs"),
+    ],
+)
 def test_errors(folder: Path, call: str, says: str) -> None:
     code = f"try, {call}; catch e, printf('%s %s', e.identifier, strrep(e.message, 'four_bar: ', '')), end"
     assert says in octave(folder, code)

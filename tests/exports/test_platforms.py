@@ -13,9 +13,12 @@ from tests.exports.cases import STARTS, STRICT, need, relative, run, sources, sy
 
 # zig's target -> the emulator that runs it; s390x is big-endian, arm has pointers of 32 bits.
 TARGETS = {
-    "aarch64-linux-musl": "qemu-aarch64", "arm-linux-musleabihf": "qemu-arm", "s390x-linux-musl": "qemu-s390x",
-    "x86_64-windows-gnu": None, "aarch64-macos": None,
-}  # fmt: skip
+    "aarch64-linux-musl": "qemu-aarch64",
+    "arm-linux-musleabihf": "qemu-arm",
+    "s390x-linux-musl": "qemu-s390x",
+    "x86_64-windows-gnu": None,
+    "aarch64-macos": None,
+}
 # Another C library's sine and cosine.
 LIBM = 1e-11
 

@@ -19,8 +19,21 @@ def block(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     name = request.param
     folder = tmp_path_factory.mktemp("block") / name
     sf.export(system_of(name), "sfunction", folder, start=STARTS[name])
-    run("gcc", *STRICT, "-O2", f"-I{HEADERS}", "-I.", "-o", "../block", "symoSFunction.c", f"{name}.c",
-        f"{name}_plant.c", "symofros_stepper.c", "-lm", cwd=folder)  # fmt: skip
+    run(
+        "gcc",
+        *STRICT,
+        "-O2",
+        f"-I{HEADERS}",
+        "-I.",
+        "-o",
+        "../block",
+        "symoSFunction.c",
+        f"{name}.c",
+        f"{name}_plant.c",
+        "symofros_stepper.c",
+        "-lm",
+        cwd=folder,
+    )
     return name, folder.parent
 
 
@@ -70,8 +83,21 @@ def test_parameters_of_the_model(tmp_path: Path) -> None:
     system = system_of("four_bar")
     folder = tmp_path / "block"
     sf.export(system, "sfunction", folder, start=STARTS["four_bar"])
-    run("gcc", *STRICT, "-O2", f"-I{HEADERS}", "-I.", "-o", "../run", "symoSFunction.c", "four_bar.c",
-        "four_bar_plant.c", "symofros_stepper.c", "-lm", cwd=folder)  # fmt: skip
+    run(
+        "gcc",
+        *STRICT,
+        "-O2",
+        f"-I{HEADERS}",
+        "-I.",
+        "-o",
+        "../run",
+        "symoSFunction.c",
+        "four_bar.c",
+        "four_bar_plant.c",
+        "symofros_stepper.c",
+        "-lm",
+        cwd=folder,
+    )
     model = sf.compile(system)
     q, v = first_state(model, "four_bar")
     words = [repr(float(x)) for x in (*q, *v)]

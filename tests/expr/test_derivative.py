@@ -12,10 +12,31 @@ from symofros.expr.program import Program
 
 # Every row of the op table, at points inside its domain and away from kinks.
 FORMULAS = [
-    "x + y", "x*y", "x/y", "x^y", "x^3", "x^(-2)", "sqrt(x)", "exp(x*y)", "log(x + y)", "sin(x*y)", "cos(x - y)",
-    "tan(x)", "asin(x/3)", "acos(y/4)", "atan(x*y)", "atan2(x, y)", "sinh(x)", "cosh(y)", "tanh(x - y)",
-    "abs(x - y)*x", "sign(x - y)*y", "min(x, y)*x", "max(x, 2*y)*y", "-x*sin(-y)/(x + 3*y)^2",
-]  # fmt: skip
+    "x + y",
+    "x*y",
+    "x/y",
+    "x^y",
+    "x^3",
+    "x^(-2)",
+    "sqrt(x)",
+    "exp(x*y)",
+    "log(x + y)",
+    "sin(x*y)",
+    "cos(x - y)",
+    "tan(x)",
+    "asin(x/3)",
+    "acos(y/4)",
+    "atan(x*y)",
+    "atan2(x, y)",
+    "sinh(x)",
+    "cosh(y)",
+    "tanh(x - y)",
+    "abs(x - y)*x",
+    "sign(x - y)*y",
+    "min(x, y)*x",
+    "max(x, 2*y)*y",
+    "-x*sin(-y)/(x + 3*y)^2",
+]
 STEP = 1e-6
 
 

@@ -14,12 +14,26 @@ a, b, x = sympy.symbols("a b x")
 @pytest.mark.parametrize(
     "expression",
     [
-        a / 2, a - b, -a * b, a**2 + b**3, 1 / a, sympy.sqrt(a), sympy.Rational(1, 3) * a, sympy.pi * a,
-        sympy.sin(a) * sympy.cos(b) - sympy.tan(a * b), sympy.atan2(a, b), sympy.exp(-a) + sympy.log(b),
-        sympy.Abs(a - b), sympy.Max(a, b, 1), sympy.Min(a, b), a**sympy.Rational(3, 2), sympy.tanh(a), sympy.E * a,
+        a / 2,
+        a - b,
+        -a * b,
+        a**2 + b**3,
+        1 / a,
+        sympy.sqrt(a),
+        sympy.Rational(1, 3) * a,
+        sympy.pi * a,
+        sympy.sin(a) * sympy.cos(b) - sympy.tan(a * b),
+        sympy.atan2(a, b),
+        sympy.exp(-a) + sympy.log(b),
+        sympy.Abs(a - b),
+        sympy.Max(a, b, 1),
+        sympy.Min(a, b),
+        a ** sympy.Rational(3, 2),
+        sympy.tanh(a),
+        sympy.E * a,
     ],
     ids=str,
-)  # fmt: skip
+)
 def test_frozen_sympy_evaluates_alike(expression: sympy.Expr) -> None:
     values = {"a": 0.7, "b": 1.3}
     expected = float(expression.subs(values).evalf())

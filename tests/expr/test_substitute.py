@@ -44,7 +44,7 @@ def test_values_are_the_same(name: str, fixed: dict[str, float]) -> None:
         inputs[key[0]][:, int(key[2:-1])] = value
     pre = {"pre": np.zeros((3, len(program.init)))}
     if program.init:
-        from symofros.codegen.interpreted import InterpretedKernel
+        from symofros.generator.codegen.interpreted import InterpretedKernel
 
         pre["pre"] = InterpretedKernel(program, stated).prepare(inputs["par"])
     (want,) = interpret(program, stated, inputs | pre, 3)

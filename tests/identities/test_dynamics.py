@@ -119,7 +119,7 @@ def test_turning_the_world_changes_nothing(case: str, rng: np.random.Generator) 
         if body.name != "base"
     ]
     carrier = sf.RigidBody("carrier", sf.Joint("weld", "fixed", "ground", "turned"), None, base.frames)
-    from symofros.topology.numbers import Numbers
+    from symofros.mechanics.topology.numbers import Numbers
 
     R = Numbers(stated).rotation(turn)
     gravity = tuple(R @ np.array(stated.gravity, dtype=float))

@@ -72,9 +72,16 @@ LATERAL = 4.0126
 def lateral_load(functions: int, retain: str = "all") -> float:
     """The load at which the bent strip's stiffness against tipping is singular; nan if it never is."""
     beam = cantilever(
-        bend_y=functions, bend_z=2, twist=functions, EI_y=STIFF, GJ=1.0, rhoJ=1.0, retain=retain, family="polynomial",
+        bend_y=functions,
+        bend_z=2,
+        twist=functions,
+        EI_y=STIFF,
+        GJ=1.0,
+        rhoJ=1.0,
+        retain=retain,
+        family="polynomial",
         loads=(sf.BeamLoad((0, 0, "P"), at=1.0),),
-    )  # fmt: skip
+    )
     m = compiled(beam, parameters=[sf.Parameter("P", 0.0)])
     tipping = [i for i, name in enumerate(m.names.q) if "bend_z" not in name]
     still = np.zeros(m.nv)

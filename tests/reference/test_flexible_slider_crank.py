@@ -10,15 +10,20 @@ from scipy.integrate import solve_ivp
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.beams.shape_functions import shapes
+from symofros.mechanics.beams.shape_functions import shapes
 from validation.accuracy.reference import data
 
 DATA = data("flexible_slider_crank")
 RATE = 150.0  # Of the crank [rad/s].
 LARGEST = 1.865e-3  # Deflection at mid-span [m].
 FUNCTIONS = (
-    "forward_dynamics", "constraint", "constraint_jacobian", "constraint_rate", "constraint_bias", "frame_pose",
-)  # fmt: skip
+    "forward_dynamics",
+    "constraint",
+    "constraint_jacobian",
+    "constraint_rate",
+    "constraint_bias",
+    "frame_pose",
+)
 
 
 def deflection(modes: int, **changed: object) -> tuple[np.ndarray, np.ndarray]:

@@ -31,6 +31,10 @@ def test_against_reduced_equations(speed: float) -> None:
     # An explicit method takes steps of 3 / 8117 s here, whatever its tolerance.
     motion = solve_ivp(
         lambda t, y: np.concatenate([y[4:], m.forward_dynamics(y[:4], y[4:], [])]),
-        (0.0, 0.5), np.concatenate([q, v]), "DOP853", rtol=1e-9, atol=1e-11,
-    )  # fmt: skip
+        (0.0, 0.5),
+        np.concatenate([q, v]),
+        "DOP853",
+        rtol=1e-9,
+        atol=1e-11,
+    )
     assert motion.y[:4, -1] == pytest.approx([phi, beta, beta, s], abs=1e-8)

@@ -20,12 +20,18 @@ def by_euler_angles() -> sf.Model:
     c, s = {x: f"cos({x})" for x in ("phi", "theta", "psi")}, {x: f"sin({x})" for x in ("phi", "theta", "psi")}
     # Rz(phi) Rx(theta) Rz(psi), multiplied out.
     matrix = [
-        [f"{c['phi']}*{c['psi']} - {s['phi']}*{c['theta']}*{s['psi']}",
-         f"-{c['phi']}*{s['psi']} - {s['phi']}*{c['theta']}*{c['psi']}", f"{s['phi']}*{s['theta']}"],
-        [f"{s['phi']}*{c['psi']} + {c['phi']}*{c['theta']}*{s['psi']}",
-         f"-{s['phi']}*{s['psi']} + {c['phi']}*{c['theta']}*{c['psi']}", f"-{c['phi']}*{s['theta']}"],
+        [
+            f"{c['phi']}*{c['psi']} - {s['phi']}*{c['theta']}*{s['psi']}",
+            f"-{c['phi']}*{s['psi']} - {s['phi']}*{c['theta']}*{c['psi']}",
+            f"{s['phi']}*{s['theta']}",
+        ],
+        [
+            f"{s['phi']}*{c['psi']} + {c['phi']}*{c['theta']}*{s['psi']}",
+            f"-{s['phi']}*{s['psi']} + {c['phi']}*{c['theta']}*{c['psi']}",
+            f"-{c['phi']}*{s['theta']}",
+        ],
         [f"{s['theta']}*{s['psi']}", f"{s['theta']}*{c['psi']}", c["theta"]],
-    ]  # fmt: skip
+    ]
     joint = sf.Joint("tip", "general", coordinates=("phi", "theta", "psi"), moving_rotation=sf.Rotation.matrix(matrix))
     stated = MODELS["heavy_top"]
     top = stated.body("top")
@@ -38,11 +44,13 @@ def by_euler_angles() -> sf.Model:
 def body_rates(angles: Array, rates: Array) -> Array:
     """w in the body from z-x-z angles and their rates."""
     (_, theta, psi), (dphi, dtheta, dpsi) = angles, rates
-    return np.array([
-        dphi * np.sin(theta) * np.sin(psi) + dtheta * np.cos(psi),
-        dphi * np.sin(theta) * np.cos(psi) - dtheta * np.sin(psi),
-        dphi * np.cos(theta) + dpsi,
-    ])  # fmt: skip
+    return np.array(
+        [
+            dphi * np.sin(theta) * np.sin(psi) + dtheta * np.cos(psi),
+            dphi * np.sin(theta) * np.cos(psi) - dtheta * np.sin(psi),
+            dphi * np.cos(theta) + dpsi,
+        ]
+    )
 
 
 def quaternion(angles: Array) -> Array:
@@ -85,8 +93,12 @@ def test_turning_points_of_nutation(start: float) -> None:
     energy = A * start**2 * (1 - u0**2) / 2 + m * g * length * u0
     # A^2 u'^2 = (1 - u^2) (2 A energy - 2 A m g l u) - (p_phi - C w_z u)^2
     weight = 2 * A * m * g * length
-    cubic = [weight, -2 * A * energy - (C * spin) ** 2, 2 * about_vertical * C * spin - weight,
-             2 * A * energy - about_vertical**2]  # fmt: skip
+    cubic = [
+        weight,
+        -2 * A * energy - (C * spin) ** 2,
+        2 * about_vertical * C * spin - weight,
+        2 * A * energy - about_vertical**2,
+    ]
     roots = np.sort(np.roots(cubic).real)[:2]
 
     def climbing(t: float, y: Array) -> float:

@@ -17,9 +17,19 @@ from tests.reference import test_bricard as bricard
 from tests.reference import test_n_four_bar as four_bars
 
 # s of the slider every second, for a shaft that starts with one turn a second; reduced equations by an implicit method.
-GOVERNOR = (0.5, 0.5014209223797202, 0.5059092942965489, 0.5132460783402598, 0.5232233710264914, 0.5355631037220336,
-            0.5499286659059833, 0.5659381577196505, 0.5831783367098178, 0.6012184020472857,
-            0.6196229170612926)  # fmt: skip
+GOVERNOR = (
+    0.5,
+    0.5014209223797202,
+    0.5059092942965489,
+    0.5132460783402598,
+    0.5232233710264914,
+    0.5355631037220336,
+    0.5499286659059833,
+    0.5659381577196505,
+    0.5831783367098178,
+    0.6012184020472857,
+    0.6196229170612926,
+)
 
 
 class TestSimplePendulum:
@@ -34,10 +44,14 @@ class TestSimplePendulum:
     @pytest.mark.parametrize(
         ("method", "settings"),
         [
-            ("rk4", {"dt": 5e-3}), ("dopri5", {"rtol": 1e-8}), ("dop853", {"rtol": 1e-10}), ("rodas4", {"rtol": 1e-8}),
-            ("variational", {"dt": 5e-4}), ("generalized_alpha", {"dt": 1e-3}),
+            ("rk4", {"dt": 5e-3}),
+            ("dopri5", {"rtol": 1e-8}),
+            ("dop853", {"rtol": 1e-10}),
+            ("rodas4", {"rtol": 1e-8}),
+            ("variational", {"dt": 5e-4}),
+            ("generalized_alpha", {"dt": 1e-3}),
         ],
-    )  # fmt: skip
+    )
     def test_energy(self, method: str, settings: dict[str, float]) -> None:
         run = sf.simulate(self.model(), [np.pi], t_end=10.0, method=method, **settings)  # type: ignore[arg-type]
         # Generalised alpha damps what it can't resolve: 1e-3 J here with steps of a millisecond, of order h^2.

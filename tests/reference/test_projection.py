@@ -10,13 +10,24 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.topology.numbers import Numbers
+from symofros.mechanics.topology.numbers import Numbers
 from tests.reference.motion import Array, reference
 
 # Of sums of some ten bodies' terms, relative to the largest entry.
 ROUNDING = 1e-12
-NAMES = ("torque_free_body", "heavy_top", "puma560", "stanford_arm", "friction_arm", "joint_zoo", "car", "space_arm",
-         "random_tree1", "random_tree4", "random_tree70")  # fmt: skip
+NAMES = (
+    "torque_free_body",
+    "heavy_top",
+    "puma560",
+    "stanford_arm",
+    "friction_arm",
+    "joint_zoo",
+    "car",
+    "space_arm",
+    "random_tree1",
+    "random_tree4",
+    "random_tree70",
+)
 
 
 def central(body: sf.RigidBody, numbers: Numbers) -> tuple[float, Array, Array]:

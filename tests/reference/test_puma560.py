@@ -10,8 +10,24 @@ from tests.reference.motion import Array, reference
 # Armstrong, Khatib and Burdick 1986, appendix: gravity constants [N m] and inertial constants [kg m^2], as they are
 # quoted from it; the print itself was not at hand, but each follows from the parameters to the digits quoted.
 G = (-37.2, -8.44, 1.02, 0.249, -0.0282)
-J = {2: 1.75, 4: 0.69, 5: 0.372, 6: 0.333, 7: 0.298, 8: -0.134, 9: 0.0238, 10: -0.0213, 11: -0.0142, 12: -0.011,
-     13: -0.00379, 14: 0.00164, 15: 0.00125, 16: 0.00124, 17: 0.000642, 23: 0.00004}  # fmt: skip
+J = {
+    2: 1.75,
+    4: 0.69,
+    5: 0.372,
+    6: 0.333,
+    7: 0.298,
+    8: -0.134,
+    9: 0.0238,
+    10: -0.0213,
+    11: -0.0142,
+    12: -0.011,
+    13: -0.00379,
+    14: 0.00164,
+    15: 0.00125,
+    16: 0.00124,
+    17: 0.000642,
+    23: 0.00004,
+}
 MOTOR = (1.14, 4.71, 0.827, 0.2, 0.179, 0.193)
 # Printed with three digits, g = 9.81 rounded somewhere: half a unit of the third digit of the largest, several summed.
 PRINTED_GRAVITY = 0.05  # [N m]
@@ -31,8 +47,14 @@ def test_gravity_is_the_published_one() -> None:
         c2, s2, c23, s23 = np.cos(q[1]), np.sin(q[1]), np.cos(q[1] + q[2]), np.sin(q[1] + q[2])
         c4, s4, c5, s5 = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
         forearm = G[1] * s23 + G[3] * c23 + G[4] * (s23 * c5 + c23 * c4 * s5)
-        expected = [0.0, G[0] * c2 + G[2] * s2 + forearm, forearm, -G[4] * s23 * s4 * s5,
-                    G[4] * (c23 * s5 + s23 * c4 * c5), 0.0]  # fmt: skip
+        expected = [
+            0.0,
+            G[0] * c2 + G[2] * s2 + forearm,
+            forearm,
+            -G[4] * s23 * s4 * s5,
+            G[4] * (c23 * s5 + s23 * c4 * c5),
+            0.0,
+        ]
         np.testing.assert_allclose(puma.bias(q, np.zeros(6)), expected, atol=PRINTED_GRAVITY)
 
 
@@ -65,8 +87,19 @@ def test_inertia_about_the_vertical_varies_as_published() -> None:
     for q in poses():
         c2, s2, c23, s23 = np.cos(q[1]), np.sin(q[1]), np.cos(q[1] + q[2]), np.sin(q[1] + q[2])
         c4, c5, s5 = np.cos(q[3]), np.cos(q[4]), np.sin(q[4])
-        functions.append([s23**2, s23 * c23, s2 * c2, 2 * c2 * s23, 2 * c2 * c23, 1.0, c2**2,
-                          2 * (s23**2 * c5 + s23 * c23 * c4 * s5), 2 * c2 * (s23 * c5 + c23 * c4 * s5)])  # fmt: skip
+        functions.append(
+            [
+                s23**2,
+                s23 * c23,
+                s2 * c2,
+                2 * c2 * s23,
+                2 * c2 * c23,
+                1.0,
+                c2**2,
+                2 * (s23**2 * c5 + s23 * c23 * c4 * s5),
+                2 * c2 * (s23 * c5 + c23 * c4 * s5),
+            ]
+        )
         values.append(puma.mass_matrix(q)[0, 0])
     coefficients = np.linalg.lstsq(np.array(functions), np.array(values))[0]
     expected = [J[7], J[10], J[11], J[5], J[12]]

@@ -118,8 +118,13 @@ def test_first_integrals_along_a_motion() -> None:
     assert np.all(np.diff(lean) > 0)
     linear = solve_ivp(
         lambda angle, y: [-m * r**2 / (A + m * r**2) * y[1], np.tan(angle) * y[1] - A / D * y[0]],
-        (lean[0], lean[-1]), [4.0, 1.0], "DOP853", lean, rtol=1e-12, atol=1e-12,
-    )  # fmt: skip
+        (lean[0], lean[-1]),
+        [4.0, 1.0],
+        "DOP853",
+        lean,
+        rtol=1e-12,
+        atol=1e-12,
+    )
     assert np.array([row[0][1:] for row in found]).T == pytest.approx(linear.y, abs=1e-9)
 
 

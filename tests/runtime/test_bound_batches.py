@@ -147,11 +147,16 @@ def test_numbers_of_states_are_whole_and_positive(n: object) -> None:
 @pytest.mark.parametrize(
     "array",
     [
-        np.zeros((4, 3)), np.zeros((3, 2)), np.zeros(3), np.zeros((4, 2), dtype=np.float32), [[0.0, 0.0]] * 4,
-        np.broadcast_to(np.zeros(2), (4, 2)), np.zeros((4, 2), dtype=">f8"),
+        np.zeros((4, 3)),
+        np.zeros((3, 2)),
+        np.zeros(3),
+        np.zeros((4, 2), dtype=np.float32),
+        [[0.0, 0.0]] * 4,
+        np.broadcast_to(np.zeros(2), (4, 2)),
+        np.zeros((4, 2), dtype=">f8"),
         np.ndarray((4, 2), buffer=bytearray(100), strides=(20, 8)),
     ],
-)  # fmt: skip
+)
 def test_other_arrays_are_refused(array: np.ndarray) -> None:
     with pytest.raises(sf.ShapeError, match=r"'q' can't be bound(.|\n)*shape \(4, 2\), or \(2,\) for all states"):
         model("double_pendulum", "c").bind("mass_matrix", n=4, q=array)

@@ -9,8 +9,8 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.codegen.templates import template
 from symofros.compiler import describe, plan
+from symofros.native import native_text
 from symofros.runtime import tuning
 from symofros.runtime.toolchain import find_toolchain
 from symofros.runtime.tuning import builds
@@ -70,8 +70,10 @@ def test_each_compiler_is_tried_once() -> None:
     """cc, gcc and gcc-12 are one compiler; of those with a version in the name the newest counts."""
     toolchain = find_toolchain()
     assert toolchain is not None
-    tried = [(build.toolchain.identity.split()[-1], build.flags, build.packs)
-             for build in builds(sf.Options(tune=True), toolchain)]  # fmt: skip
+    tried = [
+        (build.toolchain.identity.split()[-1], build.flags, build.packs)
+        for build in builds(sf.Options(tune=True), toolchain)
+    ]
     assert len(tried) == len(set(tried))
 
 
@@ -93,7 +95,7 @@ def test_slower_builds_lose() -> None:
 
     def load(path: Path) -> tuning.CompiledUnit:
         symbol, of = stated[path]
-        return tuning.CompiledUnit(path, symbol, template("symofros_model.h"), of)
+        return tuning.CompiledUnit(path, symbol, native_text("model/symofros_model.h"), of)
 
     slow, fast = stated
     assert tuning.fastest([slow, fast], load) == fast

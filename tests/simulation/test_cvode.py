@@ -32,11 +32,26 @@ def test_it_follows_its_tolerance(name: str, method: str) -> None:
 def test_output_events_and_laws() -> None:
     model = sf.compile(MODELS["pendulum"])
     run = sf.simulate(
-        model, [1.0], t_end=2.0, u={"q": "0.1*sin(t)"}, method="cvode_adams", rtol=1e-9, atol=1e-10, output=0.1,
+        model,
+        [1.0],
+        t_end=2.0,
+        u={"q": "0.1*sin(t)"},
+        method="cvode_adams",
+        rtol=1e-9,
+        atol=1e-10,
+        output=0.1,
         events={"down": sf.Event("q", "falling"), "up": sf.Event("q", "rising", terminal=True)},
-    )  # fmt: skip
-    same = sf.simulate(model, [1.0], t_end=2.0, u={"q": "0.1*sin(t)"}, method="dop853", rtol=1e-11, atol=1e-12,
-                       events={"up": sf.Event("q", "rising", terminal=True)})  # fmt: skip
+    )
+    same = sf.simulate(
+        model,
+        [1.0],
+        t_end=2.0,
+        u={"q": "0.1*sin(t)"},
+        method="dop853",
+        rtol=1e-11,
+        atol=1e-12,
+        events={"up": sf.Event("q", "rising", terminal=True)},
+    )
     assert [event.name for event in run.events] == ["down", "up"]
     assert run.outcome.kind == "event" and run.outcome.t == pytest.approx(same.outcome.t, abs=1e-7)
     np.testing.assert_allclose(run.t[:-1], 0.1 * np.arange(len(run) - 1), atol=1e-12)

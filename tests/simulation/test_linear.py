@@ -55,10 +55,13 @@ def test_central_differences(name: str) -> None:
     directions = np.block([[S, np.zeros((2 * m.nv, m.nu))], [np.zeros((m.nu, S.shape[1])), np.eye(m.nu)]]).T
     # Sixth order, so that rounding and not truncation is what is left.
     weights = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
-    numeric = np.array([
-        sum(w * (acceleration(name, q, v, u, i * e) - acceleration(name, q, v, u, -i * e)) for i, w in weights) / STEP
-        for e in STEP * directions
-    ])  # fmt: skip
+    numeric = np.array(
+        [
+            sum(w * (acceleration(name, q, v, u, i * e) - acceleration(name, q, v, u, -i * e)) for i, w in weights)
+            / STEP
+            for e in STEP * directions
+        ]
+    )
     exact = directions @ np.concatenate([A[m.nv :], B[m.nv :]], axis=1).T
     scale = max(1.0, float(np.abs(numeric).max()))
     assert np.abs(exact - numeric).max() / scale < 1e-7

@@ -15,8 +15,11 @@ from symofros.simulation.methods import METHODS
 FIRST = {1: 200, 2: 100, 4: 120}
 # Where its order shows between the first asymptotic errors and rounding; for order 5 on stewart, not within 0.1.
 FIRST_OF = {
-    ("heavy_top", "dopri5"): 100, ("joint_zoo", "dopri5"): 45, ("four_bar", "dopri5"): 20, ("four_bar", "rodas4"): 40,
-}  # fmt: skip
+    ("heavy_top", "dopri5"): 100,
+    ("joint_zoo", "dopri5"): 45,
+    ("four_bar", "dopri5"): 20,
+    ("four_bar", "rodas4"): 40,
+}
 SPAN = 0.4
 # Free and ball joints carry quaternions; the loop of four bars and the platform of six legs carry constraints.
 SCENES = ("heavy_top", "joint_zoo", "four_bar", "stewart")

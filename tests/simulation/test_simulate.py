@@ -58,8 +58,16 @@ def test_period_of_the_pendulum(pendulum: sf.Model) -> None:
     amplitude = 1.2
     model = sf.compile(MODELS["pendulum"])
     # A quarter of the period: from rest at the amplitude to the lowest point.
-    run = sf.simulate(model, [amplitude], [0.0], 10.0, method="dop853", rtol=1e-12, atol=1e-12,
-                      events={"low": sf.Event("q", terminal=True)})  # fmt: skip
+    run = sf.simulate(
+        model,
+        [amplitude],
+        [0.0],
+        10.0,
+        method="dop853",
+        rtol=1e-12,
+        atol=1e-12,
+        events={"low": sf.Event("q", terminal=True)},
+    )
     small = sf.modes(model, [0.0], [0.0], [0.0]).frequencies[0]
     quarter = ellipk(np.sin(amplitude / 2) ** 2) / small
     assert run.outcome.kind == "event"
@@ -116,8 +124,9 @@ class TestInputs:
         hub = sf.RigidBody(
             "hub", sf.Joint("turn", "revolute", axis=(0, 1, 0), prescribed=True), frames=[sf.Frame("end", (1, 0, 0))]
         )
-        bar = sf.RigidBody("bar", sf.Joint("q", "revolute", "hub", "end", axis=(0, 1, 0)),
-                           sf.Inertia(1.0, (0.5, 0, 0), (0, 0.1, 0.1)))  # fmt: skip
+        bar = sf.RigidBody(
+            "bar", sf.Joint("q", "revolute", "hub", "end", axis=(0, 1, 0)), sf.Inertia(1.0, (0.5, 0, 0), (0, 0.1, 0.1))
+        )
         model = sf.compile(sf.System("driven", [hub, bar]))
         alone = sf.simulate(model, t_end=0.5, u={"turn": "sin(3*t)^2"})
         stated = {"turn": "sin(3*t)^2", "dturn": "3*sin(6*t)", "ddturn": "18*cos(6*t)"}
@@ -153,8 +162,9 @@ class TestOutput:
         times = np.linspace(0.0, 1.0, 33)
         run = sf.simulate(pendulum, [1.0], [0.0], 1.0, method=method, dt=2e-3, output=times, rtol=1e-9, atol=1e-9)
         np.testing.assert_array_equal(run.t, times)
-        exact = solve_ivp(slope(pendulum, lambda t, q, v: [0.0]), (0, 1), [1.0, 0.0], "DOP853", times, rtol=1e-12,
-                          atol=1e-12)  # fmt: skip
+        exact = solve_ivp(
+            slope(pendulum, lambda t, q, v: [0.0]), (0, 1), [1.0, 0.0], "DOP853", times, rtol=1e-12, atol=1e-12
+        )
         bound = 1e-4 if method == "generalized_alpha" else 1e-6
         np.testing.assert_allclose(run.q[:, 0], exact.y[0], atol=bound)
 
@@ -178,8 +188,16 @@ class TestOutput:
 
 class TestEvents:
     def test_directions(self, pendulum: sf.Model) -> None:
-        run = sf.simulate(pendulum, [1.0], [0.0], 6.0, method="dop853", rtol=1e-11, atol=1e-11, events={
-            "down": sf.Event("q", "falling"), "up": sf.Event("q", "rising"), "any": "q"})  # fmt: skip
+        run = sf.simulate(
+            pendulum,
+            [1.0],
+            [0.0],
+            6.0,
+            method="dop853",
+            rtol=1e-11,
+            atol=1e-11,
+            events={"down": sf.Event("q", "falling"), "up": sf.Event("q", "rising"), "any": "q"},
+        )
         names = [event.name for event in run.events]
         assert names.count("any") == names.count("up") + names.count("down") >= 4
         assert [e.t for e in run.events] == sorted(e.t for e in run.events)
@@ -253,8 +271,12 @@ class TestEnds:
 
         By articulated bodies the mass of a point cancels, and what is found is the limit of less and less of it.
         """
-        first = sf.RigidBody("first", sf.Joint("a", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, -1.0)),
-                             (sf.Frame("end", (0, 0, -1.0)),))  # fmt: skip
+        first = sf.RigidBody(
+            "first",
+            sf.Joint("a", "revolute", axis=(0, 1, 0)),
+            sf.Inertia(1.0, (0, 0, -1.0)),
+            (sf.Frame("end", (0, 0, -1.0)),),
+        )
         joint = sf.Joint("b", "revolute", "first", "end", axis=(0, 1, 0))
         last = sf.RigidBody("last", joint, sf.Inertia(sf.formula("m", "mass"), (0, 0, -1.0)))
         system = sf.System("light", (first, last), parameters=(sf.Parameter("m", 1.0),))
@@ -326,8 +348,9 @@ class TestEnds:
 
         def calls(events: dict[str, str]) -> int:
             asked.clear()
-            run = sf.simulate(pendulum, [0.5], t_end=0.01, method="rk4", u=law, output=[0.0], events=events,
-                              stabilisation="none")  # fmt: skip
+            run = sf.simulate(
+                pendulum, [0.5], t_end=0.01, method="rk4", u=law, output=[0.0], events=events, stabilisation="none"
+            )
             assert not run.events
             return len(asked)
 

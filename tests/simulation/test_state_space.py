@@ -23,8 +23,12 @@ SOLID = sf.Inertia(1.5, (0.1, -0.2, 0.05), (0.3, 0.4, 0.5))
 def driven() -> sf.System:
     """An arm on a base that moves as it is told."""
     base = sf.RigidBody("base", sf.Joint("sweep", "revolute", prescribed=True), SOLID, (sf.Frame("e", (0.5, 0, 0)),))
-    arm = sf.RigidBody("arm", sf.Joint("q", "revolute", "base", "e", axis=(0, 1, 0), actuated=True), SOLID,
-                       (sf.Frame("tip", (0.3, 0.1, 0.2)),))  # fmt: skip
+    arm = sf.RigidBody(
+        "arm",
+        sf.Joint("q", "revolute", "base", "e", axis=(0, 1, 0), actuated=True),
+        SOLID,
+        (sf.Frame("tip", (0.3, 0.1, 0.2)),),
+    )
     return sf.System("driven", (base, arm))
 
 

@@ -30,8 +30,12 @@ def test_csv_loses_no_digit(run: sf.Trajectory, tmp_path: Path) -> None:
     with open(run.save(tmp_path / "run.csv"), newline="") as stream:
         rows = list(csv.reader(stream))
     names = run.model.names
-    assert rows[0] == ["t", *names.q, *(f"d{name}" for name in names.v), *(f"u.{n}" if n in names.q else n
-                                                                          for n in names.u)]  # fmt: skip
+    assert rows[0] == [
+        "t",
+        *names.q,
+        *(f"d{name}" for name in names.v),
+        *(f"u.{n}" if n in names.q else n for n in names.u),
+    ]
     values = np.array(rows[1:], dtype=float)
     np.testing.assert_array_equal(values, np.column_stack([run.t, run.q, run.v, run.u]))
 
@@ -58,7 +62,9 @@ def test_columns_by_name(run: sf.Trajectory) -> None:
 def test_picture(run: sf.Trajectory) -> None:
     figure = run.plot()
     assert [axis.get_ylabel() for axis in figure.axes] == [
-        "coordinates [rad, m]", "speeds [rad/s, m/s]", "change of energy [J]",
-    ]  # fmt: skip
+        "coordinates [rad, m]",
+        "speeds [rad/s, m/s]",
+        "change of energy [J]",
+    ]
     lines = figure.axes[0].get_lines()
     np.testing.assert_array_equal(lines[0].get_ydata(), run.q[:, 0])

@@ -44,9 +44,13 @@ def floating_arm() -> Subject:
     """Small, with a velocity that turns with the body."""
     bodies = [
         sf.RigidBody("hull", sf.Joint("hull", "free"), UNIT),
-        sf.RigidBody("arm", sf.Joint("shoulder", "revolute", "hull", None, (0.1, 0.2, 0.3)), UNIT,
-                     [sf.Frame("hand", (0.5, 0.1, 0.2))]),
-    ]  # fmt: skip
+        sf.RigidBody(
+            "arm",
+            sf.Joint("shoulder", "revolute", "hull", None, (0.1, 0.2, 0.3)),
+            UNIT,
+            [sf.Frame("hand", (0.5, 0.1, 0.2))],
+        ),
+    ]
     return subject_of(sf.System("floating_arm", bodies))
 
 

@@ -73,7 +73,7 @@ def test_one_entry_off_by_ten_tolerances_is_found(quantity: str) -> None:
         ("frame_velocity", lambda V: np.roll(V, 3, axis=-1), {"frame_velocity"}),
         ("kinetic_energy", lambda T: np.full_like(T, np.nan), {"kinetic_energy", "motion_energy"}),
     ],
-)  # fmt: skip
+)
 def test_planted_faults(method: str, fault: Callable[[np.ndarray], np.ndarray], found: set[str]) -> None:
     assert disagreeing(checked(lambda subject: Faulty(pinocchio.build(subject), method, fault))) == found
 

@@ -12,5 +12,10 @@ def test_robot(label: str) -> None:
     result = run_case(robot_case(label), Settings(states=20))
     assert result.ok, [row for row in result.comparisons if not row.ok]
     assert {row.engine for row in result.comparisons if row.status == "agree"} >= {
-        "pinocchio", "mujoco", "pinocchio-urdf", "mujoco-urdf", "interpreted", "description"
-    }  # fmt: skip
+        "pinocchio",
+        "mujoco",
+        "pinocchio-urdf",
+        "mujoco-urdf",
+        "interpreted",
+        "description",
+    }

@@ -48,9 +48,16 @@ def heavy(functions: int) -> sf.Model:
 def lateral(functions: int, retain: str = "all") -> float:
     """P L^2/sqrt(EI GJ) of a strip on edge under a load at its tip; NaN if it never tips over."""
     beam = cantilever(
-        bend_y=functions, bend_z=2, twist=functions, EI_y=STIFF, GJ=1.0, rhoJ=1.0, retain=retain, family="polynomial",
+        bend_y=functions,
+        bend_z=2,
+        twist=functions,
+        EI_y=STIFF,
+        GJ=1.0,
+        rhoJ=1.0,
+        retain=retain,
+        family="polynomial",
         loads=(sf.BeamLoad((0.0, 0.0, sf.formula("P", "load")), at=1.0),),
-    )  # fmt: skip
+    )
     m = interpreted(beam, functions=("dynamics", "mass_matrix", "inverse_dynamics_derivatives"), parameters=["P"])
     tipping = np.array(["bend_z" not in name for name in m.names.q])
     K, _ = stiffness_and_mass(m)
@@ -68,8 +75,10 @@ def study(quick: bool) -> Study:
     """Answer."""
     reference = data("buckling_cantilever")
     counts = np.arange(1.0, 6.0 if quick else 11.0)
-    loads = {family: np.array([euler(family, int(n)) if n <= 7 or family != "polynomial" else np.nan for n in counts])
-             for family in FAMILIES}  # fmt: skip
+    loads = {
+        family: np.array([euler(family, int(n)) if n <= 7 or family != "polynomial" else np.nan for n in counts])
+        for family in FAMILIES
+    }
     checks = [
         near(f"Euler's load, {family}, 5 functions", float(loads[family][4]), EULER, 1e-3, "π²/4")
         for family in FAMILIES
@@ -79,21 +88,48 @@ def study(quick: bool) -> Study:
         worst = max(
             (abs(loads[family][n - 1] / known[str(n)][basis] - 1.0), n) for n in range(1, min(len(counts), 7) + 1)
         )
-        checks.append(near(f"Euler's load, {family}, {worst[1]} functions, against a Ritz solution",
-                           float(loads[family][worst[1] - 1]), known[str(worst[1])][basis], 1e-8,
-                           "the farthest of all numbers of functions"))  # fmt: skip
+        checks.append(
+            near(
+                f"Euler's load, {family}, {worst[1]} functions, against a Ritz solution",
+                float(loads[family][worst[1] - 1]),
+                known[str(worst[1])][basis],
+                1e-8,
+                "the farthest of all numbers of functions",
+            )
+        )
     m = heavy(5)
     (K, _), (falling, _) = stiffness_and_mass(m), stiffness_and_mass(m, g=-1.0)
     greenhill = critical(K, K - falling)
-    checks.append(near("buckling under its weight, 5 functions", greenhill, reference["greenhill_self_weight"], 1e-3,
-                       "Greenhill 1881: 7.8373"))  # fmt: skip
+    checks.append(
+        near(
+            "buckling under its weight, 5 functions",
+            greenhill,
+            reference["greenhill_self_weight"],
+            1e-3,
+            "Greenhill 1881: 7.8373",
+        )
+    )
     functions = np.arange(1.0, 5.0 if quick else 7.0)
     sideways = np.array([lateral(int(n)) for n in functions])
-    checks.append(near(f"lateral buckling, {functions[-1]:g} functions a field", float(sideways[-1]), LATERAL,
-                       1e-3 if quick else 2e-5, "Prandtl 1899"))  # fmt: skip
+    checks.append(
+        near(
+            f"lateral buckling, {functions[-1]:g} functions a field",
+            float(sideways[-1]),
+            LATERAL,
+            1e-3 if quick else 2e-5,
+            "Prandtl 1899",
+        )
+    )
     flat = lateral(3, "first_order")
-    checks.append(Check("lateral buckling at first order, 1 if it occurs", float(np.isfinite(flat)), 0.0, 0.0,
-                        "a quadratic strain energy has no coupling"))  # fmt: skip
+    checks.append(
+        Check(
+            "lateral buckling at first order, 1 if it occurs",
+            float(np.isfinite(flat)),
+            0.0,
+            0.0,
+            "a quadratic strain energy has no coupling",
+        )
+    )
     power = exponent(counts[2:], loads["clamped_free"][2:] / EULER - 1.0)
     answer = (
         f"Five polynomials give Euler's load to {loads['legendre'][4] / EULER - 1:.0e}, five splines to "
@@ -102,40 +138,60 @@ def study(quick: bool) -> Study:
         f"edge tips over at {sideways[-1]:.4f} √(EI GJ)/L² with retain: all; first order has a quadratic strain energy "
         "and never does."
     )
-    return Study("Does it buckle when it should?", answer,
-                 (axial(counts, loads, quick, reference), strip(functions, sideways)), tuple(checks),
-                 (source("buckling_cantilever"),))  # fmt: skip
+    return Study(
+        "Does it buckle when it should?",
+        answer,
+        (axial(counts, loads, quick, reference), strip(functions, sideways)),
+        tuple(checks),
+        (source("buckling_cantilever"),),
+    )
 
 
 def axial(counts: Array, loads: dict[str, Array], quick: bool, reference: dict[str, Any]) -> Figure:
     """Loads and weight along the axis."""
-    convergence = Chart("Euler's load", "number of functions  [1]", "relative error  [1]", tuple(
-        Curve(family, counts, np.maximum(found / EULER - 1.0, 1e-15), COLORS[family], "joined")
-        for family, found in loads.items()
-    ), (Mark("0.1 %", 1e-3),), log_y=True)  # fmt: skip
+    convergence = Chart(
+        "Euler's load",
+        "number of functions  [1]",
+        "relative error  [1]",
+        tuple(
+            Curve(family, counts, np.maximum(found / EULER - 1.0, 1e-15), COLORS[family], "joined")
+            for family, found in loads.items()
+        ),
+        (Mark("0.1 %", 1e-3),),
+        log_y=True,
+    )
     m, weights = heavy(8), np.linspace(-10.0, 10.0, 20 if quick else 201)
     found = np.array([squares(*stiffness_and_mass(m, g=float(g)))[0] for g in weights])
     rows = [row for row in reference["gravity_frequencies_hanging_positive"] if row["gamma"] <= 10.0]
     exact = Curve(
         "exact", np.array([row["gamma"] for row in rows]), np.array([row["omega"][0] for row in rows]), 0, "points"
     )
-    weight = Chart("first frequency under its weight", "weight ρA g L³/EI, positive if it hangs  [1]",
-                   "first frequency ω₁ √(ρA L⁴/EI)  [1]",
-                   (Curve("our beam", weights, np.sqrt(np.where(found >= 0.0, found, np.nan)), 0), exact),
-                   (Mark("Greenhill: −7.8373", -7.8373, "x"),))  # fmt: skip
+    weight = Chart(
+        "first frequency under its weight",
+        "weight ρA g L³/EI, positive if it hangs  [1]",
+        "first frequency ω₁ √(ρA L⁴/EI)  [1]",
+        (Curve("our beam", weights, np.sqrt(np.where(found >= 0.0, found, np.nan)), 0), exact),
+        (Mark("Greenhill: −7.8373", -7.8373, "x"),),
+    )
     return Figure(
         "Left: every family comes from above and reaches 0.1 % with five functions; cantilever modes are the slowest. "
         "Right: what hangs is stiffened by its weight, what stands is softened, and falls over where the curve "
-        "reaches zero.", (convergence, weight)
-    )  # fmt: skip
+        "reaches zero.",
+        (convergence, weight),
+    )
 
 
 def strip(functions: Array, loads: Array) -> Figure:
     """Sideways."""
-    chart = Chart("lateral buckling of a strip on edge", "number of functions a field  [1]",
-                  "critical load P L²/√(EI GJ)  [1]", (Curve("retain: all", functions, loads, 0, "joined"),),
-                  (Mark("4.0126 (Prandtl)", LATERAL),))  # fmt: skip
+    chart = Chart(
+        "lateral buckling of a strip on edge",
+        "number of functions a field  [1]",
+        "critical load P L²/√(EI GJ)  [1]",
+        (Curve("retain: all", functions, loads, 0, "joined"),),
+        (Mark("4.0126 (Prandtl)", LATERAL),),
+    )
     return Figure(
         "The cubic part of the strain energy couples bending and twist: the load falls to Prandtl's within four "
-        "functions a field.", (chart,)
-    )  # fmt: skip
+        "functions a field.",
+        (chart,),
+    )

@@ -35,6 +35,9 @@ STUDIES: dict[str, Asked] = {
 }
 
 TOPIC = Topic(
-    "accuracy", "Accuracy of beams", "Measure beams against closed forms, tables and exact rods.",
-    "docs/theory/beams.md", STUDIES,
-)  # fmt: skip
+    "accuracy",
+    "Accuracy of beams",
+    "Measure beams against closed forms, tables and exact rods.",
+    "docs/theory/beams.md",
+    STUDIES,
+)

@@ -31,39 +31,77 @@ def study(quick: bool) -> Study:
             errors[family][i] = abs(np.sqrt(squares(K, M)[0]) / FIRST - 1.0)
     rows = data("conditioning")["rows"]
     checks = [
-        near(f"{family}: condition number with {n} functions", float(numbers[family][n - 1]), rows[n - 1][family], room,
-             "computed independently")
-        for family, n, room in (("polynomial", 4, 1e-6), ("polynomial", 7, 1e-3), ("spline", 8, 1e-6),
-                                ("clamped_free", 8, 1e-6))
-    ]  # fmt: skip
+        near(
+            f"{family}: condition number with {n} functions",
+            float(numbers[family][n - 1]),
+            rows[n - 1][family],
+            room,
+            "computed independently",
+        )
+        for family, n, room in (
+            ("polynomial", 4, 1e-6),
+            ("polynomial", 7, 1e-3),
+            ("spline", 8, 1e-6),
+            ("clamped_free", 8, 1e-6),
+        )
+    ]
     checks += [
-        Check("polynomial: the number of functions that is refused", float(refused), 8.0, 8.0,
-              "condition 2e12: four digits are left"),
-        near("legendre: condition number with 8 functions", float(numbers["legendre"][7]), 19 / 5, 1e-9,
-             "diagonal 1/(2k + 5), tip value one"),
-        Check("clamped_free: first frequency at rest, relative error", float(np.nanmax(errors["clamped_free"])),
-              1e-8, reason="its functions are the modes"),
-    ]  # fmt: skip
+        Check(
+            "polynomial: the number of functions that is refused",
+            float(refused),
+            8.0,
+            8.0,
+            "condition 2e12: four digits are left",
+        ),
+        near(
+            "legendre: condition number with 8 functions",
+            float(numbers["legendre"][7]),
+            19 / 5,
+            1e-9,
+            "diagonal 1/(2k + 5), tip value one",
+        ),
+        Check(
+            "clamped_free: first frequency at rest, relative error",
+            float(np.nanmax(errors["clamped_free"])),
+            1e-8,
+            reason="its functions are the modes",
+        ),
+    ]
     answer = (
         f"Monomials lose a digit and a half with every further one: {numbers['polynomial'][3]:.0e} with four, "
         f"{numbers['polynomial'][6]:.0e} with seven, and are refused with {refused}, in words that name another "
         f"family. Splines stay at {numbers['spline'][-1]:.0f}, legendre grows as (2n + 3)/5 and is diagonal, "
         "cantilever modes have the identity."
     )
-    return Study("How many functions before the digits go?", answer, (figure(counts, numbers, errors),),
-                 tuple(checks), (source("conditioning"),))  # fmt: skip
+    return Study(
+        "How many functions before the digits go?",
+        answer,
+        (figure(counts, numbers, errors),),
+        tuple(checks),
+        (source("conditioning"),),
+    )
 
 
 def figure(counts: Array, numbers: dict[str, Array], errors: dict[str, Array]) -> Figure:
     """Condition and what it does to the first frequency."""
-    condition = Chart("condition number of M", "number of functions  [1]", "condition number  [1]",
-                      tuple(Curve(f, counts, y, COLORS[f], "joined") for f, y in numbers.items()),
-                      (Mark("refused", 1e12),), log_y=True)  # fmt: skip
-    first = Chart("first frequency at rest", "number of functions  [1]", "relative error  [1]",
-                  tuple(Curve(f, counts, np.maximum(y, 1e-17), COLORS[f], "joined") for f, y in errors.items()),
-                  log_y=True)  # fmt: skip
+    condition = Chart(
+        "condition number of M",
+        "number of functions  [1]",
+        "condition number  [1]",
+        tuple(Curve(f, counts, y, COLORS[f], "joined") for f, y in numbers.items()),
+        (Mark("refused", 1e12),),
+        log_y=True,
+    )
+    first = Chart(
+        "first frequency at rest",
+        "number of functions  [1]",
+        "relative error  [1]",
+        tuple(Curve(f, counts, np.maximum(y, 1e-17), COLORS[f], "joined") for f, y in errors.items()),
+        log_y=True,
+    )
     return Figure(
         "Left: only monomials climb, and stop short of the red line, where they are refused; the other families can "
         "have any number of functions. Right: the first frequency falls to rounding with polynomials and stays there; "
-        "cantilever modes are exact at rest, splines converge with the fourth power.", (condition, first)
-    )  # fmt: skip
+        "cantilever modes are exact at rest, splines converge with the fourth power.",
+        (condition, first),
+    )

@@ -30,18 +30,34 @@ def study(quick: bool) -> Study:
     n, error = errors["legendre"]
     falling = (n >= 4) & (error[:, 0] > FLOOR)
     gain = -float(np.polyfit(n[falling], np.log10(error[falling, 0]), 1)[0])
-    shared = max(abs(errors["polynomial"][1][k, 0] - errors["legendre"][1][list(n).index(m), 0])
-                 for k, m in enumerate(errors["polynomial"][0]) if m in n)  # fmt: skip
+    shared = max(
+        abs(errors["polynomial"][1][k, 0] - errors["legendre"][1][list(n).index(m), 0])
+        for k, m in enumerate(errors["polynomial"][0])
+        if m in n
+    )
     checks = (
-        Check("cubic splines: exponent in the number of spans, first frequency", powers["spline"], 6.0, 3.5,
-              "h^4 for eigenvalues by cubic splines; seen before the limit is reached it may be steeper"),
-        Check("cantilever modes: exponent in their number, first frequency", powers["clamped_free"], 5.0, 3.0,
-              "the modes' bending moment has no slope at the root under a centrifugal load"),
-        Check("Legendre: decades an added function gains, first frequency", gain, 2.0, 0.6,
-              "exponential convergence"),
-        Check("polynomial against Legendre: largest difference of the errors", float(shared), 1e-9,
-              reason="they span the same space"),
-    )  # fmt: skip
+        Check(
+            "cubic splines: exponent in the number of spans, first frequency",
+            powers["spline"],
+            6.0,
+            3.5,
+            "h^4 for eigenvalues by cubic splines; seen before the limit is reached it may be steeper",
+        ),
+        Check(
+            "cantilever modes: exponent in their number, first frequency",
+            powers["clamped_free"],
+            5.0,
+            3.0,
+            "the modes' bending moment has no slope at the root under a centrifugal load",
+        ),
+        Check("Legendre: decades an added function gains, first frequency", gain, 2.0, 0.6, "exponential convergence"),
+        Check(
+            "polynomial against Legendre: largest difference of the errors",
+            float(shared),
+            1e-9,
+            reason="they span the same space",
+        ),
+    )
     answer = (
         f"A spinning beam's first frequency at η = {ETA}, r/L = {DELTA} converges as n^-{powers['clamped_free']:.1f} "
         f"in cantilever modes, as n^-{powers['spline']:.1f} in cubic splines, and exponentially in polynomials: each "
@@ -73,12 +89,25 @@ def relative(family: str, tried: list[int], exact: Array) -> tuple[Array, Array]
 def figure(errors: dict[str, tuple[Array, Array]]) -> Figure:
     """Two frequencies."""
     charts = tuple(
-        Chart(f"flap frequency {mode}, η = {ETA}, r/L = {DELTA}", "number of functions  [1]", "relative error  [1]",
-              tuple(Curve(family, n, np.maximum(error[:, column], 1e-15),
-                          COLORS[family], "points" if family == "hermite" else "joined")
-                    for family, (n, error) in errors.items() if np.isfinite(error[:, column]).any()), log_y=True)
+        Chart(
+            f"flap frequency {mode}, η = {ETA}, r/L = {DELTA}",
+            "number of functions  [1]",
+            "relative error  [1]",
+            tuple(
+                Curve(
+                    family,
+                    n,
+                    np.maximum(error[:, column], 1e-15),
+                    COLORS[family],
+                    "points" if family == "hermite" else "joined",
+                )
+                for family, (n, error) in errors.items()
+                if np.isfinite(error[:, column]).any()
+            ),
+            log_y=True,
+        )
         for column, mode in enumerate((1, 3))
-    )  # fmt: skip
+    )
     return Figure(
         "The polynomials fall ever faster, which is exponential convergence; splines and cantilever modes bend over "
         "to a power law. The families legendre, polynomial and hermite span the same space and lie on the same curve.",

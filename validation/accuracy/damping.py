@@ -39,15 +39,27 @@ def study(quick: bool) -> Study:
     closed = 2 * np.pi * zeta / np.sqrt(1 - zeta**2)
     checks = (
         near("logarithmic decrement of the first mode", decrement, closed, 1e-6, "2π ζ/√(1 − ζ²), ζ = τ ω₁/2"),
-        Check("modes: largest relative error of the damping ratio", float(np.abs(ratios / expected - 1.0).max()), 1e-8,
-              reason="ζ = τ ω/2"),
+        Check(
+            "modes: largest relative error of the damping ratio",
+            float(np.abs(ratios / expected - 1.0).max()),
+            1e-8,
+            reason="ζ = τ ω/2",
+        ),
         near("number of modes that oscillate", float(len(ratios)), float(oscillating.sum()), 0.0, "those with τ ω < 2"),
-        Check("other modes excited, over the first", float(np.abs(q[:, 1:]).max() / start[0]), 1e-9,
-              reason="damping in proportion to stiffness couples no modes"),
+        Check(
+            "other modes excited, over the first",
+            float(np.abs(q[:, 1:]).max() / start[0]),
+            1e-9,
+            reason="damping in proportion to stiffness couples no modes",
+        ),
         near("first frequency", float(omegas[0]), FIRST, 1e-8, "the cantilever's, M = 1"),
-        Check("mass matrix of the modes: distance from 1", float(np.abs(M - np.eye(MODES)).max()), 1e-9,
-              reason="they are normalised to a mean square of one"),
-    )  # fmt: skip
+        Check(
+            "mass matrix of the modes: distance from 1",
+            float(np.abs(M - np.eye(MODES)).max()),
+            1e-9,
+            reason="they are normalised to a mean square of one",
+        ),
+    )
     answer = (
         f"The first mode decays by {decrement:.6f} a period, where the closed form has {closed:.6f}. Damping ratios "
         f"are τ ω/2: they grow with frequency, so that of {MODES} modes {len(ratios)} oscillate at τ = {TAU:g}, and "
@@ -60,15 +72,31 @@ def study(quick: bool) -> Study:
 def figure(curve: Curve, zeta: float, omegas: Array, ratios: Array) -> Figure:
     """Decay, and ratios against frequency."""
     envelope = np.exp(-zeta * FIRST * curve.x)
-    decay = Chart("decay of the first mode", "time  [√(ρA L⁴/EI)]", "over the start  [1]",
-                  (curve, Curve("exp(−ζ ω₁ t)", curve.x, envelope, 1, "dashed"),
-                   Curve("−exp(−ζ ω₁ t)", curve.x, -envelope, 1, "dashed")))  # fmt: skip
+    decay = Chart(
+        "decay of the first mode",
+        "time  [√(ρA L⁴/EI)]",
+        "over the start  [1]",
+        (
+            curve,
+            Curve("exp(−ζ ω₁ t)", curve.x, envelope, 1, "dashed"),
+            Curve("−exp(−ζ ω₁ t)", curve.x, -envelope, 1, "dashed"),
+        ),
+    )
     line = np.geomspace(omegas[0] / 1.2, omegas[-1] * 1.2, 50)
-    growth = Chart("damping ratio against frequency", "frequency ω √(ρA L⁴/EI)  [1]", "damping ratio  [1]",
-                   (Curve("τ ω/2", line, TAU * line / 2, 1, "dashed"),
-                    Curve("modes that oscillate", omegas[: len(ratios)], ratios, 0, "points")),
-                   (Mark("critical", 1.0),), log_x=True, log_y=True)  # fmt: skip
+    growth = Chart(
+        "damping ratio against frequency",
+        "frequency ω √(ρA L⁴/EI)  [1]",
+        "damping ratio  [1]",
+        (
+            Curve("τ ω/2", line, TAU * line / 2, 1, "dashed"),
+            Curve("modes that oscillate", omegas[: len(ratios)], ratios, 0, "points"),
+        ),
+        (Mark("critical", 1.0),),
+        log_x=True,
+        log_y=True,
+    )
     return Figure(
         "The motion touches its exponential envelope at every extreme. At the right, the damping ratios of the modes "
-        "lie on the line τ ω/2; what is above the red line does not oscillate.", (decay, growth)
-    )  # fmt: skip
+        "lie on the line τ ω/2; what is above the red line does not oscillate.",
+        (decay, growth),
+    )

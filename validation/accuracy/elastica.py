@@ -56,11 +56,15 @@ def study(quick: bool) -> Study:
     begins = {name: float(np.interp(float(name), ours[:, 0] / rod[:, 0] - 1, rod[:, 0])) for name in LEVELS}
     checks = [Check("elastica in elliptic integrals against the table", distance, 1e-9, reason="the same curve")]
     checks += [
-        near(f"deflection over L at which the error reaches {label}", begins[name],
-             reference["thresholds_on_linear_theory"][name]["tip_y_over_L"], 1e-2 if quick else 2e-3,
-             "the known theory's, read off between loads")
+        near(
+            f"deflection over L at which the error reaches {label}",
+            begins[name],
+            reference["thresholds_on_linear_theory"][name]["tip_y_over_L"],
+            1e-2 if quick else 2e-3,
+            "the known theory's, read off between loads",
+        )
         for name, label in LEVELS.items()
-    ]  # fmt: skip
+    ]
     answer = (
         f"The deflection errs by 1 % at {begins['0.01']:.3f} L, 5 % at {begins['0.05']:.3f} L and 10 % at "
         f"{begins['0.1']:.3f} L. It is linear theory's deflection: what second order adds is the shortening, right to "
@@ -69,8 +73,14 @@ def study(quick: bool) -> Study:
     )
     cable = np.array([static_tip(1.0, 1.0, STRETCH, (0.0, a)) for a in alphas.tolist()])
     cable = np.stack([cable[:, 1], 1.0 - cable[:, 0]], axis=-1)
-    checks.append(Check("Exudyn, 16 ANCF cables: largest distance from the elastica over L",
-                        float(np.abs(cable - rod).max()), 2e-4, reason="it is exact in bending"))  # fmt: skip
+    checks.append(
+        Check(
+            "Exudyn, 16 ANCF cables: largest distance from the elastica over L",
+            float(np.abs(cable - rod).max()),
+            2e-4,
+            reason="it is exact in bending",
+        )
+    )
     figures = (shapes(alphas, ours, rod, cable), growth(ours, rod))
     return Study("How far may it bend?", answer, figures, tuple(checks), (source("elastica_tip_load"),))
 
@@ -78,30 +88,52 @@ def study(quick: bool) -> Study:
 def shapes(alphas: Array, ours: Array, rod: Array, cable: Array) -> Figure:
     """Deflection and shortening against load."""
     x = "load P L²/EI  [1]"
-    deflection = Chart("deflection of the tip", x, "deflection over L  [1]", (
-        Curve("elastica", alphas, rod[:, 0], 0), Curve("Exudyn", alphas[::4], cable[::4, 0], 5, "points"),
-        Curve("our beam (as linear theory)", alphas, ours[:, 0], 1, "dashed"),
-    ), (Mark("1 %", 0.098), Mark("5 %", 0.214)))  # fmt: skip
-    shortening = Chart("shortening of the tip", x, "shortening over L  [1]", (
-        Curve("elastica", alphas, rod[:, 1], 0), Curve("Exudyn", alphas[::4], cable[::4, 1], 5, "points"),
-        Curve("our beam", alphas, ours[:, 1], 1, "dashed"),
-        Curve("linear theory", alphas, 0 * alphas, 4, "dotted"),
-    ))  # fmt: skip
+    deflection = Chart(
+        "deflection of the tip",
+        x,
+        "deflection over L  [1]",
+        (
+            Curve("elastica", alphas, rod[:, 0], 0),
+            Curve("Exudyn", alphas[::4], cable[::4, 0], 5, "points"),
+            Curve("our beam (as linear theory)", alphas, ours[:, 0], 1, "dashed"),
+        ),
+        (Mark("1 %", 0.098), Mark("5 %", 0.214)),
+    )
+    shortening = Chart(
+        "shortening of the tip",
+        x,
+        "shortening over L  [1]",
+        (
+            Curve("elastica", alphas, rod[:, 1], 0),
+            Curve("Exudyn", alphas[::4], cable[::4, 1], 5, "points"),
+            Curve("our beam", alphas, ours[:, 1], 1, "dashed"),
+            Curve("linear theory", alphas, 0 * alphas, 4, "dotted"),
+        ),
+    )
     return Figure(
         "The beam follows the elastica through its first tenth of a length, then bends too far, because load and axis "
         "stay as they were; its shortening, which linear theory does not have, follows as far.",
         (deflection, shortening),
-    )  # fmt: skip
+    )
 
 
 def growth(ours: Array, rod: Array) -> Figure:
     """Errors against deflection."""
     error = np.abs(ours / rod - 1.0)
-    chart = Chart("error against deflection", "deflection of the tip over L  [1]", "relative error  [1]", (
-        Curve("deflection", rod[:, 0], error[:, 0], 0, "joined"),
-        Curve("shortening", rod[:, 0], error[:, 1], 1, "joined"),
-    ), (Mark("1 %", 0.01), Mark("5 %", 0.05)), log_x=True, log_y=True)  # fmt: skip
+    chart = Chart(
+        "error against deflection",
+        "deflection of the tip over L  [1]",
+        "relative error  [1]",
+        (
+            Curve("deflection", rod[:, 0], error[:, 0], 0, "joined"),
+            Curve("shortening", rod[:, 0], error[:, 1], 1, "joined"),
+        ),
+        (Mark("1 %", 0.01), Mark("5 %", 0.05)),
+        log_x=True,
+        log_y=True,
+    )
     return Figure(
         "Both errors are straight lines of slope two: half the deflection, a quarter of the error. Read off where the "
-        "red lines are crossed: 1 % at 0.10 L, 5 % at 0.21 L.", (chart,)
-    )  # fmt: skip
+        "red lines are crossed: 1 % at 0.10 L, 5 % at 0.21 L.",
+        (chart,),
+    )

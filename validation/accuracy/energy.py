@@ -20,9 +20,20 @@ def system(retain: str) -> sf.Model:
     One function a direction, with frequencies alike, so that the integrator's steps are not those of high modes.
     """
     beam = sf.Beam(
-        "b", sf.Joint("hub", "revolute", axis=(0, 1, 2)), 1.0, 1.0, EI_z=1.0, EI_y=1.5, GJ=0.5, rhoJ=0.05, bend_y=1,
-        bend_z=1, twist=1, family="polynomial", retain=retain,  # type: ignore[arg-type]
-    )  # fmt: skip
+        "b",
+        sf.Joint("hub", "revolute", axis=(0, 1, 2)),
+        1.0,
+        1.0,
+        EI_z=1.0,
+        EI_y=1.5,
+        GJ=0.5,
+        rhoJ=0.05,
+        bend_y=1,
+        bend_z=1,
+        twist=1,
+        family="polynomial",
+        retain=retain,  # type: ignore[arg-type]
+    )
     load = sf.RigidBody("load", sf.Joint("weld", "fixed", "b", "tip"), sf.Inertia(0.1, moments=(0.01,) * 3))
     functions = ("forward_dynamics", "kinetic_energy", "potential_energy")
     return sf.compile(sf.System("s", (beam, load), gravity=(0, 0, 0)), sf.Options(functions))
@@ -48,13 +59,26 @@ def study(quick: bool) -> Study:
     half = time < periods / 2
     growth = float(runs[0.05][~half].max() / runs[0.05][half].max())
     checks = (
-        Check(f"retain: all, {periods} periods: largest relative error of the energy", float(all_error.max()), KEPT,
-              reason="the integrator's tolerance of 1e-12, gathered over the run"),
-        Check("first order: exponent of the error in the deflection", slope, 3.0, 1.9,
-              "terms from the second degree on are dropped"),
-        Check("first order: error in the second half over that in the first", growth, 1.5,
-              reason="bounded: it does not drift"),
-    )  # fmt: skip
+        Check(
+            f"retain: all, {periods} periods: largest relative error of the energy",
+            float(all_error.max()),
+            KEPT,
+            reason="the integrator's tolerance of 1e-12, gathered over the run",
+        ),
+        Check(
+            "first order: exponent of the error in the deflection",
+            slope,
+            3.0,
+            1.9,
+            "terms from the second degree on are dropped",
+        ),
+        Check(
+            "first order: error in the second half over that in the first",
+            growth,
+            1.5,
+            reason="bounded: it does not drift",
+        ),
+    )
     answer = (
         f"With everything kept, energy is constant to {all_error.max():.0e} over {periods} periods, which is what the "
         f"integrator leaves. At first order it errs by {largest[1]:.1e} at 0.05 L, falling with the deflection to the "
@@ -67,19 +91,33 @@ def figure(time: Array, kept: Array, runs: dict[float, Array], largest: Array) -
     """Through time, and against deflection."""
     first = (
         Curve(f"first order, {d:g} L", time[40::40], envelope(run[1:]), k + 1)
-        for k, (d, run) in
-        enumerate(runs.items())
-    )  # fmt: skip
-    through = Chart("energy of a free motion", "periods of the first mode  [1]", "relative error of the energy  [1]", (
-        Curve("retain: all, 0.1 L", time[40::40], envelope(kept[1:]), 0),
-        *first,
-    ), (Mark("bound for retain: all", KEPT),), log_y=True)  # fmt: skip
+        for k, (d, run) in enumerate(runs.items())
+    )
+    through = Chart(
+        "energy of a free motion",
+        "periods of the first mode  [1]",
+        "relative error of the energy  [1]",
+        (
+            Curve("retain: all, 0.1 L", time[40::40], envelope(kept[1:]), 0),
+            *first,
+        ),
+        (Mark("bound for retain: all", KEPT),),
+        log_y=True,
+    )
     deflections = np.array(list(runs))
-    against = Chart("first order: error against deflection", "deflection at the start over L  [1]",
-                    "largest relative error of ten periods  [1]",
-                    (Curve("first order", deflections, largest, 1, "joined"),
-                     Curve("square of the deflection", deflections, largest[1] * (deflections / deflections[1]) ** 2, 4,
-                           "dotted")), log_x=True, log_y=True)  # fmt: skip
+    against = Chart(
+        "first order: error against deflection",
+        "deflection at the start over L  [1]",
+        "largest relative error of ten periods  [1]",
+        (
+            Curve("first order", deflections, largest, 1, "joined"),
+            Curve(
+                "square of the deflection", deflections, largest[1] * (deflections / deflections[1]) ** 2, 4, "dotted"
+            ),
+        ),
+        log_x=True,
+        log_y=True,
+    )
     return Figure(
         "Left, the largest error of each period: first order stays level, eight decades above retain: all, which "
         "gathers nothing but the integrator's errors. Right, half the deflection leaves a quarter of the "

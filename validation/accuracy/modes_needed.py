@@ -37,17 +37,31 @@ def study(quick: bool) -> Study:
     errors = {family: np.array([first(n, family, etas, exact) for n in tried]) for family in KINDS}
     needed = {(family, tolerance): least(errors[family], tolerance) for family in KINDS for tolerance in TOLERANCES}
     checks = tuple(
-        Check(f"cantilever modes, {n}: largest error over the known one, three frequencies, η ≤ 12", ratio, MARGIN,
-              reason="a Ritz solution computed independently; 5 % for its digits")
+        Check(
+            f"cantilever modes, {n}: largest error over the known one, three frequencies, η ≤ 12",
+            ratio,
+            MARGIN,
+            reason="a Ritz solution computed independently; 5 % for its digits",
+        )
         for n, ratio in worst.items()
-    )  # fmt: skip
+    )
     fast = len(etas) - 1
-    answer = f"At η = {etas[fast]:g}, r/L = 0 the first flap frequency needs " + ", ".join(
-        f"{words(needed['clamped_free', t][fast], len(tried))} cantilever modes or "
-        f"{words(needed['legendre', t][fast], len(tried))} polynomials for {100 * t:g} %" for t in TOLERANCES
-    ) + ". Cantilever modes serve slow beams and coarse tolerances; polynomials win otherwise."  # fmt: skip
-    return Study("How many functions does a tolerance need?", answer, (figure(etas, needed, errors),), checks,
-                 (source("modes_needed"),))  # fmt: skip
+    answer = (
+        f"At η = {etas[fast]:g}, r/L = 0 the first flap frequency needs "
+        + ", ".join(
+            f"{words(needed['clamped_free', t][fast], len(tried))} cantilever modes or "
+            f"{words(needed['legendre', t][fast], len(tried))} polynomials for {100 * t:g} %"
+            for t in TOLERANCES
+        )
+        + ". Cantilever modes serve slow beams and coarse tolerances; polynomials win otherwise."
+    )
+    return Study(
+        "How many functions does a tolerance need?",
+        answer,
+        (figure(etas, needed, errors),),
+        checks,
+        (source("modes_needed"),),
+    )
 
 
 def first(functions: int, family: str, etas: Array, exact: Array) -> Array:
@@ -71,17 +85,30 @@ def words(count: float, most: int) -> str:
 def figure(etas: Array, needed: dict[tuple[str, float], Array], errors: dict[str, Array]) -> Figure:
     """Errors, and what they mean for the choice."""
     x = "speed η = Ω √(ρA L⁴/EI)  [1]"
-    modes = Chart("cantilever modes, first flap frequency, r/L = 0", x, "relative error  [1]", tuple(
-        Curve(f"{n} mode{'s' * (n > 1)}", etas, errors["clamped_free"][n - 1], k, "joined")
-        for k, n in enumerate((1, 2, 3, 5)) if n <= len(errors["clamped_free"])
-    ), log_y=True)  # fmt: skip
-    choice = Chart("functions needed", x, "number of functions  [1]", tuple(
-        Curve(f"{family}, {100 * tolerance:g} %", etas, needed[family, tolerance], color, kind)
-        for family, kind in KINDS.items()
-        for color, tolerance in enumerate(TOLERANCES)
-    ))  # fmt: skip
+    modes = Chart(
+        "cantilever modes, first flap frequency, r/L = 0",
+        x,
+        "relative error  [1]",
+        tuple(
+            Curve(f"{n} mode{'s' * (n > 1)}", etas, errors["clamped_free"][n - 1], k, "joined")
+            for k, n in enumerate((1, 2, 3, 5))
+            if n <= len(errors["clamped_free"])
+        ),
+        log_y=True,
+    )
+    choice = Chart(
+        "functions needed",
+        x,
+        "number of functions  [1]",
+        tuple(
+            Curve(f"{family}, {100 * tolerance:g} %", etas, needed[family, tolerance], color, kind)
+            for family, kind in KINDS.items()
+            for color, tolerance in enumerate(TOLERANCES)
+        ),
+    )
     return Figure(
         "Left, what a number of cantilever modes is worth: the error climbs with the speed, and each mode lowers it by "
         "less than the one before. Right, the number needed for a tolerance; dashed are polynomials, which need "
-        "fewer as soon as the tolerance is fine. A curve ends where none of those tried is enough.", (modes, choice)
-    )  # fmt: skip
+        "fewer as soon as the tolerance is fine. A curve ends where none of those tried is enough.",
+        (modes, choice),
+    )

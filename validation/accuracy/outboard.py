@@ -48,23 +48,33 @@ def study(quick: bool) -> Study:
     expected = {mass: ritz(etas, mass) for mass in MASSES}
     without = ours(etas, MASSES[2], foreshortening=False, retain="all")
     checks = [
-        Check(f"mass ratio {mass:g}: largest relative error of the first flap frequency's square",
-              float(np.abs(found[mass] / expected[mass] - 1.0).max()), 1e-9, reason="the same basis, by quadrature")
+        Check(
+            f"mass ratio {mass:g}: largest relative error of the first flap frequency's square",
+            float(np.abs(found[mass] / expected[mass] - 1.0).max()),
+            1e-9,
+            reason="the same basis, by quadrature",
+        )
         for mass in MASSES
-    ]  # fmt: skip
+    ]
     slopes = {mass: float((squares[-1] - squares[0]) / etas[-1] ** 2) for mass, squares in found.items()}
     ratio = {mass: float(np.sqrt(squares[-1] / squares[0])) for mass, squares in found.items()}
-    checks.append(Check("without foreshortening, mass ratio 1: change of the frequency with speed, relative",
-                        float(np.abs(without / without[0] - 1.0).max()), 1e-8,
-                        reason="nothing is pulled back, so nothing stiffens"))  # fmt: skip
+    checks.append(
+        Check(
+            "without foreshortening, mass ratio 1: change of the frequency with speed, relative",
+            float(np.abs(without / without[0] - 1.0).max()),
+            1e-8,
+            reason="nothing is pulled back, so nothing stiffens",
+        )
+    )
     answer = (
         f"At η = 6 a bare beam's flap frequency is {ratio[0.0]:.2f} times that at rest, with its own mass on the tip "
         f"{ratio[1.0]:.2f} times, with three times its mass {ratio[3.0]:.2f} times: the mass pulls the whole length "
         f"taut. The square rises by {slopes[0.0]:.2f} and {slopes[3.0]:.2f} times that of the speed. A model whose tip "
         "is not foreshortened loses all of it."
     )
-    return Study("What does a mass carried outboard do?", answer, (figure(etas, found, expected, without),),
-                 tuple(checks))  # fmt: skip
+    return Study(
+        "What does a mass carried outboard do?", answer, (figure(etas, found, expected, without),), tuple(checks)
+    )
 
 
 def figure(etas: Array, found: dict[float, Array], expected: dict[float, Array], without: Array) -> Figure:
@@ -74,8 +84,10 @@ def figure(etas: Array, found: dict[float, Array], expected: dict[float, Array],
     curves, growth = [], []
     for color, (mass, squares) in enumerate(found.items()):
         frequency, exact = np.sqrt(squares), np.sqrt(expected[mass])
-        curves += [Curve(f"m/ρAL = {mass:g}", etas, frequency, color),
-                   Curve(f"quadrature, {mass:g}", etas[some], exact[some], color, "points")]  # fmt: skip
+        curves += [
+            Curve(f"m/ρAL = {mass:g}", etas, frequency, color),
+            Curve(f"quadrature, {mass:g}", etas[some], exact[some], color, "points"),
+        ]
         growth.append(Curve(f"m/ρAL = {mass:g}", etas, frequency / frequency[0], color))
     growth.append(Curve("1, without foreshortening", etas, np.sqrt(without / without[0]), 4, "dashed"))
     charts = (
@@ -86,4 +98,4 @@ def figure(etas: Array, found: dict[float, Array], expected: dict[float, Array],
         "A mass lowers the frequency at rest and raises the share that speed adds: all curves rise to much the same "
         "height, those that start lower rise more. The dashed line, whose tip is not pulled back, does not rise.",
         charts,
-    )  # fmt: skip
+    )

@@ -25,9 +25,15 @@ COLORS = {"all": 0, "first_order": 1, "no_foreshortening": 4}
 def pendulum(modes: int, **changed: Any) -> sf.Model:
     """A beam of length and mass one with stiffness "EI", hanging on a hinge, x horizontal at the start."""
     beam = sf.Beam(
-        "b", sf.Joint("hinge", "revolute"), 1.0, 1.0, EI_z=sf.formula("EI", "stiffness"), bend_y=modes,
-        family="clamped_free", **changed,
-    )  # fmt: skip
+        "b",
+        sf.Joint("hinge", "revolute"),
+        1.0,
+        1.0,
+        EI_z=sf.formula("EI", "stiffness"),
+        bend_y=modes,
+        family="clamped_free",
+        **changed,
+    )
     functions = ("forward_dynamics", "frame_pose", "kinetic_energy", "potential_energy")
     stated = sf.System("pendulum", (beam,), gravity=(0, -GRAVITY, 0), parameters=(sf.Parameter("EI", 20.0),))
     return sf.compile(stated, sf.Options(functions, ("tip",)))
@@ -65,24 +71,44 @@ def study(quick: bool) -> Study:
     gammas = np.array([row["gamma"] for row in rows])
     ends: dict[str, Array] = {}
     for name, m in models.items():
-        ends[name] = np.array([
-            np.linalg.norm(fall(m, GRAVITY / row["gamma"], np.array([0.0, END]), tolerance)[0][-1] - row["tip_end"])
-            if name != "no_foreshortening" or row["gamma"] < 5.0 else np.nan
-            for row in rows
-        ])  # fmt: skip
+        ends[name] = np.array(
+            [
+                np.linalg.norm(fall(m, GRAVITY / row["gamma"], np.array([0.0, END]), tolerance)[0][-1] - row["tip_end"])
+                if name != "no_foreshortening" or row["gamma"] < 5.0
+                else np.nan
+                for row in rows
+            ]
+        )
     soft = int(np.flatnonzero(gammas == 5.0)[0])
     checks = [
-        Check(f"stiff (EI = 20 N m²): {WORDS[name]}, 3 functions, largest distance from the rod [m]",
-              float(errors[name].max()), bound, reason=f"{known_error:.1e} is known at ρA g L³/EI = 0.5")
+        Check(
+            f"stiff (EI = 20 N m²): {WORDS[name]}, 3 functions, largest distance from the rod [m]",
+            float(errors[name].max()),
+            bound,
+            reason=f"{known_error:.1e} is known at ρA g L³/EI = 0.5",
+        )
         for name, bound, known_error in (("all", 1.5e-4, 8.5e-5), ("first_order", 1.5e-4, 1.1e-4))
-    ]  # fmt: skip
+    ]
     deflection = float(np.abs(runs["all"][1]).max())
-    checks.append(near("stiff: largest deflection from the tangent [m]", deflection,
-                       stiff["max_tip_deflection_over_L"], 0.02, "of the exact rod, at finer instants"))  # fmt: skip
+    checks.append(
+        near(
+            "stiff: largest deflection from the tangent [m]",
+            deflection,
+            stiff["max_tip_deflection_over_L"],
+            0.02,
+            "of the exact rod, at finer instants",
+        )
+    )
     for name in ("all", "first_order"):
         excess = max(ends[name][i] / (1.2 * (row[name] + row["uncertainty"])) for i, row in enumerate(rows))
-        checks.append(Check(f"{WORDS[name]}: distance at 2 s over 1.2 times the known largest one", float(excess), 1.0,
-                            reason="the end is one of the instants of the largest"))  # fmt: skip
+        checks.append(
+            Check(
+                f"{WORDS[name]}: distance at 2 s over 1.2 times the known largest one",
+                float(excess),
+                1.0,
+                reason="the end is one of the instants of the largest",
+            )
+        )
     for row in reference["energy_drift_in_10_s"]:
         if row["gamma"] in ((5.0,) if quick else (1.0, 2.0, 5.0)):
             found = gained(models["first_order"], models["all"], GRAVITY / row["gamma"], 1e-8 if quick else 1e-10)
@@ -104,8 +130,9 @@ def study(quick: bool) -> Study:
         "the model breaks down."
     )
     figures = (path(times, runs, known, exact, errors, float(stiff["uncertainty"])), softness(gammas, ends, rows))
-    return Study("Does it swing as an exact rod, and how soft may it be?", answer, figures, tuple(checks),
-                 (source("pendulum"),))  # fmt: skip
+    return Study(
+        "Does it swing as an exact rod, and how soft may it be?", answer, figures, tuple(checks), (source("pendulum"),)
+    )
 
 
 def path(
@@ -118,28 +145,48 @@ def path(
 ) -> Figure:
     """The stiff pendulum."""
     tip = runs["all"][0]
-    position = Chart("stiff pendulum: its tip", "time  [s]", "position  [m]", (
-        Curve("x", times, tip[:, 0], 0), Curve("y", times, tip[:, 1], 1),
-        Curve("exact rod, x", known, exact[:, 0], 0, "points"), Curve("exact rod, y", known, exact[:, 1], 1, "points"),
-    ))  # fmt: skip
-    distance = Chart("stiff pendulum: distance from the exact rod", "time  [s]", "distance  [m]", tuple(
-        Curve(WORDS[name], known[1:], error[1:], COLORS[name], "joined") for name, error in errors.items()
-    ), (Mark("uncertainty of the rod", floor),), log_y=True)  # fmt: skip
+    position = Chart(
+        "stiff pendulum: its tip",
+        "time  [s]",
+        "position  [m]",
+        (
+            Curve("x", times, tip[:, 0], 0),
+            Curve("y", times, tip[:, 1], 1),
+            Curve("exact rod, x", known, exact[:, 0], 0, "points"),
+            Curve("exact rod, y", known, exact[:, 1], 1, "points"),
+        ),
+    )
+    distance = Chart(
+        "stiff pendulum: distance from the exact rod",
+        "time  [s]",
+        "distance  [m]",
+        tuple(Curve(WORDS[name], known[1:], error[1:], COLORS[name], "joined") for name, error in errors.items()),
+        (Mark("uncertainty of the rod", floor),),
+        log_y=True,
+    )
     return Figure(
         "Left, the tip passes through the points of the exact rod. Right, the consistent models stay below 0.1 mm; "
-        "dropping foreshortening costs a decade and a half.", (position, distance)
-    )  # fmt: skip
+        "dropping foreshortening costs a decade and a half.",
+        (position, distance),
+    )
 
 
 def softness(gammas: Array, ends: dict[str, Array], rows: list[dict[str, float]]) -> Figure:
     """Error against flexibility."""
-    chart = Chart("distance from the exact rod after 2 s, 3 functions", "flexibility ρA g L³/EI  [1]",
-                  "distance  [m]", (
-        *(Curve(WORDS[name], gammas, found, COLORS[name], "joined") for name, found in ends.items()),
-        Curve("uncertainty of the rod", gammas, np.array([row["uncertainty"] for row in rows]), 5, "dotted"),
-    ), log_x=True, log_y=True)  # fmt: skip
+    chart = Chart(
+        "distance from the exact rod after 2 s, 3 functions",
+        "flexibility ρA g L³/EI  [1]",
+        "distance  [m]",
+        (
+            *(Curve(WORDS[name], gammas, found, COLORS[name], "joined") for name, found in ends.items()),
+            Curve("uncertainty of the rod", gammas, np.array([row["uncertainty"] for row in rows]), 5, "dotted"),
+        ),
+        log_x=True,
+        log_y=True,
+    )
     return Figure(
         "The softer, the worse: from 2 on the model's own error stands clear of the uncertainty of the exact rod and "
         "rises fast; first order is as good as everything kept. Without foreshortening the model breaks "
-        "down from 5 on, where its curve ends.", (chart,)
-    )  # fmt: skip
+        "down from 5 on, where its curve ends.",
+        (chart,),
+    )

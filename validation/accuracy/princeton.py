@@ -23,10 +23,21 @@ def strip_model(retain: str, functions: int = 3) -> sf.Model:
     strip = Strip()
     load = sf.BeamLoad((0.0, sf.formula("Fy", "load"), sf.formula("Fz", "load")), at=1.0, axes="world")
     beam = sf.Beam(
-        "b", sf.Joint("root", "fixed"), strip.length, 0.1, EI_z=strip.EI_z, EI_y=strip.EI_y, GJ=strip.GJ, rhoJ=1e-6,
-        bend_y=functions, bend_z=functions, twist=functions, family="legendre", loads=(load,),
+        "b",
+        sf.Joint("root", "fixed"),
+        strip.length,
+        0.1,
+        EI_z=strip.EI_z,
+        EI_y=strip.EI_y,
+        GJ=strip.GJ,
+        rhoJ=1e-6,
+        bend_y=functions,
+        bend_z=functions,
+        twist=functions,
+        family="legendre",
+        loads=(load,),
         retain=retain,  # type: ignore[arg-type]
-    )  # fmt: skip
+    )
     stated = sf.System(
         "strip", (beam,), gravity=(0, 0, 0), parameters=(sf.Parameter("Fy", 0.0), sf.Parameter("Fz", 0.0))
     )
@@ -85,20 +96,40 @@ def study(quick: bool) -> Study:
     lost = first_without_rest(m["all"], float(at[0]))
     untwisted = float(np.abs(turned["first_order"]).max())
     checks = (
-        Check("retain: all, deflection up to 0.10 L: largest error over the displacement", float(whole[small].max()),
-              0.015, reason="1 % of second-order theory in one plane, and the coupling's"),
-        Check("retain: all, deflection up to 0.21 L: largest error over the displacement",
-              float(whole[moderate].max()), 0.08, reason="5 %, likewise"),
-        Check("retain: all: exponent of the error in the deflection, from 0.05 to 0.21 L",
-              -exponent(deflection[~low & moderate], whole[~low & moderate]), 2.6, 1.6,
-              "second order errs by the square"),
-        Check("retain: all: largest relative error of the twist, deflection up to 0.05 L",
-              float(np.abs(turned["all"][low] - 1.0).max()), 0.05, reason="cubic strain energy gives it"),
+        Check(
+            "retain: all, deflection up to 0.10 L: largest error over the displacement",
+            float(whole[small].max()),
+            0.015,
+            reason="1 % of second-order theory in one plane, and the coupling's",
+        ),
+        Check(
+            "retain: all, deflection up to 0.21 L: largest error over the displacement",
+            float(whole[moderate].max()),
+            0.08,
+            reason="5 %, likewise",
+        ),
+        Check(
+            "retain: all: exponent of the error in the deflection, from 0.05 to 0.21 L",
+            -exponent(deflection[~low & moderate], whole[~low & moderate]),
+            2.6,
+            1.6,
+            "second order errs by the square",
+        ),
+        Check(
+            "retain: all: largest relative error of the twist, deflection up to 0.05 L",
+            float(np.abs(turned["all"][low] - 1.0).max()),
+            0.05,
+            reason="cubic strain energy gives it",
+        ),
         Check("first order: twist over Exudyn's", untwisted, 1e-9, reason="its strain energy is quadratic"),
-        Check("retain: all, load at 60°: deflection over L, in Exudyn, where our equilibrium is lost",
-              float(np.linalg.norm(exact(lost, at)[0][0, 1:]) / Strip().length), 0.5, 0.25,
-              "beyond what second order claims"),
-    )  # fmt: skip
+        Check(
+            "retain: all, load at 60°: deflection over L, in Exudyn, where our equilibrium is lost",
+            float(np.linalg.norm(exact(lost, at)[0][0, 1:]) / Strip().length),
+            0.5,
+            0.25,
+            "beyond what second order claims",
+        ),
+    )
     answer = (
         f"Up to a deflection of {SMALL:g} L the tip is where Exudyn's geometrically exact beam has it to "
         f"{whole[small].max():.1%} of its displacement, up to {MODERATE:g} L to {whole[moderate].max():.1%}. Bending "
@@ -108,8 +139,13 @@ def study(quick: bool) -> Study:
         "Ask a geometrically exact code."
     )
     figures = (around(angles, loads, reference, found), growth(deflection, errors))
-    return Study("Bent both ways and twisted, where does second order fail?", answer, figures, checks,
-                 ("Princeton beam: Dowell & Traybar 1975; Exudyn, 32 geometrically exact elements",))  # fmt: skip
+    return Study(
+        "Bent both ways and twisted, where does second order fail?",
+        answer,
+        figures,
+        checks,
+        ("Princeton beam: Dowell & Traybar 1975; Exudyn, 32 geometrically exact elements",),
+    )
 
 
 def first_without_rest(m: sf.Model, angle: float) -> float:
@@ -128,30 +164,41 @@ def around(angles: Array, loads: tuple[float, ...], reference: Tips, found: Tips
     x, degrees = "angle of the load, from the stiff way to the soft  [°]", np.degrees(angles)
     soft, turned = [], []
     for k, load in enumerate(loads):
-        soft += [Curve(f"retain: all, {load:g} N", degrees, found[load][0][:, 2], k),
-                 Curve(f"Exudyn, {load:g} N", degrees, reference[load][0][:, 2], k, "points")]  # fmt: skip
-        turned += [Curve(f"retain: all, {load:g} N", degrees, np.degrees(found[load][1]), k),
-                   Curve(f"Exudyn, {load:g} N", degrees, np.degrees(reference[load][1]), k, "points")]  # fmt: skip
+        soft += [
+            Curve(f"retain: all, {load:g} N", degrees, found[load][0][:, 2], k),
+            Curve(f"Exudyn, {load:g} N", degrees, reference[load][0][:, 2], k, "points"),
+        ]
+        turned += [
+            Curve(f"retain: all, {load:g} N", degrees, np.degrees(found[load][1]), k),
+            Curve(f"Exudyn, {load:g} N", degrees, np.degrees(reference[load][1]), k, "points"),
+        ]
     turned.append(Curve("first order, any load", degrees, 0.0 * degrees, 4, "dashed"))
     return Figure(
         "Left, curves and points part as the load grows and turns to the soft way; a curve has a gap where our strip "
         "finds no rest. Right, a strip that is bent both ways twists: with everything kept by the right angle while "
         "the deflection is small, by too much later; at first order, dashed, not at all.",
-        (Chart("tip, the soft way", x, "displacement  [m]", tuple(soft)),
-         Chart("twist of the tip", x, "angle  [°]", tuple(turned))),
-    )  # fmt: skip
+        (
+            Chart("tip, the soft way", x, "displacement  [m]", tuple(soft)),
+            Chart("twist of the tip", x, "angle  [°]", tuple(turned)),
+        ),
+    )
 
 
 def growth(deflection: Array, errors: dict[str, Array]) -> Figure:
     """Error against deflection."""
     words = {"all": "retain: all", "first_order": "first order"}
-    chart = Chart("load at 60°: error of the tip's place", "deflection of the tip over L  [1]",
-                  "error over the displacement  [1]",
-                  tuple(Curve(words[name], deflection, error, k, "joined") for k, (name, error) in
-                        enumerate(errors.items())),
-                  (Mark("1 %", 0.01), Mark("5 %", 0.05)), log_x=True, log_y=True)  # fmt: skip
+    chart = Chart(
+        "load at 60°: error of the tip's place",
+        "deflection of the tip over L  [1]",
+        "error over the displacement  [1]",
+        tuple(Curve(words[name], deflection, error, k, "joined") for k, (name, error) in enumerate(errors.items())),
+        (Mark("1 %", 0.01), Mark("5 %", 0.05)),
+        log_x=True,
+        log_y=True,
+    )
     return Figure(
         "The error rises with the square of the deflection and crosses 1 % near a tenth of the length, as under a load "
         "in one plane. First order, which lacks the twist, puts the tip somewhat better: keeping everything that a "
-        "second-order theory has is no step towards the exact beam when the deflection is large.", (chart,)
-    )  # fmt: skip
+        "second-order theory has is no step towards the exact beam when the deflection is large.",
+        (chart,),
+    )

@@ -35,22 +35,43 @@ def study(quick: bool) -> Study:
         for eta, row in reference["published_wright_delta0"].items()
     )
     checks = [
-        Check(f"{plane}, {n} Legendre functions: largest relative error of three frequencies, η ≤ 12",
-              max(float(e.max()) for (p, _), e in found.items() if p == plane), BOUNDS[n],
-              reason="twice what a Ritz solution in this basis gives")
-        for n, found in worst.items() for plane in PLANES
-    ]  # fmt: skip
-    checks.append(Check("flap, 10 functions: largest distance from the published table", float(published), PRINTED,
-                        reason="its printed decimals"))  # fmt: skip
+        Check(
+            f"{plane}, {n} Legendre functions: largest relative error of three frequencies, η ≤ 12",
+            max(float(e.max()) for (p, _), e in found.items() if p == plane),
+            BOUNDS[n],
+            reason="twice what a Ritz solution in this basis gives",
+        )
+        for n, found in worst.items()
+        for plane in PLANES
+    ]
+    checks.append(
+        Check(
+            "flap, 10 functions: largest distance from the published table",
+            float(published),
+            PRINTED,
+            reason="its printed decimals",
+        )
+    )
     checks += [
-        near(f"speed of divergence without foreshortening, hub ratio {delta:g}", found, FIRST, 1e-3,
-             "the first frequency at rest, whatever the hub")
+        near(
+            f"speed of divergence without foreshortening, hub ratio {delta:g}",
+            found,
+            FIRST,
+            1e-3,
+            "the first frequency at rest, whatever the hub",
+        )
         for delta, found in critical.items()
-    ]  # fmt: skip
+    ]
     slow = next(row["chord"][0] for row in reference["table"] if (row["delta"], row["eta"]) == (0, 1))
     apart = engine((3.0, 12.0) if quick else (0.5, 3.0, 6.0, 9.0, 12.0))
-    checks.append(Check("against Exudyn, 16 ANCF cables: largest relative difference of three frequencies", apart, 5e-4,
-                        reason="its elements' error, 2.3e-4 at the highest speed"))  # fmt: skip
+    checks.append(
+        Check(
+            "against Exudyn, 16 ANCF cables: largest relative difference of three frequencies",
+            apart,
+            5e-4,
+            reason="its elements' error, 2.3e-4 at the highest speed",
+        )
+    )
     answer = (
         f"Eight functions follow the first three frequencies up to η = 12 to "
         f"{max(float(e.max()) for e in worst[8].values()):.1e}, ten to "
@@ -59,9 +80,12 @@ def study(quick: bool) -> Study:
         f"such a model is wrong, by {1 - np.sqrt(FIRST**2 - 1) / slow:.0%} at η = 1."
     )
     return Study(
-        "Does a beam stiffen as it should when it spins?", answer,
-        (frequencies(etas, reference["table"]), accuracy(worst)), tuple(checks), (source("spinning_cantilever"),),
-    )  # fmt: skip
+        "Does a beam stiffen as it should when it spins?",
+        answer,
+        (frequencies(etas, reference["table"]), accuracy(worst)),
+        tuple(checks),
+        (source("spinning_cantilever"),),
+    )
 
 
 def errors(modes: int, table: list[dict[str, Any]]) -> dict[tuple[str, int], Array]:
@@ -112,8 +136,9 @@ def frequencies(etas: Array, table: list[dict[str, Any]]) -> Figure:
         charts.append(Chart(f"{plane}, first frequency", SPEED, FREQUENCY, tuple(curves), marks))
     return Figure(
         "The curves of the foreshortened beam run through the points of the tables in both planes; the dashed curve "
-        "without foreshortening stays flat in flap and falls to zero in lag, where the model diverges.", tuple(charts)
-    )  # fmt: skip
+        "without foreshortening stays flat in flap and falls to zero in lag, where the model diverges.",
+        tuple(charts),
+    )
 
 
 def first(direction: str, etas: Array, delta: float, **changed: object) -> Array:
@@ -129,11 +154,13 @@ def accuracy(worst: dict[int, dict[tuple[str, int], Array]]) -> Figure:
         Curve(f"{plane}, r/L = {delta}, {n} functions", np.arange(13.0), np.maximum(error, 1e-16), color, kind)
         for n, kind in LINES.items()
         for color, ((plane, delta), error) in enumerate(worst[n].items())
-    )  # fmt: skip
+    )
     marks = tuple(Mark(f"bound with {n} functions", bound) for n, bound in BOUNDS.items())
-    chart = Chart("largest relative error of the first three frequencies", SPEED, "relative error  [1]", curves,
-                  marks, log_y=True)  # fmt: skip
+    chart = Chart(
+        "largest relative error of the first three frequencies", SPEED, "relative error  [1]", curves, marks, log_y=True
+    )
     return Figure(
         "Errors grow with speed, because a fast beam bends in ever shorter waves near the root; two more functions "
-        "gain one and a half decades, and everything stays below its bound.", (chart,)
-    )  # fmt: skip
+        "gain one and a half decades, and everything stays below its bound.",
+        (chart,),
+    )

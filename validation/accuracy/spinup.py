@@ -61,21 +61,46 @@ def study(quick: bool) -> Study:
     apart = np.abs(cable[np.searchsorted(t, known - 1e-6)] - exact)
     peak = reference["peak"]["tip_y"]
     checks = [
-        Check(f"{n} functions: largest distance from the rod across the beam [m]", float(error[:, 1].max()), BOUND,
-              reason="the converged theory's own 2.1 mm, and a margin")
-        for n, error in errors.items() if n >= 3
-    ]  # fmt: skip
+        Check(
+            f"{n} functions: largest distance from the rod across the beam [m]",
+            float(error[:, 1].max()),
+            BOUND,
+            reason="the converged theory's own 2.1 mm, and a margin",
+        )
+        for n, error in errors.items()
+        if n >= 3
+    ]
     checks += [
         Check("3 functions: along the beam [m]", float(errors[3][:, 0].max()), 2e-4, reason="1.3e-4 is known"),
-        near("3 functions: peak against the exact rod [m]", float(ours[3][:, 1].min()), peak, BOUND / abs(peak),
-             "the same 2.5 mm"),
-        near("3 functions: peak against the known foreshortened model [m]", float(ours[3][:, 1].min()),
-             reference["foreshortening_model"]["3"]["peak_y"], 2e-5, "an independent program of the same theory"),
-        Check("without foreshortening: the tip's displacement at 8 s [m]", float(without[-1, 1]), -LENGTH,
-              reason="it has run away by more than its length"),
-    ]  # fmt: skip
-    checks.append(Check("Exudyn, ANCF cables: largest distance from the rod [m]", float(apart.max()), 3e-4,
-                        reason="0.14 mm of stretch and the step's error"))  # fmt: skip
+        near(
+            "3 functions: peak against the exact rod [m]",
+            float(ours[3][:, 1].min()),
+            peak,
+            BOUND / abs(peak),
+            "the same 2.5 mm",
+        ),
+        near(
+            "3 functions: peak against the known foreshortened model [m]",
+            float(ours[3][:, 1].min()),
+            reference["foreshortening_model"]["3"]["peak_y"],
+            2e-5,
+            "an independent program of the same theory",
+        ),
+        Check(
+            "without foreshortening: the tip's displacement at 8 s [m]",
+            float(without[-1, 1]),
+            -LENGTH,
+            reason="it has run away by more than its length",
+        ),
+    ]
+    checks.append(
+        Check(
+            "Exudyn, ANCF cables: largest distance from the rod [m]",
+            float(apart.max()),
+            3e-4,
+            reason="0.14 mm of stretch and the step's error",
+        )
+    )
     answer = (
         f"With three functions the tip stays within {1e3 * errors[3][:, 1].max():.1f} mm of the exact rod while it "
         f"swings back by {-1e3 * peak:.0f} mm; 2.1 mm of it are the second-order theory's own and no number of "
@@ -107,41 +132,69 @@ def movement(
     cable: tuple[Array, Array],
 ) -> Figure:
     """The tip through time."""
-    across = Chart("tip across the beam", TIME, "displacement  [m]", (
-        Curve("foreshortened, 3 functions", times, ours[:, 1], 0),
-        Curve("exact rod", known, exact[:, 1], 0, "points"),
-        Curve("Exudyn", cable[0], cable[1][:, 1], 5, "dashed"),
-        Curve("without foreshortening", short, without[:, 1], 1, "dashed"),
-        Curve("zeroth order", times, zeroth[:, 1], 4, "dotted"),
-    ), range_y=(-2.0, 0.2))  # fmt: skip
-    along = Chart("tip along the beam", TIME, "displacement  [m]", (
-        Curve("foreshortened, 3 functions", times, ours[:, 0], 0),
-        Curve("exact rod", known, exact[:, 0], 0, "points"),
-        Curve("Exudyn", cable[0], cable[1][:, 0], 5, "dashed"),
-    ))  # fmt: skip
+    across = Chart(
+        "tip across the beam",
+        TIME,
+        "displacement  [m]",
+        (
+            Curve("foreshortened, 3 functions", times, ours[:, 1], 0),
+            Curve("exact rod", known, exact[:, 1], 0, "points"),
+            Curve("Exudyn", cable[0], cable[1][:, 1], 5, "dashed"),
+            Curve("without foreshortening", short, without[:, 1], 1, "dashed"),
+            Curve("zeroth order", times, zeroth[:, 1], 4, "dotted"),
+        ),
+        range_y=(-2.0, 0.2),
+    )
+    along = Chart(
+        "tip along the beam",
+        TIME,
+        "displacement  [m]",
+        (
+            Curve("foreshortened, 3 functions", times, ours[:, 0], 0),
+            Curve("exact rod", known, exact[:, 0], 0, "points"),
+            Curve("Exudyn", cable[0], cable[1][:, 0], 5, "dashed"),
+        ),
+    )
     return Figure(
         "The foreshortened beam passes through the points of the exact rod, lags while the hub accelerates and comes "
         "back straight; without foreshortening it leaves the chart at 7 s and never returns. At the right, the axis "
-        "is pulled back by bending, as it is in the rod.", (across, along)
-    )  # fmt: skip
+        "is pulled back by bending, as it is in the rod.",
+        (across, along),
+    )
 
 
 def distance(known: Array, errors: dict[int, Array], apart: Array) -> Figure:
     """How far from the rod."""
     floor = Mark("floor of the theory, 2.1 mm", FLOOR)
     engine = Curve("Exudyn", known, apart[:, 1], 5, "dashed")
-    through = Chart("distance from the exact rod, across", TIME, "error  [m]", tuple(
-        Curve(f"{n} function{'s' * (n > 1)}", known, error[:, 1], k, "joined")
-        for k, (n, error) in enumerate(errors.items())
-    ) + (engine,), (floor,), log_y=True)  # fmt: skip
+    through = Chart(
+        "distance from the exact rod, across",
+        TIME,
+        "error  [m]",
+        tuple(
+            Curve(f"{n} function{'s' * (n > 1)}", known, error[:, 1], k, "joined")
+            for k, (n, error) in enumerate(errors.items())
+        )
+        + (engine,),
+        (floor,),
+        log_y=True,
+    )
     counts = np.array(list(errors), dtype=float)
-    largest = Chart("largest distance against number of functions", "number of functions  [1]", "error  [m]", (
-        Curve("across", counts, np.array([error[:, 1].max() for error in errors.values()]), 0, "joined"),
-        Curve("along", counts, np.array([error[:, 0].max() for error in errors.values()]), 1, "joined"),
-    ), (floor,), log_y=True)  # fmt: skip
+    largest = Chart(
+        "largest distance against number of functions",
+        "number of functions  [1]",
+        "error  [m]",
+        (
+            Curve("across", counts, np.array([error[:, 1].max() for error in errors.values()]), 0, "joined"),
+            Curve("along", counts, np.array([error[:, 0].max() for error in errors.values()]), 1, "joined"),
+        ),
+        (floor,),
+        log_y=True,
+    )
     return Figure(
         "While the beam is bent most, around 6 s, three functions or eight make no difference: the error rests at the "
         "floor of second-order theory, drawn red, and what a finer basis or integrator gains lies below it. Once the "
         "beam is straight again, small vibrations remain, and there more functions count. Exudyn, "
-        "geometrically exact, has no such floor.", (through, largest)
-    )  # fmt: skip
+        "geometrically exact, has no such floor.",
+        (through, largest),
+    )

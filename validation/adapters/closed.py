@@ -1,7 +1,7 @@
 """Constraints for engines that know trees: phi, G and gamma from an engine's own frames, and the solve in NumPy.
 
-Written apart from `symofros.dynamics.constraints`: conditions are stated by relative rotation matrices and their
-derivatives rather than by pairs of axes, and multipliers come from a pseudo-inverse.
+Written apart from `symofros.mechanics.dynamics.constraints`: conditions are stated by relative rotation matrices and
+their derivatives rather than by pairs of axes, and multipliers come from a pseudo-inverse.
 """
 
 from __future__ import annotations
@@ -115,9 +115,15 @@ class ConstrainedEngine:
         drift = self._anchored.frame_acceleration(replace(states, a=0.0 * states.a))
         for i, name in enumerate(self._names):
             found[name] = _Kinematics(
-                pose[:, i, :3], pose[:, i, 3:].reshape(n, 3, 3), velocity[:, i, :3], velocity[:, i, 3:],
-                drift[:, i, :3], drift[:, i, 3:], J[:, i, :3], J[:, i, 3:],
-            )  # fmt: skip
+                pose[:, i, :3],
+                pose[:, i, 3:].reshape(n, 3, 3),
+                velocity[:, i, :3],
+                velocity[:, i, 3:],
+                drift[:, i, :3],
+                drift[:, i, 3:],
+                J[:, i, :3],
+                J[:, i, 3:],
+            )
         return found
 
     def _one(self, item: sf.Constraint, frames: dict[str, _Kinematics], states: States) -> tuple[Array, Array, Array]:
@@ -202,8 +208,11 @@ def _closure(item: sf.Closure, A: _Kinematics, B: _Kinematics) -> tuple[Array, A
     # Everything as A sees it: position, and what its derivatives are with the turning of A taken out.
     seen = np.einsum("nij,nj->ni", RT, d)
     J = RT @ (B.Jv - A.Jv + _skew(d) @ A.Jw)
-    drift = np.einsum("nij,nj->ni", RT, a - 2 * np.einsum("nij,nj->ni", W, v) - np.einsum("nij,nj->ni", W2, d)
-                      + 2 * np.einsum("nij,nj->ni", W @ W, d))  # fmt: skip
+    drift = np.einsum(
+        "nij,nj->ni",
+        RT,
+        a - 2 * np.einsum("nij,nj->ni", W, v) - np.einsum("nij,nj->ni", W2, d) + 2 * np.einsum("nij,nj->ni", W @ W, d),
+    )
     rows = [(seen[:, k], J[:, k], drift[:, k]) for k in map(AXES.index, item.translations)]
     # The relative rotation: R' = [w] R and R'' = ([alpha] + [w][w]) R, w of B in A, in A.
     R = RT @ B.R

@@ -18,11 +18,30 @@ from validation.mechanics.parts import coordinate_symbols, rate_symbols, speed_s
 NAME = "description"
 
 _NUMPY: Mapping[str, Callable[..., Any]] = {
-    "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide, "pow": np.power, "neg": np.negative,
-    "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin,
-    "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh,
-    "abs": np.abs, "sign": np.sign, "min": np.minimum, "max": np.maximum,
-}  # fmt: skip
+    "add": np.add,
+    "sub": np.subtract,
+    "mul": np.multiply,
+    "div": np.divide,
+    "pow": np.power,
+    "neg": np.negative,
+    "sqrt": np.sqrt,
+    "exp": np.exp,
+    "log": np.log,
+    "sin": np.sin,
+    "cos": np.cos,
+    "tan": np.tan,
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "atan2": np.arctan2,
+    "sinh": np.sinh,
+    "cosh": np.cosh,
+    "tanh": np.tanh,
+    "abs": np.abs,
+    "sign": np.sign,
+    "min": np.minimum,
+    "max": np.maximum,
+}
 
 
 @dataclass(frozen=True)
@@ -143,9 +162,12 @@ def evaluate(
 
 def build(subject: Subject) -> StatedForces | Unsupported:
     """From the description alone."""
-    kinds = {"loads": any(body.loads for body in subject.system.bodies), "connections": subject.system.connections,
-             "potentials": subject.system.potentials,
-             "beams": any(isinstance(body, sf.Beam) for body in subject.system.bodies)}  # fmt: skip
+    kinds = {
+        "loads": any(body.loads for body in subject.system.bodies),
+        "connections": subject.system.connections,
+        "potentials": subject.system.potentials,
+        "beams": any(isinstance(body, sf.Beam) for body in subject.system.bodies),
+    }
     beyond = [name for name, stated in kinds.items() if stated]
     if beyond:
         return Unsupported(f"{' and '.join(beyond)}: their forces take kinematics or derivatives, not formulas alone")

@@ -111,7 +111,9 @@ def lumped(
     names = [name for described in assemble(links_only).joints for name in coordinate_symbols(described.joint)]
     stiffness = {
         coordinate_symbols(body.joint)[element.coordinate]: float(sf.evaluate(element.stiffness, {}))
-        for body in links_only.bodies if body.joint is not None
-        for element in body.joint.elements if isinstance(element, sf.Spring)
-    }  # fmt: skip
+        for body in links_only.bodies
+        if body.joint is not None
+        for element in body.joint.elements
+        if isinstance(element, sf.Spring)
+    }
     return Lumped(engine, tuple(names), np.array([stiffness.get(name, 0.0) for name in names]))

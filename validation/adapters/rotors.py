@@ -70,8 +70,9 @@ def _rotor_bodies(system: sf.System) -> tuple[list[sf.RigidBody], list[_Spin]]:
         for k, rotor in enumerate(joint.rotors):
             name = f"rotor {k} of {joint.name}"
             if rotor.axis is None:
-                bearing = sf.Joint(name, "revolute", joint.parent, joint.frame, rotation=joint.rotation,
-                                   axis=joint.axis)  # fmt: skip
+                bearing = sf.Joint(
+                    name, "revolute", joint.parent, joint.frame, rotation=joint.rotation, axis=joint.axis
+                )
             else:
                 bearing = sf.Joint(name, "revolute", rotor.carrier or joint.parent, axis=rotor.axis)
             ball = sf.Inertia(1.0, moments=(rotor.inertia,) * 3)

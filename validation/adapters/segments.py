@@ -21,9 +21,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import symofros as sf
-from symofros.beams.piecewise import gauss
 from symofros.description.beam import STATION
 from symofros.description.values import Value
+from symofros.mechanics.beams.piecewise import gauss
 from validation.contract.interface import Unsupported
 
 # Gauss nodes a link.
@@ -138,10 +138,14 @@ def _hinge(numbers: _Numbers, k: int, ends: list[float], h: float) -> sf.Joint:
             elements.append(sf.Damper(delay * spring, coordinate=i))
     chosen = {turn: names[turn] if any(turn == u for u, _ in used) else 0.0 for turn in _TURNS}
     return sf.Joint(
-        f"{beam.name}_{k}_hinge", "general", beam.name if k == 1 else f"{beam.name}_{k - 1}",
-        position=(ends[k] - ends[k - 1], 0.0, 0.0), coordinates=tuple(names[turn] for turn, _ in used),
-        moving_rotation=sf.Rotation.rpy(chosen["roll"], chosen["pitch"], chosen["yaw"]), elements=tuple(elements),
-    )  # fmt: skip
+        f"{beam.name}_{k}_hinge",
+        "general",
+        beam.name if k == 1 else f"{beam.name}_{k - 1}",
+        position=(ends[k] - ends[k - 1], 0.0, 0.0),
+        coordinates=tuple(names[turn] for turn, _ in used),
+        moving_rotation=sf.Rotation.rpy(chosen["roll"], chosen["pitch"], chosen["yaw"]),
+        elements=tuple(elements),
+    )
 
 
 def _loaded(body: sf.RigidBody, load: sf.BeamLoad, x: float) -> sf.RigidBody:

@@ -71,11 +71,16 @@ class Pool:
         with (
             dask.config.set({"distributed.scheduler.allowed-failures": DEATHS - 1}),
             distributed.LocalCluster(
-                n_workers=self.workers, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=page,
-                worker_dashboard_address=None, silence_logs=logging.CRITICAL,
+                n_workers=self.workers,
+                threads_per_worker=1,
+                processes=True,
+                host="127.0.0.1",
+                dashboard_address=page,
+                worker_dashboard_address=None,
+                silence_logs=logging.CRITICAL,
             ) as cluster,
             distributed.Client(cluster) as client,
-        ):  # fmt: skip
+        ):
             client.register_plugin(_Undisturbed())
             yield client
 
@@ -84,20 +89,32 @@ def _connected(address: str) -> distributed.Client:
     """A client of a scheduler that answers; a port that nobody listens at is told at once."""
     found = _ADDRESS.match(address)
     if found is None or int(found[2]) > 65535:
-        raise ClusterError(address, "no such address", "a dask scheduler's address is tcp://HOST:PORT",
-                           "give what `dask scheduler` prints when it starts")  # fmt: skip
+        raise ClusterError(
+            address,
+            "no such address",
+            "a dask scheduler's address is tcp://HOST:PORT",
+            "give what `dask scheduler` prints when it starts",
+        )
     try:
         socket.create_connection((found[1].strip("[]"), int(found[2])), timeout=ANSWER).close()
         return distributed.Client(address, timeout=ANSWER)
     except OSError as error:  # Of a name that is not known, a port that is closed, time that has run out.
         said = str(error).partition("\n")[0] or type(error).__name__
-        raise ClusterError(address, said, f"a dask scheduler answers there within {ANSWER:g} s",
-                           "start one with `dask scheduler`, or leave --scheduler out") from None  # fmt: skip
+        raise ClusterError(
+            address,
+            said,
+            f"a dask scheduler answers there within {ANSWER:g} s",
+            "start one with `dask scheduler`, or leave --scheduler out",
+        ) from None
 
 
 def _deserted(pool: Pool) -> ClusterError:
-    return ClusterError(pool.scheduler, f"no worker for {pool.patience:g} s", "one worker at least is connected",
-                        "start some with `dask worker ADDRESS --nthreads 1`")  # fmt: skip
+    return ClusterError(
+        pool.scheduler,
+        f"no worker for {pool.patience:g} s",
+        "one worker at least is connected",
+        "start some with `dask worker ADDRESS --nthreads 1`",
+    )
 
 
 class _Undisturbed(distributed.WorkerPlugin):  # type: ignore[misc]  # dask has no types.

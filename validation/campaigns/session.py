@@ -67,8 +67,13 @@ def standing(folder: Path) -> dict[str, Any]:
 
 def _manifest(plan: Plan) -> dict[str, Any]:
     models = identities(cases(plan))
-    return {"hash": plan_hash(plan, models), "plan": json.loads(as_text(plan)), "models": models,
-            "versions": provenance.versions(), "begun": provenance.now()}  # fmt: skip
+    return {
+        "hash": plan_hash(plan, models),
+        "plan": json.loads(as_text(plan)),
+        "models": models,
+        "versions": provenance.versions(),
+        "begun": provenance.now(),
+    }
 
 
 def _carry_out(store: Store, plan: Plan, pool: Pool) -> dict[str, Any]:
@@ -94,10 +99,12 @@ def _complete(store: Store, plan: Plan, pool: Pool) -> None:
         raise Unfinished(store.folder, list(failures.values()))
     manifest = manifest_of(store.folder)
     told = {
-        **{name: manifest[name] for name in ("hash", "plan", "begun")}, "identities": manifest["models"],
-        "effort": effort(store.journal()), "versions": provenance.versions("distributed", "pyarrow"),
+        **{name: manifest[name] for name in ("hash", "plan", "begun")},
+        "identities": manifest["models"],
+        "effort": effort(store.journal()),
+        "versions": provenance.versions("distributed", "pyarrow"),
         **provenance.stamp(),
-    }  # fmt: skip
+    }
     store.merge(len(wanted), told)
 
 
@@ -106,9 +113,14 @@ def _bar(size: int, before: int) -> Iterator[Callable[[Task], None]]:
     """On the error stream: a bar with rate and time left for a terminal, a line every tenth for a file."""
     console = Console(stderr=True)
     columns = (
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"),
-        TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn(),
-    )  # fmt: skip
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         shown = bar.add_task("starting", total=size, completed=before, rate="")
 

@@ -31,8 +31,12 @@ def effort(journal: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
         if line["event"] == "begun":
             begun[line["batch"]] += 1
     seconds = sum(max(times) - times[0] for times in sessions)
-    return {"sessions": len(sessions), "seconds": round(seconds, 1), "executions": sum(begun.values()),
-            "repeated": sorted(batch for batch, times in begun.items() if times > 1)}  # fmt: skip
+    return {
+        "sessions": len(sessions),
+        "seconds": round(seconds, 1),
+        "executions": sum(begun.values()),
+        "repeated": sorted(batch for batch, times in begun.items() if times > 1),
+    }
 
 
 def summarised(rows: pa.Table, provenance: Mapping[str, Any]) -> dict[str, Any]:
@@ -52,21 +56,27 @@ def checked(rows: pa.Table) -> dict[str, Any]:
         [("agree", "all"), ("states", "sum"), *((name, "first", _NULLS) for name in _OF_WORST)]
     )
     groups = [
-        {**{name: row[name] for name in _GROUP}, "agree": row["agree_all"], "states": row["states_sum"],
-         **{name: row[f"{name}_first"] for name in _OF_WORST}}
+        {
+            **{name: row[name] for name in _GROUP},
+            "agree": row["agree_all"],
+            "states": row["states_sum"],
+            **{name: row[f"{name}_first"] for name in _OF_WORST},
+        }
         for row in sums.to_pylist()
-    ]  # fmt: skip
+    ]
     groups.sort(key=lambda row: [row[name] for name in _GROUP])
     failed = rows.filter(pc.equal(rows["status"], "failed"))
     apart = rows.filter(pc.equal(rows["status"], "unsupported")).select([*_GROUP, "note"])
     states = rows.group_by(["batch"]).aggregate([("states_asked", "min")])
     return {
         "ok": bool(groups) and all(row["agree"] for row in groups) and not failed.num_rows,
-        "states": pc.sum(states["states_asked_min"]).as_py(), "models": len(pc.unique(rows["model"])),
-        "comparisons": judged.num_rows, "groups": groups,
+        "states": pc.sum(states["states_asked_min"]).as_py(),
+        "models": len(pc.unique(rows["model"])),
+        "comparisons": judged.num_rows,
+        "groups": groups,
         "failed": failed.select(["batch", *_GROUP, "note"]).to_pylist(),
         "unsupported": apart.group_by([*_GROUP, "note"]).aggregate([]).to_pylist(),
-    }  # fmt: skip
+    }
 
 
 def swept(rows: pa.Table) -> dict[str, Any]:
@@ -103,31 +113,44 @@ def markdown(data: Mapping[str, Any]) -> str:
     lines = ["# Campaign", "", f"**{headline(data)}**", ""]
     lines += _checked_lines(data) if data["kind"] == "check" else _swept_lines(data)
     versions = ", ".join(f"{name} {version}" for name, version in data["versions"].items())
-    lines += ["", f"Plan {data['hash']}; sessions: {spent['sessions']}, {spent['seconds']:.0f} s{rate}; "
-              f"{spent['executions']} executions, {len(spent['repeated'])} batches begun twice; "
-              f"{data['date']}; {', '.join(data['machine'].values())}; flags {data['flags']}; {versions}"
-              f"{'; revision ' + data['revision'] if data['revision'] else ''}.", "",
-              "Every row: results.parquet. Written by `python -m validation campaign`.", ""]  # fmt: skip
+    lines += [
+        "",
+        f"Plan {data['hash']}; sessions: {spent['sessions']}, {spent['seconds']:.0f} s{rate}; "
+        f"{spent['executions']} executions, {len(spent['repeated'])} batches begun twice; "
+        f"{data['date']}; {', '.join(data['machine'].values())}; flags {data['flags']}; {versions}"
+        f"{'; revision ' + data['revision'] if data['revision'] else ''}.",
+        "",
+        "Every row: results.parquet. Written by `python -m validation campaign`.",
+        "",
+    ]
     return "\n".join(lines)
 
 
 def _checked_lines(data: Mapping[str, Any]) -> list[str]:
-    lines = ["The largest error of each quantity over all models, engines and states, relative to its scale.", "",
-             "| quantity | comparisons | largest error | tolerance | of | against | batch, state |",
-             "|---|---:|---:|---:|---|---|---:|"]  # fmt: skip
+    lines = [
+        "The largest error of each quantity over all models, engines and states, relative to its scale.",
+        "",
+        "| quantity | comparisons | largest error | tolerance | of | against | batch, state |",
+        "|---|---:|---:|---:|---|---|---:|",
+    ]
     for quantity in dict.fromkeys(row["quantity"] for row in data["groups"]):
         rows = [row for row in data["groups"] if row["quantity"] == quantity]
         worst = max(rows, key=_share)
-        lines.append(f"| {quantity} | {len(rows)} | {_error(worst)} | {worst['tolerance']:.1e} | {worst['model']} | "
-                     f"{worst['engine']} | {_place(worst)} |")  # fmt: skip
+        lines.append(
+            f"| {quantity} | {len(rows)} | {_error(worst)} | {worst['tolerance']:.1e} | {worst['model']} | "
+            f"{worst['engine']} | {_place(worst)} |"
+        )
     wrong: Sequence[Mapping[str, Any]] = [row for row in data["groups"] if not row["agree"]]
     failed = data["failed"][:_SHOWN]
     return [
-        *lines, "" if wrong or failed else "\nNothing disagrees.",
-        *(f"- disagrees: {row['model']}, {row['engine']}, {row['quantity']}: {_error(row)} in batch {_place(row)}"
-          for row in wrong[:_SHOWN]),
+        *lines,
+        "" if wrong or failed else "\nNothing disagrees.",
+        *(
+            f"- disagrees: {row['model']}, {row['engine']}, {row['quantity']}: {_error(row)} in batch {_place(row)}"
+            for row in wrong[:_SHOWN]
+        ),
         *(f"- failed: batch {row['batch']}, {row['model']}: {' '.join(row['note'].split())}" for row in failed),
-    ]  # fmt: skip
+    ]
 
 
 def _place(row: Mapping[str, Any]) -> str:

@@ -58,8 +58,10 @@ class Sweeper:
         points = points_of(plan.over, plan.design, plan.points, plan.seed, first, count)
         par, u = self._spread(points)
         results, outcomes = (self._frequencies if plan.quantity == "frequencies" else self._motions)(par, u)
-        columns = {"batch": pa.array([batch] * count, pa.int64()),
-                   "point": pa.array(range(first, first + count), pa.int64())}  # fmt: skip
+        columns = {
+            "batch": pa.array([batch] * count, pa.int64()),
+            "point": pa.array(range(first, first + count), pa.int64()),
+        }
         columns |= {f"over:{name}": pa.array(points[:, k]) for k, name in enumerate(plan.over)}
         columns |= {name: pa.array(results[:, k], from_pandas=True) for k, name in enumerate(self.columns)}
         return pa.table(columns | {"outcome": pa.array(outcomes, pa.string())})
@@ -93,8 +95,16 @@ class Sweeper:
         motion = self.plan.motion
         assert motion is not None  # A plan of end states has one.
         shape = (len(par), 1)
-        runs = sf.simulate_batch(self.model, np.tile(self.q, shape), np.tile(self.v, shape), motion.t_end, u=u,
-                                 method=motion.method, dt=motion.dt, par=par)  # fmt: skip
+        runs = sf.simulate_batch(
+            self.model,
+            np.tile(self.q, shape),
+            np.tile(self.v, shape),
+            motion.t_end,
+            u=u,
+            method=motion.method,
+            dt=motion.dt,
+            par=par,
+        )
         ends = np.concatenate([runs.q[:, -1], runs.v[:, -1]], axis=1)
         outcomes = [DONE if ok else str(runs.outcome(k)) for k, ok in enumerate(runs.ok)]
         return np.where(runs.ok[:, None], ends, np.nan), outcomes

@@ -18,12 +18,23 @@ from validation.inputs.cases import Case
 # those in reach; `scale` is what the error of that state is relative to, in the unit of the quantity.
 CHECKED = pa.schema(
     [
-        ("batch", pa.int64()), ("model", pa.string()), ("first_state", pa.int64()), ("states_asked", pa.int64()),
-        ("engine", pa.string()), ("quantity", pa.string()), ("status", pa.string()), ("agree", pa.bool_()),
-        ("states", pa.int64()), ("error", pa.float64()), ("worst_state", pa.int64()), ("scale", pa.float64()),
-        ("tolerance", pa.float64()), ("median", pa.float64()), ("note", pa.string()),
+        ("batch", pa.int64()),
+        ("model", pa.string()),
+        ("first_state", pa.int64()),
+        ("states_asked", pa.int64()),
+        ("engine", pa.string()),
+        ("quantity", pa.string()),
+        ("status", pa.string()),
+        ("agree", pa.bool_()),
+        ("states", pa.int64()),
+        ("error", pa.float64()),
+        ("worst_state", pa.int64()),
+        ("scale", pa.float64()),
+        ("tolerance", pa.float64()),
+        ("median", pa.float64()),
+        ("note", pa.string()),
     ]
-)  # fmt: skip
+)
 
 
 class Task(Protocol):
@@ -76,12 +87,22 @@ class CheckTask:
     def _rows(self, result: ModelResult) -> Iterator[dict[str, Any]]:
         for row in result.comparisons:
             yield {
-                "batch": self.number, "model": row.model, "first_state": self.settings.first,
-                "states_asked": self.settings.states, "engine": row.engine, "quantity": row.quantity,
-                "status": row.status, "agree": row.ok if row.status in ("agree", "disagree") else None,
-                "states": row.states, "error": row.error, "worst_state": row.worst_state, "scale": row.scale,
-                "tolerance": row.tolerance, "median": row.median, "note": row.note,
-            }  # fmt: skip
+                "batch": self.number,
+                "model": row.model,
+                "first_state": self.settings.first,
+                "states_asked": self.settings.states,
+                "engine": row.engine,
+                "quantity": row.quantity,
+                "status": row.status,
+                "agree": row.ok if row.status in ("agree", "disagree") else None,
+                "states": row.states,
+                "error": row.error,
+                "worst_state": row.worst_state,
+                "scale": row.scale,
+                "tolerance": row.tolerance,
+                "median": row.median,
+                "note": row.note,
+            }
 
 
 @dataclass(frozen=True)

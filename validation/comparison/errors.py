@@ -154,10 +154,19 @@ def judge(
     agrees = worst is not None and worst <= quantity.tolerance
     at = int(np.argmax(np.where(np.isfinite(errors), errors, np.inf)))
     return Comparison(
-        model, engine, quantity.name, "agree" if agrees else "disagree", len(errors), worst, quantity.tolerance,
-        float(np.median(errors)) if finite else None, at, count(errors),
-        note if finite else "not a finite number in some state", scale=None if sizes is None else float(sizes[at]),
-    )  # fmt: skip
+        model,
+        engine,
+        quantity.name,
+        "agree" if agrees else "disagree",
+        len(errors),
+        worst,
+        quantity.tolerance,
+        float(np.median(errors)) if finite else None,
+        at,
+        count(errors),
+        note if finite else "not a finite number in some state",
+        scale=None if sizes is None else float(sizes[at]),
+    )
 
 
 def count(errors: Array) -> tuple[int, ...]:

@@ -143,7 +143,13 @@ def judge_drift(label: str, motion: Motion) -> Comparison:
         return Comparison(label, "symofros", "energy_drift", "failed", note="the free motion did not stay finite")
     tolerance = min(max(coarse / HALVING, ROUNDING_DRIFT), RESOLVED)
     return Comparison(
-        label, "symofros", "energy_drift", "agree" if fine <= tolerance else "disagree", len(motion.states), fine,
-        tolerance, note=f"steps of {motion.step:g} and {motion.step / 2:g} s drift by {coarse:.1e} and {fine:.1e}",
+        label,
+        "symofros",
+        "energy_drift",
+        "agree" if fine <= tolerance else "disagree",
+        len(motion.states),
+        fine,
+        tolerance,
+        note=f"steps of {motion.step:g} and {motion.step / 2:g} s drift by {coarse:.1e} and {fine:.1e}",
         extra={"drift_coarse": coarse, "drift_fine": fine},
-    )  # fmt: skip
+    )

@@ -55,8 +55,9 @@ def judge_order(
     at = {eps: _differences(ours, everything, _scaled(assembly, few, eps), sizes) for eps in (COARSE, FINE)}
     powers = {
         name: math.log(at[COARSE][name] / fine) / math.log(COARSE / FINE)
-        for name, fine in at[FINE].items() if fine > ROUNDING_DIFFERENCE
-    }  # fmt: skip
+        for name, fine in at[FINE].items()
+        if fine > ROUNDING_DIFFERENCE
+    }
     if not powers:
         return Comparison(label, "symofros", NAME, "unsupported", note=f"{order} leaves out nothing that counts here")
     name, power = min(powers.items(), key=lambda item: item[1])
@@ -64,9 +65,16 @@ def judge_order(
     fine, allowed = at[FINE][name], at[COARSE][name] * factor
     listed = ", ".join(f"{key} {value:.2f}" for key, value in powers.items())
     return Comparison(
-        label, "symofros", NAME, "agree" if fine <= allowed else "disagree", len(few), fine, allowed,
-        note=f"{order} differs from everything kept by powers of the deflection: {listed}", extra={"power": power},
-    )  # fmt: skip
+        label,
+        "symofros",
+        NAME,
+        "agree" if fine <= allowed else "disagree",
+        len(few),
+        fine,
+        allowed,
+        note=f"{order} differs from everything kept by powers of the deflection: {listed}",
+        extra={"power": power},
+    )
 
 
 def _scaled(assembly: Assembly, states: States, eps: float) -> States:

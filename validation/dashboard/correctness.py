@@ -25,8 +25,10 @@ def check(data: Data) -> Card:
     wrong = [row for row in data["comparisons"] if not row["ok"]]
     engines = {row["engine"] for row in judged} & {name for name, route in ROUTES.items() if route.independent}
     verdict = "all agree" if not wrong else f"{len(wrong)} do not agree"
-    facts = [Fact(str(len(data["models"])), f"models, {data['settings']['states']} states each"),
-             Fact(str(len(engines)), f"independent opinions: {', '.join(sorted(engines))}")]  # fmt: skip
+    facts = [
+        Fact(str(len(data["models"])), f"models, {data['settings']['states']} states each"),
+        Fact(str(len(engines)), f"independent opinions: {', '.join(sorted(engines))}"),
+    ]
     for label, tolerance in (("rounding alone stands between", ROUNDING), ("a system is solved", SOLVE)):
         rows = [row for row in judged if row["tolerance"] == tolerance and row["error"] is not None]
         if rows:
@@ -49,8 +51,14 @@ def _errors(rows: Sequence[Data], engines: Sequence[str]) -> Chart:
             [max(row["error"], _EXACT) for row in rows if row["engine"] == engine and row["error"] is not None]
         )
         curves.append(Curve(engine, errors, np.arange(1, len(errors) + 1) / max(len(errors), 1), k))
-    return Chart("how close independent engines are", "largest relative error of a comparison  [1]",
-                 "share of the comparisons  [1]", tuple(curves), log_x=True, range_y=(0.0, 1.0))  # fmt: skip
+    return Chart(
+        "how close independent engines are",
+        "largest relative error of a comparison  [1]",
+        "share of the comparisons  [1]",
+        tuple(curves),
+        log_x=True,
+        range_y=(0.0, 1.0),
+    )
 
 
 def mutation(data: Data) -> Card:
@@ -59,11 +67,14 @@ def mutation(data: Data) -> Card:
     silent, small = (sum(row[name] for row in data["models"]) for name in ("silent", "too_small"))
     matter = data["planted"] - silent - small
     return Card(
-        f"{matter - survived} of {matter} faults that matter are caught, in "
-        f"{counted(len(data['models']), 'model')}.", bool(data["ok"]),
-        (Fact(str(data["planted"]), "single faults planted"), Fact(str(survived), "survived; none may", not survived),
-         Fact(str(silent + small), "change nothing, or less than a tolerance")),
-    )  # fmt: skip
+        f"{matter - survived} of {matter} faults that matter are caught, in {counted(len(data['models']), 'model')}.",
+        bool(data["ok"]),
+        (
+            Fact(str(data["planted"]), "single faults planted"),
+            Fact(str(survived), "survived; none may", not survived),
+            Fact(str(silent + small), "change nothing, or less than a tolerance"),
+        ),
+    )
 
 
 def oracle(data: Data) -> Card:
@@ -95,11 +106,14 @@ def campaign(data: Data) -> Card:
     verdict = "all agree" if not wrong and data["ok"] else f"{wrong} do not agree"
     return Card(
         f"{counted(data['states'], 'state')} of {counted(data['models'], 'model')}, "
-        f"{counted(len(data['groups']), 'comparison')}: {verdict}.", bool(data["ok"]),
-        (Fact(rate, f"states, {counted(spent['sessions'], 'session')}"),
-         Fact(str(len(spent["repeated"])), f"of {counted(spent['executions'], 'execution')} of batches repeated"),
-         Fact(_worst(data["groups"]), "of its tolerance, the largest error", not wrong)),
-    )  # fmt: skip
+        f"{counted(len(data['groups']), 'comparison')}: {verdict}.",
+        bool(data["ok"]),
+        (
+            Fact(rate, f"states, {counted(spent['sessions'], 'session')}"),
+            Fact(str(len(spent["repeated"])), f"of {counted(spent['executions'], 'execution')} of batches repeated"),
+            Fact(_worst(data["groups"]), "of its tolerance, the largest error", not wrong),
+        ),
+    )
 
 
 def _worst(groups: Sequence[Data]) -> str:

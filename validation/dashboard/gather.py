@@ -112,13 +112,16 @@ def origin_of(data: Any) -> Origin:
 def doubts(origin: Origin, installed: Mapping[str, str], today: datetime.date) -> list[str]:
     """Why a report may be out of date, or can't say."""
     asked = {
-        "when it was made": origin.date, "on which machine": origin.machine, "with which versions": origin.versions,
-    }  # fmt: skip
+        "when it was made": origin.date,
+        "on which machine": origin.machine,
+        "with which versions": origin.versions,
+    }
     said = [f"does not say {what}" for what, value in asked.items() if not value]
     changed = [
         f"{name} {version}, now {installed[name]}"
-        for name, version in origin.versions.items() if name in installed and installed[name] != version
-    ]  # fmt: skip
+        for name, version in origin.versions.items()
+        if name in installed and installed[name] != version
+    ]
     said += [f"stale: made with {', '.join(changed)}"] if changed else []
     try:
         days = (today - datetime.date.fromisoformat(origin.date[:10])).days

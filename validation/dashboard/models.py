@@ -44,11 +44,18 @@ def stability(data: Data) -> Card:
     checks = [check for scene in scenes.values() for check in scene["checks"]]
     verdict, _ = bounded(checks)
     runs = sum(len(row) for scene in scenes.values() for found in scene["maps"].values() for row in found["values"])
-    facts = (Fact(str(len(scenes)), "scenes"), Fact(str(runs), "runs"),
-             Fact(str(len(checks)), f"claims, {verdict}", bool(data["ok"])))  # fmt: skip
+    facts = (
+        Fact(str(len(scenes)), "scenes"),
+        Fact(str(runs), "runs"),
+        Fact(str(len(checks)), f"claims, {verdict}", bool(data["ok"])),
+    )
     charts = tuple(_energies(scenes["energy"])) if "energy" in scenes else ()
-    return Card(f"{counted(len(checks), 'claim')} about {counted(len(scenes), 'scene')}: {verdict}{_short_way(data)}.",
-                bool(data["ok"]), facts, charts)  # fmt: skip
+    return Card(
+        f"{counted(len(checks), 'claim')} about {counted(len(scenes), 'scene')}: {verdict}{_short_way(data)}.",
+        bool(data["ok"]),
+        facts,
+        charts,
+    )
 
 
 def _energies(scene: Data) -> Iterator[Chart]:
@@ -77,8 +84,11 @@ def passes(data: Data) -> Card:
     base = {row["model"]: row["median"] for row in rows if row["without"] == ALL}
     gains = [(row["median"] / base[row["model"]], row) for row in rows]
     gain, most = max(gains, key=lambda pair: pair[0])
-    return Card(f"Passes measured one by one on {counted(len(base), 'model')}.", None,
-                (Fact(times(gain), f"the time of {most['model']} without {most['without']}"),))  # fmt: skip
+    return Card(
+        f"Passes measured one by one on {counted(len(base), 'model')}.",
+        None,
+        (Fact(times(gain), f"the time of {most['model']} without {most['without']}"),),
+    )
 
 
 def pareto(data: Data) -> Card:
@@ -88,8 +98,11 @@ def pareto(data: Data) -> Card:
     met = sum(target["ok"] for target in targets)
     runs = sum(len(scene["points"]) for scene in scenes)
     most = max((target["found"] or 0.0 for target in targets), default=0.0)
-    facts = (Fact(str(len(scenes)), "scenes"), Fact(str(runs), "runs"),
-             Fact(times(most), "an engine's best time over ours, at equal error, where it is most"))  # fmt: skip
+    facts = (
+        Fact(str(len(scenes)), "scenes"),
+        Fact(str(runs), "runs"),
+        Fact(times(most), "an engine's best time over ours, at equal error, where it is most"),
+    )
     said = f"{met} of {counted(len(targets), 'target')} met, in {counted(len(scenes), 'scene')}{_short_way(data)}."
     return Card(said, bool(data["ok"]), facts, tuple(map(_prices, scenes[:1])))
 

@@ -33,8 +33,13 @@ def write_dashboard(entries: Sequence[Entry], folder: Path, date: str) -> Path:
     groups: dict[str, list[Entry]] = {}
     for entry in entries:
         groups.setdefault(entry.topic.group, []).append(entry)
-    values = {"groups": groups, "headline": headline(entries), "ok": all(entry.verdict != "bad" for entry in entries),
-              "date": date, "origins": origins(entries)}  # fmt: skip
+    values = {
+        "groups": groups,
+        "headline": headline(entries),
+        "ok": all(entry.verdict != "bad" for entry in entries),
+        "date": date,
+        "origins": origins(entries),
+    }
     for template, name in (("index.html.j2", "index.html"), ("summary.md.j2", "summary.md")):
         write_atomically(folder / name, render(template, {"svg": _svg, "cell": _cell}, **values))
     return folder / "index.html"

@@ -51,8 +51,15 @@ def _growth(rows: Sequence[Data], function: str) -> Chart:
         curves.append(
             Curve(peer, np.array([p[0] for p in points], float), np.array([p[1] for p in points]), k, "joined")
         )
-    return Chart(f"{function.replace('_', ' ')}: their time over ours", "speeds of the model  [1]", "ratio  [1]",
-                 tuple(curves), (Mark("as fast as we", 1.0),), log_x=True, log_y=True)  # fmt: skip
+    return Chart(
+        f"{function.replace('_', ' ')}: their time over ours",
+        "speeds of the model  [1]",
+        "ratio  [1]",
+        tuple(curves),
+        (Mark("as fast as we", 1.0),),
+        log_x=True,
+        log_y=True,
+    )
 
 
 def simulation(data: Data) -> Card:
@@ -66,8 +73,11 @@ def simulation(data: Data) -> Card:
             Fact(str(len(data["iftomm"])), f"IFToMM benchmarks, {len(missed)} beyond their thresholds", not missed)
         )
     fastest = max(row["real_time"] for row in rows)
-    return Card(f"Motions run up to {fastest:.0f} times real time; {counted(len(raced), 'race')} at equal accuracy.",
-                not missed if data["iftomm"] else None, tuple(facts))  # fmt: skip
+    return Card(
+        f"Motions run up to {fastest:.0f} times real time; {counted(len(raced), 'race')} at equal accuracy.",
+        not missed if data["iftomm"] else None,
+        tuple(facts),
+    )
 
 
 def rollouts(data: Data) -> Card:
@@ -79,9 +89,11 @@ def rollouts(data: Data) -> Card:
     return Card(
         f"{motions} of a 7-joint arm at once: {rate:.2g} million steps a second and core.",
         None,
-        (Fact(f"{fastest['nanoseconds'][0]:.0f} ns", f"a step: {fastest['scene']}, {fastest['how']}"),
-         Fact(times(best["ratio"]), f"mujoco.rollout's time over ours: {best['scene']}, {best['how']}")),
-    )  # fmt: skip
+        (
+            Fact(f"{fastest['nanoseconds'][0]:.0f} ns", f"a step: {fastest['scene']}, {fastest['how']}"),
+            Fact(times(best["ratio"]), f"mujoco.rollout's time over ours: {best['scene']}, {best['how']}"),
+        ),
+    )
 
 
 def realtime(data: Data) -> Card:
@@ -103,8 +115,9 @@ def exports(data: Data) -> Card:
     """What a call costs where."""
     facts = [
         Fact(f"{row['step of 1 ms'] / 1e3:.2g} µs", f"a step of 1 ms from {where}")
-        for where, row in data["overheads"].items() if row.get("step of 1 ms") is not None
-    ]  # fmt: skip
+        for where, row in data["overheads"].items()
+        if row.get("step of 1 ms") is not None
+    ]
     worst = max(row["high"] for row in data["latencies"])
     facts.append(Fact(f"{worst / 1e3:.2g} µs", f"99.9 % of {data['calls']:,} calls in C are below".replace(",", " ")))
     return Card(f"{data['model']}: the cost of calls from {', '.join(data['overheads'])}.", None, tuple(facts))

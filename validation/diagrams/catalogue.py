@@ -9,6 +9,9 @@ from validation.questions.topic import Topic
 STUDIES: dict[str, Asked] = {"square": square.study, "two_arms": two_arms.study, "threads": threads.study}
 
 TOPIC = Topic(
-    "diagrams", "Diagrams: a controlled flexible robot", "Run the paper's simulations from their block diagrams.",
-    "docs/theory/diagrams.md", STUDIES,
-)  # fmt: skip
+    "diagrams",
+    "Diagrams: a controlled flexible robot",
+    "Run the paper's simulations from their block diagrams.",
+    "docs/theory/diagrams.md",
+    STUDIES,
+)

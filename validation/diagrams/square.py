@@ -67,28 +67,64 @@ def study(quick: bool) -> Study:
     layout = simulation.resolved.layout
     control = len(simulation.resolved.wired.models.record("control").v_names)
     checks = (
-        Check("flexible robot: largest distance of the tool from its path [m]", worst, 0.1, 0.01,
-              "of the size that links of spring steel bend by; a rigid model's controller does not know of it"),
-        Check("rigid robot, same controller: largest distance [m]", stiff, 5e-3,
-              reason="what is left is the elastic joint, 1200 N m/rad, which the plant keeps and the controller"
-                     " holds at zero, and the friction of the sampled law"),
-        Check("largest error of a motor's angle [rad]", float(joints.max()), 5e-3,
-              reason="the PD acts on the motors: the tool is off because links bend, not because motors lag"),
+        Check(
+            "flexible robot: largest distance of the tool from its path [m]",
+            worst,
+            0.1,
+            0.01,
+            "of the size that links of spring steel bend by; a rigid model's controller does not know of it",
+        ),
+        Check(
+            "rigid robot, same controller: largest distance [m]",
+            stiff,
+            5e-3,
+            reason="what is left is the elastic joint, 1200 N m/rad, which the plant keeps and the controller"
+            " holds at zero, and the friction of the sampled law",
+        ),
+        Check(
+            "largest error of a motor's angle [rad]",
+            float(joints.max()),
+            5e-3,
+            reason="the PD acts on the motors: the tool is off because links bend, not because motors lag",
+        ),
         Check("error of the tool at the corners, largest [m]", max(corners), 0.04, reason="it stops there and rings"),
-        Check("speeds of the plant less those of the control model", float(layout.v["plant"].size - control), 20.0, 1.0,
-              "two models in one run: the rigid one is the same description without shape functions"),
-        Check("tool, 2 shape functions a link against the finest [m]", distances[2], 1e-3,
-              reason="the first function carries the bending, later ones the detail"),
-        Check("foreshortening on and off, tool's largest difference [m]", shortened, 1e-2, 5e-4,
-              "a clamped beam whose end moves aside by d shortens by 3 d^2/(5 L): 5 mm for 60 mm on 0.5 m"),
-        Check("without friction compensation: motors' largest error over that with it",
-              float(np.abs(bare["q_desired"] - bare["q"]).max() / joints.max()), 10.0, 0.9,
-              "the harmonic drives' friction is small against the other efforts"),
+        Check(
+            "speeds of the plant less those of the control model",
+            float(layout.v["plant"].size - control),
+            20.0,
+            1.0,
+            "two models in one run: the rigid one is the same description without shape functions",
+        ),
+        Check(
+            "tool, 2 shape functions a link against the finest [m]",
+            distances[2],
+            1e-3,
+            reason="the first function carries the bending, later ones the detail",
+        ),
+        Check(
+            "foreshortening on and off, tool's largest difference [m]",
+            shortened,
+            1e-2,
+            5e-4,
+            "a clamped beam whose end moves aside by d shortens by 3 d^2/(5 L): 5 mm for 60 mm on 0.5 m",
+        ),
+        Check(
+            "without friction compensation: motors' largest error over that with it",
+            float(np.abs(bare["q_desired"] - bare["q"]).max() / joints.max()),
+            10.0,
+            0.9,
+            "the harmonic drives' friction is small against the other efforts",
+        ),
         Check("compiled and interpreted run: largest difference of the tool [m]", agreement, 1e-11, reason="rounding"),
         Check("seconds of motion a second, 1 kHz control, RK4 at 1 ms", speed, np.inf, 100.0, "asked for: 100"),
-        Check("time of the interpreted diagram (blocks compiled one by one) over the compiled one", ratio, np.inf,
-              30.0, "asked for: 30"),
-    )  # fmt: skip
+        Check(
+            "time of the interpreted diagram (blocks compiled one by one) over the compiled one",
+            ratio,
+            np.inf,
+            30.0,
+            "asked for: 30",
+        ),
+    )
     answer = (
         f"The tool follows the square within {1e3 * worst:.0f} mm, the same controller guides a rigid plant within"
         f" {1e3 * stiff:.1f} mm. Motors are never off by more than {1e3 * joints.max():.1f} mrad, so the path bulges"
@@ -97,10 +133,13 @@ def study(quick: bool) -> Study:
         f" simulation's. One second of motion takes {1e3 / speed:.2f} ms, controller, inverse kinematics and plant"
         f" included; block by block from Python {ratio:.0f} times as long."
     )
-    return Study("How does the flexible robot trace the paper's square?", answer,
-                 (_path(flexible, rigid), _errors(flexible, rigid), _effects(distances, runs, flexible)), checks,
-                 ("the SYMOFROS paper, section 8: start, corner, side, friction; gains and times are ours",)
-                 )  # fmt: skip
+    return Study(
+        "How does the flexible robot trace the paper's square?",
+        answer,
+        (_path(flexible, rigid), _errors(flexible, rigid), _effects(distances, runs, flexible)),
+        checks,
+        ("the SYMOFROS paper, section 8: start, corner, side, friction; gains and times are ours",),
+    )
 
 
 def _corners(run: sf.DiagramRun) -> list[tuple[int, tuple[float, float]]]:
@@ -132,8 +171,9 @@ def _path(flexible: sf.DiagramRun, rigid: sf.DiagramRun) -> Figure:
     chart = Chart("path of the tool", "x [m]", "y [m]", curves, equal=True)
     return Figure(
         "From the start at the right the tool goes to the corner (0.3, 0.3) m and around the square, clockwise. The"
-        " rigid robot covers the desired path; the flexible one bulges and rings, as in the paper's figure 9.", (chart,)
-    )  # fmt: skip
+        " rigid robot covers the desired path; the flexible one bulges and rings, as in the paper's figure 9.",
+        (chart,),
+    )
 
 
 def _errors(flexible: sf.DiagramRun, rigid: sf.DiagramRun) -> Figure:
@@ -151,18 +191,23 @@ def _errors(flexible: sf.DiagramRun, rigid: sf.DiagramRun) -> Figure:
         "Left: motors keep to their desired angles within a few milliradians. Right: the tool's distance from its path"
         " is its distance from where the motors point, so it is bending; it peaks where sides are accelerated and"
         " decays after the square is closed.",
-        (Chart("motors: desired less actual angle", "time [s]", "error [mrad]", tuple(motors), (ends,)),
-         Chart("tool", "time [s]", "distance [mm]", tool, (ends,))),
-    )  # fmt: skip
+        (
+            Chart("motors: desired less actual angle", "time [s]", "error [mrad]", tuple(motors), (ends,)),
+            Chart("tool", "time [s]", "distance [mm]", tool, (ends,)),
+        ),
+    )
 
 
 def _effects(distances: dict[int, float], runs: dict[int, sf.DiagramRun], flexible: sf.DiagramRun) -> Figure:
     counts = np.array(list(distances), dtype=float)
     finest = max(runs)
     left = Chart(
-        f"tool against {finest} functions a link", "shape functions in each link", "largest distance [m]",
-        (Curve("difference", counts, np.array(list(distances.values())), 0, "joined"),), log_y=True,
-    )  # fmt: skip
+        f"tool against {finest} functions a link",
+        "shape functions in each link",
+        "largest distance [m]",
+        (Curve("difference", counts, np.array(list(distances.values())), 0, "joined"),),
+        log_y=True,
+    )
     seen = flexible.t >= T_END - 1.2
     resolved = flexible.compiled.resolved
     names = resolved.layout.q_names[resolved.layout.q["plant"].slice]
@@ -173,5 +218,6 @@ def _effects(distances: dict[int, float], runs: dict[int, sf.DiagramRun], flexib
     right = Chart("after the last corner", "time [s]", "coordinate [mrad or 10⁻³]", tuple(curves))
     return Figure(
         "Left: what a richer plant changes. Right: the elastic joint and the first shape of each link ring on after the"
-        " square is closed; their retardation damps them.", (left, right),
-    )  # fmt: skip
+        " square is closed; their retardation damps them.",
+        (left, right),
+    )

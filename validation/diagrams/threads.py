@@ -22,8 +22,12 @@ def copies(period: float, count: int = 2) -> sf.Diagram:
         diagram.add_model(name, system, start)
         diagram.add(blocks.ForwardDynamics(name=name, model=name), u=f"{name}_pd.effort")
         other = names[(k + 1) % count]
-        diagram.add(blocks.JointPD(name=f"{name}_pd", kp=20.0, kd=40.0, period=period),
-                    q_desired=f"{other}.q", q=f"{name}.q", v=f"{name}.v")  # fmt: skip
+        diagram.add(
+            blocks.JointPD(name=f"{name}_pd", kp=20.0, kd=40.0, period=period),
+            q_desired=f"{other}.q",
+            q=f"{name}.q",
+            v=f"{name}.v",
+        )
     return diagram
 
 
@@ -44,18 +48,34 @@ def study(quick: bool) -> Study:
         gains.append(float(one / two))
     checks = (
         Check("parts that move apart between samples", float(parts), 2.0, 2.0, "they meet at samples only"),
-        Check("runs on one and on two threads that differ in a bit", 0.0 if same else 1.0, 0.0,
-              reason="nothing is exchanged between samples"),
-        Check("time on one thread over that on two, best period", max(gains), 2.0, 0.5,
-              "2 at most on two cores; below 1 where the machine has other work"),
-    )  # fmt: skip
+        Check(
+            "runs on one and on two threads that differ in a bit",
+            0.0 if same else 1.0,
+            0.0,
+            reason="nothing is exchanged between samples",
+        ),
+        Check(
+            "time on one thread over that on two, best period",
+            max(gains),
+            2.0,
+            0.5,
+            "2 at most on two cores; below 1 where the machine has other work",
+        ),
+    )
     shown = np.array(PERIODS[: len(gains)])
     figure = Figure(
         "Two threads meet at every sample; the rarer samples are, the less of the gain that costs. Where two cores are"
         " free the curve lies between 1 and 2.",
-        (Chart("two mechanisms of 22 joints on two threads", "sample period [s]", "time of one thread over two",
-               (Curve("measured", shown, np.array(gains), 0, "joined"),), log_x=True),),
-    )  # fmt: skip
+        (
+            Chart(
+                "two mechanisms of 22 joints on two threads",
+                "sample period [s]",
+                "time of one thread over two",
+                (Curve("measured", shown, np.array(gains), 0, "joined"),),
+                log_x=True,
+            ),
+        ),
+    )
     answer = (
         "Mechanisms that see each other at samples only are integrated by themselves in between. On two threads the"
         f" run takes 1/{max(gains):.2f} of the time at best (wall clock, the fastest of five runs each), and every"

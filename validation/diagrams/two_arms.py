@@ -20,31 +20,61 @@ def study(quick: bool) -> Study:
     with_grip = held.run(T_END, dt=DT, record=RECORD)
     open_hand = sf.Simulation(working(grips=False)).run(T_END, dt=DT, record=RECORD)
     point, _ = hand(HOLD)
-    gap = {name: np.linalg.norm(run["hand.p"] - np.array(point), axis=1)
-           for name, run in (("takes hold", with_grip), ("stays open", open_hand))}  # fmt: skip
+    gap = {
+        name: np.linalg.norm(run["hand.p"] - np.array(point), axis=1)
+        for name, run in (("takes hold", with_grip), ("stays open", open_hand))
+    }
     later = with_grip.t > GRIPPED + 0.01
     carrying = (with_grip.t > GRIPPED + 1.0) & (with_grip.t < PLACED + 2.0)
-    swing = {name: np.ptp(_mount(run)[carrying], axis=0)
-             for name, run in (("takes hold", with_grip), ("stays open", open_hand))}  # fmt: skip
+    swing = {
+        name: np.ptp(_mount(run)[carrying], axis=0)
+        for name, run in (("takes hold", with_grip), ("stays open", open_hand))
+    }
     finer = held.run(GRIPPED + 2.0, dt=DT / 2, record=RECORD)
     same = float(np.abs(finer["payload.p"] - with_grip["payload.p"][: len(finer.t)]).max())
     at = int(np.searchsorted(with_grip.t, GRIPPED - 1e-9))
     checks = (
-        Check("hand on the point once it has taken hold [m]", float(gap["takes hold"][later].max()), 1e-9,
-              reason="a closure kept by projection"),
-        Check("hand off the point just before [m]", float(gap["takes hold"][at - 1]), 0.1, 1e-5,
-              "the mount sways from the arm's own motion; the grip takes up the rest as a plastic impact"),
-        Check("multipliers before the grip, largest [N, N m]", float(np.abs(with_grip["felt"][:at]).max()), 0.0,
-              reason="rows of a constraint that is off are zero"),
-        Check("multipliers after it, largest [N, N m]", float(np.abs(with_grip["felt"][later]).max()), 1e5, 1.0,
-              "the point carries what the payload's motion asks for"),
-        Check("sway of the mount along y, towards the point, with the grip over without it",
-              float(swing["takes hold"][1] / swing["stays open"][1]), 0.5,
-              reason="what the stabilisation point is for; across, the arm has less leverage"),
+        Check(
+            "hand on the point once it has taken hold [m]",
+            float(gap["takes hold"][later].max()),
+            1e-9,
+            reason="a closure kept by projection",
+        ),
+        Check(
+            "hand off the point just before [m]",
+            float(gap["takes hold"][at - 1]),
+            0.1,
+            1e-5,
+            "the mount sways from the arm's own motion; the grip takes up the rest as a plastic impact",
+        ),
+        Check(
+            "multipliers before the grip, largest [N, N m]",
+            float(np.abs(with_grip["felt"][:at]).max()),
+            0.0,
+            reason="rows of a constraint that is off are zero",
+        ),
+        Check(
+            "multipliers after it, largest [N, N m]",
+            float(np.abs(with_grip["felt"][later]).max()),
+            1e5,
+            1.0,
+            "the point carries what the payload's motion asks for",
+        ),
+        Check(
+            "sway of the mount along y, towards the point, with the grip over without it",
+            float(swing["takes hold"][1] / swing["stays open"][1]),
+            0.5,
+            reason="what the stabilisation point is for; across, the arm has less leverage",
+        ),
         Check("payload, step halved [m]", same, 1e-3, reason="an impact moves by a step at most"),
-        Check("seconds of motion a second", T_END / with_grip.cost.worked, np.inf, 1.0,
-              "21 speeds, 6 constraints, 500 Hz control: faster than real time"),
-    )  # fmt: skip
+        Check(
+            "seconds of motion a second",
+            T_END / with_grip.cost.worked,
+            np.inf,
+            1.0,
+            "21 speeds, 6 constraints, 500 Hz control: faster than real time",
+        ),
+    )
     answer = (
         f"The left hand reaches its point, off by {1e3 * gap['takes hold'][at - 1]:.1f} mm because the mount sways, and"
         f" takes hold at {GRIPPED:.0f} s: from then on six conditions hold that were off before, in the same run. While"
@@ -52,9 +82,13 @@ def study(quick: bool) -> Study:
         f" against {_millimetres(swing['stays open'])} mm with the hand open: the point lies on the y side, and the"
         " arm, bent, has little leverage across."
     )
-    return Study("What does a stabilisation point do for two arms at work?", answer,
-                 (_motion(with_grip, open_hand), _grip(with_grip, gap)), checks,
-                 ("the SYMOFROS paper, introduction: the task; all values are ours",))  # fmt: skip
+    return Study(
+        "What does a stabilisation point do for two arms at work?",
+        answer,
+        (_motion(with_grip, open_hand), _grip(with_grip, gap)),
+        checks,
+        ("the SYMOFROS paper, introduction: the task; all values are ours",),
+    )
 
 
 def _millimetres(lengths: Array) -> str:
@@ -74,16 +108,19 @@ def _motion(held: sf.DiagramRun, free: sf.DiagramRun) -> Figure:
     marks = (Mark("takes hold", GRIPPED, "x"), Mark("placed", PLACED, "x"))
     sway = tuple(
         Curve(f"{axis}, {name}", run.t, 1e3 * _mount(run)[:, k], k, kind)  # type: ignore[arg-type]
-        for name, run, kind in (("holding", held, "line"), ("open", free, "dotted")) for k, axis in enumerate("xyz")
-    )  # fmt: skip
+        for name, run, kind in (("holding", held, "line"), ("open", free, "dotted"))
+        for k, axis in enumerate("xyz")
+    )
     payload = tuple(Curve(axis, held.t, held["payload.p"][:, k], k) for k, axis in enumerate("xyz"))
     return Figure(
         "Left: where the payload is. Right: the mount, which stands for the tip of the large arm, sways with every"
         " motion of the arms; held by the left hand (lines) it hardly moves along y, where the point is; with the"
         " hand open (dotted) it does.",
-        (Chart("payload", "time [s]", "position [m]", payload, marks),
-         Chart("mount", "time [s]", "displacement [mm]", sway, marks)),
-    )  # fmt: skip
+        (
+            Chart("payload", "time [s]", "position [m]", payload, marks),
+            Chart("mount", "time [s]", "displacement [mm]", sway, marks),
+        ),
+    )
 
 
 def _grip(run: sf.DiagramRun, gap: dict[str, Array]) -> Figure:
@@ -95,7 +132,9 @@ def _grip(run: sf.DiagramRun, gap: dict[str, Array]) -> Figure:
     return Figure(
         "The hand's distance from its point: from the grip on it is zero to rounding. Then what the point feels:"
         " nothing before, the impact as the hand takes hold, and what the payload's motion asks for.",
-        (Chart("hand to point", "time [s]", "distance [m]", distance, mark, log_y=True),
-         Chart("forces of the closure", "time [s]", "multiplier [N]", forces, mark),
-         Chart("moments of the closure", "time [s]", "multiplier [N m]", moments, mark)),
-    )  # fmt: skip
+        (
+            Chart("hand to point", "time [s]", "distance [m]", distance, mark, log_y=True),
+            Chart("forces of the closure", "time [s]", "multiplier [N]", forces, mark),
+            Chart("moments of the closure", "time [s]", "multiplier [N m]", moments, mark),
+        ),
+    )

@@ -106,8 +106,9 @@ def robot_case(label: str) -> Case:
     try:
         files = metadata.distribution(ROBOT_PACKAGE).files or []
     except metadata.PackageNotFoundError:
-        raise FileNotFoundError(f"robot '{label}': package {ROBOT_PACKAGE} is not installed; "
-                                f"pip install {ROBOT_PACKAGE}") from None  # fmt: skip
+        raise FileNotFoundError(
+            f"robot '{label}': package {ROBOT_PACKAGE} is not installed; pip install {ROBOT_PACKAGE}"
+        ) from None
     for file in files:
         if file.as_posix().endswith(f"/robots/{robot.file}"):
             return Case(label, Path(str(file.locate())), robot.floating_base)
@@ -128,10 +129,11 @@ def named(names: list[str], floating_base: bool) -> list[Case]:
     cases = list(dict.fromkeys(_named(name, floating_base) for name in names))
     labels = [case.label for case in cases]
     return [
-        case if labels.count(case.label) == 1 or case.path is None
+        case
+        if labels.count(case.label) == 1 or case.path is None
         else Case(f"{case.path.parent.name}/{case.path.name}", case.path, case.floating_base)
         for case in cases
-    ]  # fmt: skip
+    ]
 
 
 def _named(name: str, floating_base: bool) -> Case:

@@ -113,5 +113,11 @@ def _fast(assembly: Assembly, q: Array, v: Array) -> None:
 
 
 _SPECIAL: tuple[Callable[[Assembly, Array, Array], None], ...] = (
-    _neutral_at_rest, _neutral_moving, _at_rest, _many_turns, _half_turns, _negative_quaternions, _fast,
-)  # fmt: skip
+    _neutral_at_rest,
+    _neutral_moving,
+    _at_rest,
+    _many_turns,
+    _half_turns,
+    _negative_quaternions,
+    _fast,
+)

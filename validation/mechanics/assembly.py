@@ -1,7 +1,7 @@
 """A description as numbers: the moving bodies, where they sit, what is fixed to them.
 
-What the adapters build their engines' models from. It is written apart from `symofros.topology` on purpose; the rules
-it follows are those of the description: depth first in the order of description, a body without a joint (or the
+What the adapters build their engines' models from. It is written apart from `symofros.mechanics.topology` on purpose;
+the rules it follows are those of the description: depth first in the order of description, a body without a joint (or the
 implicit "world") is the base, whatever is fixed to the base neither moves nor has energy.
 """
 

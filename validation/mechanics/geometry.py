@@ -1,4 +1,4 @@
-"""Rotations, placements and quaternions in plain NumPy, written apart from `symofros.kinematics`.
+"""Rotations, placements and quaternions in plain NumPy, written apart from `symofros.mechanics.kinematics`.
 
 The engines' models are built with these, so an error in the generator's own geometry can't hide in both sides.
 Quaternions are (x, y, z, w). Functions on quaternions and vectors accept leading batch dimensions.

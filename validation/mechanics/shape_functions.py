@@ -1,7 +1,7 @@
 """Shape functions of beams written anew with NumPy and SciPy: value, slope, curvature over x [m].
 
-Nothing is shared with `symofros.beams`: families are stated by their textbook definitions (docs/theory/beams.md,
-section 2), as polynomials, splines and modes over the whole length.
+Nothing is shared with `symofros.mechanics.beams`: families are stated by their textbook definitions (docs/theory/
+beams.md, section 2), as polynomials, splines and modes over the whole length.
 """
 
 from __future__ import annotations
@@ -99,9 +99,9 @@ def spline_breaks(dropped: int, count: int, L: float) -> tuple[float, ...]:
 def cantilever_roots(count: int) -> Array:
     """Of cos b cosh b = -1."""
     guess = [(k + 0.5) * np.pi for k in range(count)]
-    return np.array([
-        scipy.optimize.brentq(lambda b: np.cos(b) + 1.0 / np.cosh(b), g - 0.5, g + 0.5, xtol=1e-15) for g in guess
-    ])  # fmt: skip
+    return np.array(
+        [scipy.optimize.brentq(lambda b: np.cos(b) + 1.0 / np.cosh(b), g - 0.5, g + 0.5, xtol=1e-15) for g in guess]
+    )
 
 
 def clamped_free(count: int, L: float) -> tuple[Shape, ...]:

@@ -43,21 +43,27 @@ def derive(system: sf.System) -> Derived:
     V = stored_energy(scope)
     stored = sum((V.diff(q) * x for q, x in rates.items()), sympy.Integer(0))
     stated = stated_forces(scope)
-    Q = [force.xreplace({mark: 1}) - force.xreplace({mark: 0}) + stated[name] - stored.diff(u)
-         for force, (name, u) in zip(active, speeds.items(), strict=True)]  # fmt: skip
+    Q = [
+        force.xreplace({mark: 1}) - force.xreplace({mark: 0}) + stated[name] - stored.diff(u)
+        for force, (name, u) in zip(active, speeds.items(), strict=True)
+    ]
     armature = {name: scope.value(joint.armature) for joint in scope.joints for name in speed_symbols(joint)}
     T = sum((body.kinetic_energy(model.N) for body in bodies), sympy.Integer(0))
     T += sum((a * scope.rate[name] ** 2 / 2 for name, a in armature.items()), sympy.Integer(0))
-    weight = -sum((body.mass * body.masscenter.pos_from(model.origin).dot(model.g) for body in (*bodies, *ground)),
-                  sympy.Integer(0))  # fmt: skip
+    weight = -sum(
+        (body.mass * body.masscenter.pos_from(model.origin).dot(model.g) for body in (*bodies, *ground)),
+        sympy.Integer(0),
+    )
     return scope.derived(
         {
             "mass_matrix": kane.mass_matrix + sympy.diag(*(armature[name] for name in speeds)),
-            "bias": -kane.forcing.xreplace({mark: 0}), "generalized_force": Q,
-            "kinetic_energy": [T], "potential_energy": [weight + V + model.pull_energy()],
+            "bias": -kane.forcing.xreplace({mark: 0}),
+            "generalized_force": Q,
+            "kinetic_energy": [T],
+            "potential_energy": [weight + V + model.pull_energy()],
         },
         {u: scope.rate[name] for name, u in speeds.items()},
-    )  # fmt: skip
+    )
 
 
 def _rates(scope: Scope, u: dict[str, Any]) -> dict[Any, Any]:

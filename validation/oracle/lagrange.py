@@ -40,10 +40,15 @@ def derive(system: sf.System) -> Derived:
         stated[speed] - V.diff(x) - power.diff(scope.rate[speed]) + _work(scope, bodies, scope.rate[speed])
         for speed, x in zip(scope.speeds, q, strict=True)
     ]
-    return scope.derived({
-        "mass_matrix": lagrange.mass_matrix, "bias": -lagrange.forcing, "generalized_force": Q,
-        "kinetic_energy": [T], "potential_energy": [weight + V],
-    })  # fmt: skip
+    return scope.derived(
+        {
+            "mass_matrix": lagrange.mass_matrix,
+            "bias": -lagrange.forcing,
+            "generalized_force": Q,
+            "kinetic_energy": [T],
+            "potential_energy": [weight + V],
+        }
+    )
 
 
 class _Bodies:

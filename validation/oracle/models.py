@@ -47,8 +47,12 @@ _KANE = ("kane",)
 
 
 def _joint(i: int, **stated: Any) -> sf.Joint:
-    usual: dict[str, Any] = {"name": f"q{i}", "kind": "revolute", "parent": f"b{i - 1}" if i else "world",
-                             "position": ("a", 0, 0.5)}  # fmt: skip
+    usual: dict[str, Any] = {
+        "name": f"q{i}",
+        "kind": "revolute",
+        "parent": f"b{i - 1}" if i else "world",
+        "position": ("a", 0, 0.5),
+    }
     return sf.Joint(**{**usual, **stated})
 
 
@@ -68,10 +72,16 @@ def _branched() -> sf.System:
     side = _s.Frame("side", (0, "a", 0), _s.Rotation.rpy("a", 0, "k"))
     stem = sf.RigidBody("stem", _s.Joint("turn", "revolute"), _FLAT, (side,))
     left = sf.RigidBody("left", _s.Joint("left", "revolute", "stem", "side", axis=(0, 1, 0)), _FLAT)
-    lid = sf.RigidBody("lid", _s.Joint("lid", "fixed", "left", position=("a", 0, 0),
-                                       rotation=_s.Rotation.quaternion("n1", "a", "n2", "k")), _SOLID)  # fmt: skip
-    right = sf.RigidBody("right", _s.Joint("right", "prismatic", "stem", axis=(0, 1, 0)),
-                         _s.Inertia("m", ("a", 0, 0), ("J", "2*J", "2*J", "J/4", 0, 0), "body"))  # fmt: skip
+    lid = sf.RigidBody(
+        "lid",
+        _s.Joint("lid", "fixed", "left", position=("a", 0, 0), rotation=_s.Rotation.quaternion("n1", "a", "n2", "k")),
+        _SOLID,
+    )
+    right = sf.RigidBody(
+        "right",
+        _s.Joint("right", "prismatic", "stem", axis=(0, 1, 0)),
+        _s.Inertia("m", ("a", 0, 0), ("J", "2*J", "2*J", "J/4", 0, 0), "body"),
+    )
     return sf.System("s", (stem, left, right, lid), _PAR)
 
 
@@ -79,12 +89,19 @@ def _forces() -> sf.System:
     friction = _s.Friction("J", "k", 0.125, "a"), _s.Friction("J", "k", "a", stribeck_velocity="m")
     return _chain(
         ({"elements": (_s.Spring("k", "a", "k/4"), _s.Damper("m", "a"), friction[0]), "actuated": True}, _ROUND),
-        ({"axis": (0, 1, 0), "effort": ("u1*sin(q0) - k*abs(dq1) + t",), "actuated": True,
-          "elements": (_s.Stop("k", "m", -0.0625, 0.03125), friction[1])}, _ROUND),
+        (
+            {
+                "axis": (0, 1, 0),
+                "effort": ("u1*sin(q0) - k*abs(dq1) + t",),
+                "actuated": True,
+                "elements": (_s.Stop("k", "m", -0.0625, 0.03125), friction[1]),
+            },
+            _ROUND,
+        ),
         inputs=[sf.Input("u1")],
         virtual_power=[_s.VirtualPower("p", {"dq0": "k*(q1 - q0)", "dq1": "-k*(q1 - q0)"})],
         potentials=[_s.Potential("v", "k*sin(q0)*q1^2 + t*q1")],
-    )  # fmt: skip
+    )
 
 
 def _loads() -> sf.System:
@@ -106,48 +123,102 @@ def _connected(system: sf.System, *names: str) -> sf.System:
         _s.Connection("down", ("world", None), (last, "tip"), "k", "a", "m"),
         _s.Connection("across", (last, "tip"), (system.bodies[0].name, None), "m", "J", "a"),
         _s.Connection("short", (last, None), ("world", None), "J", 0.0, "k"),
-    )  # fmt: skip
+    )
     return replace(system, connections=tuple(item for item in listed if item.name in names))
 
 
-_EULER = {"kind": "general", "coordinates": ("x", "y"), "moving_position": ("x*y", 0, "y^2"),
-          "moving_rotation": _s.Rotation.rpy(0, "x", "x + a*y")}  # fmt: skip
+_EULER = {
+    "kind": "general",
+    "coordinates": ("x", "y"),
+    "moving_position": ("x*y", 0, "y^2"),
+    "moving_rotation": _s.Rotation.rpy(0, "x", "x + a*y"),
+}
 _SPUN = _s.Rotation.matrix([["cos(2*s)", "-sin(2*s)", 0], ["sin(2*s)", "cos(2*s)", 0], [0, 0, 1]])
 
 MODELS: dict[str, Model] = {
     "double pendulum": Model(REFERENCE["double_pendulum"], _BOTH),
     "cart-pole": Model(REFERENCE["cart_pole"], _BOTH),
     "axes by parameters": Model(
-        _chain(({"axis": _AXIS}, _SOLID), ({"kind": "prismatic", "axis": ("a", 0, "k")}, _ROUND)), _KANE),
+        _chain(({"axis": _AXIS}, _SOLID), ({"kind": "prismatic", "axis": ("a", 0, "k")}, _ROUND)), _KANE
+    ),
     "constant axes": Model(_chain(({"axis": (1, 2, 2)}, _SOLID), ({"axis": (2, -1, 2)}, _ROUND)), _KANE, ROUNDED),
     "screw": Model(_chain(({"kind": "screw", "pitch": "a", "axis": (0, -1, 0)}, _SOLID), ({}, _ROUND)), _BOTH),
     "cylindrical": Model(_chain(({"kind": "cylindrical", "axis": (1, 0, 0)}, _ROUND), ({}, _FLAT))),
     "universal": Model(_chain(({"kind": "universal", "axis": (1, 0, 0), "axis2": ("n1", 0, "n3")}, _SOLID)), _KANE),
     "planar": Model(_chain(({"kind": "planar"}, _SOLID), ({"axis": (0, 1, 0)}, _FLAT)), _BOTH),
     "general, by angles": Model(_chain((_EULER, _FLAT)), _BOTH),
-    "general, by matrix": Model(_chain(
-        ({"kind": "general", "coordinates": ("s",), "moving_position": ("cos(s)", "a*sin(s)", "s/4"),
-          "moving_rotation": _SPUN}, _SOLID), ({"axis": (0, 1, 0)}, _ROUND))),
+    "general, by matrix": Model(
+        _chain(
+            (
+                {
+                    "kind": "general",
+                    "coordinates": ("s",),
+                    "moving_position": ("cos(s)", "a*sin(s)", "s/4"),
+                    "moving_rotation": _SPUN,
+                },
+                _SOLID,
+            ),
+            ({"axis": (0, 1, 0)}, _ROUND),
+        )
+    ),
     "branches": Model(_branched(), _KANE),
     "massless between": Model(_chain(({}, None), ({"axis": (0, 1, 0)}, None), ({"kind": "prismatic"}, _ROUND)), _BOTH),
-    "rotors": Model(_chain(
-        ({}, _ROUND),
-        ({"axis": (0, 1, 0), "rotation": _s.Rotation.rpy("a", 0, "k"), "armature": "J/8",
-          "rotors": (_s.Rotor("J/64", 40.0), _s.Rotor("J/32", "-k", _AXIS, "b1"))}, _ROUND)), _BOTH),
-    "prescribed base": Model(_chain(
-        ({"kind": "general", "coordinates": ("X", "Y"), "moving_position": ("X", "Y", "X*Y"), "prescribed": True,
-          "moving_rotation": _s.Rotation.axis_angle((0, 0, 1), "X"),
-          "rotors": (_s.Rotor("J/32", "k", (1, 0, 0), "b1", 1),)}, _ROUND),
-        ({"axis": (1, 0, 0), "rotors": (_s.Rotor("J/64", 8.0, (0, 0, 1)),)}, _SOLID)), _BOTH),
+    "rotors": Model(
+        _chain(
+            ({}, _ROUND),
+            (
+                {
+                    "axis": (0, 1, 0),
+                    "rotation": _s.Rotation.rpy("a", 0, "k"),
+                    "armature": "J/8",
+                    "rotors": (_s.Rotor("J/64", 40.0), _s.Rotor("J/32", "-k", _AXIS, "b1")),
+                },
+                _ROUND,
+            ),
+        ),
+        _BOTH,
+    ),
+    "prescribed base": Model(
+        _chain(
+            (
+                {
+                    "kind": "general",
+                    "coordinates": ("X", "Y"),
+                    "moving_position": ("X", "Y", "X*Y"),
+                    "prescribed": True,
+                    "moving_rotation": _s.Rotation.axis_angle((0, 0, 1), "X"),
+                    "rotors": (_s.Rotor("J/32", "k", (1, 0, 0), "b1", 1),),
+                },
+                _ROUND,
+            ),
+            ({"axis": (1, 0, 0), "rotors": (_s.Rotor("J/64", 8.0, (0, 0, 1)),)}, _SOLID),
+        ),
+        _BOTH,
+    ),
     "joint forces": Model(_forces(), _BOTH),
     "loads": Model(_loads(), _BOTH),
     "connections": Model(
-        _connected(_chain(({}, _ROUND), ({"axis": (0, 1, 0)}, _FLAT)), "down", "across", "short"), _BOTH),
-    "ball": Model(_chain(
-        ({"kind": "ball", "elements": (_s.Damper("k", "a", 1),), "effort": ("u1", "m*q0.wy", "q0.qx")}, _SOLID),
-        inputs=[sf.Input("u1")], potentials=[_s.Potential("v", "k*q0.qx*q0.qw + m*q0.qz^2")]), _KANE),
+        _connected(_chain(({}, _ROUND), ({"axis": (0, 1, 0)}, _FLAT)), "down", "across", "short"), _BOTH
+    ),
+    "ball": Model(
+        _chain(
+            ({"kind": "ball", "elements": (_s.Damper("k", "a", 1),), "effort": ("u1", "m*q0.wy", "q0.qx")}, _SOLID),
+            inputs=[sf.Input("u1")],
+            potentials=[_s.Potential("v", "k*q0.qx*q0.qw + m*q0.qz^2")],
+        ),
+        _KANE,
+    ),
     "ball on an arm": Model(_chain(({"axis": (0, 1, 0)}, _ROUND), ({"kind": "ball"}, _ROUND)), _KANE),
-    "free base with an arm": Model(_connected(_chain(
-        ({"kind": "free", "actuated": True}, _SOLID), ({"axis": (0, 1, 0), "effort": ("-k*dq1",)}, _FLAT),
-        potentials=[_s.Potential("v", "k*q0.px*q0.qy")]), "across", "short"), _KANE),
-}  # fmt: skip
+    "free base with an arm": Model(
+        _connected(
+            _chain(
+                ({"kind": "free", "actuated": True}, _SOLID),
+                ({"axis": (0, 1, 0), "effort": ("-k*dq1",)}, _FLAT),
+                potentials=[_s.Potential("v", "k*q0.px*q0.qy")],
+            ),
+            "across",
+            "short",
+        ),
+        _KANE,
+    ),
+}

@@ -127,8 +127,14 @@ class Scope:
         if value.kind == "symbol":
             return self._known[value.name]
         a = [self.value(arg) for arg in value.args]
-        simple = {"add": lambda: a[0] + a[1], "sub": lambda: a[0] - a[1], "mul": lambda: a[0] * a[1],
-                  "div": lambda: a[0] / a[1], "pow": lambda: a[0] ** a[1], "neg": lambda: -a[0]}  # fmt: skip
+        simple = {
+            "add": lambda: a[0] + a[1],
+            "sub": lambda: a[0] - a[1],
+            "mul": lambda: a[0] * a[1],
+            "div": lambda: a[0] / a[1],
+            "pow": lambda: a[0] ** a[1],
+            "neg": lambda: -a[0],
+        }
         return simple[value.kind]() if value.kind in simple else getattr(sympy, _NAMES.get(value.kind, value.kind))(*a)
 
     def vector(self, values: Iterable[sf.Expression | float]) -> Any:
@@ -189,10 +195,12 @@ class Scope:
         return Derived(
             tuple(self._plain[self.function[name]] for name in self.free),
             tuple(self._plain[self.rate[name]] for name in self.speeds),
-            tuple(self._inputs), self._constant,
-            meanings, tuple(quaternions),
+            tuple(self._inputs),
+            self._constant,
+            meanings,
+            tuple(quaternions),
             {name: [sympy.sympify(x).xreplace(rules) for x in listed] for name, listed in values.items()},
-        )  # fmt: skip
+        )
 
 
 def turns(rotation: sf.Rotation) -> list[tuple[Any, sf.Expression | float]]:

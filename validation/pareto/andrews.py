@@ -63,8 +63,13 @@ def prepare(quick: bool) -> Prepared:
             found += one.by("semi_implicit_euler", steps) + one.by("implicit_euler", steps)
     start = known()["start"]
     order = m.names.q
-    exudyn = Theirs("absolute coordinates", looped(system(), start, TORQUE), END, OUTPUT,
-                    lambda r: far(joint_angles(system(), start, r.values)[-1], order))  # fmt: skip
+    exudyn = Theirs(
+        "absolute coordinates",
+        looped(system(), start, TORQUE),
+        END,
+        OUTPUT,
+        lambda r: far(joint_angles(system(), start, r.values)[-1], order),
+    )
     coarse = (5e-5,) if quick else (1e-4, 5e-5, 2e-5, 1e-5, 5e-6)
     found += exudyn.by(Solver(radius=0.9, tolerance=1e-8), coarse)
     if not quick:

@@ -34,8 +34,9 @@ MODEL = "7 joints"
 def system() -> sf.System:
     """The arm without friction in joints, which engines have each in their own way."""
     panda = panda7()
-    bodies = [body if body.joint is None else replace(body, joint=replace(body.joint, elements=()))
-              for body in panda.bodies]  # fmt: skip
+    bodies = [
+        body if body.joint is None else replace(body, joint=replace(body.joint, elements=())) for body in panda.bodies
+    ]
     return replace(panda, bodies=tuple(bodies))
 
 

@@ -85,8 +85,16 @@ def _show(comparison: Comparison) -> None:
     for name, page in comparison.pages.items():
         for v in page.verdicts:
             verdict = "[green]met[/]" if v.ok else "[bold red]missed[/]"
-            table.add_row(name, page.scene.shown(v.target.error), v.target.engine, words.duration(v.ours),
-                          words.duration(v.theirs), f"{v.found:.3g}", f"{v.target.ratio:g}", verdict)  # fmt: skip
+            table.add_row(
+                name,
+                page.scene.shown(v.target.error),
+                v.target.engine,
+                words.duration(v.ours),
+                words.duration(v.theirs),
+                f"{v.found:.3g}",
+                f"{v.target.ratio:g}",
+                verdict,
+            )
     for name, reason in comparison.failures.items():
         table.add_row(name, reason, "", "", "", "", "", "[bold red]failed[/]")
     Console().print(table)

@@ -47,8 +47,9 @@ def _chart(scene: Scene, result: Result, points: list[Point], title: str, by_mod
     sides = [[item for item in groups.items() if (item[1][0].who == OURS) == ours] for ours in (True, False)]
     curves = [
         _curve(label, found, palette[n % len(palette)], by_model)
-        for side, palette in zip(sides, (_OURS, _OTHERS), strict=True) for n, (label, found) in enumerate(side)
-    ]  # fmt: skip
+        for side, palette in zip(sides, (_OURS, _OTHERS), strict=True)
+        for n, (label, found) in enumerate(side)
+    ]
     marks = _floors(result)
     apart = all(not 0.7 < value / result.agreement < 1.4 for value in result.floors.values() if result.agreement)
     if result.agreement and apart and min(p.error for p in points) < 10 * result.agreement:
@@ -86,9 +87,10 @@ def _by_model(points: list[Point]) -> dict[str, list[Point]]:
     labels = dict.fromkeys((p.who, p.model) for p in points)
     sides = [[label for label in labels if (label[0] == OURS) == ours] for ours in (True, False)]
     named = {
-        label for side, palette in zip(sides, (_OURS, _OTHERS), strict=True)
+        label
+        for side, palette in zip(sides, (_OURS, _OTHERS), strict=True)
         for label in (side if len(side) <= len(palette) else side[: len(palette) - 1])
-    }  # fmt: skip
+    }
     groups: dict[str, list[Point]] = {}
     for point in points:
         known = (point.who, point.model) in named

@@ -89,10 +89,11 @@ def exudyn_all(quick: bool) -> list[Contestant]:
     found = one.by(Solver(tolerance=1e-8, bisecting=True), steps)
     if not quick:
         for solver in (
-            Solver(tolerance=1e-8), Solver(tolerance=1e-8, radius=1.0, bisecting=True),
+            Solver(tolerance=1e-8),
+            Solver(tolerance=1e-8, radius=1.0, bisecting=True),
             Solver(tolerance=1e-8, full=False, bisecting=True),
             Solver("TrapezoidalIndex2", tolerance=1e-8, bisecting=True),
-        ):  # fmt: skip
+        ):
             found += one.by(solver, steps)
         found += one.by(Solver("RK44"), (1e-3,))
     return found

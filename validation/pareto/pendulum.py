@@ -33,8 +33,9 @@ def mjcf() -> str:
 
 def prepare(quick: bool) -> Prepared:
     """The closed form, and SciPy's DOP853 on the equation."""
-    run = solve_ivp(lambda t, y: [y[1], GRAVITY * np.cos(y[0])], (0, END), [0.0, 0.0], "DOP853", TIMES, rtol=1e-13,
-                    atol=1e-13)  # fmt: skip
+    run = solve_ivp(
+        lambda t, y: [y[1], GRAVITY * np.cos(y[0])], (0, END), [0.0, 0.0], "DOP853", TIMES, rtol=1e-13, atol=1e-13
+    )
     given = {"q0": [0.0], "t_end": END, "output": TIMES}
     one = Ours(MODEL, energy.pendulum(), given, lambda run: far(run.q[:, 0]))
     rtols = (1e-8,) if quick else (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)

@@ -30,8 +30,9 @@ class Result:
     seconds: float
 
 
-def race(scene: Scene, quick: bool, begun: Callable[[int], None] = lambda _: None,
-         done: Callable[[], None] = lambda: None) -> Result:  # fmt: skip
+def race(
+    scene: Scene, quick: bool, begun: Callable[[int], None] = lambda _: None, done: Callable[[], None] = lambda: None
+) -> Result:
     """Prepare a scene and run it; `begun` hears how many contestants there are, `done` is called after each."""
     start = time.perf_counter()
     prepared: Prepared = scene.prepare(quick)

@@ -128,14 +128,20 @@ def as_data(comparison: Comparison) -> dict[str, Any]:
 def _scene(page: Page, date: str) -> dict[str, Any]:
     scene, result = page.scene, page.result
     return {
-        "title": scene.title, "measure": scene.measure, "ok": page.ok, "date": date,
-        "agreement": number(result.agreement), "trust": scene.trust, "references": result.references,
-        "floors": dict(result.floors), "seconds": round(result.seconds, 1),
+        "title": scene.title,
+        "measure": scene.measure,
+        "ok": page.ok,
+        "date": date,
+        "agreement": number(result.agreement),
+        "trust": scene.trust,
+        "references": result.references,
+        "floors": dict(result.floors),
+        "seconds": round(result.seconds, 1),
         "targets": [asdict(v.target) | {"found": _bounded(v.found), "ok": v.ok} for v in page.verdicts],
         "words": [*words.compared(scene, result.points), *words.advice(scene, result)],
         "front": [point.name for _, point in page.named],
         "points": [asdict(p) | {"error": number(p.error), "seconds": number(p.seconds)} for p in result.points],
-    }  # fmt: skip
+    }
 
 
 def _bounded(found: float) -> float | str | None:
@@ -169,5 +175,13 @@ def _render(template: str, comparison: Comparison) -> str:
         for name, page in comparison.pages.items()
     }
     overall = words.overall({name: (page.scene, page.result) for name, page in comparison.pages.items()})
-    return render(template, {"svg": charts.svg, "duration": words.duration}, comparison=comparison, drawn=drawn,
-                  words=words, overall=overall, flags=FLAGS, versions=versions(*ENGINES))  # fmt: skip
+    return render(
+        template,
+        {"svg": charts.svg, "duration": words.duration},
+        comparison=comparison,
+        drawn=drawn,
+        words=words,
+        overall=overall,
+        flags=FLAGS,
+        versions=versions(*ENGINES),
+    )

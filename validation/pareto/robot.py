@@ -113,9 +113,10 @@ def prepare(quick: bool) -> Prepared:
                 found += one.by("semi_implicit_euler", (2e-3, 1e-3, 5e-4, 2e-4, 1e-4))
     if not quick:
         changes: dict[str, dict[str, Any]] = {
-            "2 splines, zeroth order": {"retain": "zeroth_order"}, "3 modes": {"bend_y": 3, "family": "clamped_free"},
+            "2 splines, zeroth order": {"retain": "zeroth_order"},
+            "3 modes": {"bend_y": 3, "family": "clamped_free"},
             "2 Hermite": {"family": "hermite"},
-        }  # fmt: skip
+        }
         for label, change in changes.items():
             one = ours(label, sf.compile(system(2, **change)))
             found += one.by("rodas4", rtols[:4]) + one.by("generalized_alpha", (0.02, 0.01, 5e-3))

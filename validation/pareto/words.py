@@ -67,8 +67,9 @@ def advice(scene: Scene, result: Result) -> list[str]:
     for (who, model, method), group in groupby(best, key=lambda p: p.series):
         run = list(group)
         times = duration(run[-1].seconds)
-        lines.append(f"down to an error of {scene.shown(run[-1].error)}: {who}, {model}, {method}, {run[-1].setting} "
-                     f"({times})")  # fmt: skip
+        lines.append(
+            f"down to an error of {scene.shown(run[-1].error)}: {who}, {model}, {method}, {run[-1].setting} ({times})"
+        )
     return lines
 
 
@@ -83,8 +84,10 @@ def below_the_floor(scene: Scene, result: Result) -> str:
     if not finer:
         return f"{said}; no run here goes below it."
     first = min(finer, key=lambda p: p.seconds)
-    return (f"{said}; below {scene.shown(least)} {first.who} is the tool: {first.model}, {first.method}, "
-            f"{first.setting} reach {scene.shown(first.error)} in {duration(first.seconds)}.")  # fmt: skip
+    return (
+        f"{said}; below {scene.shown(least)} {first.who} is the tool: {first.model}, {first.method}, "
+        f"{first.setting} reach {scene.shown(first.error)} in {duration(first.seconds)}."
+    )
 
 
 def methods(scene: Scene, result: Result) -> str:
@@ -130,9 +133,11 @@ def see(scene: Scene, result: Result) -> str:
     others = " and ".join(engines(result.points)) or "nobody else"
     best = front(charted(scene, result.points))
     mine, total = sum(p.who == OURS for p in best), len(best)
-    return (f"Down is more accurate, left is faster. {mine} of the {total} runs on the green front are ours. Cold "
-            f"colours are ours, warm ones those of {others}. Letters name the runs of the front in the table "
-            "below. At the right, each method on the model with which it comes closest.")  # fmt: skip
+    return (
+        f"Down is more accurate, left is faster. {mine} of the {total} runs on the green front are ours. Cold "
+        f"colours are ours, warm ones those of {others}. Letters name the runs of the front in the table "
+        "below. At the right, each method on the model with which it comes closest."
+    )
 
 
 def refused(result: Result) -> list[str]:
@@ -141,8 +146,10 @@ def refused(result: Result) -> list[str]:
     for p in result.points:
         if p.ended:
             found.setdefault((p.who, p.method), []).append(p)
-    return [f"{who}, {method}: {len(runs)} ({runs[0].model}, {runs[0].setting}: {runs[0].ended})"
-            for (who, method), runs in found.items()]  # fmt: skip
+    return [
+        f"{who}, {method}: {len(runs)} ({runs[0].model}, {runs[0].setting}: {runs[0].ended})"
+        for (who, method), runs in found.items()
+    ]
 
 
 def duration(seconds: float) -> str:

@@ -57,8 +57,13 @@ def write_report(rows: Sequence[Measured], folder: Path) -> Path:
     """
     folder.mkdir(parents=True, exist_ok=True)
     toolchain = find_toolchain()
-    facts = {**machine(), "versions": versions(), "compiler": toolchain.identity if toolchain else "none",
-             "flags": " ".join(DEFAULT_FLAGS), "date": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime())}  # fmt: skip
+    facts = {
+        **machine(),
+        "versions": versions(),
+        "compiler": toolchain.identity if toolchain else "none",
+        "flags": " ".join(DEFAULT_FLAGS),
+        "date": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
+    }
     data = {"facts": facts, "rows": as_data(list(rows))}
     write_atomically(folder / "passes.json", json.dumps(data, indent=1) + "\n")
     tables = [
@@ -77,6 +82,15 @@ def table(label: str, rows: Sequence[Measured]) -> dict[str, object]:
     for row in rows:
         gain = "" if row is base else f"{row.median / base.median - 1.0:+.0%}"
         more = "" if row is base else f"{row.operations / base.operations - 1.0:+.1%}"
-        cells.append((row.without, f"{row.operations}", more, f"{row.minimum:.0f}, {row.median:.0f}", gain,
-                      f"{row.text / 1024:.0f}", f"{row.compilation:.2f}"))  # fmt: skip
+        cells.append(
+            (
+                row.without,
+                f"{row.operations}",
+                more,
+                f"{row.minimum:.0f}, {row.median:.0f}",
+                gain,
+                f"{row.text / 1024:.0f}",
+                f"{row.compilation:.2f}",
+            )
+        )
     return {"title": f"{label}, {base.nv} degrees of freedom", "rows": cells}

@@ -16,7 +16,7 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from symofros.passes.count import count_program
+from symofros.generator.passes.count import count_program
 from validation.mechanics.geometry import Array
 from validation.passes.switches import PASSES, Without
 from validation.timing.arrays import Arrays, loops
@@ -78,8 +78,10 @@ def measure(label: str, repeats: int, done: Callable[[str], None] = lambda words
         done(f"{label} without {item.name}")
     built[APART] = [_Variant(system, name) for name in _PARTS]
     expected = built[ALL][0].results()
-    off = {name: error(np.concatenate([one.results() for one in variants], axis=1), expected)
-           for name, variants in built.items()}  # fmt: skip
+    off = {
+        name: error(np.concatenate([one.results() for one in variants], axis=1), expected)
+        for name, variants in built.items()
+    }
     wrong = {name: value for name, value in off.items() if not value <= SAME}
     if wrong:
         raise ArithmeticError(
@@ -90,18 +92,29 @@ def measure(label: str, repeats: int, done: Callable[[str], None] = lambda words
     for name, variants in built.items():
         mine = [times[f"{name}/{i}"] for i in range(len(variants))]
         yield Measured(
-            label, variants[0].nv, name, sum(one.operations for one in variants), sum(one.text for one in variants),
-            sum(one.seconds for one in variants), sum(t.minimum for t in mine), sum(t.median for t in mine), off[name],
-        )  # fmt: skip
+            label,
+            variants[0].nv,
+            name,
+            sum(one.operations for one in variants),
+            sum(one.text for one in variants),
+            sum(one.seconds for one in variants),
+            sum(t.minimum for t in mine),
+            sum(t.median for t in mine),
+            off[name],
+        )
 
 
 class _Variant:
     """One function of one model, compiled."""
 
     def __init__(
-        self, system: sf.System, function: str, without: Without = nullcontext,
-        options: Callable[[sf.Options], sf.Options] = lambda options: options, copied: bool = False,
-    ) -> None:  # fmt: skip
+        self,
+        system: sf.System,
+        function: str,
+        without: Without = nullcontext,
+        options: Callable[[sf.Options], sf.Options] = lambda options: options,
+        copied: bool = False,
+    ) -> None:
         chosen = options(sf.Options((function,), batch="loop"))
         with without():
             program = sf.program_of(system, (function,))
@@ -125,8 +138,10 @@ class _Variant:
         pre = np.zeros(model.npre + 1)
         model.init(model.par_default, ffi.from_buffer("double[]", pre))
         entry, given = model.functions[0], {"pre": pre[: model.npre], **_states(model.nq, model.nv, model.nu)}
-        inputs = [given.get(ffi.string(item.name).decode(), np.zeros(item.rows * item.cols))
-                  for item in getattr(entry, "in")[0 : entry.n_in]]  # fmt: skip
+        inputs = [
+            given.get(ffi.string(item.name).decode(), np.zeros(item.rows * item.cols))
+            for item in getattr(entry, "in")[0 : entry.n_in]
+        ]
         sizes = [item.rows * item.cols for item in entry.out[0 : entry.n_out]]
         self._function, self._arrays = model.functions + 0, Arrays(inputs, sizes, (int(entry.work), 0))
         run = partial(native.loop_eval, self._function, self._arrays.overwritten())

@@ -8,17 +8,17 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import symofros as sf
-from symofros import passes
-from symofros.codegen import function as functions
-from symofros.codegen.statements import StatementWriter
-from symofros.dynamics import inertia
 from symofros.expr.graph import Edge, Graph
 from symofros.expr.ops import ADD, DIV, MUL
 from symofros.expr.vector import Sym3, Vec3
-from symofros.kinematics import rotations
-from symofros.kinematics.rotations import MatrixTurn, Turn
-from symofros.passes import stage
-from symofros.passes.chain import chain_sums
+from symofros.generator import passes
+from symofros.generator.codegen import function as functions
+from symofros.generator.codegen.statements import StatementWriter
+from symofros.generator.passes import stage
+from symofros.generator.passes.chain import chain_sums
+from symofros.mechanics.dynamics import inertia
+from symofros.mechanics.kinematics import rotations
+from symofros.mechanics.kinematics.rotations import MatrixTurn, Turn
 from symofros.runtime.toolchain import DEFAULT_FLAGS
 
 Without = Callable[[], AbstractContextManager[object]]
@@ -105,24 +105,45 @@ def _in_one_piece() -> AbstractContextManager[None]:
 
 PASSES = (
     Pass("sharing", "Equal operations are one node of the graph.", _without_sharing),
-    Pass("regrouping", "What a joint cannot tell from its parent's inertia is booked there, before run time.",
-         _without_regrouping),
-    Pass("elementary turns", "Rotations act as products of turns about coordinate axes, by 4 multiplications each.",
-         _without_turns),
-    Pass("rounding noise", "Entries of constant rotations within 1e-15 of 0 and 1 are 0 and 1: cos(pi/2) is 6e-17.",
-         lambda: _replaced(rotations, "EXACT", -1.0)),
-    Pass("constant factors", "c1 (c2 x) becomes (c1 c2) x.",
-         lambda: _replaced(Graph, "_scale", lambda self, a, b: _both_numbers(self, a, b))),
+    Pass(
+        "regrouping",
+        "What a joint cannot tell from its parent's inertia is booked there, before run time.",
+        _without_regrouping,
+    ),
+    Pass(
+        "elementary turns",
+        "Rotations act as products of turns about coordinate axes, by 4 multiplications each.",
+        _without_turns,
+    ),
+    Pass(
+        "rounding noise",
+        "Entries of constant rotations within 1e-15 of 0 and 1 are 0 and 1: cos(pi/2) is 6e-17.",
+        lambda: _replaced(rotations, "EXACT", -1.0),
+    ),
+    Pass(
+        "constant factors",
+        "c1 (c2 x) becomes (c1 c2) x.",
+        lambda: _replaced(Graph, "_scale", lambda self, a, b: _both_numbers(self, a, b)),
+    ),
     Pass("staging", "What parameters alone determine is computed once for each set of them.", _without_staging),
-    Pass("sums in chains", "x + a b + c d takes two fused multiply-adds, (a b + c d) + x three operations.",
-         _without_chains),
-    Pass("blocks of sines", "Sines and cosines of up to eight angles by polynomials in one vector; without: libm's.",
-         lambda: _replaced(StatementWriter, "_blocks", lambda self: {})),
+    Pass(
+        "sums in chains",
+        "x + a b + c d takes two fused multiply-adds, (a b + c d) + x three operations.",
+        _without_chains,
+    ),
+    Pass(
+        "blocks of sines",
+        "Sines and cosines of up to eight angles by polynomials in one vector; without: libm's.",
+        lambda: _replaced(StatementWriter, "_blocks", lambda self: {}),
+    ),
     Pass("packs", "Columns that are computed alike share vectors.", options=lambda o: replace(o, packs=False)),
-    Pass("no search for vectors", "The compiler's own search for statements that could share vectors is off.",
-         options=lambda o: replace(o, flags=tuple(f for f in DEFAULT_FLAGS if f != "-fno-tree-slp-vectorize"))),
+    Pass(
+        "no search for vectors",
+        "The compiler's own search for statements that could share vectors is off.",
+        options=lambda o: replace(o, flags=tuple(f for f in DEFAULT_FLAGS if f != "-fno-tree-slp-vectorize")),
+    ),
     Pass("pieces", "Functions past 1000 statements are compiled in pieces.", _in_one_piece),
-)  # fmt: skip
+)
 
 
 def _both_numbers(g: Graph, a: int, b: int) -> Edge | None:

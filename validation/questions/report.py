@@ -67,9 +67,14 @@ def as_data(run: Answers) -> dict[str, Any]:
 
 
 def _study(study: Study) -> dict[str, Any]:
-    return {"title": study.title, "answer": study.answer, "ok": study.ok,
-            "checks": [check_data(check) for check in study.checks], "sources": study.sources,
-            "figures": [figure_data(figure) for figure in study.figures]}  # fmt: skip
+    return {
+        "title": study.title,
+        "answer": study.answer,
+        "ok": study.ok,
+        "checks": [check_data(check) for check in study.checks],
+        "sources": study.sources,
+        "figures": [figure_data(figure) for figure in study.figures],
+    }
 
 
 def _render(template: str, run: Answers) -> str:

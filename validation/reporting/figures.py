@@ -116,9 +116,10 @@ def _tolerance_mark(quantity: Quantity, x: Scale, base: float) -> str:
 def error_against_condition(record: Record) -> str:
     """Forward dynamics: a point a model and engine, its largest error over the condition number of M."""
     rows = [
-        row for row in record.compared
+        row
+        for row in record.compared
         if row.quantity == "forward_dynamics" and row.error and math.isfinite(row.extra.get("condition", math.inf))
-    ]  # fmt: skip
+    ]
     if not rows:
         return ""
     conditions = [math.log10(row.extra["condition"]) for row in rows]

@@ -33,7 +33,8 @@ def to_html(record: Record) -> str:
     """The page: figures and tables inside, nothing from outside."""
     engines = [name for name in ROUTES if any(row.engine == name for row in record.compared)]
     return _render(
-        "check.html.j2", record,
+        "check.html.j2",
+        record,
         distributions=Markup(error_distributions(record)),
         conditions=Markup(error_against_condition(record)),
         engines=engines,
@@ -42,7 +43,7 @@ def to_html(record: Record) -> str:
         drifts=[row for row in record.comparisons if row.quantity == "energy_drift" and row.error is not None],
         quantities=[*QUANTITIES.values(), MOTION_ENERGY],
         differences=DIFFERENCES,
-    )  # fmt: skip
+    )
 
 
 def to_markdown(record: Record) -> str:
@@ -52,12 +53,21 @@ def to_markdown(record: Record) -> str:
 
 def _render(template: str, record: Record, **more: object) -> str:
     return render(
-        template, {"short": _short, "cell": _markdown_cell}, record=record, headline=headline(record), columns=COLUMNS,
-        models=by_model(record), failures=failures(record), unsupported=unsupported(record),
+        template,
+        {"short": _short, "cell": _markdown_cell},
+        record=record,
+        headline=headline(record),
+        columns=COLUMNS,
+        models=by_model(record),
+        failures=failures(record),
+        unsupported=unsupported(record),
         rounding=worst(_rounded(record)),
         solve=worst(row for row in record.compared if row.quantity == "forward_dynamics"),
-        ROUNDING=ROUNDING, SOLVE=SOLVE, SMALL=SMALL, **more,
-    )  # fmt: skip
+        ROUNDING=ROUNDING,
+        SOLVE=SOLVE,
+        SMALL=SMALL,
+        **more,
+    )
 
 
 def _rounded(record: Record) -> list[Comparison]:

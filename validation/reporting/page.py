@@ -27,9 +27,12 @@ DIGITS = 5
 def render(template: str, filters: Mapping[str, Callable[..., object]], **values: object) -> str:
     """A template of validation/templates with its values; HTML is escaped, `number` shows a float short."""
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("validation"), undefined=jinja2.StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True, autoescape=jinja2.select_autoescape(["html.j2"]),
-    )  # fmt: skip
+        loader=jinja2.PackageLoader("validation"),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        autoescape=jinja2.select_autoescape(["html.j2"]),
+    )
     environment.filters |= {"number": short, **filters}
     return environment.get_template(template).render(machine=machine(), **values)
 
@@ -60,8 +63,14 @@ class Run(Protocol):
 
 def run_data(run: Run, *distributions: str) -> dict[str, Any]:
     """How a run went and on what, for JSON."""
-    return {"ok": run.ok, "quick": run.quick, "seconds": round(run.seconds, 1), "failures": run.failures,
-            "versions": versions(*distributions), **stamp()}  # fmt: skip
+    return {
+        "ok": run.ok,
+        "quick": run.quick,
+        "seconds": round(run.seconds, 1),
+        "failures": run.failures,
+        "versions": versions(*distributions),
+        **stamp(),
+    }
 
 
 def write_pages(
@@ -127,8 +136,14 @@ def _chart(chart: Chart) -> dict[str, Any]:
         {"label": curve.label, "kind": curve.kind, "x": rounded(curve.x), "y": rounded(curve.y)}
         for curve in chart.curves
     ]
-    return {"title": chart.title, "x": chart.x, "y": chart.y, "log": [chart.log_x, chart.log_y], "curves": curves,
-            "marks": {mark.label: mark.at for mark in chart.marks}}  # fmt: skip
+    return {
+        "title": chart.title,
+        "x": chart.x,
+        "y": chart.y,
+        "log": [chart.log_x, chart.log_y],
+        "curves": curves,
+        "marks": {mark.label: mark.at for mark in chart.marks},
+    }
 
 
 def versions(*distributions: str) -> dict[str, str]:

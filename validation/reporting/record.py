@@ -67,9 +67,12 @@ class Record:
 
 
 def make_record(
-    settings: Settings, models: Sequence[ModelResult], seconds: float, unfinished: Sequence[str] = (),
+    settings: Settings,
+    models: Sequence[ModelResult],
+    seconds: float,
+    unfinished: Sequence[str] = (),
     build: Mapping[str, str] | None = None,
-) -> Record:  # fmt: skip
+) -> Record:
     """Add to results what is needed to judge them later."""
     versions = {"symofros": sf.__version__, "python": platform.python_version(), "numpy": np.__version__}
     for model in models:
@@ -123,10 +126,16 @@ def summary(record: Record) -> dict[str, Any]:
 
 def _entry(row: Comparison) -> dict[str, Any]:
     entry: dict[str, Any] = {
-        "model": row.model, "engine": row.engine, "quantity": row.quantity, "states": row.states,
-        "error": row.error, "tolerance": row.tolerance, "ok": row.ok, "median": row.median,
+        "model": row.model,
+        "engine": row.engine,
+        "quantity": row.quantity,
+        "states": row.states,
+        "error": row.error,
+        "tolerance": row.tolerance,
+        "ok": row.ok,
+        "median": row.median,
         "worst_state": row.worst_state,
-    }  # fmt: skip
+    }
     if row.note:
         entry["note"] = row.note
     return entry | {name: value if math.isfinite(value) else None for name, value in row.extra.items()}
@@ -146,10 +155,14 @@ def to_json(record: Record) -> str:
         **record.build,
         "models": [
             {
-                "model": model.label, "hash": model.hash, **model.sizes, "frames": model.frames, "notes": model.notes,
+                "model": model.label,
+                "hash": model.hash,
+                **model.sizes,
+                "frames": model.frames,
+                "notes": model.notes,
                 "seconds": {stage: round(seconds, 3) for stage, seconds in model.seconds.items()},
             }
             for model in record.models
         ],
-    }  # fmt: skip
+    }
     return json.dumps(content, indent=1, allow_nan=False) + "\n"

@@ -30,8 +30,17 @@ def pendulum() -> sf.Model:
 
 def swing(method: str, h: float, gain: float, t_end: float = END) -> sf.Trajectory:
     """From rest at (-1, 0), with both gains alike."""
-    return simulate(pendulum(), [-1.0, 0.0], t_end=t_end, method=method, dt=h, adaptive=False, gains=(gain, gain),
-                       stabilisation="baumgarte", every=max(1, round(0.01 / h)))  # fmt: skip
+    return simulate(
+        pendulum(),
+        [-1.0, 0.0],
+        t_end=t_end,
+        method=method,
+        dt=h,
+        adaptive=False,
+        gains=(gain, gain),
+        stabilisation="baumgarte",
+        every=max(1, round(0.01 / h)),
+    )
 
 
 def violation(run: sf.Trajectory) -> float:
@@ -82,24 +91,53 @@ def judge(maps: Maps) -> Verdict:
         max(ratio, 1 / ratio)
         for row in known
         for ratio in (off(swing("rk4", row["h"], row["alpha"])) / row["pos_err"],)
-    ]  # fmt: skip
-    checks = [
-        Check(f"{method}: α h at the edge with h = 0.1 ms, over {bound:.3f}", reached[method] / bound, 1.001, 0.98,
-              "the closed form, less the square-root gap")
-        for method, bound in REAL.items()
-    ] + [
-        Check(f"{method}: factor by which α h = {REAL[method]:.3f} misses the edge of its map", found.miss(
-            "y", lambda h, m=method: REAL[m] / h), 1.25, reason="a step of the grid, and the square-root gap")  # type: ignore[misc]
-        for method, found in maps.items() if method != "euler"  # Which fails at small gains, too: it has two edges.
-    ] + [
-        Check("rk4: exponent of the gap between edge and closed form in h", slope, 0.55, 0.45,
-              "a double root moves by the square root of what perturbs it, here ω h"),
-        Check("rk4: largest factor between 28 known errors and ours", max(ratios), 2.0,
-              reason="an independent program in x, y"),
-    ]  # fmt: skip
+    ]
+    checks = (
+        [
+            Check(
+                f"{method}: α h at the edge with h = 0.1 ms, over {bound:.3f}",
+                reached[method] / bound,
+                1.001,
+                0.98,
+                "the closed form, less the square-root gap",
+            )
+            for method, bound in REAL.items()
+        ]
+        + [
+            Check(
+                f"{method}: factor by which α h = {REAL[method]:.3f} misses the edge of its map",
+                found.miss("y", lambda h, m=method: REAL[m] / h),  # type: ignore[misc]
+                1.25,
+                reason="a step of the grid, and the square-root gap",
+            )
+            for method, found in maps.items()
+            if method != "euler"  # Which fails at small gains, too: it has two edges.
+        ]
+        + [
+            Check(
+                "rk4: exponent of the gap between edge and closed form in h",
+                slope,
+                0.55,
+                0.45,
+                "a double root moves by the square root of what perturbs it, here ω h",
+            ),
+            Check(
+                "rk4: largest factor between 28 known errors and ours",
+                max(ratios),
+                2.0,
+                reason="an independent program in x, y",
+            ),
+        ]
+    )
     rk4 = maps["rk4"]
-    best = min(((value, h, gain) for gain, row in zip(rk4.y, rk4.values, strict=True)
-                for h, value in zip(rk4.x, row, strict=True) if h == rk4.x[-1] and math.isfinite(value)))  # fmt: skip
+    best = min(
+        (
+            (value, h, gain)
+            for gain, row in zip(rk4.y, rk4.values, strict=True)
+            for h, value in zip(rk4.x, row, strict=True)
+            if h == rk4.x[-1] and math.isfinite(value)
+        )
+    )
     euler = maps["euler"]
     words = (
         "With both gains α the constraint decays with a double root -α, so explicit methods hold while α h stays "
@@ -122,9 +160,13 @@ def judge(maps: Maps) -> Verdict:
 SCENE = Scene(
     "Which Baumgarte gains suit which step?",
     "A pendulum of 1 m and 1 kg, described by x and z and held by a rod, swings from the horizontal for 10 s.",
-    H, GAIN, "largest violation |φ| of the rod [m²]", BOUND,
-    tuple(Subject(method, measure(method), (limit(method),)) for method in REAL), judge,
+    H,
+    GAIN,
+    "largest violation |φ| of the rod [m²]",
+    BOUND,
+    tuple(Subject(method, measure(method), (limit(method),)) for method in REAL),
+    judge,
     "projection (the default), which has no gain to choose. Where gains are wanted, 5 to 20/s with α h below 0.5: "
     "α = 1/h is stable and costs two orders of accuracy. For loops that pass a singular posture see the next scene.",
     (source("pendulum"), "limits of Runge-Kutta methods on the real axis: Hairer and Wanner II, IV.2"),
-)  # fmt: skip
+)

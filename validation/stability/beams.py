@@ -30,8 +30,16 @@ H_DAMPED = Grid("step h [s]", decades(1e-3, 1.0, 8), (1e-3, 3e-3, 1e-2, 3e-2, 6e
 @cache
 def strip(modes: int) -> sf.Model:
     """Clamped, with its exact modes and a retardation time "c"."""
-    beam = sf.Beam("strip", sf.Joint("clamp", "fixed"), 1.0, RHO_A, EI_z=EI, bend_y=modes, family="clamped_free",
-                   damping=sf.formula("c", "damping"))  # fmt: skip
+    beam = sf.Beam(
+        "strip",
+        sf.Joint("clamp", "fixed"),
+        1.0,
+        RHO_A,
+        EI_z=EI,
+        bend_y=modes,
+        family="clamped_free",
+        damping=sf.formula("c", "damping"),
+    )
     return sf.compile(sf.System(f"strip_{modes}", (beam,), gravity=(0, 0, 0), parameters=(sf.Parameter("c", 0.0),)))
 
 
@@ -79,8 +87,12 @@ def roots(c: float, omega: float) -> Array:
 
 def closed_form(c: float, modes: int = 3) -> float:
     """The longest RK4 step at which no mode grows: |R(h s)| = 1."""
-    steps = [brentq(lambda h, w=w: rk4_factor(h * roots(c, w)) - 1.0, 1.0 / max(w, c * w**2), 4.0 / min(w, 1e9))
-             if rk4_factor(4.0 / w * roots(c, w)) > 1.0 else np.inf for w in frequencies(modes)]  # fmt: skip
+    steps = [
+        brentq(lambda h, w=w: rk4_factor(h * roots(c, w)) - 1.0, 1.0 / max(w, c * w**2), 4.0 / min(w, 1e9))
+        if rk4_factor(4.0 / w * roots(c, w)) > 1.0
+        else np.inf
+        for w in frequencies(modes)
+    ]
     return float(min(steps))
 
 
@@ -100,21 +112,36 @@ def judge(maps: Maps) -> Verdict:
     apart = float(np.abs(frequencies(5) / np.array(known) - 1).max())
     reached = {
         method: longest(lambda h, m=method: ring(2, m, h), 0.5 * bound / w, 2 * bound / w) * w  # type: ignore[misc]
-        for method, bound in IMAGINARY.items() for w in (float(frequencies(2)[-1]),)
-    }  # fmt: skip
-    checks = [
-        Check(f"{method}: h ω_max at the edge over {bound:.4f}", reached[method] / bound, 1.005, 0.995,
-              "linear stability theory; growth over 3000 steps shows the edge to a part in a thousand")
         for method, bound in IMAGINARY.items()
-    ] + [
-        Check(f"{method}: factor by which {bound:.3f}/ω_max misses the edge of the map",
-              maps[method].miss("y", lambda n, b=bound: b / float(frequencies(int(n))[-1])), 1.01,  # type: ignore[misc]
-              reason="the grid can't tell them apart")
-        for method, bound in IMAGINARY.items()
-    ] + [
-        Check("frequencies against the known ones, relative", apart, 1e-3, reason="Euler-Bernoulli theory"),
-        Check(f"{STABLE}: share of the map that holds", float(maps[STABLE].good.mean()), 1.0, 1.0, "it is L-stable"),
-    ]  # fmt: skip
+        for w in (float(frequencies(2)[-1]),)
+    }
+    checks = (
+        [
+            Check(
+                f"{method}: h ω_max at the edge over {bound:.4f}",
+                reached[method] / bound,
+                1.005,
+                0.995,
+                "linear stability theory; growth over 3000 steps shows the edge to a part in a thousand",
+            )
+            for method, bound in IMAGINARY.items()
+        ]
+        + [
+            Check(
+                f"{method}: factor by which {bound:.3f}/ω_max misses the edge of the map",
+                maps[method].miss("y", lambda n, b=bound: b / float(frequencies(int(n))[-1])),  # type: ignore[misc]
+                1.01,
+                reason="the grid can't tell them apart",
+            )
+            for method, bound in IMAGINARY.items()
+        ]
+        + [
+            Check("frequencies against the known ones, relative", apart, 1e-3, reason="Euler-Bernoulli theory"),
+            Check(
+                f"{STABLE}: share of the map that holds", float(maps[STABLE].good.mean()), 1.0, 1.0, "it is L-stable"
+            ),
+        ]
+    )
     rk4 = maps["rk4"]
     first, last = (float(frequencies(n)[-1]) for n in (1, 5))
     words = (
@@ -141,13 +168,27 @@ def judge_damped(maps: Maps) -> Verdict:
     omega = float(frequencies(3)[-1])
     best = max(RETARDATION.values, key=closed_form)
     checks = (
-        Check("rk4: factor by which |R(h s)| = 1 misses the edge of the map", missed, 1.01,
-              reason="the grid can't tell them apart"),
-        Check("rk4, overdamped: h c ω² at the edge over 2.785", edge * heavy * omega**2 / 2.7853, 1.005, 0.99,
-              "the fast root is -c ω² but for terms of 1/(c ω)²"),
-        Check("implicit_euler: share of the map that holds", float(maps["implicit_euler"].good.mean()), 1.0, 1.0,
-              "it is L-stable"),
-    )  # fmt: skip
+        Check(
+            "rk4: factor by which |R(h s)| = 1 misses the edge of the map",
+            missed,
+            1.01,
+            reason="the grid can't tell them apart",
+        ),
+        Check(
+            "rk4, overdamped: h c ω² at the edge over 2.785",
+            edge * heavy * omega**2 / 2.7853,
+            1.005,
+            0.99,
+            "the fast root is -c ω² but for terms of 1/(c ω)²",
+        ),
+        Check(
+            "implicit_euler: share of the map that holds",
+            float(maps["implicit_euler"].good.mean()),
+            1.0,
+            1.0,
+            "it is L-stable",
+        ),
+    )
     words = (
         "Damping that grows with the frequency helps RK4 only a little and then hurts: the longest step is "
         f"{closed_form(RETARDATION.values[0]):.4f} s with c = {RETARDATION.values[0]:g} s, {closed_form(best):.4f} "
@@ -165,8 +206,9 @@ def judge_damped(maps: Maps) -> Verdict:
 
 def line(bound: float) -> Limit:
     """bound/omega_max over the number of modes."""
-    return Limit(f"{bound:.3g}/ω_max", np.array(MODES.values), np.array([bound / frequencies(int(n))[-1] for n in
-                                                                        MODES.values]))  # fmt: skip
+    return Limit(
+        f"{bound:.3g}/ω_max", np.array(MODES.values), np.array([bound / frequencies(int(n))[-1] for n in MODES.values])
+    )
 
 
 def stiff() -> Scene:
@@ -174,13 +216,19 @@ def stiff() -> Scene:
     return Scene(
         "How long may an explicit step be on a stiff beam?",
         f"A clamped strip of steel, 1 m x 20 mm x 1 mm, rings for {STEPS} steps from a millimetre in every mode.",
-        MODES, H, "energy over that at the start [-]", BOUND,
-        (*(Subject(method, measure(method), (line(bound),)) for method, bound in IMAGINARY.items()),
-         Subject(STABLE, measure("rodas4"))), judge,
+        MODES,
+        H,
+        "energy over that at the start [-]",
+        BOUND,
+        (
+            *(Subject(method, measure(method), (line(bound),)) for method, bound in IMAGINARY.items()),
+            Subject(STABLE, measure("rodas4")),
+        ),
+        judge,
         "fewer modes where the answer allows (the accuracy report says how many), or rodas4, generalized_alpha or "
         "implicit_euler, whose steps follow the motion and not the stiffest mode.",
         (source("steel_strip"),),
-    )  # fmt: skip
+    )
 
 
 def kelvin_voigt() -> Scene:
@@ -190,11 +238,15 @@ def kelvin_voigt() -> Scene:
     return Scene(
         "Does damping let steps be longer?",
         f"The strip with three modes and Kelvin-Voigt damping of retardation time c, {STEPS} steps.",
-        RETARDATION, H_DAMPED, "energy over that at the start [-]", BOUND,
-        (Subject("rk4", damped("rk4"), (boundary,)), Subject("implicit_euler", damped("implicit_euler"))), judge_damped,
+        RETARDATION,
+        H_DAMPED,
+        "energy over that at the start [-]",
+        BOUND,
+        (Subject("rk4", damped("rk4"), (boundary,)), Subject("implicit_euler", damped("implicit_euler"))),
+        judge_damped,
         "rodas4 or implicit_euler for damped beams; or leave out the modes that creep: they are quasi-static.",
         (source("steel_strip"), "boundary: stability function of RK4 at the roots of s² + c ω² s + ω² = 0"),
-    )  # fmt: skip
+    )
 
 
 SCENE = stiff()

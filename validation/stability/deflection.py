@@ -58,8 +58,16 @@ def judge(maps: Maps) -> Verdict:
         key = next(k for k, words in WORDS.items() if words == name)
         known = [(row_of(float(g)), v) for g, v in zip(found.x, found.at(y=3.0), strict=True)]
         # At two seconds the error is one of those whose largest is known.
-        excess = max([excess, *(v / (1.2 * (row[key] + row["uncertainty"])) for row, v in known
-                                if row.get(key) and row["gamma"] < 5.0)])  # fmt: skip
+        excess = max(
+            [
+                excess,
+                *(
+                    v / (1.2 * (row[key] + row["uncertainty"]))
+                    for row, v in known
+                    if row.get(key) and row["gamma"] < 5.0
+                ),
+            ]
+        )
     first = maps[WORDS["first_order"]]
     without = maps[WORDS["no_foreshortening"]]
     three = list(first.y).index(3.0)
@@ -67,11 +75,20 @@ def judge(maps: Maps) -> Verdict:
     bends = row_of(softest)["max_defl_over_L"] if softest else 0.0
     stiffest, one = reach(without, three), reach(first, 0)
     checks = (
-        Check("three modes: largest error over 1.2 times the known one", excess, 1.0, reason="an exact rod and another "
-              "program of the same order; the end is one of the instants of the largest"),
-        Check("first order, three modes: deflection over L up to which 1 % of L is kept", bends, 0.3, 0.1,
-              "second-order theory loses 1 % at 0.1 L, 5 % at 0.2 L of static deflection"),
-    )  # fmt: skip
+        Check(
+            "three modes: largest error over 1.2 times the known one",
+            excess,
+            1.0,
+            reason="an exact rod and another program of the same order; the end is one of the instants of the largest",
+        ),
+        Check(
+            "first order, three modes: deflection over L up to which 1 % of L is kept",
+            bends,
+            0.3,
+            0.1,
+            "second-order theory loses 1 % at 0.1 L, 5 % at 0.2 L of static deflection",
+        ),
+    )
     words = (
         "Second-order theory is good for moderate bending: with three modes first order keeps the tip within 1 % "
         f"of L up to ρA g L³/EI = {softest:g}, where the beam bends by {bends:.2f} L, with one mode up to {one:g}. "
@@ -91,9 +108,13 @@ def judge(maps: Maps) -> Verdict:
 SCENE = Scene(
     "How far may a beam bend?",
     "A flexible pendulum of 1 m, let go from the horizontal, stiff to soft; its tip after 2 s against an exact rod.",
-    GAMMA, MODES, "distance of the tip from the exact rod's [m]", BOUND,
-    tuple(Subject(WORDS[name], measure(name)) for name in MODELS), judge,
+    GAMMA,
+    MODES,
+    "distance of the tip from the exact rod's [m]",
+    BOUND,
+    tuple(Subject(WORDS[name], measure(name)) for name in MODELS),
+    judge,
     "beams of several shorter pieces joined rigidly, each of which bends less than 0.1 of its length; or a "
     "geometrically exact code, such as Exudyn, beyond 0.3 L.",
     (source("pendulum"),),
-)  # fmt: skip
+)

@@ -74,28 +74,33 @@ def judge(maps: Maps) -> Verdict:
             factors.append(max(found / row["max_dE_100s"], row["max_dE_100s"] / found))
     level = ["semi_implicit_euler", "variational"]
     checks = [
-        Check(f"{name}: error of {STEPS:.0e} steps over that of {SHORT:.0e}", ratio[name], 1.05, 0.95,
-              "it does not drift")
+        Check(
+            f"{name}: error of {STEPS:.0e} steps over that of {SHORT:.0e}", ratio[name], 1.05, 0.95, "it does not drift"
+        )
         for name in level
     ] + [
         Check("rk4: the same", ratio["rk4"], STEPS / SHORT * 1.2, 5.0, "it drifts, at most in proportion"),
         Check("factor between known and found energies after 100 s", max(factors), 2.0, reason="another program"),
-    ]  # fmt: skip
+    ]
     index = {name: late.values[k] for name, k in rows.items()}
-    best = {f"{h:.3g} s": min(rows, key=lambda n, i=i: index[n][i] if math.isfinite(index[n][i]) else math.inf)  # type: ignore[misc]
-            for i, h in ((0, late.x[0]), (len(late.x) - 1, late.x[-1]))}  # fmt: skip
+    best = {
+        f"{h:.3g} s": min(rows, key=lambda n, i=i: index[n][i] if math.isfinite(index[n][i]) else math.inf)  # type: ignore[misc]
+        for i, h in ((0, late.x[0]), (len(late.x) - 1, late.x[-1]))
+    }
     engines = " ".join(
         f"{name} multiplies its error by {ratio[name]:.1f}, to {index[name][0]:.0e} at {late.x[0]:g} s."
-        for name in MUJOCO if name in rows
-    )  # fmt: skip
+        for name in MUJOCO
+        if name in rows
+    )
     words = (
         f"From {SHORT:.0e} to {STEPS:.0e} steps the error of semi-implicit Euler and of the variational method does "
         f"not grow (factors {ratio['semi_implicit_euler']:.2f} and {ratio['variational']:.2f}): it swings with the "
         f"motion. RK4's grows {ratio['rk4']:.0f} times and stays small at short steps, {index['rk4'][0]:.0e} of m g "
         f"L at {late.x[0]:g} s; explicit Euler meets the criterion at {int(np.sum(index['euler'] <= BOUND))} of "
         f"{len(late.x)} steps. {engines} Least after {STEPS:.0e} steps: "
-        + ", ".join(f"{name} at {h}" for h, name in best.items()) + "."
-    )  # fmt: skip
+        + ", ".join(f"{name} at {h}" for h, name in best.items())
+        + "."
+    )
     see = (
         "Rows that look alike in both maps do not drift; those that darken towards orange from the left map to the "
         "right one do. Errors fall to the left with each method's order."
@@ -106,8 +111,13 @@ def judge(maps: Maps) -> Verdict:
 SCENE = Scene(
     "Who keeps energy over 1e5 steps?",
     "A pendulum swings from the horizontal; adaptive methods take fixed steps. MuJoCo with its own integrators.",
-    H, WHO, "largest change of energy over m g L [-]", BOUND, (measure(SHORT), measure(STEPS)), judge,
+    H,
+    WHO,
+    "largest change of energy over m g L [-]",
+    BOUND,
+    (measure(SHORT), measure(STEPS)),
+    judge,
     "variational for long conservative runs of trees, rk4 or dop853 with a step that the accuracy asks for; never "
     "explicit Euler. Implicit Euler takes energy out: it is for stiff models.",
     (source("pendulum"),),
-)  # fmt: skip
+)

@@ -37,8 +37,9 @@ def by_angles() -> sf.Model:
 @cache
 def by_quaternion() -> sf.Model:
     """A ball joint."""
-    return sf.compile(sf.System("by_quaternion", (sf.RigidBody("after_roll", sf.Joint("ball", "ball"), BODY),),
-                                gravity=(0, 0, 0)))  # fmt: skip
+    return sf.compile(
+        sf.System("by_quaternion", (sf.RigidBody("after_roll", sf.Joint("ball", "ball"), BODY),), gravity=(0, 0, 0))
+    )
 
 
 def start(m: sf.Model, nearest: float) -> tuple[Array, Array]:
@@ -110,14 +111,27 @@ def judge(maps: Maps) -> Verdict:
     steady = effort(by_quaternion(), 0.3), effort(by_quaternion(), 1e-4)
     spread = float(np.ptp(np.log10(np.maximum(quaternion.values, 1e-16)), axis=1).max())
     checks = (
-        Check("angles by body rates: factor between known and found errors at h = 10 ms", max(factors), 3.0,
-              reason="another program, Euler's equations with zyx angles"),
-        Check("quaternion: largest error on the map over h⁴ [rad/s⁴]", float((quaternion.values / quaternion.y[
-            :, None] ** 4).max()), 1.0, reason="its order, whatever the attitude"),
-        Check("three angles, 1e-4 from the singularity: evaluations over those at 0.3", near / far, 10.0, 2.0,
-              "adaptive steps feel it"),
+        Check(
+            "angles by body rates: factor between known and found errors at h = 10 ms",
+            max(factors),
+            3.0,
+            reason="another program, Euler's equations with zyx angles",
+        ),
+        Check(
+            "quaternion: largest error on the map over h⁴ [rad/s⁴]",
+            float((quaternion.values / quaternion.y[:, None] ** 4).max()),
+            1.0,
+            reason="its order, whatever the attitude",
+        ),
+        Check(
+            "three angles, 1e-4 from the singularity: evaluations over those at 0.3",
+            near / far,
+            10.0,
+            2.0,
+            "adaptive steps feel it",
+        ),
         Check("quaternion: the same", steady[1] / steady[0], 1.1, 0.9, "there is nothing to feel"),
-    )  # fmt: skip
+    )
     edge = angles.good.mean()
     rates = maps[BODY_RATES]
     words = (
@@ -142,10 +156,13 @@ SCENE = Scene(
     "What happens when Euler angles pass their singularity?",
     "A free body of moments 1, 3, 2 kg m² turns about its second axis at 1 rad/s for 4 s, past a pitch of 90 "
     "degrees at a distance; the exact motion is a steady turn.",
-    NEAREST, H, "angle from the exact attitude after 4 s [rad]", BOUND,
+    NEAREST,
+    H,
+    "angle from the exact attitude after 4 s [rad]",
+    BOUND,
     (Subject(ANGLES, measure(by_angles)), Subject(BODY_RATES, textbook), Subject(QUATERNION, measure(by_quaternion))),
     judge,
     "a ball or free joint, whose quaternion has no singularity and costs less. Where three hinges are real, as in a "
     "wrist, adaptive steps.",
     (source("euler_angles"),),
-)  # fmt: skip
+)

@@ -75,7 +75,7 @@ def judge(maps: Maps) -> Verdict:
         Check("polynomial: condition of M against the known one, relative", apart, 1e-6, reason="known independently"),
         Check("other families: largest error of the round trip", others, 1e-11, reason="condition below 1e3"),
         Check("legendre: smallest error of the first frequency", best, 1e-10, reason="it converges until rounding"),
-    )  # fmt: skip
+    )
     words = (
         f"Monomials lose a digit and a half with each function: the round trip errs by {monomials[-1].value:.0e} "
         f"with {int(first) - 1}, and {first:.0f} are refused: “{said}”. The other families keep {others:.0e} or "
@@ -93,10 +93,13 @@ def judge(maps: Maps) -> Verdict:
 SCENE = Scene(
     "How many shape functions before digits are lost?",
     "A cantilever with each family of shape functions, at rest: its first frequency, and M a turned back into a.",
-    COUNT, FAMILY, "relative error [-]", BOUND,
+    COUNT,
+    FAMILY,
+    "relative error [-]",
+    BOUND,
     tuple(Subject(kind, lambda count, family, kind=kind: measure(kind, count, family)) for kind in (EXACT, KEPT)),  # type: ignore[misc]
     judge,
     "legendre functions or splines in any number; clamped_free where the ends are a clamp and free. Monomials up to "
     "four.",
     (source("conditioning"),),
-)  # fmt: skip
+)

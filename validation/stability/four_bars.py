@@ -62,8 +62,9 @@ def inertia(loops: int) -> tuple[float, float]:
 def exact(loops: int, times: tuple[float, ...]) -> Array:
     """Angle and speed of the cranks (2, n) at rising times from 0."""
     J, V = inertia(loops)
-    run = solve_ivp(lambda t, y: [y[1], -V / J * np.cos(y[0])], (0, times[-1]), START, "DOP853", times, rtol=1e-13,
-                    atol=1e-13)  # fmt: skip
+    run = solve_ivp(
+        lambda t, y: [y[1], -V / J * np.cos(y[0])], (0, times[-1]), START, "DOP853", times, rtol=1e-13, atol=1e-13
+    )
     return np.asarray(run.y)
 
 
@@ -98,9 +99,11 @@ def mjcf(loops: int, integrator: str, h: float, solref: str, solimp: str, stated
         f'<connect body1="crank{i}" body2="coupler{i}" anchor="1 0 0" solref="{solref}" solimp="{solimp}"/>'
         for i in range(1, loops + 1)
     )
-    return (f'<mujoco><compiler angle="radian"/><option timestep="{h!r}" integrator="{integrator}" '
-            f'gravity="0 0 -{GRAVITY}"><flag contact="disable"/></option><worldbody>{"".join(cranks)}</worldbody>'
-            f"<equality>{closures}</equality></mujoco>")  # fmt: skip
+    return (
+        f'<mujoco><compiler angle="radian"/><option timestep="{h!r}" integrator="{integrator}" '
+        f'gravity="0 0 -{GRAVITY}"><flag contact="disable"/></option><worldbody>{"".join(cranks)}</worldbody>'
+        f"<equality>{closures}</equality></mujoco>"
+    )
 
 
 def links(loops: int) -> list[tuple[tuple[float, float], float, float]]:

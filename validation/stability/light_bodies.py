@@ -66,8 +66,12 @@ def fastest(mass: float, stiffness: float) -> float:
 
 def massless() -> sf.System:
     """A link without mass at the end."""
-    first = sf.RigidBody("first", sf.Joint("q1", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, -1.0)),
-                         (sf.Frame("end", (0, 0, -1)),))  # fmt: skip
+    first = sf.RigidBody(
+        "first",
+        sf.Joint("q1", "revolute", axis=(0, 1, 0)),
+        sf.Inertia(1.0, (0, 0, -1.0)),
+        (sf.Frame("end", (0, 0, -1)),),
+    )
     last = sf.RigidBody("last", sf.Joint("q2", "revolute", "first", "end", axis=(0, 1, 0)))
     return sf.System("massless", (first, last))
 
@@ -89,15 +93,29 @@ def judge(maps: Maps) -> Verdict:
     said, kind = refusal()
     light, heavy = (2.8284 / fastest(m2, STIFFNESS) for m2 in (1e-12, 1.0))
     checks = (
-        Check(f"{SPRING}: factor by which 2.828/ω_max misses the edge of the map", missed, 1.01,
-              reason="the grid can't tell them apart"),
-        Check(f"{FREE}: share of the map that is bounded", float(free.good.mean()), 1.0, 1.0,
-              "no frequency grows with lightness"),
+        Check(
+            f"{SPRING}: factor by which 2.828/ω_max misses the edge of the map",
+            missed,
+            1.01,
+            reason="the grid can't tell them apart",
+        ),
+        Check(
+            f"{FREE}: share of the map that is bounded",
+            float(free.good.mean()),
+            1.0,
+            1.0,
+            "no frequency grows with lightness",
+        ),
         Check(f"{IMPLICIT}: the same", float(maps[IMPLICIT].good.mean()), 1.0, 1.0, "L-stable"),
         Check("a massless last link is refused (1: yes)", float(bool(said)), 1.0, 1.0),
-        Check("a mass set to zero at run time ends the run as singular (1: yes)",
-              float(kind == "singular"), 1.0, 1.0, "nothing is silently wrong"),
-    )  # fmt: skip
+        Check(
+            "a mass set to zero at run time ends the run as singular (1: yes)",
+            float(kind == "singular"),
+            1.0,
+            1.0,
+            "nothing is silently wrong",
+        ),
+    )
     words = (
         "Lightness by itself does no harm: hanging free, a last link of 1e-12 of the first swings as a light one "
         "does (far, for both links have one frequency). On a spring its frequency grows as 1/√m, and RK4's longest "
@@ -115,12 +133,16 @@ def judge(maps: Maps) -> Verdict:
 @cache
 def cross() -> sf.Model:
     """A body of unit moments on two hinges at an angle "a", with a cross of inertia "J" between them."""
-    between = sf.RigidBody("cross", sf.Joint("q1", "revolute", axis=(1, 0, 0)),
-                           sf.Inertia(0.0, moments=(sf.formula("J", "inertia"), 0, 0)),
-                           waive=("nonphysical_inertia",))  # fmt: skip
+    between = sf.RigidBody(
+        "cross",
+        sf.Joint("q1", "revolute", axis=(1, 0, 0)),
+        sf.Inertia(0.0, moments=(sf.formula("J", "inertia"), 0, 0)),
+        waive=("nonphysical_inertia",),
+    )
     axis = (sf.formula("cos(a)", "axis"), sf.formula("sin(a)", "axis"), 0.0)
-    body = sf.RigidBody("body", sf.Joint("q2", "revolute", "cross", axis=axis, actuated=True),
-                        sf.Inertia(1.0, moments=(1.0, 1.0, 1.0)))  # fmt: skip
+    body = sf.RigidBody(
+        "body", sf.Joint("q2", "revolute", "cross", axis=axis, actuated=True), sf.Inertia(1.0, moments=(1.0, 1.0, 1.0))
+    )
     parameters = (sf.Parameter("a", 1.0), sf.Parameter("J", 0.0))
     return sf.compile(sf.System("cross", (between, body), gravity=(0, 0, 0), parameters=parameters))
 
@@ -156,7 +178,7 @@ def judge_cross(maps: Maps) -> Verdict:
         Check("condition of M against the known one, relative", apart, 1e-6, reason="(1 + cos a)/(1 - cos a)"),
         Check("massless cross: largest error times a²", scaled, 1e-14, reason="rounding times the condition, 4/a²"),
         Check("right angle, massless cross: error", float(found.at(x=90.0, y=0.0)[0]), 1e-14, reason="rounding"),
-    )  # fmt: skip
+    )
     words = (
         "A massless cross is legal: the body behind it bears both hinges. As they become parallel the mass matrix "
         f"degenerates as 4/a², and digits go with it: at 1 degree, a condition of {condition(1.0):.0f}, nothing is "
@@ -178,20 +200,30 @@ def boundary(stiffness: float) -> Limit:
 SCENE = Scene(
     "May a body be almost massless?",
     f"A double pendulum whose last link gets lighter, free or on a spring of {STIFFNESS:g} N m/rad, {STEPS} steps.",
-    MASS, H, "largest angle over that at the start [-]", 1e3,
-    (Subject(SPRING, measure(STIFFNESS, "rk4"), (boundary(STIFFNESS),)), Subject(FREE, measure(0.0, "rk4")),
-     Subject(IMPLICIT, measure(STIFFNESS, "rodas4"))), judge,
+    MASS,
+    H,
+    "largest angle over that at the start [-]",
+    1e3,
+    (
+        Subject(SPRING, measure(STIFFNESS, "rk4"), (boundary(STIFFNESS),)),
+        Subject(FREE, measure(0.0, "rk4")),
+        Subject(IMPLICIT, measure(STIFFNESS, "rodas4")),
+    ),
+    judge,
     "leave out light bodies on stiff springs, or use rodas4 or implicit_euler. A massless body may stand between "
     "others; at the end of a chain it needs an inertia or a closure.",
     ("linear stability theory; frequencies from M and K by hand",),
-)  # fmt: skip
+)
 CROSS_SCENE = Scene(
     "How parallel may two hinges be with a massless cross between them?",
     "A body of unit moments on two hinges with a light cross between, under a unit torque on the second.",
-    ANGLE, Grid.of(CROSS.name, tuple(f"{J:g}" for J in CROSS.values), ("0", "1e-06")),
-    "relative error of the accelerations [-]", 1e-6,
-    (Subject("symofros", lambda angle, row: acceleration(angle, CROSS.values[int(row)])),), judge_cross,
+    ANGLE,
+    Grid.of(CROSS.name, tuple(f"{J:g}" for J in CROSS.values), ("0", "1e-06")),
+    "relative error of the accelerations [-]",
+    1e-6,
+    (Subject("symofros", lambda angle, row: acceleration(angle, CROSS.values[int(row)])),),
+    judge_cross,
     "one hinge where two are parallel; a ball joint where all three directions are free; or the cross's own small "
     "inertia.",
     (source("massless"), "exact accelerations with fifty digits (mpmath)"),
-)  # fmt: skip
+)

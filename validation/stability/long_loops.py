@@ -38,10 +38,9 @@ def measure(method: str, kind: str) -> Callable[[float, float], Cell]:
     def run(h: float, loops: float) -> Cell:
         m, q, v = ready(int(loops))
         return cell(
-            simulate(m, q, v, END, method=method, dt=END / round(END / h),
-                        adaptive=False, stabilisation=kind),
+            simulate(m, q, v, END, method=method, dt=END / round(END / h), adaptive=False, stabilisation=kind),
             lambda done: float(np.abs(m.constraint(done.q)).max()),
-        )  # fmt: skip
+        )
 
     return run
 
@@ -91,11 +90,15 @@ SCENE = Scene(
     "How do long loops drift without stabilisation?",
     f"N four-bars in a row, on pivots {SPACING} m apart, fall from upright for {END} s, before they are flat; their "
     "closures are kept by accelerations alone, or by projection.",
-    H, LOOPS, "largest violation |φ| of the closures [m]", BOUND,
-    (*(Subject(method, measure(method, "none")) for method in ORDERS),
-     Subject(PROJECTED, measure("rk4", "projection"))),
+    H,
+    LOOPS,
+    "largest violation |φ| of the closures [m]",
+    BOUND,
+    (
+        *(Subject(method, measure(method, "none")) for method in ORDERS),
+        Subject(PROJECTED, measure("rk4", "projection")),
+    ),
     judge,
-    "projection. Without it, a method of high order and a run so short that t h^k stays below what the loop may "
-    "open.",
+    "projection. Without it, a method of high order and a run so short that t h^k stays below what the loop may open.",
     ("order of convergence of a method is that of its drift: Hairer and Wanner II, VII.2",),
-)  # fmt: skip
+)

@@ -139,17 +139,33 @@ def judge(maps: Maps) -> Verdict:
     light = {name: float(np.nanmax(found.values[:, 0])) for name, found in maps.items()}
     slow = maps[DRIFT].count("interrupted")
     checks = (
-        Check("symofros, articulated bodies: largest error of accelerations", worst[ARTICULATED], 1e-7,
-              reason="sixteen links, 1e8"),
+        Check(
+            "symofros, articulated bodies: largest error of accelerations",
+            worst[ARTICULATED],
+            1e-7,
+            reason="sixteen links, 1e8",
+        ),
         Check("symofros, factors: largest error of accelerations", worst[FACTORS], 1e-4, reason="sixteen links, 1e8"),
-        Check("symofros, factors, over MuJoCo: ratio of largest errors", worst[FACTORS] / worst[MUJOCO], 10.0,
-              reason="both factor the mass matrix"),
-        Check("symofros, articulated bodies, over Pinocchio: ratio of largest errors",
-              worst[ARTICULATED] / worst[PINOCCHIO], 10.0, reason="neither forms the mass matrix"),
-        Check("articulated bodies over factors: ratio of our largest errors", worst[ARTICULATED] / worst[FACTORS], 0.05,
-              reason="what is large cancels link by link"),
+        Check(
+            "symofros, factors, over MuJoCo: ratio of largest errors",
+            worst[FACTORS] / worst[MUJOCO],
+            10.0,
+            reason="both factor the mass matrix",
+        ),
+        Check(
+            "symofros, articulated bodies, over Pinocchio: ratio of largest errors",
+            worst[ARTICULATED] / worst[PINOCCHIO],
+            10.0,
+            reason="neither forms the mass matrix",
+        ),
+        Check(
+            "articulated bodies over factors: ratio of our largest errors",
+            worst[ARTICULATED] / worst[FACTORS],
+            0.05,
+            reason="what is large cancels link by link",
+        ),
         Check("symofros: largest change of energy in runs that end", worst[DRIFT], 1e-6, reason="tolerance 1e-12"),
-    )  # fmt: skip
+    )
     words = (
         "A heavy load on light links costs digits: the light links' accelerations are small differences of large "
         f"forces. Largest errors with a load of 1e8: by factors of the mass matrix ours {heavy[FACTORS]:.0e}, MuJoCo "
@@ -171,7 +187,10 @@ SCENE = Scene(
     "Which mass ratios can a chain bear?",
     "Points of 1 kg on rods of 1 m, hinged into a chain; the last is heavier or lighter. Accelerations of one bent "
     "posture in motion against fifty digits; and a second of fall.",
-    RATIO, LINKS, "relative error [-]", BOUND,
+    RATIO,
+    LINKS,
+    "relative error [-]",
+    BOUND,
     (
         *(Subject(name, ours(way)) for name, way in WAYS.items()),
         *(Subject(name, theirs(engine)) for name, engine in ENGINES.items()),
@@ -182,4 +201,4 @@ SCENE = Scene(
     "sf.Options(forward_dynamics='articulated'); in motion leave the light links out, or carry the load by a joint "
     "nearer to the base.",
     ("exact accelerations from absolute angles with fifty digits (mpmath)",),
-)  # fmt: skip
+)

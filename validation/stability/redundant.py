@@ -65,8 +65,9 @@ def exact(third: bool) -> float:
     """Where the first crank should be: all cranks turn alike, the coupler moves along with their ends."""
     if not third:
         return float(four_bars.exact(1, (0.0, END))[0, -1])
-    alone = simulate(linkage(CRANK), *four_bars.state(linkage(CRANK), *four_bars.START), END, method="dop853",
-                        rtol=1e-12, atol=1e-12)  # fmt: skip
+    alone = simulate(
+        linkage(CRANK), *four_bars.state(linkage(CRANK), *four_bars.START), END, method="dop853", rtol=1e-12, atol=1e-12
+    )
     return float(alone["a0"][-1])
 
 
@@ -102,21 +103,37 @@ def judge(maps: Maps) -> Verdict:
     projected = maps["projection"]
     silent = sum(found.wrong for found in maps.values())
     rows_good = {kind: projected.good[k] for k, kind in enumerate(ROWS)}
-    refusals = {kind: [x for x, c in zip(projected.x, projected.cells[k], strict=True) if c.ended == "refused"]
-                for k, kind in enumerate(ROWS)}  # fmt: skip
+    refusals = {
+        kind: [x for x, c in zip(projected.x, projected.cells[k], strict=True) if c.ended == "refused"]
+        for k, kind in enumerate(ROWS)
+    }
     first = {kind: min(found, default=np.inf) for kind, found in refusals.items()}
     checks = (
         Check("kinds of closure whose number of rows and rank are not as they should be", float(wrong_ranks), 0.0),
-        Check("accelerations with redundant rows against those without [rad/s²]", spread, 1e-10,
-              reason="multipliers of least norm move nothing"),
-        Check("Bricard's mechanism, 5 rows of rank 4: accelerations against the known ones [rad/s²]", apart, 1e-10,
-              reason="least norm, computed independently"),
-        Check("two rows: share of the map that is good", float(rows_good[PIN].mean()), 1.0, 1.0,
-              "an offset is harmless"),
-        Check("smallest misfit that is refused [m]", min(first.values()), 1e-6, 1e-13,
-              "above what the assembly may leave, 1e-12"),
+        Check(
+            "accelerations with redundant rows against those without [rad/s²]",
+            spread,
+            1e-10,
+            reason="multipliers of least norm move nothing",
+        ),
+        Check(
+            "Bricard's mechanism, 5 rows of rank 4: accelerations against the known ones [rad/s²]",
+            apart,
+            1e-10,
+            reason="least norm, computed independently",
+        ),
+        Check(
+            "two rows: share of the map that is good", float(rows_good[PIN].mean()), 1.0, 1.0, "an offset is harmless"
+        ),
+        Check(
+            "smallest misfit that is refused [m]",
+            min(first.values()),
+            1e-6,
+            1e-13,
+            "above what the assembly may leave, 1e-12",
+        ),
         Check("runs that come to their end and are wrong", float(silent), 0.0, reason="a misfit is refused or told"),
-    )  # fmt: skip
+    )
     words = (
         "Rows that repeat others are found by their rank and cost nothing: with 3, 5 and 4 rows of rank 2, 2 and "
         f"3, accelerations differ from those of the pin by {spread:.0e} rad/s², and every run that fits is good. "
@@ -135,9 +152,13 @@ SCENE = Scene(
     "What do redundant closures do, and what if they do not quite fit?",
     f"A four-bar closed by a pin, a ball, a hinge, or with a crank too many, assembled and let fall for {END} s; a "
     "misfit d offsets a pivot along the axis, or lengthens the third crank.",
-    MISFIT, KIND, "angle of the first crank from the exact one [rad]", BOUND,
-    tuple(Subject(kind, measure(kind)) for kind in ("projection", "baumgarte")), judge,
+    MISFIT,
+    KIND,
+    "angle of the first crank from the exact one [rad]",
+    BOUND,
+    tuple(Subject(kind, measure(kind)) for kind in ("projection", "baumgarte")),
+    judge,
     "state as few directions as the loop needs; where rows repeat each other, make their dimensions one and the same "
     "parameter. `sf.assemble` gives the rank, `model.nc` the number of rows.",
     ("rank of a planar loop's closures: 2 of 3, 2 of 5", source("bricard")),
-)  # fmt: skip
+)

@@ -114,12 +114,21 @@ def as_data(atlas: Atlas) -> dict[str, Any]:
 def _page(page: Page) -> dict[str, Any]:
     scene, verdict = page.scene, page.verdict
     return {
-        "question": scene.question, "setting": scene.setting, "x": scene.x.name, "y": scene.y.name,
-        "quantity": scene.quantity, "bound": scene.bound, "verdict": verdict.words, "see": verdict.see,
-        "advice": scene.advice, "sources": scene.sources, "ok": page.ok, "seconds": round(page.seconds, 1),
+        "question": scene.question,
+        "setting": scene.setting,
+        "x": scene.x.name,
+        "y": scene.y.name,
+        "quantity": scene.quantity,
+        "bound": scene.bound,
+        "verdict": verdict.words,
+        "see": verdict.see,
+        "advice": scene.advice,
+        "sources": scene.sources,
+        "ok": page.ok,
+        "seconds": round(page.seconds, 1),
         "checks": [check_data(check) for check in verdict.checks],
         "maps": {name: _cells(scene, found) for name, found in page.maps.items()},
-    }  # fmt: skip
+    }
 
 
 def _cells(scene: Scene, found: Map) -> dict[str, Any]:
@@ -128,8 +137,9 @@ def _cells(scene: Scene, found: Map) -> dict[str, Any]:
         "x": [scene.x.label(x) if scene.x.labels else float(x) for x in found.x],
         "y": [scene.y.label(y) if scene.y.labels else float(y) for y in found.y],
         "values": [rounded(row) for row in found.values],
-        "ended": [[c.ended for c in row] for row in found.cells], "said": notes[:8],
-    }  # fmt: skip
+        "ended": [[c.ended for c in row] for row in found.cells],
+        "said": notes[:8],
+    }
 
 
 def _render(template: str, atlas: Atlas) -> str:

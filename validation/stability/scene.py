@@ -42,8 +42,13 @@ class Grid:
     @classmethod
     def of(cls, name: str, labels: tuple[str, ...], few: tuple[str, ...] = ()) -> Grid:
         """Categories."""
-        return cls(name, tuple(map(float, range(len(labels)))), tuple(float(labels.index(x)) for x in few or labels),
-                   labels, log=False)  # fmt: skip
+        return cls(
+            name,
+            tuple(map(float, range(len(labels)))),
+            tuple(float(labels.index(x)) for x in few or labels),
+            labels,
+            log=False,
+        )
 
     def chosen(self, quick: bool) -> tuple[float, ...]:
         """The values to run."""
@@ -273,8 +278,11 @@ def survey(scene: Scene, quick: bool, done: Callable[[], None] = lambda: None) -
 
     return {
         subject.name: Map(
-            subject, np.array(xs), np.array(ys),
-            tuple(tuple(measured(subject, x, y) for x in xs) for y in ys), scene.bound,
+            subject,
+            np.array(xs),
+            np.array(ys),
+            tuple(tuple(measured(subject, x, y) for x in xs) for y in ys),
+            scene.bound,
         )
         for subject in scene.subjects
-    }  # fmt: skip
+    }

@@ -24,9 +24,17 @@ SOFT = {"MuJoCo, its defaults": ("0.02 1", "0.9 0.95 0.001"), "MuJoCo, stiff": (
 UNLUCKY = (7112, 7385, 7889, 8197)
 # Dissipation of the highest frequencies that its examples use.
 EXUDYN, RADIUS = "Exudyn, generalised α", 0.9
-WAYS = Grid.of("how the loops are kept closed [-]", (
-    "accelerations only", *(f"Baumgarte {gain:g}/s" for gain in GAINS), "projection", *SOFT, EXUDYN,
-), ("accelerations only", "Baumgarte 5/s", "Baumgarte 20/s", "projection", "MuJoCo, its defaults", EXUDYN))  # fmt: skip
+WAYS = Grid.of(
+    "how the loops are kept closed [-]",
+    (
+        "accelerations only",
+        *(f"Baumgarte {gain:g}/s" for gain in GAINS),
+        "projection",
+        *SOFT,
+        EXUDYN,
+    ),
+    ("accelerations only", "Baumgarte 5/s", "Baumgarte 20/s", "projection", "MuJoCo, its defaults", EXUDYN),
+)
 H = Grid("step h [s]", decades(1e-3, 2e-2, 6), (2e-3, 1e-2))
 
 
@@ -49,8 +57,14 @@ def measure(loops: int) -> Callable[[float, float], Cell]:
 def ours(loops: int, h: float, kind: str, gain: float | None) -> sf.Trajectory:
     """The linkage for ten seconds."""
     m = four_bars.linkage(loops)
-    return simulate(m, *four_bars.state(m, *four_bars.START), END, dt=h, stabilisation=kind,
-                    gains=None if gain is None else (gain, gain))  # fmt: skip
+    return simulate(
+        m,
+        *four_bars.state(m, *four_bars.START),
+        END,
+        dt=h,
+        stabilisation=kind,
+        gains=None if gain is None else (gain, gain),
+    )
 
 
 def off(loops: int, run: sf.Trajectory) -> float:
@@ -90,8 +104,11 @@ def rows(maps: Maps) -> tuple[list[str], list[str], list[str]]:
     first = next(iter(maps.values()))
     share = np.mean([found.good.mean(axis=1) for found in maps.values()], axis=0)
     named = [(WAYS.label(way), float(held)) for way, held in zip(first.y, share, strict=True)]
-    return ([n for n, held in named if held == 1.0], [n for n, held in named if 0.0 < held < 1.0],
-            [n for n, held in named if held == 0.0])  # fmt: skip
+    return (
+        [n for n, held in named if held == 1.0],
+        [n for n, held in named if 0.0 < held < 1.0],
+        [n for n, held in named if held == 0.0],
+    )
 
 
 def passages_told(maps: Maps) -> float:
@@ -122,8 +139,9 @@ def judge(maps: Maps) -> Verdict:
     known = data("four_bars")
     exact = max(
         four_bars.tip_error(int(n), float(t), np.array([row["B0x"][t], row["B0y"][t]]))
-        for n, row in known["exact"].items() for t in (1, 5, 10)
-    )  # fmt: skip
+        for n, row in known["exact"].items()
+        for t in (1, 5, 10)
+    )
     contradictions = sum(
         (row["ok"] and (row["tip_err"] or 0.0) <= BOUND) != bool(good(row["alpha"], row["h"])) for row in known["gains"]
     )
@@ -135,22 +153,47 @@ def judge(maps: Maps) -> Verdict:
     level = WAYS.labels.index("projection")
     errors = np.concatenate([found.at(y=level) for found in maps.values()])
     checks = (
-        Check("projection: largest distance over all steps [m]", float(errors.max()), BOUND,
-              reason="a step that all but lands in the flat posture costs decades"),
+        Check(
+            "projection: largest distance over all steps [m]",
+            float(errors.max()),
+            BOUND,
+            reason="a step that all but lands in the flat posture costs decades",
+        ),
         Check("projection: median distance over all steps [m]", float(np.median(errors)), 1e-5, reason="its order, h⁴"),
-        Check("N = 2, steps that all but land in the flat posture: largest distance [m]", max(near.values()), 0.1,
-              reason="four of 172 steps, where neighbours leave 1e-9"),
-        Check("ways by Baumgarte's gains of 20/s and more that fail somewhere",
-              float(sum(f"Baumgarte {g:g}/s" in map(WAYS.label, two.y) and f"Baumgarte {g:g}/s" not in always
-                        for g in GAINS if 20.0 <= g <= 100.0)), 0.0, reason="20 holds in absolute coordinates, too"),
-        Check("share of runs without stabilisation that meet the criterion", float(np.mean([
-            found.good[0].mean() for found in maps.values()])), 0.2, reason="drift decides, at times rightly"),
-        Check("N = 2: known verdicts on gains 5, 20 and 100/s that ours contradict", float(contradictions), 0.0,
-              reason="another program, in absolute coordinates"),
+        Check(
+            "N = 2, steps that all but land in the flat posture: largest distance [m]",
+            max(near.values()),
+            0.1,
+            reason="four of 172 steps, where neighbours leave 1e-9",
+        ),
+        Check(
+            "ways by Baumgarte's gains of 20/s and more that fail somewhere",
+            float(
+                sum(
+                    f"Baumgarte {g:g}/s" in map(WAYS.label, two.y) and f"Baumgarte {g:g}/s" not in always
+                    for g in GAINS
+                    if 20.0 <= g <= 100.0
+                )
+            ),
+            0.0,
+            reason="20 holds in absolute coordinates, too",
+        ),
+        Check(
+            "share of runs without stabilisation that meet the criterion",
+            float(np.mean([found.good[0].mean() for found in maps.values()])),
+            0.2,
+            reason="drift decides, at times rightly",
+        ),
+        Check(
+            "N = 2: known verdicts on gains 5, 20 and 100/s that ours contradict",
+            float(contradictions),
+            0.0,
+            reason="another program, in absolute coordinates",
+        ),
         Check("a start in the flat posture is reported (1: yes)", reported, 1.0, 1.0, "nothing is silently wrong"),
         Check("share of our runs through it that hold and say so", told, 1.0, 1.0, "nothing is silently wrong"),
         Check("exact motion against the known one, largest distance [m]", exact, 1e-9, reason="the same equation"),
-    )  # fmt: skip
+    )
     wrong = sum(found.wrong for found in maps.values())
     stopped = sum(found.stopped for found in maps.values())
     defaults = two.at(y=WAYS.labels.index("MuJoCo, its defaults"))
@@ -182,9 +225,13 @@ SCENE = Scene(
     "What carries a closed loop through a singular posture?",
     "N four-bars in a row start with cranks upright and turn for 10 s, flat each half turn, where the rank of the "
     "constraints falls by N. RK4 in relative coordinates; engines as named.",
-    H, WAYS, "distance of the first crank's end from the exact motion after 10 s [m]", BOUND,
-    tuple(Subject(f"N = {n}", measure(n)) for n in (1, 2)), judge,
+    H,
+    WAYS,
+    "distance of the first crank's end from the exact motion after 10 s [m]",
+    BOUND,
+    tuple(Subject(f"N = {n}", measure(n)) for n in (1, 2)),
+    judge,
     "projection (the default), or Baumgarte's gains of 20/s and more below the limit of the scene before. "
     "`outcome.notes` says how close a run came to the posture: compare with another step, or drive it past.",
     (source("four_bars"),),
-)  # fmt: skip
+)

@@ -25,8 +25,15 @@ SAFE = 2.0
 INTEGRATORS = ("Euler", "RK4")
 
 
-def move(loops: int, integrator: str, h: float, solref: str, solimp: str, end: float = END,
-         stated_at: float = four_bars.START[0]) -> mujoco_motion.MujocoMotion:  # fmt: skip
+def move(
+    loops: int,
+    integrator: str,
+    h: float,
+    solref: str,
+    solimp: str,
+    end: float = END,
+    stated_at: float = four_bars.START[0],
+) -> mujoco_motion.MujocoMotion:
     """The row of four-bars."""
     m = four_bars.linkage(loops)
     q, v = four_bars.state(m, *four_bars.START)
@@ -70,14 +77,23 @@ def judge(maps: Maps) -> Verdict:
     held = four_bars.tip_error(1, END, ours.frames["crank0.end"][0][-1, [0, 2]])
     best = {name: float(np.nanmin(found.values)) for name, found in maps.items()}
     checks = (
-        Check("factor between known and found energies and distances", max(factors), 3.0, 
-              reason="of the known runs; Euler's positions were read a step late there, ω h = 2 mm: left out"),
+        Check(
+            "factor between known and found energies and distances",
+            max(factors),
+            3.0,
+            reason="of the known runs; Euler's positions were read a step late there, ω h = 2 mm: left out",
+        ),
         Check("MuJoCo's defaults, RK4, h = 1 ms: distance [m]", upright, 3.0, 0.5, "far off, whatever the step"),
-        Check("the same stated flat: change of that distance [m]", abs(flat - upright), 3.0, 0.1,
-              "softness is scaled by inertias in the posture where coordinates are zero"),
+        Check(
+            "the same stated flat: change of that distance [m]",
+            abs(flat - upright),
+            3.0,
+            0.1,
+            "softness is scaled by inertias in the posture where coordinates are zero",
+        ),
         Check("MuJoCo RK4, stiff: smallest distance on the map [m]", best["MuJoCo RK4"], 1e-3, reason="short steps"),
         Check("ours, RK4 and projection, h = 1 ms: distance [m]", held, 1e-9, reason="closures are exact, order h⁴"),
-    )  # fmt: skip
+    )
     words = (
         f"MuJoCo closes loops by stiff springs and dampers. With its defaults the crank's end is {min(astray):.2f} "
         f"to {max(astray):.2f} m off after 10 s at a step of 1 ms, with Euler and RK4 alike, for {lost['RK4']:.2f} "
@@ -96,11 +112,20 @@ def judge(maps: Maps) -> Verdict:
 SCENE = Scene(
     "How soft are MuJoCo's closures, and does a shorter step help?",
     "The four-bar of the scene before, closed by `connect` with solimp 0.9999, stated upright.",
-    H, CONSTANT, "distance of the first crank's end from the exact motion after 10 s [m]", BOUND,
-    tuple(Subject(f"MuJoCo {name}", measure(name), (
-        Limit(f"{SAFE:g} h", np.array([1e-4, 1e-1]), SAFE * np.array([1e-4, 1e-1])),)) for name in INTEGRATORS),
+    H,
+    CONSTANT,
+    "distance of the first crank's end from the exact motion after 10 s [m]",
+    BOUND,
+    tuple(
+        Subject(
+            f"MuJoCo {name}",
+            measure(name),
+            (Limit(f"{SAFE:g} h", np.array([1e-4, 1e-1]), SAFE * np.array([1e-4, 1e-1])),),
+        )
+        for name in INTEGRATORS
+    ),
     judge,
     "projection or Baumgarte's gains with exact closures. In MuJoCo: RK4, solref of two steps, solimp 0.9999, and a "
     "step of 1 ms or less; never compare closed loops against its defaults.",
     (source("four_bars"), "MuJoCo documentation, solver parameters: refsafe"),
-)  # fmt: skip
+)

@@ -22,8 +22,12 @@ MODELS: dict[str, dict[str, Any]] = {
 }
 WITHOUT = "without foreshortening"
 CRITICAL = 3.51601526850015
-ETA = Grid("speed η = Ω √(ρA L⁴/EI) [-]", (*(0.5 * k for k in range(7)), 3.25, 3.4, 3.6, 3.75, *(0.5 * k for k in range(
-    8, 17))), (1.0, 3.0, 4.0, 8.0), log=False)  # fmt: skip
+ETA = Grid(
+    "speed η = Ω √(ρA L⁴/EI) [-]",
+    (*(0.5 * k for k in range(7)), 3.25, 3.4, 3.6, 3.75, *(0.5 * k for k in range(8, 17))),
+    (1.0, 3.0, 4.0, 8.0),
+    log=False,
+)
 HUB = Grid("hub radius r/L [-]", (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0), (0.0, 1.0), log=False)
 
 
@@ -67,12 +71,16 @@ def judge(maps: Maps) -> Verdict:
     stiff, ruthless = maps["foreshortened, first order"], maps["zeroth order"]
     edges = [low for _, low, _ in without.edge("x")], [high for _, _, high in without.edge("x")]
     checks = (
-        Check("without foreshortening: factor by which η = 3.516 misses the edge of the map", missed, 1.01,
-              reason="the first frequency at rest, whatever the hub"),
+        Check(
+            "without foreshortening: factor by which η = 3.516 misses the edge of the map",
+            missed,
+            1.01,
+            reason="the first frequency at rest, whatever the hub",
+        ),
         Check("rates of growth at η = 4 and 6 against the known ones, relative", apart, 1e-3, reason="√(η² - 3.516²)"),
         Check("foreshortened: share of the map that is bounded", float(stiff.good.mean()), 1.0, 1.0, "it stiffens"),
         Check("zeroth order: the same", float(ruthless.good.mean()), 1.0, 1.0, "it neither stiffens nor softens"),
-    )  # fmt: skip
+    )
     words = (
         "Without foreshortening the softening term of rotation is kept and the stiffening one lost: between η = "
         f"{max(edges[0], default=0.0):g} and {min(edges[1], default=0.0):g}, for every hub, the beam begins to fly "
@@ -96,9 +104,13 @@ def limits(name: str) -> tuple[Limit, ...]:
 SCENE = Scene(
     "What becomes of a beam that spins above its first frequency?",
     f"A beam on a turning hub, let go from 0.001 L in the plane of rotation for {END:g} units of time √(ρA L⁴/EI).",
-    ETA, HUB, "largest deflection over that at the start [-]", BOUND,
-    tuple(Subject(name, measure(name), limits(name)) for name in MODELS), judge,
+    ETA,
+    HUB,
+    "largest deflection over that at the start [-]",
+    BOUND,
+    tuple(Subject(name, measure(name), limits(name)) for name in MODELS),
+    judge,
     "foreshortening, which is the default; or retain: zeroth_order where rotation is slow. Foreshortening off with "
     "first order is for studies, and a warning says so.",
     (source("spin"),),
-)  # fmt: skip
+)

@@ -74,8 +74,16 @@ def measure(method: str) -> Callable[[float, float], Cell]:
 
     def run(v0: float, h: float) -> Cell:
         m = block().with_parameters(v0=v0)
-        done = simulate(m, [0.0], t_end=END, method=method, dt=h, adaptive=False, output=0.01,
-                           u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"})  # fmt: skip
+        done = simulate(
+            m,
+            [0.0],
+            t_end=END,
+            method=method,
+            dt=h,
+            adaptive=False,
+            output=0.01,
+            u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"},
+        )
         return cell(done, lambda run: float(np.abs(run.q[:, 0] - exact(run.t)).mean() / jump()))
 
     return run
@@ -93,8 +101,7 @@ LIMITS = {"rk4": 2.7853, "semi_implicit_euler": 2.0}
 def reach(found: Map) -> list[tuple[float, float]]:
     """(v0, longest step below which every run is good), where there is one."""
     lines = zip(found.x, found.good.T, strict=True)
-    return [(float(v0), float(found.y[int(np.argmin(line)) - 1]))
-            for v0, line in lines if line[0] and not line.all()]  # fmt: skip
+    return [(float(v0), float(found.y[int(np.argmin(line)) - 1])) for v0, line in lines if line[0] and not line.all()]
 
 
 def judge(maps: Maps) -> Verdict:
@@ -112,15 +119,30 @@ def judge(maps: Maps) -> Verdict:
     adaptive = steady(1e-4)
     stopped = sum(found.stopped for found in maps.values())
     checks = (
-        Check("explicit runs below the closed form, v₀ at most 0.1 mm/s, that miss the criterion", float(below), 0.0,
-              reason="the closed form is on the safe side"),
-        Check("rk4: smallest factor between the edge and the closed form", min(ratios, default=np.nan), 100.0, 1.0,
-              "chatter is bounded: it costs little at first"),
-        Check("rodas4, adaptive, v₀ = 0.1 mm/s: mean distance [slips]", adaptive[0], 0.05,
-              reason="what smoothing leaves"),
-        Check("break-away force over the static friction stated", STATIC / STATED, 0.96, 0.95,
-              "maximum of the smoothed curve"),
-    )  # fmt: skip
+        Check(
+            "explicit runs below the closed form, v₀ at most 0.1 mm/s, that miss the criterion",
+            float(below),
+            0.0,
+            reason="the closed form is on the safe side",
+        ),
+        Check(
+            "rk4: smallest factor between the edge and the closed form",
+            min(ratios, default=np.nan),
+            100.0,
+            1.0,
+            "chatter is bounded: it costs little at first",
+        ),
+        Check(
+            "rodas4, adaptive, v₀ = 0.1 mm/s: mean distance [slips]", adaptive[0], 0.05, reason="what smoothing leaves"
+        ),
+        Check(
+            "break-away force over the static friction stated",
+            STATIC / STATED,
+            0.96,
+            0.95,
+            "maximum of the smoothed curve",
+        ),
+    )
     words = (
         f"Two errors meet. Smoothing lets the block creep: v₀ of {min(blunt, default=np.inf):.1e} m/s and more miss "
         f"at the shortest step, and whatever v₀ is, by default the block breaks away at {STATIC / STATED:.1%} of "
@@ -142,8 +164,16 @@ def judge(maps: Maps) -> Verdict:
 def steady(v0: float) -> tuple[float, int]:
     """Adaptive rodas4: mean distance in slips, and steps."""
     m = block().with_parameters(v0=v0)
-    run = simulate(m, [0.0], t_end=END, method="rodas4", rtol=1e-6, atol=1e-9, output=0.01,
-                      u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"})  # fmt: skip
+    run = simulate(
+        m,
+        [0.0],
+        t_end=END,
+        method="rodas4",
+        rtol=1e-6,
+        atol=1e-9,
+        output=0.01,
+        u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"},
+    )
     return float(np.abs(run.q[:, 0] - exact(run.t)).mean() / jump()), run.statistics.steps
 
 
@@ -151,9 +181,13 @@ SCENE = Scene(
     "How sharp may friction be, for which step?",
     f"A block of 1 kg is dragged by a spring of {SPRING:g} N/m that moves with {PULL} m/s, static friction "
     f"{STATED:g} N, dynamic {DYNAMIC:g} N, for {END:g} s; the exact motion has friction that jumps.",
-    SMOOTH, H, "mean distance from the exact motion over one slip [-]", BOUND,
-    tuple(Subject(name, measure(name), (limit(LIMITS[name]),) if name in LIMITS else ()) for name in METHODS), judge,
+    SMOOTH,
+    H,
+    "mean distance from the exact motion over one slip [-]",
+    BOUND,
+    tuple(Subject(name, measure(name), (limit(LIMITS[name]),) if name in LIMITS else ()) for name in METHODS),
+    judge,
     "adaptive rodas4 with v₀ a hundredth of the speeds that matter; with fixed explicit steps v₀ of F h/(2.8 m) at "
     "least, and look at the speed in the plot: chatter is not reported.",
     ("exact motion piece by piece; linear stability theory",),
-)  # fmt: skip
+)

@@ -144,8 +144,10 @@ def _fmu(system: sf.System, folder: Path) -> float:
 
 
 def _sizes(package: Path, name: str) -> dict[str, int]:
-    sizes = {f"{name}.c": (package / f"{name}.c").stat().st_size,
-             "symofros_stepper.c": (package / "symofros_stepper.c").stat().st_size}  # fmt: skip
+    sizes = {
+        f"{name}.c": (package / f"{name}.c").stat().st_size,
+        "symofros_stepper.c": (package / "symofros_stepper.c").stat().st_size,
+    }
     for part in (name, "symofros_stepper"):
         _command("cc", *_FLAGS, "-c", f"{part}.c", "-o", f"{part}.o", cwd=package)
         lines = [line.split() for line in _command("size", "-A", f"{part}.o", cwd=package).splitlines()]

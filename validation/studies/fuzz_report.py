@@ -69,12 +69,20 @@ def as_data(result: FuzzResult, seed: int, seconds: float) -> dict[str, Any]:
     # Linux counts kilobytes, macOS bytes.
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1 << (20 if sys.platform == "darwin" else 10))
     return {
-        "ok": not faults, "inputs": sum(row["inputs"] for row in kinds.values()), "seed": seed,
-        "seconds": round(seconds, 1), "peak_memory_mib": round(peak), "kinds": kinds, "faults": faults,
-        "versions": {"symofros": sf.__version__, "python": platform.python_version(),
-                     **{name: metadata.version(name) for name in _READERS}},
+        "ok": not faults,
+        "inputs": sum(row["inputs"] for row in kinds.values()),
+        "seed": seed,
+        "seconds": round(seconds, 1),
+        "peak_memory_mib": round(peak),
+        "kinds": kinds,
+        "faults": faults,
+        "versions": {
+            "symofros": sf.__version__,
+            "python": platform.python_version(),
+            **{name: metadata.version(name) for name in _READERS},
+        },
         **stamp(),
-    }  # fmt: skip
+    }
 
 
 def as_markdown(data: dict[str, Any]) -> str:

@@ -167,8 +167,10 @@ class _Harness:
         return True
 
     def _exact_inputs(self, point: int) -> Mapping[str, list[mpmath.mpf]]:
-        return {name: [mpmath.mpf(float(x)) for x in values[-1 - point if len(values) > 1 else 0]]
-                for name, values in self.bench.inputs.items()}  # fmt: skip
+        return {
+            name: [mpmath.mpf(float(x)) for x in values[-1 - point if len(values) > 1 else 0]]
+            for name, values in self.bench.inputs.items()
+        }
 
 
 def _as_compared(function: Function, outputs: list[Array]) -> Array:

@@ -23,9 +23,19 @@ from validation.studies.mutation import MutationScore, mutate
 
 # Models that an independent engine can represent whole, small and large, fixed and floating.
 MODELS = (
-    "pendulum", "double_pendulum", "cart_pole", "open_chain_5r", "space_arm", "rx90", "chain7", "mss",
-    "ur5", "panda", "solo12", "bolt",
-)  # fmt: skip
+    "pendulum",
+    "double_pendulum",
+    "cart_pole",
+    "open_chain_5r",
+    "space_arm",
+    "rx90",
+    "chain7",
+    "mss",
+    "ur5",
+    "panda",
+    "solo12",
+    "bolt",
+)
 PER_MODEL = 700
 _FATES = ("planted", "caught", "silent", "too_small")
 
@@ -88,10 +98,16 @@ def as_data(scores: Sequence[MutationScore], faults: int, seed: int, seconds: fl
         for kind, number in total.items():
             kinds.setdefault(kind, dict.fromkeys(_FATES, 0))[name] = number
     return {
-        "ok": all(score.ok for score in scores), "faults_per_model": faults, "seed": seed, "seconds": round(seconds, 1),
-        "planted": sum(row["planted"] for row in rows), "models": rows, "kinds": dict(sorted(kinds.items())),
-        "versions": versions("pin"), **stamp(),
-    }  # fmt: skip
+        "ok": all(score.ok for score in scores),
+        "faults_per_model": faults,
+        "seed": seed,
+        "seconds": round(seconds, 1),
+        "planted": sum(row["planted"] for row in rows),
+        "models": rows,
+        "kinds": dict(sorted(kinds.items())),
+        "versions": versions("pin"),
+        **stamp(),
+    }
 
 
 def as_markdown(data: dict[str, Any]) -> str:

@@ -55,8 +55,14 @@ def command(
             results.append(check(name, by, points, seed))
             bar.update(task, advance=1)
     ok = all(result.ok for result in results)
-    data = {"ok": ok, "points": points, "seed": seed, "comparisons": [asdict(result) for result in results],
-            "versions": {**versions(), "sympy": metadata.version("sympy")}, **stamp()}  # fmt: skip
+    data = {
+        "ok": ok,
+        "points": points,
+        "seed": seed,
+        "comparisons": [asdict(result) for result in results],
+        "versions": {**versions(), "sympy": metadata.version("sympy")},
+        **stamp(),
+    }
     if not chosen:
         report.mkdir(parents=True, exist_ok=True)
         write_atomically(report / "oracle.json", json.dumps(data, indent=1, allow_nan=False) + "\n")
@@ -81,5 +87,9 @@ def _show(results: Sequence[Agreement], console: Console) -> None:
     console.print(table)
     failed = [f"{row.model} ({row.derivation})" for row in results if not row.ok]
     verdict = f"do not agree: {', '.join(failed)}" if failed else "all agree"
-    console.print(Text(f"{len(results)} derivations of {len({row.model for row in results})} models; {verdict}.",
-                       style="bold red" if failed else "bold green"))  # fmt: skip
+    console.print(
+        Text(
+            f"{len(results)} derivations of {len({row.model for row in results})} models; {verdict}.",
+            style="bold red" if failed else "bold green",
+        )
+    )

@@ -48,10 +48,16 @@ def realtime_command(
     ways = (False, True) if realtime.may_come_first() else (False,)
     rows = [realtime.run(seconds, scene, first) for first in ways for scene in realtime.SCENES]
     data: dict[str, Any] = {
-        "scenes": [{"what": row.what, "first": row.first, "period": row.period, "busy": row.busy, **asdict(row.jitter)}
-                   for row in rows],
-        "seconds": seconds, "cores": os.cpu_count(), "load": os.getloadavg()[0], "versions": versions(), **stamp(),
-    }  # fmt: skip
+        "scenes": [
+            {"what": row.what, "first": row.first, "period": row.period, "busy": row.busy, **asdict(row.jitter)}
+            for row in rows
+        ],
+        "seconds": seconds,
+        "cores": os.cpu_count(),
+        "load": os.getloadavg()[0],
+        "versions": versions(),
+        **stamp(),
+    }
     report.mkdir(parents=True, exist_ok=True)
     write_atomically(report / "realtime.json", json.dumps(data, indent=1) + "\n")
     write_atomically(report / "realtime.md", as_markdown(data))
@@ -61,8 +67,13 @@ def realtime_command(
         return
     table = Table("scene", "thread", "least", "median", "99.9 %", "worst", "missed", "busy", title="late by [us]")
     for row in rows:
-        table.add_row(row.what, _way(row.first), *(f"{1e6 * value:.1f}" for value in _numbers(row)),
-                      f"{row.jitter.missed} of {row.jitter.instants}", f"{1e6 * row.busy:.1f}")  # fmt: skip
+        table.add_row(
+            row.what,
+            _way(row.first),
+            *(f"{1e6 * value:.1f}" for value in _numbers(row)),
+            f"{row.jitter.missed} of {row.jitter.instants}",
+            f"{1e6 * row.busy:.1f}",
+        )
     Console().print(table)
     typer.echo(f"Report: {report / 'realtime.md'}")
 
@@ -106,10 +117,16 @@ def picture(rows: list[Timed]) -> bytes:
 
 def as_markdown(data: dict[str, Any]) -> str:
     """The report."""
-    lines = ["# Diagrams in real time", "", _LIMITS, "", f"{data['seconds']:g} s each; late by, in microseconds:", "",
-             "| scene | thread | least | median | 99.9 % | worst | missed | busy |",
-             "|---|---|---:|---:|---:|---:|---:|---:|"
-             ]  # fmt: skip
+    lines = [
+        "# Diagrams in real time",
+        "",
+        _LIMITS,
+        "",
+        f"{data['seconds']:g} s each; late by, in microseconds:",
+        "",
+        "| scene | thread | least | median | 99.9 % | worst | missed | busy |",
+        "|---|---|---:|---:|---:|---:|---:|---:|",
+    ]
     for row in data["scenes"]:
         least, median, most, worst, busy = (
             f"{1e6 * row[name]:.1f}" for name in ("minimum", "median", "p999", "maximum", "busy")
@@ -118,7 +135,14 @@ def as_markdown(data: dict[str, Any]) -> str:
         values = f"{least} | **{median}** | {most} | {worst} | {missed} | {busy}"
         lines.append(f"| {row['what']} | {_way(row['first'])} | {values} |")
     said = ", ".join(f"{name} {version}" for name, version in data["versions"].items())
-    lines += ["", "![Histograms](realtime.png)", "",
-              f"{data['cores']} cores, load {data['load']:.1f}; {said}; {', '.join(data['machine'].values())}; "
-              f"{data['date']}.", "", "Written by `python -m validation realtime`.", ""]  # fmt: skip
+    lines += [
+        "",
+        "![Histograms](realtime.png)",
+        "",
+        f"{data['cores']} cores, load {data['load']:.1f}; {said}; {', '.join(data['machine'].values())}; "
+        f"{data['date']}.",
+        "",
+        "Written by `python -m validation realtime`.",
+        "",
+    ]
     return "\n".join(lines)

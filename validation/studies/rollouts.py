@@ -71,9 +71,16 @@ def run(repeats: int, trajectories: int = TRAJECTORIES, steps: int = STEPS, thre
 
 
 def _scene(
-    scene: str, m: sf.Model, engine: object, start: tuple[Array, Array], stiffness: float, damping: float, steps: int,
-    repeats: int, threads: int,
-) -> list[Rollout]:  # fmt: skip
+    scene: str,
+    m: sf.Model,
+    engine: object,
+    start: tuple[Array, Array],
+    stiffness: float,
+    damping: float,
+    steps: int,
+    repeats: int,
+    threads: int,
+) -> list[Rollout]:
     span = steps * STEP
     law = None
     if stiffness:
@@ -81,9 +88,10 @@ def _scene(
         law = {u: f"{stiffness}*({TARGET} - {q}) - {damping}*d{q}" for u, q in joints}
     exact = _moved(sf.simulate_batch(m, *start, span, u=law, method="dop853", rtol=1e-12, atol=1e-12)).q_last
     ways = {
-        "rk4": {"method": "rk4", "dt": STEP}, "dopri5": {"method": "dopri5", "rtol": 1e-6, "atol": 1e-9},
+        "rk4": {"method": "rk4", "dt": STEP},
+        "dopri5": {"method": "dopri5", "rtol": 1e-6, "atol": 1e-9},
         "semi_implicit_euler": {"method": "semi_implicit_euler", "dt": STEP},
-    }  # fmt: skip
+    }
     times: dict[str, list[float]] = {name: [] for name in ("mujoco", *ways)}
     errors: dict[str, float] = {}
     counts = {"mujoco": len(start[0]) * steps}
@@ -96,15 +104,20 @@ def _scene(
             times[name].append(run.processor_seconds)
             errors[name] = float(np.abs(run.q_last - exact).max())
             counts[name] = int(run.steps.sum() + run.rejected.sum())
-    words = {"mujoco": f"RK4, {1e3 * STEP:g} ms", "rk4": f"RK4, {1e3 * STEP:g} ms", "dopri5": "dopri5, rtol 1e-6",
-             "semi_implicit_euler": f"semi-implicit Euler, {1e3 * STEP:g} ms"}  # fmt: skip
+    words = {
+        "mujoco": f"RK4, {1e3 * STEP:g} ms",
+        "rk4": f"RK4, {1e3 * STEP:g} ms",
+        "dopri5": "dopri5, rtol 1e-6",
+        "semi_implicit_euler": f"semi-implicit Euler, {1e3 * STEP:g} ms",
+    }
     rows = []
     for name, spent in times.items():
         each = [1e9 * x / counts[name] for x in spent]
         ratio = median(theirs / mine for theirs, mine in zip(times["mujoco"], spent, strict=True))
         who = "MuJoCo, rollout" if name == "mujoco" else "SYMOFROS"
-        rows.append(Rollout(scene, who, words[name], threads, errors[name], counts[name], (min(each), median(each)),
-                            ratio))  # fmt: skip
+        rows.append(
+            Rollout(scene, who, words[name], threads, errors[name], counts[name], (min(each), median(each)), ratio)
+        )
     return rows
 
 

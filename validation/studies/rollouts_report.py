@@ -43,9 +43,14 @@ def rollouts_command(
     """Time thousands of motions of an arm, against mujoco.rollout."""
     rows = rollouts.run(repeats, trajectories, steps, threads)
     versions = {name: metadata.version(name) for name in ("symofros", "mujoco")}
-    data: dict[str, Any] = {"rollouts": [asdict(row) for row in rows], "trajectories": trajectories,
-                            "repeats": repeats, "load": os.getloadavg()[0], "versions": versions,
-                            **stamp()}  # fmt: skip
+    data: dict[str, Any] = {
+        "rollouts": [asdict(row) for row in rows],
+        "trajectories": trajectories,
+        "repeats": repeats,
+        "load": os.getloadavg()[0],
+        "versions": versions,
+        **stamp(),
+    }
     report.mkdir(parents=True, exist_ok=True)
     write_atomically(report / "rollouts.json", json.dumps(data, indent=1) + "\n")
     write_atomically(report / "rollouts.md", as_markdown(data))
@@ -54,24 +59,42 @@ def rollouts_command(
         return
     table = Table("scene", "who", "how", "error [rad]", "ns a step", "M steps/s/core", "MuJoCo's time over it")
     for row in rows:
-        table.add_row(row.scene, row.who, row.how, f"{row.error:.1e}", f"{row.nanoseconds[0]:.0f}",
-                      f"{1e3 / row.nanoseconds[0]:.2f}", f"{row.ratio:.1f}")  # fmt: skip
+        table.add_row(
+            row.scene,
+            row.who,
+            row.how,
+            f"{row.error:.1e}",
+            f"{row.nanoseconds[0]:.0f}",
+            f"{1e3 / row.nanoseconds[0]:.2f}",
+            f"{row.ratio:.1f}",
+        )
     Console().print(table)
     typer.echo(f"Report: {report / 'rollouts.md'}")
 
 
 def as_markdown(data: dict[str, Any]) -> str:
     """The report."""
-    lines = [f"# {data['trajectories']} motions of a 7-joint arm at once", "", _LIMITS, "",
-             "| scene | who | how | threads | error [rad] | steps | ns a step (min, median) | million steps a second "
-             "and core | MuJoCo's time over it |", "|---|---|---|---:|---:|---:|---:|---:|---:|"]  # fmt: skip
+    lines = [
+        f"# {data['trajectories']} motions of a 7-joint arm at once",
+        "",
+        _LIMITS,
+        "",
+        "| scene | who | how | threads | error [rad] | steps | ns a step (min, median) | million steps a second "
+        "and core | MuJoCo's time over it |",
+        "|---|---|---|---:|---:|---:|---:|---:|---:|",
+    ]
     for row in data["rollouts"]:
         least, middle = row["nanoseconds"]
-        lines.append(f"| {row['scene']} | {row['who']} | {row['how']} | {row['threads']} | {row['error']:.1e} | "
-                     f"{row['steps']} | {least:.0f}, {middle:.0f} | {1e3 / least:.2f} | **{row['ratio']:.1f}** |"
-                     )  # fmt: skip
+        lines.append(
+            f"| {row['scene']} | {row['who']} | {row['how']} | {row['threads']} | {row['error']:.1e} | "
+            f"{row['steps']} | {least:.0f}, {middle:.0f} | {1e3 / least:.2f} | **{row['ratio']:.1f}** |"
+        )
     versions = ", ".join(f"{name} {version}" for name, version in data["versions"].items())
-    lines += ["", f"{data['repeats']} repeats; load {data['load']:.1f}; {versions}; "
-              f"{', '.join(data['machine'].values())}.", "", "Written by `python -m validation rollouts`.", ""
-              ]  # fmt: skip
+    lines += [
+        "",
+        f"{data['repeats']} repeats; load {data['load']:.1f}; {versions}; {', '.join(data['machine'].values())}.",
+        "",
+        "Written by `python -m validation rollouts`.",
+        "",
+    ]
     return "\n".join(lines)

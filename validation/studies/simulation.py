@@ -85,8 +85,14 @@ def done(run: sf.Trajectory) -> sf.Trajectory:
 Timed = Callable[[], tuple[float, float]]  # -> error, seconds
 
 
-def race(scene: str, span: float, measure: str, ours: tuple[str, Timed], repeats: int,
-         other: tuple[str, str, Timed] | None = None) -> Race:  # fmt: skip
+def race(
+    scene: str,
+    span: float,
+    measure: str,
+    ours: tuple[str, Timed],
+    repeats: int,
+    other: tuple[str, str, Timed] | None = None,
+) -> Race:
     """Run both sides in turn, so often."""
     times: tuple[list[float], list[float]] = ([], [])
     errors = [0.0, 0.0]
@@ -110,8 +116,9 @@ def arm(repeats: int, span: float = 10.0, h: float = 1e-3) -> Race:
         ValueError: MuJoCo can't hold the arm.
     """
     panda = panda7()
-    bodies = [body if body.joint is None else replace(body, joint=replace(body.joint, elements=()))
-              for body in panda.bodies]  # fmt: skip
+    bodies = [
+        body if body.joint is None else replace(body, joint=replace(body.joint, elements=())) for body in panda.bodies
+    ]
     system = replace(panda, bodies=tuple(bodies))
     m = sf.compile(system)
     engine = mujoco.build(Subject("panda7", system))
@@ -131,8 +138,14 @@ def arm(repeats: int, span: float = 10.0, h: float = 1e-3) -> Race:
         return float(np.abs(q - exact).max()), seconds
 
     step = f"RK4, {1e3 * h:g} ms"
-    return race("panda, 7 joints, PD control", span, "joints at the end, against dop853 at 1e-12 [rad]", (step, ours),
-                repeats, ("MuJoCo, mj_step", step, theirs))  # fmt: skip
+    return race(
+        "panda, 7 joints, PD control",
+        span,
+        "joints at the end, against dop853 at 1e-12 [rad]",
+        (step, ours),
+        repeats,
+        ("MuJoCo, mj_step", step, theirs),
+    )
 
 
 def four_bar(repeats: int, span: float = 10.0) -> Race:
@@ -152,9 +165,14 @@ def four_bar(repeats: int, span: float = 10.0) -> Race:
         moved = mujoco_motion.move(text, np.zeros(m.nq), v, span, samples=1)
         return float(four_bars.tip_error(1, span, ends_of_crank(moved.q))), perf_counter() - began
 
-    return race("four-bar through its singular posture", span, "tip of the crank at the end, exact [m]",
-                (f"RK4, {1e3 * h_ours:g} ms, projection", ours), repeats,
-                ("MuJoCo, mj_step", f"RK4, {1e3 * h_theirs:g} ms, stiff soft closures", theirs))  # fmt: skip
+    return race(
+        "four-bar through its singular posture",
+        span,
+        "tip of the crank at the end, exact [m]",
+        (f"RK4, {1e3 * h_ours:g} ms, projection", ours),
+        repeats,
+        ("MuJoCo, mj_step", f"RK4, {1e3 * h_theirs:g} ms, stiff soft closures", theirs),
+    )
 
 
 def planar_robot(repeats: int, span: float = 2.0, h: float = 1e-3) -> Race:
@@ -168,12 +186,20 @@ def planar_robot(repeats: int, span: float = 2.0, h: float = 1e-3) -> Race:
         run = done(sf.simulate(m, None, v0, span, method="rk4", dt=h, every=100))
         return float(np.abs(run.q[-1] - exact).max()), run.statistics.seconds
 
-    return race("planar flexible robot with friction", span, "coordinates at the end, against rodas4 at 1e-9 [rad, m]",
-                (f"RK4, {1e3 * h:g} ms", ours), repeats)  # fmt: skip
+    return race(
+        "planar flexible robot with friction",
+        span,
+        "coordinates at the end, against rodas4 at 1e-9 [rad, m]",
+        (f"RK4, {1e3 * h:g} ms", ours),
+        repeats,
+    )
 
 
-def spinning_beam(repeats: int, span: float = 15.0, meshes: Sequence[tuple[int, float]] = ((2, 0.05), (4, 0.05),
-                  (4, 0.025), (8, 0.025), (8, 0.0125), (16, 0.0025))) -> Race:  # fmt: skip
+def spinning_beam(
+    repeats: int,
+    span: float = 15.0,
+    meshes: Sequence[tuple[int, float]] = ((2, 0.05), (4, 0.05), (4, 0.025), (8, 0.025), (8, 0.0125), (16, 0.0025)),
+) -> Race:
     """Spin-up: three modes against the coarsest of Exudyn's meshes and steps that errs no more."""
     rod = data("spin_up")["exact_inextensible_rod"]
     times = np.array([t for t in rod["t"] if t <= span])
@@ -182,8 +208,11 @@ def spinning_beam(repeats: int, span: float = 15.0, meshes: Sequence[tuple[int, 
     beam = sf.Beam("b", hub, spinup.LENGTH, spinup.RHO_A, EI_z=spinup.EI, bend_y=3, family="clamped_free")
     m = sf.compile(sf.System("spin_up", (beam,), gravity=(0, 0, 0)))
     k, rate = 2 * np.pi / spinup.END, spinup.RATE / spinup.END
-    law = {"hub": f"{rate!r}*(t^2/2 + (cos({k!r}*t) - 1)/{k * k!r})", "dhub": f"{rate!r}*(t - sin({k!r}*t)/{k!r})",
-           "ddhub": f"{rate!r}*(1 - cos({k!r}*t))"}  # fmt: skip
+    law = {
+        "hub": f"{rate!r}*(t^2/2 + (cos({k!r}*t) - 1)/{k * k!r})",
+        "dhub": f"{rate!r}*(t - sin({k!r}*t)/{k!r})",
+        "ddhub": f"{rate!r}*(1 - cos({k!r}*t))",
+    }
 
     def ours() -> tuple[float, float]:
         run = done(sf.simulate(m, t_end=span, u=law, method="rk4", dt=2e-2, output=times))
@@ -201,10 +230,18 @@ def spinning_beam(repeats: int, span: float = 15.0, meshes: Sequence[tuple[int, 
 
     bound = ours()[0]
     chosen = next((mesh for mesh in meshes if exudyn(*mesh)[0] <= bound), meshes[-1])
-    return race("spin-up of a beam on a driven hub", span, "tip over the run, against the exact rod [m]",
-                ("3 modes, RK4, 20 ms", ours), repeats,
-                ("Exudyn, ANCFCable2D", f"{chosen[0]} elements, generalised alpha, {1e3 * chosen[1]:g} ms",
-                 lambda: exudyn(*chosen)))  # fmt: skip
+    return race(
+        "spin-up of a beam on a driven hub",
+        span,
+        "tip over the run, against the exact rod [m]",
+        ("3 modes, RK4, 20 ms", ours),
+        repeats,
+        (
+            "Exudyn, ANCFCable2D",
+            f"{chosen[0]} elements, generalised alpha, {1e3 * chosen[1]:g} ms",
+            lambda: exudyn(*chosen),
+        ),
+    )
 
 
 @dataclass(frozen=True)
@@ -248,21 +285,60 @@ def iftomm(repeats: int) -> list[Benchmark]:
         return float(np.abs(run.energy - run.energy[0]).max())
 
     scenes: list[tuple[str, float, str, str, float, Callable[[], sf.Trajectory], Callable[[sf.Trajectory], float]]] = [
-        ("A01 simple pendulum", 10.0, "rk4, 5 ms", energy, known["pendulum_energy_J"],
-         lambda: sf.simulate(sf.compile(sf.System("a01", (pendulum,))), [np.pi], t_end=10.0, dt=5e-3), drift),
-        ("A02 two four-bars, singular twice a turn", 10.0, "rk4, 5 ms, projection", energy, rows[0],
-         lambda: sf.simulate(row, *places, 10.0, dt=5e-3, every=10), drift),
-        ("A03 Andrews' squeezer", 0.03, "dop853, 1e-10", "angles at 0.03 s, relative, IVP test set", 1e-8,
-         lambda: sf.simulate(andrews, start, t_end=0.03, method="dop853", rtol=1e-10, atol=1e-10),
-         lambda run: float(np.abs(run.q[-1] / end - 1.0).max())),
-        ("A04 Bricard, over-constrained", 10.0, "rk4, 5 ms, projection", "coordinates at 10 s [rad]", 1e-5,
-         lambda: sf.simulate(bricard, t_end=10.0, dt=5e-3, every=100),
-         lambda run: float(np.abs(run.q[-1] - rows[2]).max())),
-        ("A05 flyball governor, stiff", 10.0, "rodas4, 1e-6", "slider at 10 s [m]", 1e-4,
-         lambda: sf.simulate(governor, [0, np.pi / 6, np.pi / 6, 0.5], [2 * np.pi, 0, 0, 0], 10.0, method="rodas4",
-                             rtol=1e-6, atol=1e-6),
-         lambda run: abs(float(run["s"][-1]) - rows[1])),
-    ]  # fmt: skip
+        (
+            "A01 simple pendulum",
+            10.0,
+            "rk4, 5 ms",
+            energy,
+            known["pendulum_energy_J"],
+            lambda: sf.simulate(sf.compile(sf.System("a01", (pendulum,))), [np.pi], t_end=10.0, dt=5e-3),
+            drift,
+        ),
+        (
+            "A02 two four-bars, singular twice a turn",
+            10.0,
+            "rk4, 5 ms, projection",
+            energy,
+            rows[0],
+            lambda: sf.simulate(row, *places, 10.0, dt=5e-3, every=10),
+            drift,
+        ),
+        (
+            "A03 Andrews' squeezer",
+            0.03,
+            "dop853, 1e-10",
+            "angles at 0.03 s, relative, IVP test set",
+            1e-8,
+            lambda: sf.simulate(andrews, start, t_end=0.03, method="dop853", rtol=1e-10, atol=1e-10),
+            lambda run: float(np.abs(run.q[-1] / end - 1.0).max()),
+        ),
+        (
+            "A04 Bricard, over-constrained",
+            10.0,
+            "rk4, 5 ms, projection",
+            "coordinates at 10 s [rad]",
+            1e-5,
+            lambda: sf.simulate(bricard, t_end=10.0, dt=5e-3, every=100),
+            lambda run: float(np.abs(run.q[-1] - rows[2]).max()),
+        ),
+        (
+            "A05 flyball governor, stiff",
+            10.0,
+            "rodas4, 1e-6",
+            "slider at 10 s [m]",
+            1e-4,
+            lambda: sf.simulate(
+                governor,
+                [0, np.pi / 6, np.pi / 6, 0.5],
+                [2 * np.pi, 0, 0, 0],
+                10.0,
+                method="rodas4",
+                rtol=1e-6,
+                atol=1e-6,
+            ),
+            lambda run: abs(float(run["s"][-1]) - rows[1]),
+        ),
+    ]
     found = []
     for name, span, how, measure, threshold, move, judge in scenes:
         runs = [done(move()) for _ in range(repeats)]

@@ -18,9 +18,11 @@ from validation.reporting.provenance import stamp
 from validation.studies import simulation
 
 _SCENES = {
-    "arm": simulation.arm, "four_bar": simulation.four_bar, "planar_robot": simulation.planar_robot,
+    "arm": simulation.arm,
+    "four_bar": simulation.four_bar,
+    "planar_robot": simulation.planar_robot,
     "spinning_beam": simulation.spinning_beam,
-}  # fmt: skip
+}
 _LIMITS = (
     "Loops in C on both sides, one thread, in turn; seconds are those of the stepping alone for us and for MuJoCo, and "
     "of building and solving for Exudyn, whose models take milliseconds to build. Errors are against the reference "
@@ -56,9 +58,13 @@ def simulate(
         rows = [_SCENES[name](repeats) for name in bar.track(chosen or list(_SCENES), description="motions")]
     benchmarks = [] if chosen else simulation.iftomm(repeats)
     versions = {name: metadata.version(name) for name in ("symofros", "mujoco", "exudyn")}
-    data: dict[str, Any] = {"races": [asdict(row) | {"real_time": row.real_time} for row in rows],
-                            "iftomm": [asdict(row) for row in benchmarks], "repeats": repeats, "versions": versions,
-                            **stamp()}  # fmt: skip
+    data: dict[str, Any] = {
+        "races": [asdict(row) | {"real_time": row.real_time} for row in rows],
+        "iftomm": [asdict(row) for row in benchmarks],
+        "repeats": repeats,
+        "versions": versions,
+        **stamp(),
+    }
     report.mkdir(parents=True, exist_ok=True)
     write_atomically(report / "simulation.json", json.dumps(data, indent=1) + "\n")
     write_atomically(report / "simulation.md", as_markdown(data))
@@ -74,8 +80,9 @@ def simulate(
     if benchmarks:
         table = Table("IFToMM benchmark", "ours", "error of", "error", "threshold", "ms")
         for one in benchmarks:
-            table.add_row(one.name, one.how, one.measure, f"{one.error:.1e}", f"{one.threshold:.0e}",
-                          f"{1e3 * one.seconds:.3g}")  # fmt: skip
+            table.add_row(
+                one.name, one.how, one.measure, f"{one.error:.1e}", f"{one.threshold:.0e}", f"{1e3 * one.seconds:.3g}"
+            )
         Console().print(table)
     typer.echo(f"Report: {report / 'simulation.md'}")
     raise typer.Exit(int(any(not one.error <= one.threshold for one in benchmarks)))
@@ -83,26 +90,61 @@ def simulate(
 
 def as_markdown(data: dict[str, Any]) -> str:
     """The report."""
-    lines = ["# Motions: times real time, and against engines at equal accuracy", "", _LIMITS, "",
-             "| scene | seconds of motion | error of | ours | error | ms (min, median) | times real time | other | "
-             "error | ms (min, median) | ratio |", "|---|---:|---|---|---:|---:|---:|---|---:|---:|---:|"]  # fmt: skip
+    lines = [
+        "# Motions: times real time, and against engines at equal accuracy",
+        "",
+        _LIMITS,
+        "",
+        "| scene | seconds of motion | error of | ours | error | ms (min, median) | times real time | other | "
+        "error | ms (min, median) | ratio |",
+        "|---|---:|---|---|---:|---:|---:|---|---:|---:|---:|",
+    ]
     for row in data["races"]:
         ours, theirs = row["ours"], row["theirs"]
-        other = [f"{row['engine']}: {theirs['how']}", f"{theirs['error']:.1e}", _milliseconds(theirs["seconds"]),
-                 f"**{row['ratio']:.1f}**"] if theirs else [""] * 4  # fmt: skip
-        cells = [row["scene"], f"{row['span']:g}", row["measure"], ours["how"], f"{ours['error']:.1e}",
-                 _milliseconds(ours["seconds"]), f"**{row['real_time']:.0f}**", *other]  # fmt: skip
+        other = (
+            [
+                f"{row['engine']}: {theirs['how']}",
+                f"{theirs['error']:.1e}",
+                _milliseconds(theirs["seconds"]),
+                f"**{row['ratio']:.1f}**",
+            ]
+            if theirs
+            else [""] * 4
+        )
+        cells = [
+            row["scene"],
+            f"{row['span']:g}",
+            row["measure"],
+            ours["how"],
+            f"{ours['error']:.1e}",
+            _milliseconds(ours["seconds"]),
+            f"**{row['real_time']:.0f}**",
+            *other,
+        ]
         lines.append("| " + " | ".join(cells) + " |")
     if data["iftomm"]:
-        lines += ["", "# Multibody benchmarks of the IFToMM library", "", _IFTOMM, "",
-                  "| benchmark | seconds of motion | ours | error of | error | threshold | ms |",
-                  "|---|---:|---|---|---:|---:|---:|"]  # fmt: skip
+        lines += [
+            "",
+            "# Multibody benchmarks of the IFToMM library",
+            "",
+            _IFTOMM,
+            "",
+            "| benchmark | seconds of motion | ours | error of | error | threshold | ms |",
+            "|---|---:|---|---|---:|---:|---:|",
+        ]
     for row in data["iftomm"]:
-        lines.append(f"| {row['name']} | {row['span']:g} | {row['how']} | {row['measure']} | {row['error']:.1e} | "
-                     f"{row['threshold']:.0e} | {1e3 * row['seconds']:.3g} |")  # fmt: skip
+        lines.append(
+            f"| {row['name']} | {row['span']:g} | {row['how']} | {row['measure']} | {row['error']:.1e} | "
+            f"{row['threshold']:.0e} | {1e3 * row['seconds']:.3g} |"
+        )
     versions = ", ".join(f"{name} {version}" for name, version in data["versions"].items())
-    lines += ["", f"{data['repeats']} repeats; {versions}; {', '.join(data['machine'].values())}.", "",
-              "Written by `python -m validation simulation`.", ""]  # fmt: skip
+    lines += [
+        "",
+        f"{data['repeats']} repeats; {versions}; {', '.join(data['machine'].values())}.",
+        "",
+        "Written by `python -m validation simulation`.",
+        "",
+    ]
     return "\n".join(lines)
 
 

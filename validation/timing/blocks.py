@@ -24,9 +24,13 @@ class Blocks:
     """
 
     def __init__(
-        self, inputs: Sequence[Array], sizes: Sequence[int], work: int, block: int,
+        self,
+        inputs: Sequence[Array],
+        sizes: Sequence[int],
+        work: int,
+        block: int,
         dtype: type[np.float32] | type[np.float64],
-    ) -> None:  # fmt: skip
+    ) -> None:
         self._ffi, self._kept = loops()[0], []  # type: tuple[Any, list[Any]]
         n = max(len(array) for array in inputs if array.ndim == 2)
         self._bounds = [(first, min(first + block, n)) for first in range(0, n, block)]
@@ -67,8 +71,11 @@ class Blocks:
         ffi, filled = self._ffi, self._ffi.new("loop_blocks *")
         written = [[Strided.of(y, self._dtype) for y in block] for block in outputs]
         filled.n, filled.n_in, filled.n_out, filled.keep = (
-            len(self._bounds), len(self._inputs[0]), len(self._sizes), int(keep),
-        )  # fmt: skip
+            len(self._bounds),
+            len(self._inputs[0]),
+            len(self._sizes),
+            int(keep),
+        )
         filled.states = self._keep(ffi.new("size_t[]", [end - first for first, end in self._bounds]))
         setattr(filled, "in", self._arrays(self._inputs))  # A keyword of Python.
         filled.out = self._arrays(written)

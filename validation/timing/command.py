@@ -54,8 +54,14 @@ def timing(
     _known(functions, FUNCTIONS, "--function")
     in_parts = bool(models or peers or functions or resume)
     record = read(report / "timing.json") if in_parts else Record()
-    todo = jobs([name for name in models or SCENES if name in SCENES], tuple(peers or PEERS), functions or FUNCTIONS,
-                repeats, states, record if resume else None)  # fmt: skip
+    todo = jobs(
+        [name for name in models or SCENES if name in SCENES],
+        tuple(peers or PEERS),
+        functions or FUNCTIONS,
+        repeats,
+        states,
+        record if resume else None,
+    )
     flexible = LABEL in models if models else not (peers or functions) and not (resume and record.flexible)
     measures = bool(todo) or flexible
     before, limits, interrupted = load(), facts() if measures else {}, False
@@ -64,8 +70,13 @@ def timing(
         """After each model, so that even a kill leaves what was measured."""
         now = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime())
         if measures:
-            record.machine = {**limits, "load before and after": [*before, *load()], "date": now, "states": states,
-                              "repeats": repeats}  # fmt: skip
+            record.machine = {
+                **limits,
+                "load before and after": [*before, *load()],
+                "date": now,
+                "states": states,
+                "repeats": repeats,
+            }
         return write_report(record, report)
 
     try:
@@ -127,7 +138,13 @@ def _show(record: Record) -> None:
     for verdict in verdicts(record):
         target = verdict.target
         style = "green" if verdict.met else "red" if verdict.entry else ""
-        table.add_row(SCENES[target.model].title, FUNCTIONS[target.function], target.how,
-                      f"{target.peer} {target.family}".strip(), f"{verdict.ratio:.2f}", f"{target.least:g}",
-                      f"[{style}]{verdict.words}[/]" if style else verdict.words)  # fmt: skip
+        table.add_row(
+            SCENES[target.model].title,
+            FUNCTIONS[target.function],
+            target.how,
+            f"{target.peer} {target.family}".strip(),
+            f"{verdict.ratio:.2f}",
+            f"{target.least:g}",
+            f"[{style}]{verdict.words}[/]" if style else verdict.words,
+        )
     Console().print(table)

@@ -23,12 +23,18 @@ from validation.timing.programs import BuildError, Built, Compiler, Skipped, bui
 from validation.timing.task import START, STEP, Loop, Task, flat
 
 PINOCCHIO_FLAGS = (
-    "-std=c++17", "-O3", "-march=native", "-DNDEBUG",
+    "-std=c++17",
+    "-O3",
+    "-march=native",
+    "-DNDEBUG",
     # Pinocchio's variant of joints needs longer lists than Boost's headers hold by default.
-    "-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
-    "-DBOOST_FUSION_INVOKE_MAX_ARITY=12", "-fvisibility-inlines-hidden",
+    "-DBOOST_MPL_LIMIT_LIST_SIZE=30",
+    "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30",
+    "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
+    "-DBOOST_FUSION_INVOKE_MAX_ARITY=12",
+    "-fvisibility-inlines-hidden",
     "-Wno-deprecated-declarations",  # Its constraints say that their interface will change.
-)  # fmt: skip
+)
 MUJOCO_FLAGS = ("-std=gnu99", "-O3", "-march=native", "-Wall", "-Wextra")
 _SYSTEM_EIGEN = Path("/usr/include/eigen3")
 
@@ -143,9 +149,12 @@ def mujoco_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
         raise Skipped(engine.reason)
     assert isinstance(engine, mujoco.MujocoEngine)
     chart, states = engine.chart, task.states
-    rows = {"q": chart.coordinates(states.q), "v": chart.speeds(states.q, states.v),
-            "a": chart.accelerations(states.q, states.v, states.a),
-            "tau": chart.forces(states.q, states.applied)}  # fmt: skip
+    rows = {
+        "q": chart.coordinates(states.q),
+        "v": chart.speeds(states.q, states.v),
+        "a": chart.accelerations(states.q, states.v, states.a),
+        "tau": chart.forces(states.q, states.applied),
+    }
     body = engine.body(task.frame)
     with tempfile.TemporaryDirectory() as private:
         model = Path(private) / "model.mjb"
@@ -164,14 +173,22 @@ def _mujoco_built() -> Built:
     sources = {name: source(name) for name in ("loop_mujoco.c", "loop.h")}
     link = (str(libraries[-1]), f"-Wl,-rpath,{package}")
     try:
-        return build(found[0], sources, (*MUJOCO_FLAGS, f"-isystem{package / 'include'}"), link,
-                     (metadata.version("mujoco"),))  # fmt: skip
+        return build(
+            found[0], sources, (*MUJOCO_FLAGS, f"-isystem{package / 'include'}"), link, (metadata.version("mujoco"),)
+        )
     except BuildError as error:
         raise Skipped(str(error)) from None
 
 
-def _loops(library: Path, model: Path, body: int, rows: Mapping[str, Array], functions: Sequence[str], how: str,
-           convert: _Converted) -> Iterator[Loop]:  # fmt: skip
+def _loops(
+    library: Path,
+    model: Path,
+    body: int,
+    rows: Mapping[str, Array],
+    functions: Sequence[str],
+    how: str,
+    convert: _Converted,
+) -> Iterator[Loop]:
     ffi = _interface()
     opened = ffi.dlopen(str(library))
     engine = opened.loop_open(str(model).encode(), body)
@@ -183,8 +200,12 @@ def _loops(library: Path, model: Path, body: int, rows: Mapping[str, Array], fun
         name, variant = (ffi.string(text).decode() for text in (function.name, function.variant))
         if name in functions:
             states = given.single if function.once else given.all
-            yield Loop(name, ", ".join(filter(None, (how, variant))), partial(_run, function, engine.engine, states),
-                       partial(_results, function, engine.engine, states, partial(convert, name), given))  # fmt: skip
+            yield Loop(
+                name,
+                ", ".join(filter(None, (how, variant))),
+                partial(_run, function, engine.engine, states),
+                partial(_results, function, engine.engine, states, partial(convert, name), given),
+            )
 
 
 def _run(function: Any, engine: Any, states: Any, rounds: int) -> None:
@@ -271,8 +292,16 @@ def tree_text(assembly: Assembly) -> str:
     for mover in assembly.movers:
         merged = mover.merged()
         moments, axes = np.linalg.eigh(merged.J_BC)
-        parts: list[Array] = [mover.axis, mover.X_AP.R, mover.X_AP.p, np.array([merged.mass]), merged.p_BC, merged.J_BC,
-                              moments, axes]  # fmt: skip
+        parts: list[Array] = [
+            mover.axis,
+            mover.X_AP.R,
+            mover.X_AP.p,
+            np.array([merged.mass]),
+            merged.p_BC,
+            merged.J_BC,
+            moments,
+            axes,
+        ]
         lines.append(" ".join(["body", str(mover.parent), mover.kind, *map(_numbers, parts)]))
     return "\n".join(lines) + "\n"
 

@@ -29,7 +29,7 @@ class GeneratedLoop:
 
     def __init__(self, system: sf.System, functions: Sequence[str], q: Array, v: Array) -> None:
         path, symbol = sf.compile_library(system, sf.Options(functions=tuple(functions), batch="loop"))
-        header = (files("symofros") / "codegen/templates/symofros_model.h").read_text(encoding="utf-8")
+        header = (files("symofros") / "native/model/symofros_model.h").read_text(encoding="utf-8")
         self._ffi: Any = cffi.FFI()
         self._ffi.cdef(header.partition("/* cdef begin: what bindings read */")[2].partition("/* cdef end */")[0])
         self._library = ctypes.CDLL(str(path))
@@ -48,11 +48,12 @@ class GeneratedLoop:
             shapes = [(len(q), entry.rows, entry.cols) for entry in function.out[0 : function.n_out]]
             self.results[self._name(function)] = outputs = [np.empty(shape) for shape in shapes]
             arguments = (
-                len(q), self._keep("double *[]", [buffer for buffer, _ in chosen]),
+                len(q),
+                self._keep("double *[]", [buffer for buffer, _ in chosen]),
                 self._keep("size_t[]", [stride for _, stride in chosen]),
                 self._keep("double *[]", [self._buffer(output) for output in outputs]),
                 self._buffer(np.empty(function.work + 1)),
-            )  # fmt: skip
+            )
             self._calls[self._name(function)] = function.batch, arguments
 
     def run(self, functions: Iterable[str]) -> None:

@@ -29,8 +29,17 @@ _LIMITS = (
     "with it that system's own small work, so the truth lies between the two. Both are medians over the repeats; "
     "minima are what a calm machine gives.",
 )
-_HEAD = ("#ours: functions (nv)", "#Exudyn: elements (coordinates + equations)", "error: ours, Exudyn's", "quantity",
-         "#ours [ns]", "#Exudyn [ns]", "#calls [ns]", "#ratio", "#net ratio")  # fmt: skip
+_HEAD = (
+    "#ours: functions (nv)",
+    "#Exudyn: elements (coordinates + equations)",
+    "error: ours, Exudyn's",
+    "quantity",
+    "#ours [ns]",
+    "#Exudyn [ns]",
+    "#calls [ns]",
+    "#ratio",
+    "#net ratio",
+)
 
 
 def flexible_section(rows: Iterable[Mapping[str, Any]]) -> Section:
@@ -49,11 +58,26 @@ def flexible_section(rows: Iterable[Mapping[str, Any]]) -> Section:
 def show_flexible(rows: Iterable[FlexibleTiming]) -> None:
     """The table for a terminal."""
     rows = list(rows)
-    table = Table("functions", "elements", "quantity", "ours [ns]", "Exudyn [ns]", "ratio", "net ratio",
-                  title="planar_robot against Exudyn at equal accuracy, minimum and median a state")  # fmt: skip
+    table = Table(
+        "functions",
+        "elements",
+        "quantity",
+        "ours [ns]",
+        "Exudyn [ns]",
+        "ratio",
+        "net ratio",
+        title="planar_robot against Exudyn at equal accuracy, minimum and median a state",
+    )
     for row in rows:
         ours, theirs = (f"{low:.0f}, {middle:.0f}" for low, middle in (row.ours, row.theirs))
-        table.add_row(str(row.functions), str(row.elements), row.quantity, ours, theirs, f"{row.ratio:.1f}",
-                      f"{row.corrected:.1f}")  # fmt: skip
+        table.add_row(
+            str(row.functions),
+            str(row.elements),
+            row.quantity,
+            ours,
+            theirs,
+            f"{row.ratio:.1f}",
+            f"{row.corrected:.1f}",
+        )
     if rows:
         Console().print(table)

@@ -69,9 +69,17 @@ def _row(quantity: str, pair: Pair, nv: int, ours: Times, theirs: Times, calls: 
     triples = list(zip(ours, theirs, calls, strict=True))
     sizes = nv, pair.tree.coordinates, pair.tree.equations
     return FlexibleTiming(
-        quantity, pair.functions, pair.elements, sizes, pair.error, _summary(ours), _summary(theirs), _summary(calls),
-        median(b / a for a, b, _ in triples), median((b - c) / a for a, b, c in triples),
-    )  # fmt: skip
+        quantity,
+        pair.functions,
+        pair.elements,
+        sizes,
+        pair.error,
+        _summary(ours),
+        _summary(theirs),
+        _summary(calls),
+        median(b / a for a, b, _ in triples),
+        median((b - c) / a for a, b, c in triples),
+    )
 
 
 def _summary(times: Times) -> tuple[float, float]:

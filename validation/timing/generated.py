@@ -64,8 +64,10 @@ def sympy_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     if task.system.constraints:
         raise Skipped("Kane's equations are made for trees here")
     if task.assembly.nv > MOST_KANE:
-        raise Skipped(f"{task.assembly.nv} degrees of freedom: Kane's equations by SymPy are made up to {MOST_KANE}, "
-                      "beyond which generation takes minutes; see the costs")  # fmt: skip
+        raise Skipped(
+            f"{task.assembly.nv} degrees of freedom: Kane's equations by SymPy are made up to {MOST_KANE}, "
+            "beyond which generation takes minutes; see the costs"
+        )
     from validation.timing.kane import FUNCTIONS, kane_source
 
     yield from _built(task, [name for name in functions if name in FUNCTIONS], partial(kane_source, task.system))

@@ -83,8 +83,11 @@ def _times() -> dict[str, _Value]:
 
         return value
 
-    return {"symofros": ours, "symofros, batch": batch,
-            **{peer: theirs(peer) for peer in ("pinocchio", "mujoco", "casadi")}}  # fmt: skip
+    return {
+        "symofros": ours,
+        "symofros, batch": batch,
+        **{peer: theirs(peer) for peer in ("pinocchio", "mujoco", "casadi")},
+    }
 
 
 def _any(record: Record, model: str, function: str) -> Entry | None:

@@ -35,8 +35,10 @@ def kane_source(system: sf.System, name: str) -> Source:
     known = system.parameter_values()
     values = {symbol: sympy.Float(known[key], _DIGITS) for key, symbol in derived.symbols.items() if key in known}
     shorts = {symbol: meaning.xreplace(values) for symbol, meaning in derived.shorts.items()}
-    M, h = ([_rounded(x.xreplace(shorts).xreplace(values)) for x in derived.values[part]]
-            for part in ("mass_matrix", "bias"))  # fmt: skip
+    M, h = (
+        [_rounded(x.xreplace(shorts).xreplace(values)) for x in derived.values[part]]
+        for part in ("mass_matrix", "bias")
+    )
     wanted = {"mass_matrix": [M], "bias": [h]}.get(name, [M, h])
     assignments, results = sympy.cse([x for output in wanted for x in output], optimizations="basic")
     sizes = tuple(map(len, wanted))
@@ -67,8 +69,10 @@ def _solved(entries: Sequence[Any], tau: Sequence[Any]) -> tuple[list[tuple[Any,
     inverse: list[Any] = []
     x: list[Any] = []
     for j in range(n):
-        column = {i: named(f"c{i}_{j}", entries[i * n + j] - sum(L[i, k] * D[k] * L[j, k] for k in range(j)))
-                  for i in range(j, n)}  # fmt: skip
+        column = {
+            i: named(f"c{i}_{j}", entries[i * n + j] - sum(L[i, k] * D[k] * L[j, k] for k in range(j)))
+            for i in range(j, n)
+        }
         D.append(column[j])
         inverse.append(named(f"e{j}", 1 / column[j]))
         L |= {(i, j): named(f"l{i}_{j}", column[i] * inverse[j]) for i in range(j + 1, n)}
@@ -93,13 +97,25 @@ class _Printer(C99CodePrinter):  # type: ignore[misc]
 _Assignments = Sequence[tuple[Any, Any]]
 
 
-def _text(name: str, inputs: Mapping[str, Sequence[Any]], assignments: _Assignments, results: Sequence[Any],
-          sizes: Sequence[int]) -> str:  # fmt: skip
-    names = {symbol: sympy.Symbol(f"in[{k}][{i}]")
-             for k, group in enumerate(inputs.values()) for i, symbol in enumerate(group)}  # fmt: skip
+def _text(
+    name: str,
+    inputs: Mapping[str, Sequence[Any]],
+    assignments: _Assignments,
+    results: Sequence[Any],
+    sizes: Sequence[int],
+) -> str:
+    names = {
+        symbol: sympy.Symbol(f"in[{k}][{i}]")
+        for k, group in enumerate(inputs.values())
+        for i, symbol in enumerate(group)
+    }
     print_c = _Printer().doprint
-    lines = ["#include <math.h>", "", "__attribute__((visibility(\"default\")))",
-             f"int {name}(const double **in, double **out, long long *iw, double *w, int mem) {{"]  # fmt: skip
+    lines = [
+        "#include <math.h>",
+        "",
+        '__attribute__((visibility("default")))',
+        f"int {name}(const double **in, double **out, long long *iw, double *w, int mem) {{",
+    ]
     lines += [f"    const double {symbol} = {print_c(value.xreplace(names))};" for symbol, value in assignments]
     at = iter(results)
     for k, size in enumerate(sizes):

@@ -47,8 +47,10 @@ class Scene:
     def load(self) -> sf.System:
         """Its description, without friction and springs in joints, which engines have each in their own way."""
         system = self.make()
-        bodies = [body if body.joint is None else replace(body, joint=replace(body.joint, elements=()))
-                  for body in system.bodies]  # fmt: skip
+        bodies = [
+            body if body.joint is None else replace(body, joint=replace(body.joint, elements=()))
+            for body in system.bodies
+        ]
         return replace(system, bodies=tuple(bodies))
 
 
@@ -73,10 +75,20 @@ def arm(joints: int) -> sf.System:
     """Slender rods in a vertical plane, a metre and a kilogram each."""
     rod = sf.Inertia(1.0, (0.5, 0.0, 0.0), (1e-3, 1 / 12, 1 / 12))
     bodies = [
-        sf.RigidBody(f"rod{k}", sf.Joint(f"q{k}", "revolute", f"rod{k - 1}" if k > 1 else "world", axis=(0, 1, 0),
-                                         position=(1.0 if k > 1 else 0.0, 0, 0), actuated=True), rod)
+        sf.RigidBody(
+            f"rod{k}",
+            sf.Joint(
+                f"q{k}",
+                "revolute",
+                f"rod{k - 1}" if k > 1 else "world",
+                axis=(0, 1, 0),
+                position=(1.0 if k > 1 else 0.0, 0, 0),
+                actuated=True,
+            ),
+            rod,
+        )
         for k in range(1, joints + 1)
-    ]  # fmt: skip
+    ]
     return sf.System(f"planar{joints}R", tuple(bodies))
 
 
@@ -97,5 +109,5 @@ SCENES: dict[str, Scene] = {
         f"chain of {CHAINS[-1]}",
         partial(chain, CHAINS[-1], symbolic=False),
         (*_GROWTH, "inverse_dynamics", "frame_jacobian", "step"),
-    ),  # fmt: skip
+    ),
 }

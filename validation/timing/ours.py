@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 import symofros as sf
-from symofros.passes.count import count_program
+from symofros.generator.passes.count import count_program
 from symofros.runtime.kernel import Precision
 from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
 from symofros.simulation.inputs import plan_inputs

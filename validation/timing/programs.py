@@ -97,7 +97,7 @@ def _number(name: str) -> tuple[int, ...]:
 def source(name: str) -> str:
     """Text of a file of validation/native, or of the header of generated models."""
     if name == "symofros_model.h":
-        return (files("symofros") / "codegen/templates/symofros_model.h").read_text(encoding="utf-8")
+        return (files("symofros") / "native/model/symofros_model.h").read_text(encoding="utf-8")
     return (files("validation") / "native" / name).read_text(encoding="utf-8")
 
 
@@ -106,8 +106,13 @@ def declared(name: str) -> str:
     return source(name).partition("/* cdef begin: what Python reads */")[2].partition("/* cdef end */")[0]
 
 
-def build(compiler: Compiler, sources: Mapping[str, str], flags: Sequence[str], link: Sequence[str] = (),
-          depends: Sequence[str] = ()) -> Built:  # fmt: skip
+def build(
+    compiler: Compiler,
+    sources: Mapping[str, str],
+    flags: Sequence[str],
+    link: Sequence[str] = (),
+    depends: Sequence[str] = (),
+) -> Built:
     """The shared library of the first of some sources, compiled unless it is in the cache.
 
     Args:
@@ -144,8 +149,9 @@ def copies(library: Path, count: int = COPIES) -> list[Path]:
     return found
 
 
-def _compiled(compiler: Compiler, private: Path, sources: Mapping[str, str], flags: Sequence[str],
-              link: Sequence[str]) -> Built:  # fmt: skip
+def _compiled(
+    compiler: Compiler, private: Path, sources: Mapping[str, str], flags: Sequence[str], link: Sequence[str]
+) -> Built:
     for name, text in sources.items():
         (private / name).write_text(text, encoding="utf-8")
     start = time.perf_counter()
@@ -154,8 +160,9 @@ def _compiled(compiler: Compiler, private: Path, sources: Mapping[str, str], fla
     kept = [flag for flag in flags if flag not in _LOOSE]
     _call([compiler.path, *kept, "-shared", "side.o", "-o", "side.so", *link], private)
     sizes = _sections(private / "side.o")
-    code, constants = (sum(size for name, size in sizes.items() if name.startswith(prefix))
-                       for prefix in (".text", ".rodata"))  # fmt: skip
+    code, constants = (
+        sum(size for name, size in sizes.items() if name.startswith(prefix)) for prefix in (".text", ".rodata")
+    )
     return Built(private / "side.so", seconds, code, constants)
 
 

@@ -48,12 +48,33 @@ class Entry:
     single: tuple[float, float] | None = None
 
     @classmethod
-    def of(cls, model: str, nv: int, function: str, peer: str, variant: str, ours: Times,
-           vectors: Sequence[Times | None], theirs: Times, error: float) -> Self:  # fmt: skip
+    def of(
+        cls,
+        model: str,
+        nv: int,
+        function: str,
+        peer: str,
+        variant: str,
+        ours: Times,
+        vectors: Sequence[Times | None],
+        theirs: Times,
+        error: float,
+    ) -> Self:
         """From the times of one race; vectors: by rows, by columns, and by columns of floats."""
         batch, columns, single = (None if times is None else (times.minimum, times.median) for times in vectors)
-        return cls(model, nv, function, peer, variant, (ours.minimum, ours.median), batch,
-                   (theirs.minimum, theirs.median), error, columns=columns, single=single)  # fmt: skip
+        return cls(
+            model,
+            nv,
+            function,
+            peer,
+            variant,
+            (ours.minimum, ours.median),
+            batch,
+            (theirs.minimum, theirs.median),
+            error,
+            columns=columns,
+            single=single,
+        )
 
     @property
     def ratio(self) -> float:
@@ -144,8 +165,11 @@ class Record:
 
     def best(self, model: str, function: str, peer: str, family: str = "") -> Entry | None:
         """The peer's fastest way by the median, of a compiler's family if one is named."""
-        found = [x for x in self.entries if (x.model, x.function, x.peer) == (model, function, peer)
-                 and x.variant.startswith(family)]  # fmt: skip
+        found = [
+            x
+            for x in self.entries
+            if (x.model, x.function, x.peer) == (model, function, peer) and x.variant.startswith(family)
+        ]
         return min(found, key=lambda x: x.theirs[1], default=None)
 
     def cost(self, model: str, function: str, by: str) -> Made | None:
@@ -157,12 +181,17 @@ class Record:
 def as_data(record: Record) -> dict[str, Any]:
     """A record as JSON holds it; ratios are written out for readers."""
     return {
-        "schema": SCHEMA, "machine": record.machine,
-        "entries": [{**asdict(x), "ratio": x.ratio, "batch_ratio": x.batch_ratio, "columns_ratio": x.columns_ratio}
-                    for x in record.entries],
-        "costs": [asdict(x) for x in record.costs], "skipped": record.skipped, "failed": record.failed,
+        "schema": SCHEMA,
+        "machine": record.machine,
+        "entries": [
+            {**asdict(x), "ratio": x.ratio, "batch_ratio": x.batch_ratio, "columns_ratio": x.columns_ratio}
+            for x in record.entries
+        ],
+        "costs": [asdict(x) for x in record.costs],
+        "skipped": record.skipped,
+        "failed": record.failed,
         "flexible": record.flexible,
-    }  # fmt: skip
+    }
 
 
 def read(path: Path) -> Record:

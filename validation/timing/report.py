@@ -49,8 +49,14 @@ def write_report(record: Record, folder: Path) -> Path:
     write_atomically(folder / "timing.json", json.dumps(as_data(record), indent=1) + "\n")
     shown = [*sections(record), *([flexible_section(record.flexible)] if record.flexible else [])]
     for suffix in ("md", "html"):
-        text = render(f"timing.{suffix}.j2", {"svg": _svg, "facts": _facts}, headline=headline(record), limits=LIMITS,
-                      sections=shown, facts=record.machine)  # fmt: skip
+        text = render(
+            f"timing.{suffix}.j2",
+            {"svg": _svg, "facts": _facts},
+            headline=headline(record),
+            limits=LIMITS,
+            sections=shown,
+            facts=record.machine,
+        )
         write_atomically(folder / f"timing.{suffix}", text)
     return folder / "timing.html"
 

@@ -36,8 +36,13 @@ def run_job(job: Job, record: Record, done: Done = lambda model, function: None)
         record: Where results go.
         done: Told of each function that is being timed.
     """
-    stated = {"model": job.model, "peers": job.peers, "functions": job.functions, "repeats": job.repeats,
-              "states": job.states}  # fmt: skip
+    stated = {
+        "model": job.model,
+        "peers": job.peers,
+        "functions": job.functions,
+        "repeats": job.repeats,
+        "states": job.states,
+    }
     command = [sys.executable, "-m", "validation.timing.worker", json.dumps(stated)]
     with tempfile.TemporaryFile("w+") as words:
         worker = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=words, text=True)
@@ -75,8 +80,14 @@ def take(line: str, job: Job, record: Record, done: Done) -> None:
         getattr(record, kind).append(tuple(value))
 
 
-def jobs(models: Iterable[str], peers: tuple[str, ...], functions: Iterable[str], repeats: int,
-         states: int, done: Record | None = None) -> list[Job]:  # fmt: skip
+def jobs(
+    models: Iterable[str],
+    peers: tuple[str, ...],
+    functions: Iterable[str],
+    repeats: int,
+    states: int,
+    done: Record | None = None,
+) -> list[Job]:
     """What is to be done: each model's functions among those asked for, less what was done."""
     wanted = set(functions)
     found = []
@@ -109,19 +120,33 @@ def prepare(peers: Iterable[str]) -> list[str]:
 
 def facts() -> Mapping[str, Any]:
     """What times depend on: processor, its measured limits, versions, flags."""
-    packages = {"symofros": "symofros", "pinocchio": "pin", "mujoco": "mujoco", "casadi": "casadi", "sympy": "sympy",
-                "exudyn": "exudyn"}  # fmt: skip
+    packages = {
+        "symofros": "symofros",
+        "pinocchio": "pin",
+        "mujoco": "mujoco",
+        "casadi": "casadi",
+        "sympy": "sympy",
+        "exudyn": "exudyn",
+    }
     versions = {}
     for name, package in packages.items():
         try:
             versions[name] = metadata.version(package)
         except metadata.PackageNotFoundError:
             versions[name] = "not installed"
-    flags = {"symofros": " ".join(DEFAULT_FLAGS), "pinocchio": " ".join(PINOCCHIO_FLAGS),
-             "casadi, sympy": " or ".join(" ".join(flags) for flags in BUILDS) + " -march=native",
-             "mujoco": "as in its wheel"}  # fmt: skip
-    return {**machine(), "compilers": [found.version for found in compilers()], "versions": versions, "flags": flags,
-            **peaks()}  # fmt: skip
+    flags = {
+        "symofros": " ".join(DEFAULT_FLAGS),
+        "pinocchio": " ".join(PINOCCHIO_FLAGS),
+        "casadi, sympy": " or ".join(" ".join(flags) for flags in BUILDS) + " -march=native",
+        "mujoco": "as in its wheel",
+    }
+    return {
+        **machine(),
+        "compilers": [found.version for found in compilers()],
+        "versions": versions,
+        "flags": flags,
+        **peaks(),
+    }
 
 
 def peaks() -> dict[str, float]:

@@ -44,8 +44,14 @@ class Section:
 
 def sections(record: Record) -> list[Section]:
     """All that have something to show."""
-    found = [_targets(record), *(_function(record, name) for name in FUNCTIONS), _growth(record), _making(record),
-             _limits(record), _skipped(record)]  # fmt: skip
+    found = [
+        _targets(record),
+        *(_function(record, name) for name in FUNCTIONS),
+        _growth(record),
+        _making(record),
+        _limits(record),
+        _skipped(record),
+    ]
     return [section for section in found if section.rows or section.figures]
 
 
@@ -59,9 +65,11 @@ def headline(record: Record) -> str:
 
 def _targets(record: Record) -> Section:
     rows = tuple(_target(verdict) for verdict in verdicts(record))
-    text = ("Ratios of medians, theirs to ours, each of one race. A peer's best is the fastest of its builds and ways, "
-            "chosen by its median alone. Batches are column by column: the states are the fast axis (NumPy's Fortran "
-            "order), and arrays are read and written in place; beside them the same by rows.")  # fmt: skip
+    text = (
+        "Ratios of medians, theirs to ours, each of one race. A peer's best is the fastest of its builds and ways, "
+        "chosen by its median alone. Batches are column by column: the states are the fast axis (NumPy's Fortran "
+        "order), and arrays are read and written in place; beside them the same by rows."
+    )
     head = ("model", "function", "ours", "against", "#ratio", "#by rows", "#target", "verdict", "measured as")
     return Section("Targets", (text,), head, rows)
 
@@ -72,14 +80,39 @@ def _target(verdict: Verdict) -> tuple[str, ...]:
     against = f"{target.peer}, {target.family}" if target.family else target.peer
     found = f"{verdict.ratio:.2f}" if entry else "-"
     rows = "" if verdict.by_rows is None else f"{verdict.by_rows:.2f}"
-    return (SCENES[target.model].title, FUNCTIONS[target.function], how, against, found, rows, f"{target.least:g}",
-            verdict.words, entry.variant if entry else "")  # fmt: skip
+    return (
+        SCENES[target.model].title,
+        FUNCTIONS[target.function],
+        how,
+        against,
+        found,
+        rows,
+        f"{target.least:g}",
+        verdict.words,
+        entry.variant if entry else "",
+    )
 
 
 def _function(record: Record, function: str) -> Section:
-    head = ("model", "#nv", "#ours [ns]", "#batch, rows [ns]", "#columns [ns]", "#floats [ns]", "#Pinocchio, gcc",
-            "#Pinocchio, best", "#ratio", "#by rows", "#by columns", "#MuJoCo", "#ratio", "#CasADi", "#ratio", "#SymPy",
-            "#ratio")  # fmt: skip
+    head = (
+        "model",
+        "#nv",
+        "#ours [ns]",
+        "#batch, rows [ns]",
+        "#columns [ns]",
+        "#floats [ns]",
+        "#Pinocchio, gcc",
+        "#Pinocchio, best",
+        "#ratio",
+        "#by rows",
+        "#by columns",
+        "#MuJoCo",
+        "#ratio",
+        "#CasADi",
+        "#ratio",
+        "#SymPy",
+        "#ratio",
+    )
     rows = []
     for model, scene in SCENES.items():
         best = {peer: record.best(model, function, peer) for peer in ("pinocchio", "mujoco", "casadi", "sympy")}
@@ -87,9 +120,18 @@ def _function(record: Record, function: str) -> Section:
         if known:
             first = known[0]
             gcc, pinocchio = record.best(model, function, "pinocchio", "gcc"), best["pinocchio"]
-            cells = [scene.title, str(first.nv), _pair(first.ours), _pair(first.batch), _pair(first.columns),
-                     _pair(first.single), _theirs(gcc), _theirs(pinocchio), _ratio(pinocchio),
-                     *_in_batches(pinocchio)]  # fmt: skip
+            cells = [
+                scene.title,
+                str(first.nv),
+                _pair(first.ours),
+                _pair(first.batch),
+                _pair(first.columns),
+                _pair(first.single),
+                _theirs(gcc),
+                _theirs(pinocchio),
+                _ratio(pinocchio),
+                *_in_batches(pinocchio),
+            ]
             for peer in ("mujoco", "casadi", "sympy"):
                 cells += [_theirs(best[peer]), _ratio(best[peer])]
             rows.append(tuple(cells))
@@ -154,13 +196,25 @@ def _making(record: Record) -> Section:
         "Generation is from the description to C text, the processor's time; compilation is of that text alone, by the "
         "build that runs fastest, by the clock, at whatever load the machine had then: it is done once and kept."
     )
-    head = ("model", "function", "by", "#generation [s]", "#compilation [s]", "#C text [kB]", "#machine code [kB]",
-            "#constants [kB]")  # fmt: skip
+    head = (
+        "model",
+        "function",
+        "by",
+        "#generation [s]",
+        "#compilation [s]",
+        "#C text [kB]",
+        "#machine code [kB]",
+        "#constants [kB]",
+    )
     rows = tuple(
-        (*_named(cost), f"{cost.generation:.3f}", f"{cost.compilation:.2f}",
-         *(f"{x / 1e3:.1f}" for x in (cost.text, cost.code, cost.constants)))
+        (
+            *_named(cost),
+            f"{cost.generation:.3f}",
+            f"{cost.compilation:.2f}",
+            *(f"{x / 1e3:.1f}" for x in (cost.text, cost.code, cost.constants)),
+        )
         for cost in _all_costs(record)
-    )  # fmt: skip
+    )
     return Section("What it costs to make", (text,), head, rows)
 
 
@@ -179,8 +233,21 @@ def _limits(record: Record) -> Section:
         f"call reads and writes; its limit is the time it takes at the {copied / 1e9:.0f} GB/s of copies in the "
         "core's first cache."
     )
-    head = ("model", "function", "by", "#mul", "#add", "#div", "#calls", "#time [ns]", "#limit [ns]", "#distance",
-            "#of batches", "#memory [B]", "#its limit [ns]")  # fmt: skip
+    head = (
+        "model",
+        "function",
+        "by",
+        "#mul",
+        "#add",
+        "#div",
+        "#calls",
+        "#time [ns]",
+        "#limit [ns]",
+        "#distance",
+        "#of batches",
+        "#memory [B]",
+        "#its limit [ns]",
+    )
     rows = tuple(_limit(record, cost, flops, vector, copied) for cost in _all_costs(record))
     return Section("How far from the machine's limit", (text,), head, rows)
 
@@ -192,17 +259,35 @@ def _limit(record: Record, cost: Made, flops: float, vector: float, copied: floa
     in_batch = f"{batch[1] / (1e9 * cost.total / vector):.1f}" if batch and cost.by == "symofros" else "-"
     # A Jacobian of one joint takes no operations.
     distance = f"{cost.time / limit:.1f}" if limit else "-"
-    return (*_named(cost), *(str(cost.operations.get(kind, 0)) for kind in ("mul", "add", "div", "call")),
-            _short(cost.time), _short(limit), distance, in_batch, str(cost.memory),
-            f"{1e9 * cost.memory / copied:.2f}")  # fmt: skip
+    return (
+        *_named(cost),
+        *(str(cost.operations.get(kind, 0)) for kind in ("mul", "add", "div", "call")),
+        _short(cost.time),
+        _short(limit),
+        distance,
+        in_batch,
+        str(cost.memory),
+        f"{1e9 * cost.memory / copied:.2f}",
+    )
 
 
 def _growth(record: Record) -> Section:
     curves = growth(record)
-    rows = tuple((FUNCTIONS[c.function], c.quantity, c.who, f"{c.n[0]} ... {c.n[-1]}", _of_any_size(c.values[-1]),
-                  f"{c.exponent:.2f}") for c in curves)  # fmt: skip
-    text = ("Over chains of generic bodies in space. The exponent is the slope on logarithmic axes, by least squares "
-            "over seven joints and more: time = c n^exponent.")  # fmt: skip
+    rows = tuple(
+        (
+            FUNCTIONS[c.function],
+            c.quantity,
+            c.who,
+            f"{c.n[0]} ... {c.n[-1]}",
+            _of_any_size(c.values[-1]),
+            f"{c.exponent:.2f}",
+        )
+        for c in curves
+    )
+    text = (
+        "Over chains of generic bodies in space. The exponent is the slope on logarithmic axes, by least squares "
+        "over seven joints and more: time = c n^exponent."
+    )
     figures = []
     for function in dict.fromkeys(c.function for c in curves):
         of = [c for c in curves if c.function == function]
@@ -212,8 +297,12 @@ def _growth(record: Record) -> Section:
             _chart(of, "generation [s]"),
             _chart(of, "compilation [s]"),
         ]
-        figures.append(Figure(f"{_title(function)}: growth with the number of joints.",
-                              tuple(chart for chart in charts if chart.curves)))  # fmt: skip
+        figures.append(
+            Figure(
+                f"{_title(function)}: growth with the number of joints.",
+                tuple(chart for chart in charts if chart.curves),
+            )
+        )
     head = ("function", "quantity", "by", "joints", "#at the longest", "#exponent")
     return Section("Growth", (text,), head, rows, tuple(figures))
 
@@ -238,6 +327,8 @@ def _skipped(record: Record) -> Section:
         merged.setdefault((model, peer, why.splitlines()[0] if why else ""), []).append(
             FUNCTIONS.get(function, function)
         )
-    rows = tuple((SCENES[model].title if model in SCENES else model, peer, ", ".join(dict.fromkeys(names)), why)
-                 for (model, peer, why), names in merged.items())  # fmt: skip
+    rows = tuple(
+        (SCENES[model].title if model in SCENES else model, peer, ", ".join(dict.fromkeys(names)), why)
+        for (model, peer, why), names in merged.items()
+    )
     return Section("What was not timed", (), ("model", "side", "functions", "why"), rows)

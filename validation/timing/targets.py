@@ -76,7 +76,7 @@ TARGETS: tuple[Target, ...] = (
     Target("panda", "dynamics", "mujoco", 36.0, "columns"),
     Target("mss", "dynamics", "pinocchio", 20.0, "columns"),
     Target("chain52", "dynamics", "pinocchio", 14.0, "columns"),
-)  # fmt: skip
+)
 
 
 def verdicts(record: Record) -> list[Verdict]:

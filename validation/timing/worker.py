@@ -79,8 +79,17 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
             sides[name], peers[name] = loop, peer
     times = race(sides, job.states, job.repeats)
     for name, peer in peers.items():
-        made = Entry.of(job.model, given.assembly.nv, function, peer, sides[name].variant, times[NAME],
-                        [times.get(way) for way in (BATCH, COLUMNS, SINGLE)], times[name], errors[name])  # fmt: skip
+        made = Entry.of(
+            job.model,
+            given.assembly.nv,
+            function,
+            peer,
+            sides[name].variant,
+            times[NAME],
+            [times.get(way) for way in (BATCH, COLUMNS, SINGLE)],
+            times[name],
+            errors[name],
+        )
         say("entry", asdict(made))
     for name, loop in sides.items():
         if loop.cost is not None:
@@ -117,5 +126,7 @@ def _print(kind: str, value: Any) -> None:
 if __name__ == "__main__":
     np.seterr(all="ignore")
     stated = json.loads(sys.argv[1])
-    work(Job(stated["model"], tuple(stated["peers"]), tuple(stated["functions"]), stated["repeats"], stated["states"]),
-         _print)  # fmt: skip
+    work(
+        Job(stated["model"], tuple(stated["peers"]), tuple(stated["functions"]), stated["repeats"], stated["states"]),
+        _print,
+    )

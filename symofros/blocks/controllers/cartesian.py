@@ -111,9 +111,13 @@ class CartesianFeedback(_Cartesian):
         """Desired p, angle or R, v, a; actual q, v in; tau (nv), wrench and error of the rows out."""
         record = known.model(self.model)
         if record.nc:
-            raise refuse(self.name, "a model with constraints", f"model '{self.model}', {record.nc} conditions",
-                         "feedback of dynamics is for trees of joints",
-                         "use CartesianLinear, or a model without")  # fmt: skip
+            raise refuse(
+                self.name,
+                "a model with constraints",
+                f"model '{self.model}', {record.nc} conditions",
+                "feedback of dynamics is for trees of joints",
+                "use CartesianLinear, or a model without",
+            )
         return self._ports(known, "tau")
 
     def compute(self, at: At) -> Values:

@@ -44,8 +44,13 @@ class ComputedTorque(Block):
         for field in ("kp", "kd"):
             if np.ndim(getattr(self, field)):
                 numbers(self.name, field, getattr(self, field), (nv,))
-        inputs = (Port("q_desired", (nq,), q), Port("v_desired", (nv,), v, 0.0), Port("a_desired", (nv,), a, 0.0),
-                  Port("q", (nq,), q), Port("v", (nv,), v))  # fmt: skip
+        inputs = (
+            Port("q_desired", (nq,), q),
+            Port("v_desired", (nv,), v, 0.0),
+            Port("a_desired", (nv,), a, 0.0),
+            Port("q", (nq,), q),
+            Port("v", (nv,), v),
+        )
         return Ports(inputs, (Port("tau", (nv,), effort), Port("error", (nv,), q)))
 
     def compute(self, at: At) -> Values:

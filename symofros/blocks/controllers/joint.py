@@ -68,8 +68,9 @@ class JointPID(Block):
         _gains(self)
         number(self.name, "tracking", self.tracking, self.period or 0.0, math.inf, exclusive=self.period is None)
         if np.any(np.asarray(self.low) > np.asarray(self.high)):
-            raise refuse(self.name, "low is above high", f"{self.low} and {self.high}", "limits in order",
-                         "exchange them")  # fmt: skip
+            raise refuse(
+                self.name, "low is above high", f"{self.low} and {self.high}", "limits in order", "exchange them"
+            )
 
     def ports(self, known: Known) -> Ports:
         """Desired and actual motion of one size; the effort alike."""
@@ -110,8 +111,13 @@ class JointPID(Block):
 def _gains(block: Block) -> None:
     for field in block.tunable:
         if numbers(block.name, field, getattr(block, field)).ndim > 1:
-            raise refuse(block.name, f"{field} has the wrong shape", np.shape(getattr(block, field)),
-                         "one number, or one a joint", "leave out what couples joints")  # fmt: skip
+            raise refuse(
+                block.name,
+                f"{field} has the wrong shape",
+                np.shape(getattr(block, field)),
+                "one number, or one a joint",
+                "leave out what couples joints",
+            )
 
 
 def _joint_ports(block: Block, known: Known) -> Ports:
@@ -119,8 +125,9 @@ def _joint_ports(block: Block, known: Known) -> Ports:
     for field in block.tunable:
         own = np.shape(getattr(block, field))
         if own and size is not None and own != size:
-            raise refuse(block.name, f"{field} does not fit the joints", own, f"one number, or shape {size}",
-                         "give one a joint")  # fmt: skip
+            raise refuse(
+                block.name, f"{field} does not fit the joints", own, f"one number, or shape {size}", "give one a joint"
+            )
     inputs = (Port("q_desired", size), Port("v_desired", size, "", 0.0), Port("q", size), Port("v", size))
     return Ports(inputs, (Port("effort", size),))
 

@@ -42,15 +42,24 @@ class LQR(Block):
         q, v, _, effort = joint_units(record)
         nq, nv, nu = len(record.q_names), len(record.v_names), len(record.u_names)
         if not nu:
-            raise refuse(self.name, "nothing to control", f"model '{self.model}' has no inputs",
-                         "a regulated model has inputs", "actuate a joint")  # fmt: skip
+            raise refuse(
+                self.name,
+                "nothing to control",
+                f"model '{self.model}' has no inputs",
+                "a regulated model has inputs",
+                "actuate a joint",
+            )
         if self.nominal is not None:
             numbers(self.name, "nominal", self.nominal, (nu,))
         self._weights("state_weights", 2 * nv)
         self._weights("input_weights", nu)
         q0, v0 = known.start(self.model)
-        inputs = (Port("q", (nq,), q), Port("v", (nv,), v), Port("q_desired", (nq,), q, tuple(q0)),
-                  Port("v_desired", (nv,), v, tuple(v0)))  # fmt: skip
+        inputs = (
+            Port("q", (nq,), q),
+            Port("v", (nv,), v),
+            Port("q_desired", (nq,), q, tuple(q0)),
+            Port("v_desired", (nv,), v, tuple(v0)),
+        )
         return Ports(inputs, (Port("u", (nu,), effort), Port("x", (2 * nv,))))
 
     def _weights(self, field: str, size: int) -> Array:
@@ -59,9 +68,13 @@ class LQR(Block):
         whole = given if given.ndim == 2 else np.diag(np.broadcast_to(given, size))
         least = np.linalg.eigvalsh(0.5 * (whole + whole.T)).min(initial=np.inf)
         if not np.allclose(whole, whole.T) or least < 0.0 or (field == "input_weights" and least == 0.0):
-            raise refuse(self.name, f"{field} are not weights", f"least eigenvalue {least:g}",
-                         "symmetric; state weights are not negative, input weights positive",
-                         "choose others")  # fmt: skip
+            raise refuse(
+                self.name,
+                f"{field} are not weights",
+                f"least eigenvalue {least:g}",
+                "symmetric; state weights are not negative, input weights positive",
+                "choose others",
+            )
         return whole
 
     def _nominal(self, known: Known) -> Array:
@@ -82,9 +95,13 @@ class LQR(Block):
         else:
             K = sampled_gain(*held_inputs(linear.A, linear.B, self.period), Q, R)
         if K is None:
-            raise refuse(self.name, "no gain", f"model '{self.model}' about its first state",
-                         "inputs reach every motion that does not die out, and weights see it",
-                         "actuate more joints, damp what is out of reach, weigh all states")  # fmt: skip
+            raise refuse(
+                self.name,
+                "no gain",
+                f"model '{self.model}' about its first state",
+                "inputs reach every motion that does not die out, and weights see it",
+                "actuate more joints, damp what is out of reach, weigh all states",
+            )
         return K @ linear.basis.T
 
     def compute(self, at: At) -> Values:

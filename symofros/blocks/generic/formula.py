@@ -49,13 +49,22 @@ class Formula(Block):
         stated = {*self._parsed, *self._entries}
         for name in (*stated, *dict(self.constants or {})):
             if not _NAME.match(name) or "__" in name or name == "t":
-                raise refuse(self.name, f"name '{name:.40}'", repr(name),
-                             "letters, digits and single underscores, a letter first; t is the time",
-                             "rename it")  # fmt: skip
+                raise refuse(
+                    self.name,
+                    f"name '{name:.40}'",
+                    repr(name),
+                    "letters, digits and single underscores, a letter first; t is the time",
+                    "rename it",
+                )
         for name in dict(self.units or {}):
             if name not in stated:
-                raise refuse(self.name, f"a unit of '{name:.40}'", repr(name),
-                             f"inputs and outputs: {', '.join(sorted(stated))}", "rename it")  # fmt: skip
+                raise refuse(
+                    self.name,
+                    f"a unit of '{name:.40}'",
+                    repr(name),
+                    f"inputs and outputs: {', '.join(sorted(stated))}",
+                    "rename it",
+                )
 
     @cached_property
     def _parsed(self) -> dict[str, list[Expression] | Expression]:
@@ -91,8 +100,13 @@ class Formula(Block):
                 continue
             size = int(match["index"]) + 1 if match else None
             if name in found and (size is None) != (found[name] is None):
-                raise refuse(self.name, f"input '{name:.40}' is a scalar and a vector", symbol,
-                             "an input is one of them", f"write {name}[0] for its first entry")  # fmt: skip
+                raise refuse(
+                    self.name,
+                    f"input '{name:.40}' is a scalar and a vector",
+                    symbol,
+                    "an input is one of them",
+                    f"write {name}[0] for its first entry",
+                )
             found[name] = size if size is None else max(size, found.get(name) or 0)
         return found
 
@@ -103,11 +117,18 @@ class Formula(Block):
         for name, least in self._entries.items():
             shape = known.inputs.get(name) if least is not None else ()
             if least is not None and shape is not None and (len(shape) != 1 or shape[0] < least):
-                raise refuse(self.name, f"input '{name}' has no entry {least - 1}", shape,
-                             "a vector that has the entries which formulas name", "correct the formula")  # fmt: skip
+                raise refuse(
+                    self.name,
+                    f"input '{name}' has no entry {least - 1}",
+                    shape,
+                    "a vector that has the entries which formulas name",
+                    "correct the formula",
+                )
             inputs.append(Port(name, shape, units.get(name, "")))
-        outputs = (Port(name, (len(value),) if isinstance(value, list) else (), units.get(name, ""))
-                   for name, value in self._parsed.items())  # fmt: skip
+        outputs = (
+            Port(name, (len(value),) if isinstance(value, list) else (), units.get(name, ""))
+            for name, value in self._parsed.items()
+        )
         return Ports(tuple(inputs), tuple(outputs))
 
     def parameters(self) -> dict[str, Array]:
@@ -130,8 +151,13 @@ class Formula(Block):
                 for name, value in self._parsed.items()
             }
         except ArithmeticError as error:
-            raise refuse(self.name, "a formula has no value", error,
-                         "constant parts are within the domain of functions", "mend the formula") from None  # fmt: skip
+            raise refuse(
+                self.name,
+                "a formula has no value",
+                error,
+                "constant parts are within the domain of functions",
+                "mend the formula",
+            ) from None
         return {name: Tensor.of(at.g, edges, shape) for name, (edges, shape) in found.items()}
 
 
@@ -158,16 +184,21 @@ class PythonBlock(OpaqueBlock):
         if not callable(self.function):
             raise refuse(self.name, "nothing to call", repr(self.function), "function takes (t, inputs)", "give one")
         if not dict(self.outputs or {}):
-            raise refuse(self.name, "no outputs", "none", "an output or more, with their shapes",
-                         'write for example {"y": (3,)}')  # fmt: skip
+            raise refuse(
+                self.name, "no outputs", "none", "an output or more, with their shapes", 'write for example {"y": (3,)}'
+            )
         needs_period(self)
 
     def ports(self, known: Known) -> Ports:
         """As stated."""
-        given = {name: known.inputs.get(name) if shape is None else tuple(shape)
-                 for name, shape in dict(self.inputs or {}).items()}  # fmt: skip
-        return Ports(tuple(Port(name, shape) for name, shape in given.items()),
-                     tuple(Port(name, tuple(shape)) for name, shape in dict(self.outputs).items()))  # fmt: skip
+        given = {
+            name: known.inputs.get(name) if shape is None else tuple(shape)
+            for name, shape in dict(self.inputs or {}).items()
+        }
+        return Ports(
+            tuple(Port(name, shape) for name, shape in given.items()),
+            tuple(Port(name, tuple(shape)) for name, shape in dict(self.outputs).items()),
+        )
 
     def begin(self, known: Known) -> Running:
         """By the user's function."""
@@ -192,8 +223,13 @@ class _Function(Running):
         shapes = {name: tuple(shape) for name, shape in dict(self._block.outputs).items()}
         given = {name: np.shape(value) for name, value in found.items()} if isinstance(found, Mapping) else type(found)
         if given != shapes:
-            raise refuse(self._block.name, "its function returned something else", given, f"outputs {shapes}",
-                         "return a mapping of these")  # fmt: skip
+            raise refuse(
+                self._block.name,
+                "its function returned something else",
+                given,
+                f"outputs {shapes}",
+                "return a mapping of these",
+            )
         return found
 
     def end(self) -> None:

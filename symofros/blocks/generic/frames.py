@@ -107,8 +107,9 @@ class FrameTransform(Block):
 
     def compute(self, at: At) -> Values:
         """By both poses in the world."""
-        source, target = (at.call(self.model, "frame_pose", frame, q=at.inputs["q"], t=at.t)
-                          for frame in (self.source, self.target))  # fmt: skip
+        source, target = (
+            at.call(self.model, "frame_pose", frame, q=at.inputs["q"], t=at.t) for frame in (self.source, self.target)
+        )
         R = target["R"].T @ source["R"]
         p = target["R"].T @ (source["p"] - target["p"])
         return {"y": transformed(self.quantity, p, R, at.inputs["u"]), "p": p, "R": R}

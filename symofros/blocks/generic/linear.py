@@ -121,9 +121,13 @@ class TransferFunction(_Linear):
         """A proper fraction."""
         num, den = (numbers(self.name, field, getattr(self, field), (None,)) for field in ("num", "den"))
         if not len(den) or den[0] == 0.0 or not 0 < len(num) <= len(den) or len(den) > MOST_STATES:
-            raise refuse(self.name, "num / den is no proper fraction", f"{num} / {den}",
-                         "den begins with its highest power, not zero; num has no higher degree",
-                         "drop leading zeros, or add a pole")  # fmt: skip
+            raise refuse(
+                self.name,
+                "num / den is no proper fraction",
+                f"{num} / {den}",
+                "den begins with its highest power, not zero; num has no higher degree",
+                "drop leading zeros, or add a pole",
+            )
 
     def matrices(self) -> tuple[Array, Array, Array, Array]:
         """The controller canonical form."""

@@ -32,8 +32,13 @@ class _OneToOne(Block):
         for field in self.tunable:
             own = np.shape(getattr(self, field))
             if own and shape is not None and own != shape:
-                raise refuse(self.name, f"{field} does not fit the input", own, f"one number, or shape {shape}",
-                             "give one an entry")  # fmt: skip
+                raise refuse(
+                    self.name,
+                    f"{field} does not fit the input",
+                    own,
+                    f"one number, or shape {shape}",
+                    "give one an entry",
+                )
             shape = shape if shape is not None else own or None
         return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
 
@@ -169,8 +174,13 @@ class LookupTable(Block):
         """Increasing points, as many values."""
         x, y = increasing(self.name, "x", self.x), numbers(self.name, "y", self.y)
         if y.ndim not in (1, 2) or len(y) != len(x) or y.size > MOST_POINTS:
-            raise refuse(self.name, "y does not fit x", y.shape,
-                         f"({len(x)}) or ({len(x)}, any), {MOST_POINTS} numbers in all", "one row a point")  # fmt: skip
+            raise refuse(
+                self.name,
+                "y does not fit x",
+                y.shape,
+                f"({len(x)}) or ({len(x)}, any), {MOST_POINTS} numbers in all",
+                "one row a point",
+            )
         choice(self.name, "outside", self.outside, ("hold", "extend"))
 
     def ports(self, known: Known) -> Ports:

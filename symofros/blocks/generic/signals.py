@@ -64,8 +64,13 @@ class Gain(Block):
     def __post_init__(self) -> None:
         """Gains are numbers, vectors or matrices."""
         if numbers(self.name, "gain", self.gain).ndim > 2:
-            raise refuse(self.name, "gain has the wrong shape", np.shape(self.gain), "a number, (n) or (m, n)",
-                         "give a matrix at most")  # fmt: skip
+            raise refuse(
+                self.name,
+                "gain has the wrong shape",
+                np.shape(self.gain),
+                "a number, (n) or (m, n)",
+                "give a matrix at most",
+            )
 
     @property
     def conversion(self) -> float:
@@ -107,8 +112,13 @@ class Sum(Block):
     def __post_init__(self) -> None:
         """Signs are plus and minus."""
         if not self.signs or set(self.signs) - {"+", "-"} or len(self.signs) > MOST_INPUTS:
-            raise refuse(self.name, "signs", repr(self.signs), f"1 to {MOST_INPUTS} signs + or -, one an input",
-                         'write for example "+-"')  # fmt: skip
+            raise refuse(
+                self.name,
+                "signs",
+                repr(self.signs),
+                f"1 to {MOST_INPUTS} signs + or -, one an input",
+                'write for example "+-"',
+            )
 
     def ports(self, known: Known) -> Ports:
         """Inputs u1, u2, ..., output y, all of one shape."""
@@ -138,8 +148,13 @@ class Product(Block):
     def __post_init__(self) -> None:
         """Operations multiply or divide."""
         if not self.operations or set(self.operations) - {"*", "/"} or len(self.operations) > MOST_INPUTS:
-            raise refuse(self.name, "operations", repr(self.operations),
-                         f"1 to {MOST_INPUTS} operations * or /, one an input", 'write for example "*/"')  # fmt: skip
+            raise refuse(
+                self.name,
+                "operations",
+                repr(self.operations),
+                f"1 to {MOST_INPUTS} operations * or /, one an input",
+                'write for example "*/"',
+            )
 
     def ports(self, known: Known) -> Ports:
         """Inputs u1, u2, ..., output y, all of one shape."""
@@ -178,9 +193,13 @@ class Pick(Block):
         entries = [self.entries] if isinstance(self.entries, str) else self.entries
         named = not isinstance(entries, (list, tuple)) or any(isinstance(item, str) for item in entries)
         if not isinstance(entries, (list, tuple)) or not entries or (named and not self.model):
-            raise refuse(self.name, "entries", repr(self.entries),
-                         "numbers from 0 on, or names or 'actuated' with the model whose they are",
-                         "name the model, or give numbers")  # fmt: skip
+            raise refuse(
+                self.name,
+                "entries",
+                repr(self.entries),
+                "numbers from 0 on, or names or 'actuated' with the model whose they are",
+                "name the model, or give numbers",
+            )
         if self.of not in ("q", "v", "u"):
             raise refuse(self.name, "unknown vector", repr(self.of), "of is q, v or u", "name one of them")
 
@@ -193,16 +212,23 @@ class Pick(Block):
         if self.entries == "actuated":
             wanted: Any = actuated_names(record)
             if not wanted:
-                raise refuse(self.name, "no actuated joints", f"inputs {', '.join(record.u_names) or 'none'}",
-                             f"joints of model '{self.model}' that are actuated have inputs of their names",
-                             "name the entries")  # fmt: skip
+                raise refuse(
+                    self.name,
+                    "no actuated joints",
+                    f"inputs {', '.join(record.u_names) or 'none'}",
+                    f"joints of model '{self.model}' that are actuated have inputs of their names",
+                    "name the entries",
+                )
         else:
             wanted = [self.entries] if isinstance(self.entries, str) else self.entries
         found = []
         for item in wanted:
             named = isinstance(item, str)
-            found.append(names.index(known_name(self.name, f"entry of {self.of}", item, names)) if named
-                         else whole(self.name, "an entry", item, 0, len(names) - 1))  # fmt: skip
+            found.append(
+                names.index(known_name(self.name, f"entry of {self.of}", item, names))
+                if named
+                else whole(self.name, "an entry", item, 0, len(names) - 1)
+            )
         return found, len(names)
 
     def ports(self, known: Known) -> Ports:
@@ -210,8 +236,13 @@ class Pick(Block):
         indices, size = self._indices(known)
         into = (size,) if size is not None else known.inputs.get("u")
         if into is not None and (len(into) != 1 or max(indices) >= into[0]):
-            raise refuse(self.name, "no such entry", f"entry {max(indices)} of a signal {into}",
-                         "entries count from 0 along a vector", "choose smaller numbers")  # fmt: skip
+            raise refuse(
+                self.name,
+                "no such entry",
+                f"entry {max(indices)} of a signal {into}",
+                "entries count from 0 along a vector",
+                "choose smaller numbers",
+            )
         return Ports((Port("u", into, self.unit),), (Port("y", (len(indices),), self.unit),))
 
     def compute(self, at: At) -> Values:
@@ -270,8 +301,13 @@ class Reshape(Block):
         """Input u, output y."""
         into, out = known.inputs.get("u"), tuple(self.shape)
         if into is not None and np.prod(into) != np.prod(out):
-            raise refuse(self.name, "sizes differ", into, f"{int(np.prod(out))} entries, as shape {out} has",
-                         "choose a shape of as many")  # fmt: skip
+            raise refuse(
+                self.name,
+                "sizes differ",
+                into,
+                f"{int(np.prod(out))} entries, as shape {out} has",
+                "choose a shape of as many",
+            )
         return Ports((Port("u", into),), (Port("y", out),))
 
     def compute(self, at: At) -> Values:

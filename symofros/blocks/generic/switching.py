@@ -38,8 +38,13 @@ class Relay(Block):
         for field in self.tunable:
             number(self.name, field, getattr(self, field))
         if not self.lower < self.upper:
-            raise refuse(self.name, "no hysteresis", f"lower {self.lower}, upper {self.upper}", "lower is below upper",
-                         "use a Switch, or part them")  # fmt: skip
+            raise refuse(
+                self.name,
+                "no hysteresis",
+                f"lower {self.lower}, upper {self.upper}",
+                "lower is below upper",
+                "use a Switch, or part them",
+            )
 
     def ports(self, known: Known) -> Ports:
         """Input u, output y, scalars."""
@@ -68,8 +73,10 @@ class Relay(Block):
         if self.period is not None:
             return {}
         u = at.inputs["u"]
-        return {"on": Crossing(u - at.parameters["upper"], "rising"),
-                "off": Crossing(u - at.parameters["lower"], "falling")}  # fmt: skip
+        return {
+            "on": Crossing(u - at.parameters["upper"], "rising"),
+            "off": Crossing(u - at.parameters["lower"], "falling"),
+        }
 
     def crossed(self, at: At, which: str) -> Values:
         """On or off."""

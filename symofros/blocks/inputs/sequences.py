@@ -50,9 +50,13 @@ class Sequence(Block):
         """Samples at increasing times."""
         choice(self.name, "kind", self.kind, ("linear", "hold"))
         if bool(self.file) == (self.values is not None):
-            raise refuse(self.name, "no samples" if not self.file else "samples twice",
-                         "neither file nor values" if not self.file else "file and values",
-                         "samples are given, or read from a file", "state one of them")  # fmt: skip
+            raise refuse(
+                self.name,
+                "no samples" if not self.file else "samples twice",
+                "neither file nor values" if not self.file else "file and values",
+                "samples are given, or read from a file",
+                "state one of them",
+            )
         signals = self._signals
         for name in dict(self.units or {}):
             known_name(self.name, "output", name, signals)
@@ -62,8 +66,13 @@ class Sequence(Block):
         """Output -> samples."""
         arrays = self._arrays()
         if "t" not in arrays or len(arrays) < 2:
-            raise refuse(self.name, "no times", f"only {', '.join(arrays)}" if arrays else "nothing",
-                         "samples have times t and values", "add them")  # fmt: skip
+            raise refuse(
+                self.name,
+                "no times",
+                f"only {', '.join(arrays)}" if arrays else "nothing",
+                "samples have times t and values",
+                "add them",
+            )
         t = increasing(self.name, "t", arrays.pop("t"), 1)
         found = {}
         for output, names in self._chosen(list(arrays)).items():
@@ -85,8 +94,13 @@ class Sequence(Block):
         known_name(self.name, "column", name, arrays)
         values = numbers(self.name, f"'{name:.40}'", arrays[name])
         if values.ndim not in (1, 2) or len(values) != size:
-            raise refuse(self.name, f"'{name:.40}' does not fit t", values.shape, f"({size}) or ({size}, any)",
-                         "one row of values a time")  # fmt: skip
+            raise refuse(
+                self.name,
+                f"'{name:.40}' does not fit t",
+                values.shape,
+                f"({size}) or ({size}, any)",
+                "one row of values a time",
+            )
         return values
 
     def _arrays(self) -> dict[str, Any]:
@@ -98,8 +112,10 @@ class Sequence(Block):
     def ports(self, known: Known) -> Ports:
         """The outputs."""
         units = dict(self.units or {})
-        return Ports((), tuple(Port(name, signal.values.shape[1:], units.get(name, ""))
-                               for name, signal in self._signals.items()))  # fmt: skip
+        return Ports(
+            (),
+            tuple(Port(name, signal.values.shape[1:], units.get(name, "")) for name, signal in self._signals.items()),
+        )
 
     def samples(self) -> Mapping[str, Signal]:
         """All of them."""
@@ -127,8 +143,9 @@ def _read(block: str, path: Path) -> dict[str, Any]:
         raise refuse(block, f"file '{path}' is too large", f"{size} bytes", f"at most {MOST_BYTES}", "thin it out")
     readers = {".csv": _read_csv, ".npz": _read_npz}
     if path.suffix.lower() not in readers:
-        raise refuse(block, f"file '{path}' of unknown kind", repr(path.suffix), "names end in .csv or .npz",
-                     "convert it")  # fmt: skip
+        raise refuse(
+            block, f"file '{path}' of unknown kind", repr(path.suffix), "names end in .csv or .npz", "convert it"
+        )
     return readers[path.suffix.lower()](block, path)
 
 
@@ -137,13 +154,23 @@ def _read_npz(block: str, path: Path) -> dict[str, Any]:
         with zipfile.ZipFile(path) as archive:
             unpacked = sum(item.file_size for item in archive.infolist())
         if unpacked > 8 * MOST_NUMBERS:
-            raise refuse(block, f"file '{path}' is too large", f"{unpacked} bytes unpacked",
-                         f"at most {MOST_NUMBERS} numbers", "thin it out")  # fmt: skip
+            raise refuse(
+                block,
+                f"file '{path}' is too large",
+                f"{unpacked} bytes unpacked",
+                f"at most {MOST_NUMBERS} numbers",
+                "thin it out",
+            )
         with np.load(path, allow_pickle=False) as stored:
             return {name: stored[name] for name in stored.files}
     except (OSError, ValueError, zipfile.BadZipFile) as error:
-        raise refuse(block, f"file '{path}' is no NPZ file", error, "arrays of numbers, as numpy.savez writes them",
-                     "write it anew") from None  # fmt: skip
+        raise refuse(
+            block,
+            f"file '{path}' is no NPZ file",
+            error,
+            "arrays of numbers, as numpy.savez writes them",
+            "write it anew",
+        ) from None
 
 
 def _read_csv(block: str, path: Path) -> dict[str, Any]:
@@ -152,8 +179,13 @@ def _read_csv(block: str, path: Path) -> dict[str, Any]:
         lines = csv.reader(text)
         names = [name.strip() for name in next(lines, [])]
         if len(set(names)) < len(names) or not all(names):
-            raise refuse(block, f"file '{path}': names", ", ".join(names), "the first line names each column, once",
-                         "mend the first line")  # fmt: skip
+            raise refuse(
+                block,
+                f"file '{path}': names",
+                ", ".join(names),
+                "the first line names each column, once",
+                "mend the first line",
+            )
         for line in lines:
             if not line:
                 continue
@@ -162,11 +194,15 @@ def _read_csv(block: str, path: Path) -> dict[str, Any]:
             except ValueError:
                 row = []
             if len(row) != len(names) or (len(rows) + 1) * len(names) > MOST_NUMBERS:
-                raise DescriptionError(Problem(
-                    f"block '{block}': a line of samples", ",".join(line)[:120],
-                    f"{len(names)} numbers a line, {MOST_NUMBERS} in all", "mend the line",
-                    f"{path}:{lines.line_num}",
-                ))  # fmt: skip
+                raise DescriptionError(
+                    Problem(
+                        f"block '{block}': a line of samples",
+                        ",".join(line)[:120],
+                        f"{len(names)} numbers a line, {MOST_NUMBERS} in all",
+                        "mend the line",
+                        f"{path}:{lines.line_num}",
+                    )
+                )
             rows.append(row)
     table = np.array(rows).reshape(len(rows), len(names))
     return {name: table[:, i] for i, name in enumerate(names)}

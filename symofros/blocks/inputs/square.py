@@ -71,9 +71,13 @@ class Square(Block):
         if self.start is not None:
             numbers(self.name, "start", self.start, (size,))
         elif not self.model or not self.frame:
-            raise refuse(self.name, "no start", "neither start nor model and frame",
-                         "the path begins at a point, or where a model's frame is first",
-                         "give start, or model and frame")  # fmt: skip
+            raise refuse(
+                self.name,
+                "no start",
+                "neither start nor model and frame",
+                "the path begins at a point, or where a model's frame is first",
+                "give start, or model and frame",
+            )
 
     def ports(self, known: Known) -> Ports:
         """Outputs p, v, a (number of axes)."""

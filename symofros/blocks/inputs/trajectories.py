@@ -92,8 +92,9 @@ class CartesianTrajectory(Block):
         n = np.shape(self.points)[1]
         if self.quaternions is None:
             return Ports((), (Port("p", (n,), "m"), Port("v", (n,), "m/s"), Port("a", (n,), "m/s^2")))
-        return Ports((), (Port("p", (3,), "m"), Port("R", (3, 3)), Port("quaternion", (4,)), Port("v", (6,)),
-                          Port("a", (6,))))  # fmt: skip
+        return Ports(
+            (), (Port("p", (3,), "m"), Port("R", (3, 3)), Port("quaternion", (4,)), Port("v", (6,)), Port("a", (6,)))
+        )
 
     def compute(self, at: At) -> Values:
         """Positions, and turns from point to point."""
@@ -135,8 +136,13 @@ def via_points(block: Any, points: Any, times: Any, most: int | None) -> int:
     if len(found) > MOST_POINTS:
         raise refuse(block.name, "too many points", len(found), f"at most {MOST_POINTS}", "use a Sequence over time")
     if not found.shape[1] or (most is not None and found.shape[1] > most):
-        raise refuse(block.name, "points have the wrong size", found.shape, f"rows of 1 to {most or 'any'} numbers",
-                     "mend the rows")  # fmt: skip
+        raise refuse(
+            block.name,
+            "points have the wrong size",
+            found.shape,
+            f"rows of 1 to {most or 'any'} numbers",
+            "mend the rows",
+        )
     return len(found)
 
 

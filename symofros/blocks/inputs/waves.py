@@ -36,9 +36,13 @@ class _Wave(Block):
         try:
             return np.broadcast_shapes(*(array.shape for array in arrays))
         except ValueError:
-            raise refuse(self.name, "shapes differ", ", ".join(str(array.shape) for array in arrays),
-                         f"{', '.join(self.tunable)} broadcast to one shape",
-                         "give as many of each") from None  # fmt: skip
+            raise refuse(
+                self.name,
+                "shapes differ",
+                ", ".join(str(array.shape) for array in arrays),
+                f"{', '.join(self.tunable)} broadcast to one shape",
+                "give as many of each",
+            ) from None
 
     def ports(self, known: Known) -> Ports:
         """Output y."""

@@ -22,8 +22,13 @@ def _motion_ports(known: Known, model: str, names: str) -> tuple[Port, ...]:
 
 def _frame_ports(*count: int) -> tuple[Port, ...]:
     """Outputs of `_frame_motion`, of one frame or of a count of them."""
-    return (Port("p", (*count, 3), "m"), Port("R", (*count, 3, 3)), Port("quaternion", (*count, 4)),
-            Port("velocity", (*count, 6)), Port("acceleration", (*count, 6)))  # fmt: skip
+    return (
+        Port("p", (*count, 3), "m"),
+        Port("R", (*count, 3, 3)),
+        Port("quaternion", (*count, 4)),
+        Port("velocity", (*count, 6)),
+        Port("acceleration", (*count, 6)),
+    )
 
 
 def _frame_motion(at: At, model: str, frame: str) -> dict[str, Tensor]:
@@ -31,8 +36,13 @@ def _frame_motion(at: At, model: str, frame: str) -> dict[str, Tensor]:
     pose = at.call(model, "frame_pose", frame, q=q, t=at.t)
     V = at.call(model, "frame_velocity", frame, q=q, v=v, t=at.t)["V"]
     A = at.call(model, "frame_acceleration", frame, q=q, v=v, a=a, t=at.t)["A"]
-    return {"p": pose["p"], "R": pose["R"], "quaternion": quaternion_of_matrix(pose["R"]), "velocity": V,
-            "acceleration": A}  # fmt: skip
+    return {
+        "p": pose["p"],
+        "R": pose["R"],
+        "quaternion": quaternion_of_matrix(pose["R"]),
+        "velocity": V,
+        "acceleration": A,
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,9 +112,15 @@ class Jacobian(Block):
         """Motion q, v in; J, rate (6, nv); translation and rotation are rows 0 to 2 and 3 to 5 of J (3, nv)."""
         known.frame(self.model, self.frame)
         nv = len(known.model(self.model).v_names)
-        return Ports(_motion_ports(known, self.model, "qv"), (
-            Port("J", (6, nv)), Port("rate", (6, nv)), Port("translation", (3, nv)), Port("rotation", (3, nv)),
-        ))  # fmt: skip
+        return Ports(
+            _motion_ports(known, self.model, "qv"),
+            (
+                Port("J", (6, nv)),
+                Port("rate", (6, nv)),
+                Port("translation", (3, nv)),
+                Port("rotation", (3, nv)),
+            ),
+        )
 
     def compute(self, at: At) -> Values:
         """By the model's own functions."""

@@ -67,8 +67,15 @@ class InverseKinematics(Block):
         """Desired p, angle or R as the rows ask, v and a of the rows; out q (nq), v, a (nv), error of the rows."""
         task, record = self._task(known), known.model(self.model)
         units, nv = joint_units(record), len(record.v_names)
-        return Ports(tuple(task.ports()), (Port("q", (len(record.q_names),), units[0]), Port("v", (nv,), units[1]),
-                                           Port("a", (nv,), units[2]), Port("error", (len(task.rows),))))  # fmt: skip
+        return Ports(
+            tuple(task.ports()),
+            (
+                Port("q", (len(record.q_names),), units[0]),
+                Port("v", (nv,), units[1]),
+                Port("a", (nv,), units[2]),
+                Port("error", (len(task.rows),)),
+            ),
+        )
 
     def _first(self, known: Known) -> dict[str, Any]:
         chosen = self._chosen(known)
@@ -113,8 +120,12 @@ class InverseKinematics(Block):
         """Position first, then rates there."""
         chosen, joints = self._chosen(at.known), self._placed(at)
         v, a, error = self._moved(at, joints)
-        return {"q": chosen.configuration(at, joints), "v": chosen.speeds_of(at, v), "a": chosen.speeds_of(at, a),
-                "error": error}  # fmt: skip
+        return {
+            "q": chosen.configuration(at, joints),
+            "v": chosen.speeds_of(at, v),
+            "a": chosen.speeds_of(at, a),
+            "error": error,
+        }
 
     def rates(self, at: At) -> Values:
         """Of the state."""

@@ -25,8 +25,13 @@ def rows_of(name: str, rows: object) -> list[int]:
     """
     given = list(rows) if isinstance(rows, (list, tuple)) else []
     if not given or len(set(given)) < len(given) or set(given) - set(ROWS) or given != sorted(given, key=ROWS.index):
-        raise refuse(name, "rows", repr(rows), f"some of {', '.join(ROWS)}, each once, in this order",
-                     'write for example ("x", "y", "rz")')  # fmt: skip
+        raise refuse(
+            name,
+            "rows",
+            repr(rows),
+            f"some of {', '.join(ROWS)}, each once, in this order",
+            'write for example ("x", "y", "rz")',
+        )
     return [ROWS.index(row) for row in given]
 
 
@@ -64,8 +69,13 @@ class Chosen:
         for name in names:
             known_name(block, f"joint of one coordinate in model '{model}'", name, places)
         if not names or len(set(names)) < len(names):
-            raise refuse(block, "joints", ", ".join(names) or "none", "one joint or more, each once",
-                         "name the joints that follow")  # fmt: skip
+            raise refuse(
+                block,
+                "joints",
+                ", ".join(names) or "none",
+                "one joint or more, each once",
+                "name the joints that follow",
+            )
         q, v = zip(*(places[name] for name in names), strict=True)
         return Chosen(tuple(names), q, v, known.start(model)[0], len(record.v_names))
 

@@ -54,9 +54,13 @@ class Folder:
             return self._bounded(path, MAX_MESH_BYTES)
         except DescriptionError as error:
             found = error.problems[0].found
-            self.fault(user, f"{what}: its file can't be read", f"'{file}': {found}",
-                       "a mesh that gives a body its inertia lies in the model's folder",
-                       "put the file there, or give the body an <inertial>")  # fmt: skip
+            self.fault(
+                user,
+                f"{what}: its file can't be read",
+                f"'{file}': {found}",
+                "a mesh that gives a body its inertia lies in the model's folder",
+                "put the file there, or give the body an <inertial>",
+            )
             return None
 
     def fault(self, element: Element, what: str, found: str, rule: str, remedy: str = "") -> None:
@@ -68,8 +72,9 @@ class Folder:
         root = parse_xml(self._bounded(path, MAX_BYTES), shown)
         self._elements += _size(root)
         if self._elements > MAX_ELEMENTS:
-            problem = Problem("the model is too large", f"{self._elements} elements", f"at most {MAX_ELEMENTS}",
-                              "split it", shown)  # fmt: skip
+            problem = Problem(
+                "the model is too large", f"{self._elements} elements", f"at most {MAX_ELEMENTS}", "split it", shown
+            )
             raise DescriptionError(problem)
         return root
 
@@ -82,9 +87,15 @@ class Folder:
     def _expand(self, element: Element, folder: Path, depth: int) -> None:
         """Put what is included in the place of each <include>."""
         if depth > MAX_DEPTH:
-            raise XmlFault(Problem(f"nested deeper than {MAX_DEPTH}, includes counted", f"<{element.tag:.60}>",
-                                   "a robot needs fewer", "check that it is the file you meant",
-                                   element.where))  # fmt: skip
+            raise XmlFault(
+                Problem(
+                    f"nested deeper than {MAX_DEPTH}, includes counted",
+                    f"<{element.tag:.60}>",
+                    "a robot needs fewer",
+                    "check that it is the file you meant",
+                    element.where,
+                )
+            )
         children: list[Element] = []
         for child in element.children:
             if child.tag == "include":
@@ -98,8 +109,13 @@ class Folder:
         file = include.attributes.get("file")
         if file is None:
             given = ", ".join(include.attributes) or "no attributes"
-            self.fault(include, "<include> lacks the attribute 'file'", given,
-                       "<include> names a file", 'write <include file="…"/>')  # fmt: skip
+            self.fault(
+                include,
+                "<include> lacks the attribute 'file'",
+                given,
+                "<include> names a file",
+                'write <include file="…"/>',
+            )
             return []
         # From the main file's folder, or else from that of the file that includes it.
         places = [self._inside(file, include, base) for base in dict.fromkeys((self.main.parent, folder))]
@@ -108,8 +124,13 @@ class Folder:
             return []
         path = next((path for path in paths if path.is_file()), paths[0])
         if path in self._read:
-            self.fault(include, f"'{file}' is included twice", f"'{path.name}' again",
-                       "a file is included once at most, and never by itself", "remove one <include>")  # fmt: skip
+            self.fault(
+                include,
+                f"'{file}' is included twice",
+                f"'{path.name}' again",
+                "a file is included once at most, and never by itself",
+                "remove one <include>",
+            )
             return []
         try:
             root = self._parsed(path, str(path))
@@ -130,9 +151,13 @@ class Folder:
             path = (base / plain).resolve()
             if path.is_relative_to(folder):
                 return path
-        self.fault(user, f"<{user.tag}> leaves the model's folder", f"'{file:.80}'",
-                   "files of a model lie in the folder of its main file or below, without '..'",
-                   f"copy the file into '{folder}'")  # fmt: skip
+        self.fault(
+            user,
+            f"<{user.tag}> leaves the model's folder",
+            f"'{file:.80}'",
+            "files of a model lie in the folder of its main file or below, without '..'",
+            f"copy the file into '{folder}'",
+        )
         return None
 
 

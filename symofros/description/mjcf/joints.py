@@ -61,9 +61,7 @@ class JointReader:
         exact: Makes numbers exact.
     """
 
-    def __init__(
-        self, model: Any, names: Names, driven: Collection[str], remarks: Remarks, exact: Exact
-    ) -> None:  # fmt: skip
+    def __init__(self, model: Any, names: Names, driven: Collection[str], remarks: Remarks, exact: Exact) -> None:
         self.model = model
         self.names = names
         self.driven = driven
@@ -75,8 +73,9 @@ class JointReader:
         chain.p, chain.R = np.zeros(3), np.eye(3)
         armature = self._armature(j)
         if armature:
-            self.remarks.add("armature of free joints acts along body axes, without MuJoCo's gyroscopic part", "joint",
-                             self.names[j])  # fmt: skip
+            self.remarks.add(
+                "armature of free joints acts along body axes, without MuJoCo's gyroscopic part", "joint", self.names[j]
+            )
         self._remark(j)
         return Joint(self.names[j], "free", WORLD, elements=tuple(self._elements(j)), armature=armature)
 
@@ -98,11 +97,18 @@ class JointReader:
         self._remark(j)
         chain.p, chain.R = -anchor, np.eye(3)
         return Joint(
-            self.names[j], kinds[kind], chain.parent, None, position, rotation,
+            self.names[j],
+            kinds[kind],
+            chain.parent,
+            None,
+            position,
+            rotation,
             (0.0, 0.0, 1.0) if kind == BALL else self.exact.direction(axis),
-            actuated=self.names[j] in self.driven and kind != BALL, limits=limits,
-            elements=tuple(self._elements(j)), armature=self._armature(j),
-        )  # fmt: skip
+            actuated=self.names[j] in self.driven and kind != BALL,
+            limits=limits,
+            elements=tuple(self._elements(j)),
+            armature=self._armature(j),
+        )
 
     def _armature(self, j: int) -> float:
         # One number for all speeds of a joint, like its damping.

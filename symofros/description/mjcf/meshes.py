@@ -77,8 +77,11 @@ class Meshes:
             return True
         massless = _is_zero(stated["mass"] if "mass" in stated else stated.get("density", ""))
         if mesh is None or massless or not gives_inertia or not self._counts(stated.get("group", "0")):
-            self.remarks.add("shapes from files ignored, they give no inertia", "shape",
-                             geom.attributes.get("name") or mesh or f"line {geom.line}")  # fmt: skip
+            self.remarks.add(
+                "shapes from files ignored, they give no inertia",
+                "shape",
+                geom.attributes.get("name") or mesh or f"line {geom.line}",
+            )
             return False
         self._needed[mesh] = f"mesh '{mesh}', which a body has its inertia from"
         return True
@@ -95,9 +98,13 @@ class Meshes:
         """Read a mesh's file, and let the document call it by a name without a path."""
         name = _mesh_name(mesh)
         if "builtin" in mesh.attributes:
-            self.folder.fault(mesh, f"mesh '{name}' is procedural", f"builtin '{mesh.attributes['builtin']:.60}'",
-                              "a mesh that gives a body its inertia is a file or a list of vertices",
-                              "give the body an <inertial>")  # fmt: skip
+            self.folder.fault(
+                mesh,
+                f"mesh '{name}' is procedural",
+                f"builtin '{mesh.attributes['builtin']:.60}'",
+                "a mesh that gives a body its inertia is a file or a list of vertices",
+                "give the body an <inertial>",
+            )
         file = mesh.attributes.get("file")
         if file is None:
             return

@@ -79,10 +79,19 @@ class Importer:
         origin = {("system",): file, **places}
         gravity = self.exact.vector(self.gravity)
         if self.exact.changed:
-            self.remarks.add(f"numbers within {self.exact.tolerance:g} of exact ones made exact", "number",
-                             f"{self.exact.changed} of them")  # fmt: skip
-        return System(self.stated.name, tuple(bodies), gravity=gravity, notes=self.remarks.notes(), origin=origin,
-                      visuals=visuals_of(self.model, self.bodies.__getitem__))  # fmt: skip
+            self.remarks.add(
+                f"numbers within {self.exact.tolerance:g} of exact ones made exact",
+                "number",
+                f"{self.exact.changed} of them",
+            )
+        return System(
+            self.stated.name,
+            tuple(bodies),
+            gravity=gravity,
+            notes=self.remarks.notes(),
+            origin=origin,
+            visuals=visuals_of(self.model, self.bodies.__getitem__),
+        )
 
     def _body(self, i: int, frames: tuple[Frame, ...]) -> Iterator[RigidBody]:
         """A body, after the massless ones that carry it from joint to joint."""
@@ -136,7 +145,8 @@ class Importer:
     def _remark_ignored(self) -> None:
         m = self.model
         for g in range(m.ngeom):
-            self.remarks.add("contacts ignored, shapes count by their inertia only", "shape",
-                             m.geom(g).name or f"geom{g}")  # fmt: skip
+            self.remarks.add(
+                "contacts ignored, shapes count by their inertia only", "shape", m.geom(g).name or f"geom{g}"
+            )
         if m.opt.density or m.opt.viscosity:
             self.remarks.add("forces of the medium ignored", "option", "density, viscosity")

@@ -12,12 +12,20 @@ from symofros.errors import Problem
 
 # What the importer computes with: array of the model -> what it is called.
 _OF_BODIES = {
-    "body_pos": "position", "body_quat": "orientation", "body_ipos": "mass centre", "body_iquat": "axes of inertia",
-    "body_mass": "mass", "body_inertia": "inertia", "body_gravcomp": "gravcomp",
-}  # fmt: skip
+    "body_pos": "position",
+    "body_quat": "orientation",
+    "body_ipos": "mass centre",
+    "body_iquat": "axes of inertia",
+    "body_mass": "mass",
+    "body_inertia": "inertia",
+    "body_gravcomp": "gravcomp",
+}
 _OF_JOINTS = {
-    "jnt_pos": "anchor", "jnt_axis": "axis", "jnt_stiffness": "stiffness", "jnt_stiffnesspoly": "stiffness",
-}  # fmt: skip
+    "jnt_pos": "anchor",
+    "jnt_axis": "axis",
+    "jnt_stiffness": "stiffness",
+    "jnt_stiffnesspoly": "stiffness",
+}
 _OF_SPEEDS = {"dof_armature": "armature", "dof_damping": "damping", "dof_dampingpoly": "damping"}
 _OF_COORDINATES = {"qpos0": "ref", "qpos_spring": "springref"}
 _OF_SITES = {"site_pos": "position", "site_quat": "orientation"}
@@ -48,9 +56,12 @@ def infinite_numbers(
             rows = np.argwhere(~np.isfinite(getattr(model, array)))[:, 0]
             for i in sorted({int(owner[row]) for row in rows}):
                 yield Problem(
-                    f"{kind} '{names[i]}': {word} is not a finite number", "NaN or infinity in MuJoCo's model",
-                    "every number is finite", "mend the number", places.get((kind, names[i]), file),
-                )  # fmt: skip
+                    f"{kind} '{names[i]}': {word} is not a finite number",
+                    "NaN or infinity in MuJoCo's model",
+                    "every number is finite",
+                    "mend the number",
+                    places.get((kind, names[i]), file),
+                )
     if not np.isfinite(model.opt.gravity).all():
         yield Problem(
             "gravity is not a finite number",

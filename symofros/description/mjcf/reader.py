@@ -84,8 +84,15 @@ def vetted(folder: Folder, remarks: Remarks) -> Document:
     root = folder.document()
     if root.tag != "mujoco":
         remedy = "name a URDF file .urdf" if root.tag == "robot" else ""
-        raise DescriptionError(Problem("the file is not an MJCF model", f"the root element is <{root.tag:.60}>",
-                                       "the root element is <mujoco>", remedy, root.where))  # fmt: skip
+        raise DescriptionError(
+            Problem(
+                "the file is not an MJCF model",
+                f"the root element is <{root.tag:.60}>",
+                "the root element is <mujoco>",
+                remedy,
+                root.where,
+            )
+        )
     sections = Sections(folder, remarks)
     kept = sections.kept(root)
     meshes = Meshes(folder, kept, root, remarks)
@@ -105,9 +112,13 @@ def compiled(document: Document, remarks: Remarks) -> Any:
         import mujoco  # Only those who read MJCF need it.
     except ImportError as error:
         raise DescriptionError(
-            Problem(f"'{document.stated.file}' can't be read: MJCF needs MuJoCo", str(error),
-                    "MuJoCo's own compiler reads MJCF files", "pip install 'symofros[mjcf]'")
-        ) from None  # fmt: skip
+            Problem(
+                f"'{document.stated.file}' can't be read: MJCF needs MuJoCo",
+                str(error),
+                "MuJoCo's own compiler reads MJCF files",
+                "pip install 'symofros[mjcf]'",
+            )
+        ) from None
     try:
         with _warnings(mujoco, remarks):
             return mujoco.MjModel.from_xml_string(document.text, document.assets)

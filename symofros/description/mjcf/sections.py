@@ -11,10 +11,22 @@ from symofros.description.xml_nodes import Element
 from symofros.errors import did_you_mean
 
 _KEPT_SECTIONS = frozenset({"compiler", "option", "default", "asset", "worldbody"})
-_IGNORED_SECTIONS = frozenset({
-    "actuator", "contact", "custom", "deformable", "equality", "extension", "keyframe", "sensor", "size", "statistic",
-    "tendon", "visual",
-})  # fmt: skip
+_IGNORED_SECTIONS = frozenset(
+    {
+        "actuator",
+        "contact",
+        "custom",
+        "deformable",
+        "equality",
+        "extension",
+        "keyframe",
+        "sensor",
+        "size",
+        "statistic",
+        "tendon",
+        "visual",
+    }
+)
 # Of no meaning to mechanics, so not worth a remark.
 _SILENT = frozenset({"custom", "extension", "size", "statistic", "visual"})
 
@@ -65,8 +77,13 @@ class Sections:
         )
         result = self._kept(root)
         if self._expanded(result) > MAX_ELEMENTS:
-            self.folder.fault(result, "the model is too large", "<replicate> makes too many elements",
-                              f"at most {MAX_ELEMENTS}", "replicate fewer")  # fmt: skip
+            self.folder.fault(
+                result,
+                "the model is too large",
+                "<replicate> makes too many elements",
+                f"at most {MAX_ELEMENTS}",
+                "replicate fewer",
+            )
         return result
 
     def _kept(self, element: Element, is_asset: bool = False) -> Element:
@@ -81,15 +98,23 @@ class Sections:
             if child.tag in kept:
                 yield self._kept(child, element.tag == "asset")
             elif child.tag in _REFUSED:
-                self.folder.fault(child, f"<{child.tag}> can't be read", f"in <{element.tag}>",
-                                  f"bodies are stated by <body>, <frame> and <replicate>, without {_listed(_REFUSED)}",
-                                  _REFUSED[child.tag])  # fmt: skip
+                self.folder.fault(
+                    child,
+                    f"<{child.tag}> can't be read",
+                    f"in <{element.tag}>",
+                    f"bodies are stated by <body>, <frame> and <replicate>, without {_listed(_REFUSED)}",
+                    _REFUSED[child.tag],
+                )
             elif child.tag in ignored:
                 self._remark(child, element.tag == "mujoco")
             elif element.tag in ("worldbody", "body", "frame", "replicate", "mujoco"):
-                self.folder.fault(child, f"<{child.tag:.60}> is unknown in <{element.tag}>", f"<{child.tag:.60}>",
-                                  f"<{element.tag}> holds {_listed(kept | ignored)}",
-                                  did_you_mean(child.tag, kept | ignored))  # fmt: skip
+                self.folder.fault(
+                    child,
+                    f"<{child.tag:.60}> is unknown in <{element.tag}>",
+                    f"<{child.tag:.60}>",
+                    f"<{element.tag}> holds {_listed(kept | ignored)}",
+                    did_you_mean(child.tag, kept | ignored),
+                )
 
     def _remark(self, element: Element, is_section: bool) -> None:
         if element.tag in _SILENT:

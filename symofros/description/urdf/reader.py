@@ -60,9 +60,13 @@ def read_urdf(path: str | os.PathLike[str], *, floating_base: bool = False, snap
     except DescriptionError as error:
         return Reading(None, error.problems)
     if root.tag != "robot":
-        problem = Problem("the file is not a URDF", f"the root element is <{root.tag:.60}>",
-                          "the root element is <robot>", "check that it is the file you meant",
-                          f"{file}:{root.line}")  # fmt: skip
+        problem = Problem(
+            "the file is not a URDF",
+            f"the root element is <{root.tag:.60}>",
+            "the root element is <robot>",
+            "check that it is the file you meant",
+            f"{file}:{root.line}",
+        )
         return Reading(None, (problem,))
     try:
         return _Importer(Path(path), Values(file, snap_tol), root, floating_base).reading()
@@ -103,15 +107,25 @@ class _Importer:
         for element in self.robot.all("joint"):
             self.joint(element)
         if not self.links:
-            self.values.fault(self.robot, "the robot has no links", f"{len(self.robot.children)} other elements",
-                              "a robot has at least one <link>", "expand the file's macros first (xacro)?")  # fmt: skip
+            self.values.fault(
+                self.robot,
+                "the robot has no links",
+                f"{len(self.robot.children)} other elements",
+                "a robot has at least one <link>",
+                "expand the file's macros first (xacro)?",
+            )
         bodies = tuple(self.bodies())
         self.ignored()
         problems = in_order(self.values.problems)
         if not self.links:
             return Reading(None, problems)
-        system = System(name, bodies, notes=self.values.remarks.notes(), origin=self.origin,
-                        visuals={name: shapes for name, shapes in self.looks.items() if shapes})  # fmt: skip
+        system = System(
+            name,
+            bodies,
+            notes=self.values.remarks.notes(),
+            origin=self.origin,
+            visuals={name: shapes for name, shapes in self.looks.items() if shapes},
+        )
         return Reading(system, problems, frozenset(self.broken))
 
     def link(self, element: Element) -> None:
@@ -120,8 +134,13 @@ class _Importer:
             return
         if name in self.links:
             first = self.links[name].element.line
-            self.values.fault(element, f"link '{name}' appears twice", f"lines {first} and {element.line}",
-                              "names of links are unique", "rename one of them")  # fmt: skip
+            self.values.fault(
+                element,
+                f"link '{name}' appears twice",
+                f"lines {first} and {element.line}",
+                "names of links are unique",
+                "rename one of them",
+            )
             return
         before = len(self.values.problems)
         self.links[name] = _Link(element, self.values.inertia(element, f"link '{name}'"))
@@ -143,13 +162,22 @@ class _Importer:
             return
         link = self.links.get(child)
         if link is None:
-            self.values.fault(element, f"{owner}: its child link '{child}' does not exist", f"child '{child}'",
-                              "a joint connects two links of the file", did_you_mean(child, self.links))  # fmt: skip
+            self.values.fault(
+                element,
+                f"{owner}: its child link '{child}' does not exist",
+                f"child '{child}'",
+                "a joint connects two links of the file",
+                did_you_mean(child, self.links),
+            )
             return
         if link.parent is not None:
-            self.values.fault(element, f"link '{child}' has two parents", f"'{link.parent}' and '{parent}'",
-                              "each link is the child of one joint at most: links form a tree",
-                              "cut the loop by removing one of the joints")  # fmt: skip
+            self.values.fault(
+                element,
+                f"link '{child}' has two parents",
+                f"'{link.parent}' and '{parent}'",
+                "each link is the child of one joint at most: links form a tree",
+                "cut the loop by removing one of the joints",
+            )
             return
         link.parent = parent or "?"
         if link.parent in self.links:
@@ -165,8 +193,13 @@ class _Importer:
         """The link at one end of a joint."""
         inner = element.first(tag)
         if inner is None:
-            self.values.fault(element, f"{owner}: <{tag}> is missing", "no such element",
-                              "a joint names its <parent> and its <child>", f'add <{tag} link="…"/>')  # fmt: skip
+            self.values.fault(
+                element,
+                f"{owner}: <{tag}> is missing",
+                "no such element",
+                "a joint names its <parent> and its <child>",
+                f'add <{tag} link="…"/>',
+            )
             return None
         return self.values.attribute(inner, "link", owner)
 
@@ -180,8 +213,13 @@ class _Importer:
                 remedy = did_you_mean(stated, _KINDS)
                 if stated == "planar":
                     remedy = "use two prismatic joints and a continuous one, with massless links between them"
-                self.values.fault(element, f"{owner}: joints of type '{stated}' are unknown here", f"type '{stated}'",
-                                  f"one of {', '.join(_KINDS)}", remedy)  # fmt: skip
+                self.values.fault(
+                    element,
+                    f"{owner}: joints of type '{stated}' are unknown here",
+                    f"type '{stated}'",
+                    f"one of {', '.join(_KINDS)}",
+                    remedy,
+                )
             return None
         if kind in ("fixed", "free"):
             return Joint(name, kind, parent, position=position, rotation=rotation)
@@ -210,8 +248,13 @@ class _Importer:
         floating = roots[0] if self.floating_base and len(roots) == 1 else None
         if self.floating_base and roots in ([], [WORLD]):
             found = f"the root link is '{WORLD}', which is the ground" if roots else "each link has a parent"
-            self.values.fault(self.robot, "no root link that could float", found, "a floating robot has a root link",
-                              "drop floating_base")  # fmt: skip
+            self.values.fault(
+                self.robot,
+                "no root link that could float",
+                found,
+                "a floating robot has a root link",
+                "drop floating_base",
+            )
             floating = None
         done: set[str] = set()
         for start in (*roots, *self.links):

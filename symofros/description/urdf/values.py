@@ -60,8 +60,13 @@ class Values:
         text = element.attributes.get(name)
         if text is None:
             given = ", ".join(element.attributes) or "no attributes"
-            self.fault(element, f"{owner}: <{element.tag}> lacks the attribute '{name}'", given,
-                       f"<{element.tag}> has the attribute '{name}'", f'write <{element.tag} {name}="…">')  # fmt: skip
+            self.fault(
+                element,
+                f"{owner}: <{element.tag}> lacks the attribute '{name}'",
+                given,
+                f"<{element.tag}> has the attribute '{name}'",
+                f'write <{element.tag} {name}="…">',
+            )
         return text
 
     def numbers(self, element: Element, name: str, owner: str, count: int) -> tuple[float, ...] | None:
@@ -107,8 +112,13 @@ class Values:
         x, y, z = self.snapped(stated, (0.0, 1.0, -1.0), owner)
         length = math.hypot(x, y, z)
         if length == 0.0:
-            self.fault(element or owner_element, f"{owner}: the axis has no direction", f"'{x:g} {y:g} {z:g}'",
-                       "an axis is not the zero vector", 'give a direction such as xyz="0 0 1"')  # fmt: skip
+            self.fault(
+                element or owner_element,
+                f"{owner}: the axis has no direction",
+                f"'{x:g} {y:g} {z:g}'",
+                "an axis is not the zero vector",
+                'give a direction such as xyz="0 0 1"',
+            )
         elif abs(length - 1.0) > _UNIT_TOLERANCE:
             self.remarks.add("axes that are not unit vectors are normalised", "joint", _bare(owner))
         return x, y, z
@@ -131,8 +141,13 @@ class Values:
         for part, tag in ((mass, "mass"), (matrix, "inertia")):
             if part is None:
                 found = ", ".join(f"<{child.tag}>" for child in element.children) or "nothing inside"
-                self.fault(element, f"{owner}: <inertial> lacks <{tag}>", found,
-                           "<inertial> holds <mass> and <inertia>", "add it, or remove <inertial>")  # fmt: skip
+                self.fault(
+                    element,
+                    f"{owner}: <inertial> lacks <{tag}>",
+                    found,
+                    "<inertial> holds <mass> and <inertia>",
+                    "add it, or remove <inertial>",
+                )
         if mass is None or matrix is None:
             return None
         kilograms = self.number(mass, "value", owner)

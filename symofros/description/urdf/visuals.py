@@ -21,12 +21,21 @@ Color = tuple[int, int, int]
 
 _PACKAGE = re.compile(r"(?:package|model)://([^/]+)/(.+)\Z")
 _KINDS: dict[str, VisualKind] = {
-    "box": "box", "sphere": "sphere", "cylinder": "cylinder", "capsule": "capsule", "mesh": "mesh",
-}  # fmt: skip
+    "box": "box",
+    "sphere": "sphere",
+    "cylinder": "cylinder",
+    "capsule": "capsule",
+    "mesh": "mesh",
+}
 # Attributes that state a size, and what they are where they are not there.
 _ROUND = (("radius", ""), ("length", ""))
-_SIZES = {"box": (("size", ""),), "sphere": _ROUND[:1], "cylinder": _ROUND, "capsule": _ROUND,
-          "mesh": (("scale", "1 1 1"),)}  # fmt: skip
+_SIZES = {
+    "box": (("size", ""),),
+    "sphere": _ROUND[:1],
+    "cylinder": _ROUND,
+    "capsule": _ROUND,
+    "mesh": (("scale", "1 1 1"),),
+}
 
 
 class Visuals:

@@ -31,8 +31,12 @@ def fed_back(reach: float) -> tuple[sf.Model, str, np.ndarray, sf.DiagramRun]:
     diagram = sf.Diagram("redundant")
     diagram.add_model("m", system, dict(zip(model.names.q, q0, strict=True)) | {"d" + model.names.v[0]: 0.5})
     diagram.add(Constant(name="goal", value=reach * model.frame_pose(frame, q0)[0]))
-    diagram.add(CartesianFeedback(name="c", model="m", frame=frame, kp=25.0, kd=10.0, idle=4.0),
-                p_desired="goal.y", q="arm.q", v="arm.v")  # fmt: skip
+    diagram.add(
+        CartesianFeedback(name="c", model="m", frame=frame, kp=25.0, kd=10.0, idle=4.0),
+        p_desired="goal.y",
+        q="arm.q",
+        v="arm.v",
+    )
     diagram.add(ForwardDynamics(name="arm", model="m"), u="c.tau")
     return model, frame, q0, sf.Simulation(diagram).run(2.0, dt=1e-3)
 

@@ -77,8 +77,9 @@ def test_a_reset_is_located_in_time() -> None:
     assert found["x.y"][-1] == pytest.approx([0.5 + 0.5679, 0.5 + 2 * 0.5679], abs=1e-9)
 
 
-@pytest.mark.parametrize(("reset", "expected"), [("rising", [0, 1, 0, 1, 2]), ("falling", [0, 1, 2, 3, 0]),
-                                                 ("both", [0, 1, 0, 1, 0])])  # fmt: skip
+@pytest.mark.parametrize(
+    ("reset", "expected"), [("rising", [0, 1, 0, 1, 2]), ("falling", [0, 1, 2, 3, 0]), ("both", [0, 1, 0, 1, 0])]
+)
 def test_a_sampled_integrator_resets_at_samples(reset: str, expected: list[int]) -> None:
     integrator = Integrator(name="x", reset=reset, period=STEP)
     found = run(integrator, {"u": np.full(5, 100.0), "reset": [-1, -1, 1, 1, -1]})["y"]

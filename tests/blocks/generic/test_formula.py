@@ -38,8 +38,15 @@ def test_python_is_called_at_samples_and_told_of_the_run() -> None:
         heard.append(t)
         return {"y": 2.0 * inputs["u"]}  # type: ignore[index]
 
-    block = PythonBlock(name="p", function=function, inputs={"u": None}, outputs={"y": (2,)}, period=2 * STEP,
-                        on_begin=lambda: heard.append("begin"), on_end=lambda: heard.append("end"))  # fmt: skip
+    block = PythonBlock(
+        name="p",
+        function=function,
+        inputs={"u": None},
+        outputs={"y": (2,)},
+        period=2 * STEP,
+        on_begin=lambda: heard.append("begin"),
+        on_end=lambda: heard.append("end"),
+    )
     u = np.arange(10.0).reshape(5, 2)
     found = run(block, {"u": u}, compare=0)["y"]
     np.testing.assert_array_equal(found, 2 * u[[0, 0, 2, 2, 4]])

@@ -16,18 +16,30 @@ from symofros.blocks.rotations import EULER
 from tests.blocks.support import refused, run
 
 # Angles at which formulas lose digits: none, tiny, a right angle, half a turn and about it.
-TURNS = np.array([
-    [0, 0, 0], [1e-9, 0, 0], [0, -1e-5, 1e-7], [np.pi / 2, 0, 0], [0, np.pi, 0], [0, 0, np.pi - 1e-7], [1.0, -2.0, 0.5],
-    [0.3, 0.4, -2.5], [-1.2, 0.1, 0.2], [0, np.pi / 2, 0], [2.0, 1.0, 1.5],
-])  # fmt: skip
+TURNS = np.array(
+    [
+        [0, 0, 0],
+        [1e-9, 0, 0],
+        [0, -1e-5, 1e-7],
+        [np.pi / 2, 0, 0],
+        [0, np.pi, 0],
+        [0, 0, np.pi - 1e-7],
+        [1.0, -2.0, 0.5],
+        [0.3, 0.4, -2.5],
+        [-1.2, 0.1, 0.2],
+        [0, np.pi / 2, 0],
+        [2.0, 1.0, 1.5],
+    ]
+)
 ROTATIONS = Rotation.from_rotvec(TURNS)
 FORMS = {
     "matrix": ROTATIONS.as_matrix(),
     "quaternion": -1.5 * ROTATIONS.as_quat(),  # Of any length and sign.
     "rotation_vector": TURNS,
-    "axis_angle": np.hstack([3 * TURNS + [[1.0, 0, 0]] * (TURNS == 0).all(1)[:, None],
-                             np.linalg.norm(TURNS, axis=1)[:, None]]),
-}  # fmt: skip
+    "axis_angle": np.hstack(
+        [3 * TURNS + [[1.0, 0, 0]] * (TURNS == 0).all(1)[:, None], np.linalg.norm(TURNS, axis=1)[:, None]]
+    ),
+}
 
 with (
     warnings.catch_warnings()

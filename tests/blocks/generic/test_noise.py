@@ -59,8 +59,13 @@ def test_components_do_not_follow_each_other() -> None:
 
 @pytest.mark.parametrize(
     ("fields", "found"),
-    [({"seed": -1, "period": 1.0}, "-1"), ({"kind": "pink", "period": 1.0}, "'pink'"), ({}, "period None"),
-     ({"size": 2, "scale": [1, 2, 3], "period": 1.0}, "(3,)"), ({"size": 100, "period": 1.0}, "100")],
-)  # fmt: skip
+    [
+        ({"seed": -1, "period": 1.0}, "-1"),
+        ({"kind": "pink", "period": 1.0}, "'pink'"),
+        ({}, "period None"),
+        ({"size": 2, "scale": [1, 2, 3], "period": 1.0}, "(3,)"),
+        ({"size": 100, "period": 1.0}, "100"),
+    ],
+)
 def test_what_is_wrong_is_said(fields: dict[str, object], found: str) -> None:
     refused(lambda: Noise(name="n", **fields), found)  # type: ignore[arg-type]

@@ -72,8 +72,12 @@ def test_pick_join_and_reshape(rng: np.random.Generator) -> None:
 )
 def test_pick_by_the_names_of_a_model(entries: object, of: str, expected: list[int]) -> None:
     size = 3 if of == "u" else 10
-    found = run(Pick(name="p", entries=entries, model="m", of=of), {"u": [np.arange(size)]}, t_end=0.01,
-                models={"m": (MODELS["planar_robot"], {})})  # fmt: skip
+    found = run(
+        Pick(name="p", entries=entries, model="m", of=of),
+        {"u": [np.arange(size)]},
+        t_end=0.01,
+        models={"m": (MODELS["planar_robot"], {})},
+    )
     assert found["y"][0].tolist() == expected
 
 

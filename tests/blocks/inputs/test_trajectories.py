@@ -97,8 +97,18 @@ def test_orientation_compiled_and_interpreted_agree() -> None:
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_square_stops_at_its_corners(law: str) -> None:
-    square = Square(name="s", start=(0.0, 0.1), corner=(0.3, 0.3), first=(0.6, 0), second=(0, -0.6), law=law,
-                    leave=0.1, approach=1.0, side=0.5, laps=2)  # fmt: skip
+    square = Square(
+        name="s",
+        start=(0.0, 0.1),
+        corner=(0.3, 0.3),
+        first=(0.6, 0),
+        second=(0, -0.6),
+        law=law,
+        leave=0.1,
+        approach=1.0,
+        side=0.5,
+        laps=2,
+    )
     assert square.finish == pytest.approx(0.1 + 1.0 + 8 * 0.5)
     found = run(square, t_end=5.3, dt=0.05)
     corners = np.array([[0.3, 0.3], [0.9, 0.3], [0.9, -0.3], [0.3, -0.3]])
@@ -160,6 +170,6 @@ SQUARE = dict(name="s", start=(0, 0), corner=(1, 1), first=(1, 0), second=(0, 1)
         (lambda: Square(**SQUARE, side=0), "0"),
         (lambda: Square(**SQUARE, laps=0.5), "0.5"),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_is_said(make: Callable[[], object], found: str) -> None:
     refused(make, found)

@@ -42,8 +42,9 @@ def arm_diagram(period: float | None, **fields: Any) -> tuple[Diagram, sf.Model,
     diagram.add_model("m", system, start)
     quaternions = Rotation.from_matrix([R, other[1]]).as_quat()
     diagram.add(CartesianTrajectory(name="path", points=[p, other[0]], times=[0.1, 0.9], quaternions=quaternions))
-    block = InverseKinematics(name="ik", model="m", frame="tool", rows=("x", "y", "z", "rx", "ry", "rz"),
-                              period=period, **fields)  # fmt: skip
+    block = InverseKinematics(
+        name="ik", model="m", frame="tool", rows=("x", "y", "z", "rx", "ry", "rz"), period=period, **fields
+    )
     diagram.add(block, p="path.p", R="path.R", v="path.v", a="path.a")
     return diagram, model, q0
 
@@ -114,10 +115,24 @@ def test_the_actuated_joints_of_a_control_model_follow_and_the_others_stay() -> 
     start = {"q1": -0.1, "e1": 0.02, "q2": 0.1}
     diagram = sf.Diagram("square")
     diagram.add_model("control", system, start, functions=0)
-    diagram.add(Square(name="path", model="control", frame="tool", corner=(0.3, 0.3), first=(0.6, 0), second=(0, -0.6),
-                       approach=0.5, side=0.4))  # fmt: skip
-    diagram.add(InverseKinematics(name="ik", model="control", frame="tool", rows=("x", "y"), period=PERIOD),
-                p="path.p", v="path.v", a="path.a")  # fmt: skip
+    diagram.add(
+        Square(
+            name="path",
+            model="control",
+            frame="tool",
+            corner=(0.3, 0.3),
+            first=(0.6, 0),
+            second=(0, -0.6),
+            approach=0.5,
+            side=0.4,
+        )
+    )
+    diagram.add(
+        InverseKinematics(name="ik", model="control", frame="tool", rows=("x", "y"), period=PERIOD),
+        p="path.p",
+        v="path.v",
+        a="path.a",
+    )
     found = run_both(diagram, 2.2)
     model = sf.compile(with_functions(system, 0))
     names = list(model.names.v)
@@ -141,8 +156,13 @@ def test_a_direction_in_the_plane_is_followed_by_an_angle() -> None:
     for key in "va":
         diagram.add(Constant(name=f"no_{key}", value=[0.0, 0.0]))
         diagram.add(sf.blocks.Join(name=key), u1=f"no_{key}.y", u2=f"path.{key}")
-    diagram.add(InverseKinematics(name="ik", model="control", frame="tool", rows=("x", "y", "rz"), period=PERIOD),
-                p="p.y", angle="angle.y", v="v.y", a="a.y")  # fmt: skip
+    diagram.add(
+        InverseKinematics(name="ik", model="control", frame="tool", rows=("x", "y", "rz"), period=PERIOD),
+        p="p.y",
+        angle="angle.y",
+        v="v.y",
+        a="a.y",
+    )
     found = run_both(diagram, 0.6)
     np.testing.assert_allclose(found["ik.q"].sum(axis=1), found["path.q"][:, 0], atol=1e-10)
     np.testing.assert_allclose(model.frame_pose("tool", found["ik.q"])[0][:, :2], found["p.y"], atol=1e-10)
@@ -157,8 +177,12 @@ def test_loops_stay_closed(period: float | None) -> None:
     diagram = sf.Diagram("loop")
     diagram.add_model("m", system, dict(zip(model.names.q, q0, strict=True)))
     diagram.add(Sine(name="x", amplitude=[0.02], frequency=1.0, mean=p[0], phase=0.0))
-    diagram.add(InverseKinematics(name="ik", model="m", frame="coupler", rows=("x",), period=period),
-                p="x.y", v="x.rate", a="x.acceleration")  # fmt: skip
+    diagram.add(
+        InverseKinematics(name="ik", model="m", frame="coupler", rows=("x",), period=period),
+        p="x.y",
+        v="x.rate",
+        a="x.acceleration",
+    )
     simulation = sf.Simulation(diagram)
     found = simulation.run(1.0, dt=PERIOD, record=PERIOD)
     q, v, a = (found[f"ik.{key}"] for key in "qva")
@@ -178,8 +202,12 @@ def test_out_of_reach_and_through_a_singular_posture_joints_stay_calm() -> None:
     p = model.frame_pose("tool", np.array([0.3, 0.0, 0.7, 0.4]))[0][:2]
     # 1.16 m is the reach: out and back again.
     diagram.add(CartesianTrajectory(name="path", points=[p, [1.3, 0.2], p], times=[0.0, 1.0, 2.0]))
-    diagram.add(InverseKinematics(name="ik", model="control", frame="tool", rows=("x", "y"), period=PERIOD),
-                p="path.p", v="path.v", a="path.a")  # fmt: skip
+    diagram.add(
+        InverseKinematics(name="ik", model="control", frame="tool", rows=("x", "y"), period=PERIOD),
+        p="path.p",
+        v="path.v",
+        a="path.a",
+    )
     found = run_both(diagram, 2.0, agree=1e-6)
     # The first joint is at the origin.
     reach = np.linalg.norm(model.frame_pose("tool", found["ik.q"])[0], axis=1)

@@ -32,8 +32,12 @@ def test_our_c_agrees_with_all(subject: Subject) -> None:
     result = check(subject, FEW)
     assert result.ok, [row for row in result.comparisons if not row.ok]
     assert {row.engine for row in result.comparisons} == {
-        "pinocchio", "mujoco", "interpreted", "description", "symofros"
-    }  # fmt: skip
+        "pinocchio",
+        "mujoco",
+        "interpreted",
+        "description",
+        "symofros",
+    }
     of_trees = {*QUANTITIES, "motion_energy", "energy_drift"} - CONSTRAINED - LOOPS
     assert {row.quantity for row in result.comparisons} == of_trees
 
@@ -74,12 +78,15 @@ def test_slight_tilts_are_kept(tilt: float) -> None:
     assert result.ok, [(row.engine, row.quantity, row.error) for row in result.comparisons if not row.ok]
 
 
-@pytest.mark.parametrize(("force", "word"), [
-    ({"effort": ("-0.1*sign(dq)",)}, "sign"),
-    ({"elements": (sf.Friction(0.1),)}, "friction"),
-    ({"elements": (sf.Stop(100.0, upper=0.1),)}, "stop"),
-    ({"elements": (sf.Damper(0.0, 0.1),)}, "damper"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("force", "word"),
+    [
+        ({"effort": ("-0.1*sign(dq)",)}, "sign"),
+        ({"elements": (sf.Friction(0.1),)}, "friction"),
+        ({"elements": (sf.Stop(100.0, upper=0.1),)}, "stop"),
+        ({"elements": (sf.Damper(0.0, 0.1),)}, "damper"),
+    ],
+)
 def test_a_corner_in_a_force_is_no_drift_of_ours(force: dict[str, tuple[object, ...]], word: str) -> None:
     joint = sf.Joint("q", "revolute", axis=(0, 1, 0), **force)  # type: ignore[arg-type]
     result = check(subject_of(sf.System("dry", [sf.RigidBody("rod", joint, UNIT)])), FEW)

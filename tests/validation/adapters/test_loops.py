@@ -24,8 +24,17 @@ from validation.contract.quantities import LOOPS
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import assemble
 
-REPRESENTED = ("four_bar", "two_four_bars", "slider_crank", "andrews_squeezer", "parallelogram", "bricard", "stewart",
-               "delta_rods", "grasp")  # fmt: skip
+REPRESENTED = (
+    "four_bar",
+    "two_four_bars",
+    "slider_crank",
+    "andrews_squeezer",
+    "parallelogram",
+    "bricard",
+    "stewart",
+    "delta_rods",
+    "grasp",
+)
 REDUNDANT = ("parallelogram", "bricard")
 # What was asked for; most are compared to 1e-9. Where the condition allows no better, this still holds.
 LARGEST_ERROR = 1e-8
@@ -98,23 +107,29 @@ def two_balls(*closures: sf.Constraint, kind: str = "ball") -> Subject:
 A, B = ("a", "e"), ("b", "e")
 
 
-@pytest.mark.parametrize(("constraint", "reason"), [
-    (sf.Rod("k", A, B, 1.0), "no Rod"),
-    (sf.KnifeEdge("k", A), "no KnifeEdge"),
-    (sf.Closure("k", A, B, (), ("x",)), "neither a point, a hinge nor a weld"),
-    (sf.Closure("k", A, B, ("x", "y"), ("x", "y", "z")), "neither a point, a hinge nor a weld"),
-    (sf.Closure("k", A, B, ("x", "y")), "leaves a direction free in which the bodies do move"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("constraint", "reason"),
+    [
+        (sf.Rod("k", A, B, 1.0), "no Rod"),
+        (sf.KnifeEdge("k", A), "no KnifeEdge"),
+        (sf.Closure("k", A, B, (), ("x",)), "neither a point, a hinge nor a weld"),
+        (sf.Closure("k", A, B, ("x", "y"), ("x", "y", "z")), "neither a point, a hinge nor a weld"),
+        (sf.Closure("k", A, B, ("x", "y")), "leaves a direction free in which the bodies do move"),
+    ],
+)
 def test_what_pinocchio_can_not_represent(constraint: sf.Constraint, reason: str) -> None:
     found = pinocchio_loops.build(two_balls(constraint))
     assert isinstance(found, Unsupported) and reason in found.reason
 
 
-@pytest.mark.parametrize(("subject", "reason"), [
-    (two_balls(sf.KnifeEdge("k", A)), "no KnifeEdge"),
-    (two_balls(sf.Closure("k", A, B, (), ("x",))), "one blocked rotation is an angle to Exudyn"),
-    (two_balls(sf.Rod("k", A, B, 1.0), kind="screw"), "no screw joint"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("subject", "reason"),
+    [
+        (two_balls(sf.KnifeEdge("k", A)), "no KnifeEdge"),
+        (two_balls(sf.Closure("k", A, B, (), ("x",))), "one blocked rotation is an angle to Exudyn"),
+        (two_balls(sf.Rod("k", A, B, 1.0), kind="screw"), "no screw joint"),
+    ],
+)
 def test_what_exudyn_is_not_asked(subject: Subject, reason: str) -> None:
     found = exudyn_loops.build(subject)
     assert isinstance(found, Unsupported) and reason in found.reason
@@ -124,8 +139,10 @@ def test_no_posture_to_compare_at() -> None:
     """The frames are a metre apart at the nearest."""
     far = sf.Closure("k", ("world", None), ("b", "e"))
     system = two_balls(far).system
-    bodies = [system.bodies[0], sf.RigidBody("b", sf.Joint("jb", "ball", position=(3, 0, 0)), SOLID,
-                                             (sf.Frame("e", (0.5, 0, 0)),))]  # fmt: skip
+    bodies = [
+        system.bodies[0],
+        sf.RigidBody("b", sf.Joint("jb", "ball", position=(3, 0, 0)), SOLID, (sf.Frame("e", (0.5, 0, 0)),)),
+    ]
     found = check(Subject("far", sf.System("far", bodies, constraints=(far,))), PINOCCHIO)
     assert not found.ok
     assert "no random state leads to a posture" in found.comparisons[0].note

@@ -52,16 +52,22 @@ def trees(draw: st.DrawFn) -> sf.System:
         more: dict[str, object] = {}
         if kind == "euler":
             names = tuple(f"{c}{i}" for c in "xyzabc")
-            more = {"coordinates": names, "moving_position": names[:3],
-                    "moving_rotation": sf.Rotation.rpy(*names[3:])}  # fmt: skip
+            more = {"coordinates": names, "moving_position": names[:3], "moving_rotation": sf.Rotation.rpy(*names[3:])}
         elif kind == "universal":
             more = {"axis2": (0.2, -1.0, 0.5)}
         elif kind == "screw":
             more = {"pitch": 0.3}
         joint = sf.Joint(
-            f"q{i}", "general" if kind == "euler" else kind, parent, None, draw(vector), draw(rotation), draw(axis),
-            armature=draw(st.sampled_from([0.0, 0.05])), **more,
-        )  # fmt: skip
+            f"q{i}",
+            "general" if kind == "euler" else kind,
+            parent,
+            None,
+            draw(vector),
+            draw(rotation),
+            draw(axis),
+            armature=draw(st.sampled_from([0.0, 0.05])),
+            **more,
+        )
         bodies.append(sf.RigidBody(f"b{i}", joint, draw(inertias())))
     return sf.System("tree", bodies, gravity=draw(st.sampled_from([(0, 0, -9.81), (1.0, 2.0, 3.0)])))
 

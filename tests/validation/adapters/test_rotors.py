@@ -24,8 +24,11 @@ def with_rotors(seed: int) -> sf.System:
     """A random tree with rotors: on a parent and its joint's axis, on the own link, on a far body, two on one joint."""
     tree = random_tree(300 + seed, n=7, kinds=("revolute", "prismatic", "ball", "revolute", "free"))
     driving = [body for body in tree.bodies if body.joint and body.joint.kind == "revolute"]
-    wheels = [(sf.Rotor(0.02, 11.0),), (sf.Rotor(0.01, -7.0, (1, 2, 0), driving[-1].name), sf.Rotor(0.03, 5.0)),
-              (sf.Rotor(0.02, 13.0, (0, 1, 1), driving[0].name),)]  # fmt: skip
+    wheels = [
+        (sf.Rotor(0.02, 11.0),),
+        (sf.Rotor(0.01, -7.0, (1, 2, 0), driving[-1].name), sf.Rotor(0.03, 5.0)),
+        (sf.Rotor(0.02, 13.0, (0, 1, 1), driving[0].name),),
+    ]
     pairs = zip(driving, wheels, strict=False)
     return tree.with_bodies(*(replace(body, joint=replace(body.joint, rotors=driven)) for body, driven in pairs))
 
@@ -39,11 +42,15 @@ def test_engines_agree_on_rotors(seed: int) -> None:
     assert "disagree" not in found.values()
 
 
-@pytest.mark.parametrize(("change", "wrong"), [
-    ({"ratio": 61.0}, {"mass_matrix", "bias", "kinetic_energy"}),
-    ({"axis": (0.0, 1.0, 0.01), "carrier": "inner"}, {"mass_matrix", "bias", "kinetic_energy"}),
-    ({"axis": (0.0, 1.0, 0.0), "carrier": "inner"}, set()),
-], ids=["ratio", "axis", "same axis"])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "wrong"),
+    [
+        ({"ratio": 61.0}, {"mass_matrix", "bias", "kinetic_energy"}),
+        ({"axis": (0.0, 1.0, 0.01), "carrier": "inner"}, {"mass_matrix", "bias", "kinetic_energy"}),
+        ({"axis": (0.0, 1.0, 0.0), "carrier": "inner"}, set()),
+    ],
+    ids=["ratio", "axis", "same axis"],
+)
 def test_they_see_a_rotor_that_is_not_ours(
     change: dict[str, object], wrong: set[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

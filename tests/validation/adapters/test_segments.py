@@ -51,8 +51,11 @@ def orders(errors: list[Any]) -> np.ndarray:
 
 
 @pytest.mark.parametrize("engine", TREE_ENGINES)
-@pytest.mark.parametrize("row", [row for row in data("elastica_tip_load")["table"] if row["alpha"] in (0.05, 0.75, 10)],
-                         ids=lambda row: f"alpha {row['alpha']}")  # fmt: skip
+@pytest.mark.parametrize(
+    "row",
+    [row for row in data("elastica_tip_load")["table"] if row["alpha"] in (0.05, 0.75, 10)],
+    ids=lambda row: f"alpha {row['alpha']}",
+)
 def test_deflection_at_rest_converges_to_the_elastica(engine: str, row: dict[str, Any]) -> None:
     exact = np.array([1.0 - row["tip_shortening"], row["tip_y"]])
     poses = [links_of(cantilever(), n, engine).tip_at_rest((0, row["alpha"], 0))[:2] for n in (8, 16, 32)]
@@ -76,8 +79,18 @@ def test_a_strip_bent_both_ways_twists_as_exudyns_does() -> None:
     """The Princeton strip at 45 degrees: three models that share nothing, to 1e-4 of the deflection."""
     strip, load = Strip(), 8.896
     part = float(np.sqrt(0.5))
-    beam = sf.Beam("b", sf.Joint("root"), strip.length, 1.0, EI_y=strip.EI_y, EI_z=strip.EI_z, GJ=strip.GJ,
-                   bend_y=1, bend_z=1, twist=1)  # fmt: skip
+    beam = sf.Beam(
+        "b",
+        sf.Joint("root"),
+        strip.length,
+        1.0,
+        EI_y=strip.EI_y,
+        EI_z=strip.EI_z,
+        GJ=strip.GJ,
+        bend_y=1,
+        bend_z=1,
+        twist=1,
+    )
     system = sf.System("strip", [beam], gravity=(0, 0, 0))
     tips = [links_of(system, n).tip_at_rest((0, load * part, load * part))[:3] for n in (4, 8, 16)]
     assert np.all(orders([tips[1] - tips[0], tips[2] - tips[1]]) < 1.7)  # Turns that follow each other: first order.

@@ -19,10 +19,13 @@ FLAT = sf.Inertia(1.0, (0.1, 0, 0), (0.1, 0.1, 0.5))  # 0.5 > 0.1 + 0.1: no body
 
 def cross_and_rod(**cross: object) -> sf.System:
     """A universal joint: its cross is light, or has no mass at all."""
-    return sf.System("universal", [
-        sf.RigidBody("cross", sf.Joint("a", "revolute", axis=(1, 0, 0)), **cross),
-        sf.RigidBody("rod", sf.Joint("b", "revolute", "cross", axis=(0, 1, 0)), UNIT),
-    ])  # fmt: skip
+    return sf.System(
+        "universal",
+        [
+            sf.RigidBody("cross", sf.Joint("a", "revolute", axis=(1, 0, 0)), **cross),
+            sf.RigidBody("rod", sf.Joint("b", "revolute", "cross", axis=(0, 1, 0)), UNIT),
+        ],
+    )
 
 
 def test_mujoco_has_no_massless_bodies_but_others_do() -> None:

@@ -29,8 +29,14 @@ from validation.campaigns.session import begin
 from validation.campaigns.tasks import tasks
 
 ROOT = Path(__file__).parents[3]
-PLAN = {"kind": "check", "models": ("pendulum", "double_pendulum"), "states": 240, "batch": 20, "seed": 3,
-        "engines": ("pinocchio",)}  # fmt: skip
+PLAN = {
+    "kind": "check",
+    "models": ("pendulum", "double_pendulum"),
+    "states": 240,
+    "batch": 20,
+    "seed": 3,
+    "engines": ("pinocchio",),
+}
 PATIENCE = 120.0  # [s]
 
 
@@ -48,9 +54,18 @@ class Cluster:
     def worker(self, number: int) -> subprocess.Popen[bytes]:
         # Without a nanny, who would start another in its place: whoever dies is gone.
         return self.started(
-            self.folder / f"worker{number}.log", "worker", self.address, "--host", "127.0.0.1", "--nthreads", "1",
-            "--no-nanny", "--no-dashboard", "--local-directory", str(self.folder),
-        )  # fmt: skip
+            self.folder / f"worker{number}.log",
+            "worker",
+            self.address,
+            "--host",
+            "127.0.0.1",
+            "--nthreads",
+            "1",
+            "--no-nanny",
+            "--no-dashboard",
+            "--local-directory",
+            str(self.folder),
+        )
 
     def started(self, log: Path, *words: str) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-m", "distributed.cli.dask_" + words[0], *words[1:]]
@@ -112,9 +127,23 @@ def test_the_rows_of_a_local_campaign(tmp_path: Path) -> None:
     models, engines = ",".join(PLAN["models"]), ",".join(PLAN["engines"])  # type: ignore[arg-type]
     with cluster(tmp_path / "cluster") as made:
         words = [
-            "campaign", "run", "-o", str(tmp_path / "c"), "--models", models, "--engines", engines, "--states", "240",
-            "--batch", "20", "--seed", "3", "--scheduler", made.address,
-        ]  # fmt: skip
+            "campaign",
+            "run",
+            "-o",
+            str(tmp_path / "c"),
+            "--models",
+            models,
+            "--engines",
+            engines,
+            "--states",
+            "240",
+            "--batch",
+            "20",
+            "--seed",
+            "3",
+            "--scheduler",
+            made.address,
+        ]
         result = CliRunner().invoke(app, words)
         assert result.exit_code == 0, result.output
         workers = {line["worker"] for line in journal(tmp_path / "c") if line["event"] == "done"}

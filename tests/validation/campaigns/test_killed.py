@@ -22,8 +22,14 @@ from validation.inputs.cases import standard_set
 
 ROOT = Path(__file__).parents[3]
 WORKERS = 2
-SMALL = {"kind": "check", "models": ("pendulum", "double_pendulum"), "states": 600, "batch": 20, "seed": 3,
-         "engines": ("pinocchio",)}  # fmt: skip
+SMALL = {
+    "kind": "check",
+    "models": ("pendulum", "double_pendulum"),
+    "states": 600,
+    "batch": 20,
+    "seed": 3,
+    "engines": ("pinocchio",),
+}
 PATIENCE = 600.0  # [s], for a campaign that hangs.
 
 
@@ -44,10 +50,14 @@ def resume(folder: Path) -> subprocess.Popen[bytes]:
 def launched(command: list[str]) -> subprocess.Popen[bytes]:
     words = [sys.executable, "-m", "validation", "campaign", *command]
     return subprocess.Popen(
-        words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+        words,
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
         # A shell's background jobs start with it ignored, and so do their children.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )  # fmt: skip
+    )
 
 
 def journal(folder: Path) -> list[dict[str, object]]:

@@ -17,9 +17,12 @@ CHECK: dict[str, Any] = {
     "batch": 150,
 }
 SWEEP: dict[str, Any] = {
-    "kind": "sweep", "model": "double_pendulum", "quantity": "end_state", "motion": {"t_end": 0.1},
+    "kind": "sweep",
+    "model": "double_pendulum",
+    "quantity": "end_state",
+    "motion": {"t_end": 0.1},
     "over": {"m1": {"low": 1.0, "high": 2.0, "count": 3}},
-}  # fmt: skip
+}
 
 
 def test_the_same_plan_falls_into_the_same_batches() -> None:

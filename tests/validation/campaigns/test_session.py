@@ -96,9 +96,21 @@ def listening(process: int) -> set[tuple[str, int]]:
 
 
 def row(**given: Any) -> dict[str, Any]:
-    base = {"batch": 0, "model": "arm", "engine": "pinocchio", "quantity": "bias", "status": "agree", "agree": True,
-            "states": 10, "states_asked": 10, "error": 1e-15, "worst_state": 3, "scale": 2.0, "tolerance": 1e-12,
-            "note": ""}  # fmt: skip
+    base = {
+        "batch": 0,
+        "model": "arm",
+        "engine": "pinocchio",
+        "quantity": "bias",
+        "status": "agree",
+        "agree": True,
+        "states": 10,
+        "states_asked": 10,
+        "error": 1e-15,
+        "worst_state": 3,
+        "scale": 2.0,
+        "tolerance": 1e-12,
+        "note": "",
+    }
     return base | given
 
 
@@ -138,9 +150,14 @@ def test_a_sweep_counts_its_failures() -> None:
 
 
 def test_effort_is_counted_from_the_journal() -> None:
-    lines = [{"event": "session", "time": 0.0}, {"event": "begun", "batch": 0, "time": 1.0},
-             {"event": "begun", "batch": 1, "time": 5.0}, {"event": "session", "time": 100.0},
-             {"event": "begun", "batch": 1, "time": 101.0}, {"event": "done", "batch": 1, "time": 103.0}]  # fmt: skip
+    lines = [
+        {"event": "session", "time": 0.0},
+        {"event": "begun", "batch": 0, "time": 1.0},
+        {"event": "begun", "batch": 1, "time": 5.0},
+        {"event": "session", "time": 100.0},
+        {"event": "begun", "batch": 1, "time": 101.0},
+        {"event": "done", "batch": 1, "time": 103.0},
+    ]
     assert effort(lines) == {"sessions": 2, "seconds": 8.0, "executions": 3, "repeated": [1]}
 
 

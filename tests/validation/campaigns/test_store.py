@@ -15,9 +15,12 @@ from validation.campaigns.errors import StoreError
 from validation.campaigns.store import Store, manifest_of, provenance_of
 
 MANIFEST: dict[str, Any] = {
-    "hash": "abc", "plan": {"kind": "check", "seed": 0}, "models": {"arm": "1"}, "versions": {"numpy": "2"},
+    "hash": "abc",
+    "plan": {"kind": "check", "seed": 0},
+    "models": {"arm": "1"},
+    "versions": {"numpy": "2"},
     "begun": "now",
-}  # fmt: skip
+}
 
 
 @pytest.fixture

@@ -13,14 +13,24 @@ from validation.campaigns.tasks import tasks
 from validation.inputs.cases import Case
 
 END_STATE: dict[str, Any] = {
-    "kind": "sweep", "model": "double_pendulum", "quantity": "end_state", "design": "sobol", "points": 16, "batch": 6,
+    "kind": "sweep",
+    "model": "double_pendulum",
+    "quantity": "end_state",
+    "design": "sobol",
+    "points": 16,
+    "batch": 6,
     "over": {"m1": {"low": 0.5, "high": 2.0}, "L2": {"low": 0.2, "high": 0.8, "log": True}},
-    "start": {"q": {"q1": 0.4}, "v": {"q2": 0.1}}, "inputs": {"q1": 0.2}, "motion": {"t_end": 0.2, "dt": 0.002},
-}  # fmt: skip
+    "start": {"q": {"q1": 0.4}, "v": {"q2": 0.1}},
+    "inputs": {"q1": 0.2},
+    "motion": {"t_end": 0.2, "dt": 0.002},
+}
 FREQUENCIES: dict[str, Any] = {
-    "kind": "sweep", "model": "spinning_beam", "quantity": "frequencies", "modes": 2,
+    "kind": "sweep",
+    "model": "spinning_beam",
+    "quantity": "frequencies",
+    "modes": 2,
     "over": {"dhub": {"low": 0.0, "high": 6.0, "count": 3}, "L": {"low": 6.0, "high": 9.0, "count": 2}},
-}  # fmt: skip
+}
 
 
 def sweeper(data: dict[str, Any]) -> Sweeper:

@@ -14,9 +14,12 @@ COMPARISON = {"model": "arm", "engine": "pinocchio", "quantity": "bias", "error"
 CHECK: dict[str, Any] = {"ok": True, "comparisons": [COMPARISON], "models": [{}], "settings": {"states": 10}}
 GROUP = {"agree": True, "error": 1e-14, "tolerance": 1e-12}
 CAMPAIGN: dict[str, Any] = {
-    "ok": True, "states": 100_000, "models": 30, "groups": [GROUP],
+    "ok": True,
+    "states": 100_000,
+    "models": 30,
+    "groups": [GROUP],
     "effort": {"sessions": 3, "seconds": 200.0, "executions": 210, "repeated": [4]},
-}  # fmt: skip
+}
 MODEL = {"model": "arm", "planted": 10, "silent": 1, "too_small": 1, "survived": []}
 MUTATION: dict[str, Any] = {"ok": True, "planted": 10, "models": [MODEL]}
 ORACLE: dict[str, Any] = {"ok": True, "comparisons": [{"model": "arm", "digits": {"M": 28.0}, "required": 25.0}]}

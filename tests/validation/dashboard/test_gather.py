@@ -12,10 +12,16 @@ from validation.dashboard.gather import Entry, doubts, gather, origin_of
 
 TODAY = datetime.date(2026, 11, 21)
 FUZZ: dict[str, Any] = {
-    "ok": True, "inputs": 10, "peak_memory_mib": 50, "faults": [], "kinds": {"yaml": {"slowest": 0.5}},
-    "date": "2026-11-20 10:00 UTC", "versions": {"numpy": "2.0"}, "flags": "-O2",
+    "ok": True,
+    "inputs": 10,
+    "peak_memory_mib": 50,
+    "faults": [],
+    "kinds": {"yaml": {"slowest": 0.5}},
+    "date": "2026-11-20 10:00 UTC",
+    "versions": {"numpy": "2.0"},
+    "flags": "-O2",
     "machine": {"processor": "Z80", "cores": "1", "system": "CP/M"},
-}  # fmt: skip
+}
 
 
 def entry(folder: Path, name: str = "fuzz") -> Entry:
@@ -73,8 +79,12 @@ def test_a_package_that_is_not_installed_makes_nothing_stale() -> None:
 
 @pytest.mark.parametrize("place", ["top", "machine", "facts"])
 def test_origins_are_found_wherever_a_report_keeps_them(place: str) -> None:
-    told = {"date": "2026-01-01", "flags": {"ours": "-O2", "theirs": "-O3"}, "versions": {"numpy": "2"},
-            "processor": "Z80"}  # fmt: skip
+    told = {
+        "date": "2026-01-01",
+        "flags": {"ours": "-O2", "theirs": "-O3"},
+        "versions": {"numpy": "2"},
+        "processor": "Z80",
+    }
     data = told | {"machine": {"processor": "Z80"}} if place == "top" else {place: told}
     origin = origin_of(data)
     assert (origin.date, origin.machine, origin.versions) == ("2026-01-01", "Z80", {"numpy": "2"})

@@ -10,12 +10,15 @@ def joint(name: str, kind: str, parent: str, **more: object) -> sf.Joint:
 
 
 def test_depth_first_in_the_order_of_description() -> None:
-    system = sf.System("t", [
-        sf.RigidBody("c", joint("jc", "revolute", "a")),  # Described before its parent.
-        sf.RigidBody("a", joint("ja", "ball", "world")),
-        sf.RigidBody("b", joint("jb", "free", "world")),
-        sf.RigidBody("d", joint("jd", "prismatic", "a")),
-    ])  # fmt: skip
+    system = sf.System(
+        "t",
+        [
+            sf.RigidBody("c", joint("jc", "revolute", "a")),  # Described before its parent.
+            sf.RigidBody("a", joint("ja", "ball", "world")),
+            sf.RigidBody("b", joint("jb", "free", "world")),
+            sf.RigidBody("d", joint("jd", "prismatic", "a")),
+        ],
+    )
     assembly = assemble(system)
     assert [m.body for m in assembly.movers] == ["a", "c", "d", "b"]
     assert [m.parent for m in assembly.movers] == [BASE, 0, 0, BASE]
@@ -35,11 +38,14 @@ def test_order_is_the_models_own() -> None:
 
 
 def test_fixed_bodies_are_merged() -> None:
-    system = sf.System("t", [
-        sf.RigidBody("arm", joint("j", "revolute", "world"), sf.Inertia(1.0, moments=(1, 1, 1))),
-        sf.RigidBody("plate", joint("f", "fixed", "arm", position=(0, 0, 1)), None, [sf.Frame("hole", (1, 0, 0))]),
-        sf.RigidBody("tool", joint("g", "fixed", "plate", frame="hole", position=(0, 1, 0)), sf.Inertia(3.0)),
-    ])  # fmt: skip
+    system = sf.System(
+        "t",
+        [
+            sf.RigidBody("arm", joint("j", "revolute", "world"), sf.Inertia(1.0, moments=(1, 1, 1))),
+            sf.RigidBody("plate", joint("f", "fixed", "arm", position=(0, 0, 1)), None, [sf.Frame("hole", (1, 0, 0))]),
+            sf.RigidBody("tool", joint("g", "fixed", "plate", frame="hole", position=(0, 1, 0)), sf.Inertia(3.0)),
+        ],
+    )
     assembly = assemble(system)
     merged = assembly.movers[0].merged()
     assert merged.mass == 4.0
@@ -51,11 +57,14 @@ def test_fixed_bodies_are_merged() -> None:
 
 
 def test_what_is_fixed_to_the_base_has_no_inertia() -> None:
-    system = sf.System("t", [
-        sf.RigidBody("ground", None, UNIT),
-        sf.RigidBody("pillar", joint("f", "fixed", "ground", position=(0, 0, 2)), UNIT),
-        sf.RigidBody("arm", joint("j", "revolute", "pillar"), UNIT),
-    ])  # fmt: skip
+    system = sf.System(
+        "t",
+        [
+            sf.RigidBody("ground", None, UNIT),
+            sf.RigidBody("pillar", joint("f", "fixed", "ground", position=(0, 0, 2)), UNIT),
+            sf.RigidBody("arm", joint("j", "revolute", "pillar"), UNIT),
+        ],
+    )
     assembly = assemble(system)
     assert [mass.body for mass in assembly.movers[0].masses] == ["arm"]
     assert assembly.frames["pillar"].mover == BASE
@@ -72,10 +81,13 @@ def test_inertia_about_the_body_origin_and_turned_axes() -> None:
 
 def test_names_of_frames() -> None:
     frames = [sf.Frame("tip"), sf.Frame("left")]
-    system = sf.System("t", [
-        sf.RigidBody("a", joint("ja", "revolute", "world"), UNIT, frames),
-        sf.RigidBody("b", joint("jb", "revolute", "a"), UNIT, [sf.Frame("tip"), sf.Frame("a")]),
-    ])  # fmt: skip
+    system = sf.System(
+        "t",
+        [
+            sf.RigidBody("a", joint("ja", "revolute", "world"), UNIT, frames),
+            sf.RigidBody("b", joint("jb", "revolute", "a"), UNIT, [sf.Frame("tip"), sf.Frame("a")]),
+        ],
+    )
     assert set(assemble(system).frames) == {"world", "a", "b", "a.tip", "b.tip", "left", "b.a"}
 
 

@@ -6,7 +6,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.passes.count import count_program
+from symofros.generator.passes.count import count_program
 from validation.passes.command import table
 from validation.passes.measure import AGAIN, ALL, APART, Measured, measure
 from validation.passes.measure import MODELS as MEASURED

@@ -62,8 +62,10 @@ def test_every_claim_holds_on_a_coarse_grid(quick: tuple[Path, dict[str, Any]]) 
             ended, values = np.array(found["ended"]), np.array(found["values"], dtype=object)
             assert values.shape == (len(found["y"]), len(found["x"]))
             # Nothing is silently wrong: what has no number has an outcome.
-            assert all((v is None) == (e not in ("finished", "event"))
-                       for v, e in zip(values.ravel(), ended.ravel(), strict=True)), name  # fmt: skip
+            assert all(
+                (v is None) == (e not in ("finished", "event"))
+                for v, e in zip(values.ravel(), ended.ravel(), strict=True)
+            ), name
 
 
 def test_the_page_is_whole_and_self_contained(quick: tuple[Path, dict[str, Any]]) -> None:
@@ -176,8 +178,10 @@ class TestMaps:
 
     def test_picture(self) -> None:
         grid = Grid("p [-]", (1.0, 10.0, 100.0), (1.0, 100.0))
-        found = a_map([[0.1, 0.1, 0.1], [0.1, 0.1, 5.0], [0.1, math.nan, 7.0]],
-                      limits=(Limit("one", np.array([1.0, 100.0]), np.array([10.0, 10.0])),))  # fmt: skip
+        found = a_map(
+            [[0.1, 0.1, 0.1], [0.1, 0.1, 5.0], [0.1, math.nan, 7.0]],
+            limits=(Limit("one", np.array([1.0, 100.0]), np.array([10.0, 10.0])),),
+        )
         svg = heat.svg(found, grid, grid, "a < b [m]")
         cells: Counter[str] = Counter()
         for kind, boxes in re.findall(r'<path class="([a-z-]+)"[^>]* d="([^"]*)"', svg):

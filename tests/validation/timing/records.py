@@ -6,16 +6,25 @@ from validation.timing.models import CHAINS
 from validation.timing.record import Entry, Made, Record
 
 
-def entry(model: str = "panda", function: str = "dynamics", peer: str = "pinocchio", variant: str = "gcc 12, local",
-          ours: float = 100.0, theirs: float = 800.0, batch: float | None = 20.0,
-          columns: float | None = None) -> Entry:  # fmt: skip
+def entry(
+    model: str = "panda",
+    function: str = "dynamics",
+    peer: str = "pinocchio",
+    variant: str = "gcc 12, local",
+    ours: float = 100.0,
+    theirs: float = 800.0,
+    batch: float | None = 20.0,
+    columns: float | None = None,
+) -> Entry:
     rows, by_columns = (None if time is None else (time - 1.0, time) for time in (batch, columns))
-    return Entry(model, 7, function, peer, variant, (ours - 1.0, ours), rows, (theirs - 1.0, theirs), 1e-15, "2026",
-                 by_columns)  # fmt: skip
+    return Entry(
+        model, 7, function, peer, variant, (ours - 1.0, ours), rows, (theirs - 1.0, theirs), 1e-15, "2026", by_columns
+    )
 
 
-def made(model: str = "panda", function: str = "dynamics", by: str = "symofros", time: float = 100.0,
-         operations: int = 1000) -> Made:  # fmt: skip
+def made(
+    model: str = "panda", function: str = "dynamics", by: str = "symofros", time: float = 100.0, operations: int = 1000
+) -> Made:
     counts = {"mul": operations // 2, "add": operations // 2, "div": 0, "call": 0}
     return Made(model, 7, function, by, "gcc -O3", time, 0.01, 0.3, 40000, 9000, 500, counts, 640)
 

@@ -99,10 +99,12 @@ def test_the_smallest_system_has_one_coordinate() -> None:
 
 @pytest.mark.parametrize(
     ("joint", "word"),
-    [(sf.Joint("q", "revolute", axis=(1, 0, 0)), "not a hinge about z"),
-     (sf.Joint("q", "prismatic"), "not a hinge about z"),
-     (sf.Joint("q", "revolute", rotation=sf.Rotation.rpy(0.1, 0, 0)), "turned")],
-)  # fmt: skip
+    [
+        (sf.Joint("q", "revolute", axis=(1, 0, 0)), "not a hinge about z"),
+        (sf.Joint("q", "prismatic"), "not a hinge about z"),
+        (sf.Joint("q", "revolute", rotation=sf.Rotation.rpy(0.1, 0, 0)), "turned"),
+    ],
+)
 def test_what_is_not_planar_is_named(joint: sf.Joint, word: str) -> None:
     body = sf.RigidBody("b", joint, sf.Inertia(1.0, moments=(1, 1, 1)))
     with pytest.raises(ValueError, match=f"joint 'q': .*{word}"):

@@ -22,8 +22,16 @@ from validation.timing.ours import our_loops
 from validation.timing.race import error
 from validation.timing.task import Task, task
 
-FUNCTIONS = ("mass_matrix", "bias", "dynamics", "inverse_dynamics", "forward_dynamics", "frame_jacobian",
-             "inverse_dynamics_derivatives", "forward_dynamics_derivatives")  # fmt: skip
+FUNCTIONS = (
+    "mass_matrix",
+    "bias",
+    "dynamics",
+    "inverse_dynamics",
+    "forward_dynamics",
+    "frame_jacobian",
+    "inverse_dynamics_derivatives",
+    "forward_dynamics_derivatives",
+)
 # Rounding of a solve is amplified by the condition of M.
 TOLERANCE = {"forward_dynamics": 1e-11, "forward_dynamics_derivatives": 1e-11}
 
@@ -43,12 +51,13 @@ def interpreted(given: Task, name: str) -> Array:
     model = sf.compile(given.system, sf.Options(backend="interpreter"))
     q, v, a, u = given.states.q, given.states.v, given.states.a, given.states.u
     parts = {
-        "mass_matrix": lambda: [model.mass_matrix(q)], "bias": lambda: [model.bias(q, v)],
+        "mass_matrix": lambda: [model.mass_matrix(q)],
+        "bias": lambda: [model.bias(q, v)],
         "dynamics": lambda: [model.mass_matrix(q), model.bias(q, v)],
         "inverse_dynamics": lambda: [model.inverse_dynamics(q, v, a)],
         "forward_dynamics": lambda: [model.forward_dynamics(q, v, u)],
         "frame_jacobian": lambda: [model.frame_jacobian(given.frame, q)],
-    }[name]()  # fmt: skip
+    }[name]()
     return np.concatenate([part.reshape(len(q), -1) for part in parts], axis=1)
 
 
@@ -86,8 +95,10 @@ def test_slides_and_armatures_are_in_the_recursions(name: str) -> None:
     q, v = model.random_state(rng)
     tau, a = rng.standard_normal((2, model.nv))
     tree = CasadiTree(given.system)
-    found = {name: np.array(tree.function(name, 0).call([q, v, a, tau])[0]).ravel()
-             for name in ("mass_matrix", "bias", "inverse_dynamics", "forward_dynamics")}  # fmt: skip
+    found = {
+        name: np.array(tree.function(name, 0).call([q, v, a, tau])[0]).ravel()
+        for name in ("mass_matrix", "bias", "inverse_dynamics", "forward_dynamics")
+    }
     M, h = model.mass_matrix(q), model.bias(q, v)
     scale = np.abs(M).max() + np.abs(h).max()
     np.testing.assert_allclose(found["mass_matrix"], M.ravel(), atol=1e-12 * scale)
@@ -100,8 +111,10 @@ def test_world_axes_give_the_same_inertia() -> None:
     tree = CasadiTree(chain(5, symbolic=False))
     import casadi
 
-    both = [casadi.Function("M", [tree.q], [casadi.vertcat(*(x for row in tree._composite(links) for x in row))])
-            for links in (tree.links, in_world(tree.links))]  # fmt: skip
+    both = [
+        casadi.Function("M", [tree.q], [casadi.vertcat(*(x for row in tree._composite(links) for x in row))])
+        for links in (tree.links, in_world(tree.links))
+    ]
     q = np.random.default_rng(1).uniform(-3, 3, 5)
     np.testing.assert_allclose(*(np.array(M(q)) for M in both), rtol=1e-12, atol=1e-13)
 

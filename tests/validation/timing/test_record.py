@@ -22,8 +22,14 @@ def test_ratios_are_of_medians() -> None:
 
 
 def test_a_peers_best_is_its_fastest_way_by_the_median() -> None:
-    record = Record([entry(variant="gcc 12, local", theirs=900.0), entry(variant="clang 19, world", theirs=700.0),
-                     entry(variant="clang 19, local", theirs=750.0), entry(peer="mujoco", theirs=10.0)])  # fmt: skip
+    record = Record(
+        [
+            entry(variant="gcc 12, local", theirs=900.0),
+            entry(variant="clang 19, world", theirs=700.0),
+            entry(variant="clang 19, local", theirs=750.0),
+            entry(peer="mujoco", theirs=10.0),
+        ]
+    )
     best, gcc = (record.best("panda", "dynamics", "pinocchio", family) for family in ("", "gcc"))
     assert best is not None and best.variant == "clang 19, world"
     assert gcc is not None and gcc.ratio == 9.0
@@ -62,8 +68,12 @@ def test_what_was_not_measured_is_not_met() -> None:
 
 
 def test_targets_use_the_family_and_the_batch_they_name() -> None:
-    record = Record([entry(variant=variant, theirs=time, columns=16.0)
-                     for variant, time in (("gcc 12, local", 1200.0), ("clang 19, local", 800.0))])  # fmt: skip
+    record = Record(
+        [
+            entry(variant=variant, theirs=time, columns=16.0)
+            for variant, time in (("gcc 12, local", 1200.0), ("clang 19, local", 800.0))
+        ]
+    )
     found = [v for v in verdicts(record) if v.entry is not None]
     ratios = {(v.target.how, v.target.family): v.ratio for v in found}
     assert ratios == {("scalar", ""): 8.0, ("scalar", "gcc"): 12.0, ("columns", ""): 50.0}
@@ -71,9 +81,14 @@ def test_targets_use_the_family_and_the_batch_they_name() -> None:
 
 
 def test_a_record_survives_its_file(tmp_path: Path) -> None:
-    record = Record([entry(), entry(batch=None), entry(columns=16.0)], [made()],
-                    [("panda", "bias", "sympy", "too large")],
-                    [("panda", "bias", "casadi", "no compiler")], [], {"cores": 2})  # fmt: skip
+    record = Record(
+        [entry(), entry(batch=None), entry(columns=16.0)],
+        [made()],
+        [("panda", "bias", "sympy", "too large")],
+        [("panda", "bias", "casadi", "no compiler")],
+        [],
+        {"cores": 2},
+    )
     (tmp_path / "timing.json").write_text(json.dumps(as_data(record)))
     assert read(tmp_path / "timing.json") == record
 
@@ -86,9 +101,15 @@ def test_a_file_of_another_kind_is_an_empty_record(tmp_path: Path, text: str) ->
 
 
 def test_a_part_replaces_its_own_figures_only() -> None:
-    record = Record([entry(), entry(peer="mujoco"), entry(function="bias"), entry("ur5")],
-                    [made(), made(by="casadi")], [("panda", "dynamics", "pinocchio", "no clang")])  # fmt: skip
+    record = Record(
+        [entry(), entry(peer="mujoco"), entry(function="bias"), entry("ur5")],
+        [made(), made(by="casadi")],
+        [("panda", "dynamics", "pinocchio", "no clang")],
+    )
     record.forget(["panda"], ["dynamics"], ["pinocchio"])
     assert [(x.model, x.function, x.peer) for x in record.entries] == [
-        ("panda", "dynamics", "mujoco"), ("panda", "bias", "pinocchio"), ("ur5", "dynamics", "pinocchio")]  # fmt: skip
+        ("panda", "dynamics", "mujoco"),
+        ("panda", "bias", "pinocchio"),
+        ("ur5", "dynamics", "pinocchio"),
+    ]
     assert [x.by for x in record.costs] == ["casadi"] and not record.skipped

@@ -22,9 +22,13 @@ from validation.timing.worker import Job
 
 JOB = Job("panda", ("pinocchio", "sympy"), ("dynamics",), 3, 100)
 LINES = [
-    json.dumps({"doing": "dynamics"}), "a warning of an engine", "3", json.dumps({"entry": asdict(entry(theirs=5.0))}),
-    json.dumps({"cost": asdict(made())}), json.dumps({"skipped": ["panda", "dynamics", "sympy", "too large"]}),
-]  # fmt: skip
+    json.dumps({"doing": "dynamics"}),
+    "a warning of an engine",
+    "3",
+    json.dumps({"entry": asdict(entry(theirs=5.0))}),
+    json.dumps({"cost": asdict(made())}),
+    json.dumps({"skipped": ["panda", "dynamics", "sympy", "too large"]}),
+]
 
 
 def test_what_a_worker_prints_becomes_a_record() -> None:
@@ -100,8 +104,9 @@ def test_a_compiler_that_fails_is_told_and_the_other_goes_on(monkeypatch: pytest
 
 def test_one_compiler_of_each_family_and_the_newest_clang(monkeypatch: pytest.MonkeyPatch) -> None:
     there = {"gcc": "gcc 12.2.0", "clang": "clang 14.0.6", "clang-19": "clang 19.1.7", "clang-16": "clang 16.0.0"}
-    monkeypatch.setattr("validation.timing.programs._compiler",
-                        lambda name: Compiler(name, there[name], "") if name in there else None)  # fmt: skip
+    monkeypatch.setattr(
+        "validation.timing.programs._compiler", lambda name: Compiler(name, there[name], "") if name in there else None
+    )
     assert [found.name for found in compilers()] == ["gcc 12.2.0", "clang 19.1.7"]
 
 
@@ -124,8 +129,14 @@ def test_the_report_shows_targets_costs_growth_and_what_was_left_out(tmp_path: P
     record.entries.append(entry(theirs=650.0))
     record.costs.append(made())
     record.skipped.append(("panda", "bias", "sympy", "too large\nwith details"))
-    record.machine = {"processor": "P", "load": [0.5, 1.0], "scalar_flops": 1e10, "vector_flops": 8e10,
-                      "copied_bytes": 1e11, "versions": {"pinocchio": "4.1.0"}}  # fmt: skip
+    record.machine = {
+        "processor": "P",
+        "load": [0.5, 1.0],
+        "scalar_flops": 1e10,
+        "vector_flops": 8e10,
+        "copied_bytes": 1e11,
+        "versions": {"pinocchio": "4.1.0"},
+    }
     page = write_report(record, tmp_path)
     for text in (page.read_text(), (tmp_path / "timing.md").read_text()):
         assert "missed by 7%" in text and "too large" in text and "with details" not in text

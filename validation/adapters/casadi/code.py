@@ -10,8 +10,17 @@ import casadi as ca
 
 def operations(function: Any) -> Mapping[str, int]:
     """How many operations of each kind one evaluation of a CasADi function takes."""
-    kinds = {ca.OP_ADD: "add", ca.OP_SUB: "add", ca.OP_TWICE: "add", ca.OP_MUL: "mul", ca.OP_SQ: "mul",
-             ca.OP_DIV: "div", ca.OP_INV: "div", ca.OP_SIN: "call", ca.OP_COS: "call"}  # fmt: skip
+    kinds = {
+        ca.OP_ADD: "add",
+        ca.OP_SUB: "add",
+        ca.OP_TWICE: "add",
+        ca.OP_MUL: "mul",
+        ca.OP_SQ: "mul",
+        ca.OP_DIV: "div",
+        ca.OP_INV: "div",
+        ca.OP_SIN: "call",
+        ca.OP_COS: "call",
+    }
     found = dict.fromkeys(("mul", "add", "div", "call"), 0)
     for k in range(function.n_instructions()):
         kind = kinds.get(function.instruction_id(k))

@@ -111,8 +111,17 @@ def in_world(links: Sequence[Link]) -> list[Link]:
         R = product(R_A, link.R)
         rotations.append(R)
         axis = None if link.axis is None else times(R, link.axis)
-        found.append(replace(link, R=UNIT, p=times(R_A, link.p), mc=times(R, link.mc), J=turned(R, link.J),
-                             axis=axis, axes=transposed(R)))  # fmt: skip
+        found.append(
+            replace(
+                link,
+                R=UNIT,
+                p=times(R_A, link.p),
+                mc=times(R, link.mc),
+                J=turned(R, link.J),
+                axis=axis,
+                axes=transposed(R),
+            )
+        )
     return found
 
 

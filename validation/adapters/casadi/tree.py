@@ -272,7 +272,7 @@ class CasadiTree:
             "frame_jacobian": lambda: [_rows(self._jacobian(body))],
             "inverse_dynamics_derivatives": lambda: [ca.vec(slope.T) for slope in self._inverse_slopes(self.a)],
             "forward_dynamics_derivatives": self._forward_slopes,
-        }  # fmt: skip
+        }
         found = ca.cse([ca.densify(result) for result in results[name]()])
         return ca.Function(name, [self.q, self.v, self.a, self.tau], found)
 

@@ -146,8 +146,11 @@ def spinning_frequencies(
     reference = np.array([[hub + h * k, 0, 0, 1, 0, 0] for k in range(elements + 1)])
     nodes = [system.AddNode(items.NodePointSlope1(referenceCoordinates=list(row))) for row in reference]
     for ends in zip(nodes, nodes[1:], strict=False):
-        system.AddObject(items.ObjectANCFCable(length=h, massPerLength=1.0, bendingStiffness=EI, axialStiffness=EA,
-                                               nodeNumbers=list(ends)))  # fmt: skip
+        system.AddObject(
+            items.ObjectANCFCable(
+                length=h, massPerLength=1.0, bendingStiffness=EI, axialStiffness=EA, nodeNumbers=list(ends)
+            )
+        )
     evaluated, total = assembled(container, system), reference.ravel()
     free = np.append(3, np.arange(6, total.size))  # At the root only the slope along x, which stretches.
     in_plane = np.tile([True, True, False], total.size // 3)
@@ -188,12 +191,21 @@ def spin_up(elements: int = 16, step: float = 2.5e-3, end: float = 20.0, stretch
     nodes = straight_beam(system, hub.length, hub.EI, EA, hub.rhoA, elements)
     ground = system.AddMarker(items.MarkerBodyRigid(bodyNumber=system.AddObject(items.ObjectGround())))
     root = system.AddMarker(items.MarkerBodyRigid(bodyNumber=0))  # The first element's, where it begins.
-    system.AddObject(items.GenericJoint(
-        markerNumbers=[ground, root], constrainedAxes=[1, 1, 0, 0, 0, 1],
-        offsetUserFunction=lambda mbs, t, number, offsets: [0.0, 0.0, 0.0, 0.0, 0.0, hub.angle(t)],
-    ))  # fmt: skip
-    sensor = system.AddSensor(items.SensorNode(nodeNumber=nodes[-1], writeToFile=False, storeInternal=True,
-                                               outputVariableType=exudyn.OutputVariableType.Position))  # fmt: skip
+    system.AddObject(
+        items.GenericJoint(
+            markerNumbers=[ground, root],
+            constrainedAxes=[1, 1, 0, 0, 0, 1],
+            offsetUserFunction=lambda mbs, t, number, offsets: [0.0, 0.0, 0.0, 0.0, 0.0, hub.angle(t)],
+        )
+    )
+    sensor = system.AddSensor(
+        items.SensorNode(
+            nodeNumber=nodes[-1],
+            writeToFile=False,
+            storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Position,
+        )
+    )
     system.Assemble()
     settings: Any = exudyn.SimulationSettings()
     settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(end / step), end
@@ -233,8 +245,10 @@ def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None
     h = strip.length / elements
     section = exudyn.BeamSection()
     section.stiffnessMatrix = np.diag([strip.EA, strip.GA, strip.GA, strip.GJ, strip.EI_y, strip.EI_z])
-    nodes = [system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[h * k, 0, 0, 1, 0, 0, 0]))
-             for k in range(elements + 1)]  # fmt: skip
+    nodes = [
+        system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[h * k, 0, 0, 1, 0, 0, 0]))
+        for k in range(elements + 1)
+    ]
     for ends in zip(nodes, nodes[1:], strict=False):
         system.AddObject(items.ObjectBeamGeometricallyExact(nodeNumbers=list(ends), length=h, sectionData=section))
     # Three of the four Euler parameters: their norm holds the fourth.
@@ -250,11 +264,15 @@ def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None
 def straight_beam(system: Any, length: float, EI: float, EA: float, rhoA: float, elements: int) -> list[Any]:
     """Add a straight beam of equal elements along x, made of ANCFCable2D, to an Exudyn system; its nodes."""
     h = length / elements
-    nodes = [system.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[h * k, 0, 1, 0]))
-             for k in range(elements + 1)]  # fmt: skip
+    nodes = [
+        system.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[h * k, 0, 1, 0])) for k in range(elements + 1)
+    ]
     for ends in zip(nodes, nodes[1:], strict=False):
-        system.AddObject(items.ObjectANCFCable2D(length=h, massPerLength=rhoA, bendingStiffness=EI,
-                                                 axialStiffness=EA, nodeNumbers=list(ends)))  # fmt: skip
+        system.AddObject(
+            items.ObjectANCFCable2D(
+                length=h, massPerLength=rhoA, bendingStiffness=EI, axialStiffness=EA, nodeNumbers=list(ends)
+            )
+        )
     return nodes
 
 

@@ -25,11 +25,11 @@ import numpy as np
 from exudyn.FEM import ObjectFFRFreducedOrderInterface
 
 import symofros as sf
-from symofros.beams.deformation import deformation_of
-from symofros.beams.integrals import POINTS
-from symofros.beams.piecewise import Piecewise, stations
 from symofros.description.beam import STATION
 from symofros.description.values import Value
+from symofros.mechanics.beams.deformation import deformation_of
+from symofros.mechanics.beams.integrals import POINTS
+from symofros.mechanics.beams.piecewise import Piecewise, stations
 from validation.adapters.exudyn.system import VERSION, ExudynSystem, assembled
 from validation.contract.conventions import Chart, Slot, times
 from validation.contract.interface import States, Subject, Unsupported
@@ -136,7 +136,11 @@ def _obstacle(system: sf.System) -> Unsupported | None:
     obstacles = {
         f"joint '{joint.name}': no {joint.kind} joint": joint.kind != "free",
         f"joint '{joint.name}': forces or inertia on it": bool(
-            joint.prescribed or joint.actuated or joint.effort or joint.elements or joint.rotors
+            joint.prescribed
+            or joint.actuated
+            or joint.effort
+            or joint.elements
+            or joint.rotors
             or joint.armature != 0.0
         ),
         f"beam '{beam.name}': loads along it": bool(beam.loads),
@@ -145,7 +149,7 @@ def _obstacle(system: sf.System) -> Unsupported | None:
         f"beam '{beam.name}': rotary inertia; lumped masses have no rotations": beam.rotary_inertia,
         f"beam '{beam.name}': foreshortening; displacement is linear in the modes": beam.foreshortening,
         f"beam '{beam.name}': terms of order '{beam.retain}'; all are kept": beam.retain != "all",
-    }  # fmt: skip
+    }
     return next((Unsupported(reason) for reason, applies in obstacles.items() if applies), None)
 
 
@@ -194,11 +198,14 @@ class _Mesh:
         """What Exudyn's reduction reads of a finite-element model."""
         mass = np.diag(np.repeat(self.masses, 3))
         return SimpleNamespace(
-            modeBasis={"matrix": self.modes}, postProcessingModes={},
+            modeBasis={"matrix": self.modes},
+            postProcessingModes={},
             GetNodePositionsAsArray=lambda: self.nodes,
-            GetSurfaceTriangles6=lambda: [], GetSurfaceTriangles=lambda: [],
-            GetMassMatrix=lambda sparse: mass, GetStiffnessMatrix=lambda sparse: mass * 0.0,
-        )  # fmt: skip
+            GetSurfaceTriangles6=lambda: [],
+            GetSurfaceTriangles=lambda: [],
+            GetMassMatrix=lambda sparse: mass,
+            GetStiffnessMatrix=lambda sparse: mass * 0.0,
+        )
 
 
 def _body(mesh: _Mesh, gravity: Array, factor: float) -> ExudynSystem:

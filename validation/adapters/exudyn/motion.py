@@ -15,9 +15,13 @@ Link = tuple[tuple[float, float], float, float]
 
 
 def bars(
-    links: Sequence[Link], hinges: Sequence[tuple[int, float, int, float]], grounded: Sequence[int], h: float,
-    t_end: float, spectral_radius: float,
-) -> Array | None:  # fmt: skip
+    links: Sequence[Link],
+    hinges: Sequence[tuple[int, float, int, float]],
+    grounded: Sequence[int],
+    h: float,
+    t_end: float,
+    spectral_radius: float,
+) -> Array | None:
     """Uniform bars of 1 m and 1 kg under gravity: positions of the ends of the bars at the end of the run.
 
     Args:
@@ -62,10 +66,14 @@ def linkage(
     nodes = []
     for (x, z), angle, speed in links:
         half = np.array([np.cos(angle), np.sin(angle)]) / 2
-        nodes.append(system.AddNode(items.Rigid2D(
-            referenceCoordinates=[x + half[0], z + half[1], angle],
-            initialVelocities=[*_velocity((x, z), half, angle, speed, links), speed],
-        )))  # fmt: skip
+        nodes.append(
+            system.AddNode(
+                items.Rigid2D(
+                    referenceCoordinates=[x + half[0], z + half[1], angle],
+                    initialVelocities=[*_velocity((x, z), half, angle, speed, links), speed],
+                )
+            )
+        )
         body = system.AddObject(items.RigidBody2D(mass=1.0, inertia=1 / 12, nodeNumber=nodes[-1]))
         for station in (0.0, 1.0):
             marked[len(nodes) - 1, station] = system.AddMarker(

@@ -190,12 +190,18 @@ class _Builder:
         ]
         EI = self.number(beam.EI_z)
         bodies = [
-            self.mbs.AddObject(items.ObjectANCFCable2D(
-                length=h, massPerLength=self.number(beam.rhoA), bendingStiffness=EI, axialStiffness=cable.EA,
-                bendingDamping=self.number(beam.damping) * EI, nodeNumbers=list(ends),
-            ))
+            self.mbs.AddObject(
+                items.ObjectANCFCable2D(
+                    length=h,
+                    massPerLength=self.number(beam.rhoA),
+                    bendingStiffness=EI,
+                    axialStiffness=cable.EA,
+                    bendingDamping=self.number(beam.damping) * EI,
+                    nodeNumbers=list(ends),
+                )
+            )
             for ends in zip(nodes, nodes[1:], strict=False)
-        ]  # fmt: skip
+        ]
         self._clamp(at, Carrier(at.p, at.angle, bodies[0], np.zeros(2)))
         return Carrier(at.p + mover.length * x, at.angle, bodies[-1], np.array([h, 0.0]))
 
@@ -219,10 +225,14 @@ class _Builder:
         moment = sum(self.number(e.stiffness) * (self.number(e.rest) - angle) for e in stated)
         dampers = sum(self.number(e.coefficient) for e in joint.elements if isinstance(e, sf.Damper))
         if springs or dampers:
-            self.mbs.AddObject(items.CoordinateSpringDamper(
-                markerNumbers=[self._angle(parent), self._angle(child)], stiffness=springs, damping=dampers,
-                offset=moment / springs if springs else 0.0,  # Exudyn counts from the reference configuration.
-            ))  # fmt: skip
+            self.mbs.AddObject(
+                items.CoordinateSpringDamper(
+                    markerNumbers=[self._angle(parent), self._angle(child)],
+                    stiffness=springs,
+                    damping=dampers,
+                    offset=moment / springs if springs else 0.0,  # Exudyn counts from the reference configuration.
+                )
+            )
 
     def _rotors(self, joint: sf.Joint, parent: Carrier, child: Carrier) -> None:
         """J (w_A + n (w_B - w_A))^2 / 2, less the part J w_A^2 / 2 that the parent's inertia has."""

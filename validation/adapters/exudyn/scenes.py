@@ -80,10 +80,14 @@ def spinning(rod: Rod, elements: int) -> Timed:
 
         made = CreateSymbolicUserFunction(system, offset, "offsetUserFunction", joint)
         system.SetObjectParameter(joint, "offsetUserFunction", made)
-        sensor = system.AddSensor(items.SensorNode(
-            nodeNumber=nodes[-1], writeToFile=False, storeInternal=True,
-            outputVariableType=exudyn.OutputVariableType.Position,
-        ))  # fmt: skip
+        sensor = system.AddSensor(
+            items.SensorNode(
+                nodeNumber=nodes[-1],
+                writeToFile=False,
+                storeInternal=True,
+                outputVariableType=exudyn.OutputVariableType.Position,
+            )
+        )
         system.Assemble()
         return container, system, [sensor]
 
@@ -106,10 +110,15 @@ def planar(
         container = exudyn.SystemContainer()
         made = container.AddSystem()
         last = populate(made, system, angles, cables)[-1].moved(np.array(place))
-        sensor = made.AddSensor(items.SensorBody(
-            bodyNumber=last.body, localPosition=last.place(), writeToFile=False, storeInternal=True,
-            outputVariableType=exudyn.OutputVariableType.Position,
-        ))  # fmt: skip
+        sensor = made.AddSensor(
+            items.SensorBody(
+                bodyNumber=last.body,
+                localPosition=last.place(),
+                writeToFile=False,
+                storeInternal=True,
+                outputVariableType=exudyn.OutputVariableType.Position,
+            )
+        )
         made.Assemble()
         return container, made, [sensor]
 
@@ -122,19 +131,36 @@ def pendulum(gravity: float) -> Timed:
     def build() -> tuple[Any, Any, Sequence[Any]]:
         container = exudyn.SystemContainer()
         made = container.AddSystem()
-        node = made.AddNode(items.NodeGenericODE2(
-            referenceCoordinates=[0.0], initialCoordinates=[0.0], initialCoordinates_t=[0.0], numberOfODE2Coordinates=1,
-        ))  # fmt: skip
-        made.AddObject(items.ObjectKinematicTree(
-            nodeNumber=node, jointTypes=[exudyn.JointType.RevoluteY], linkParents=[-1],
-            jointTransformations=_ENGINE.Matrix3DList([np.eye(3)]), jointOffsets=_ENGINE.Vector3DList([[0, 0, 0]]),
-            linkInertiasCOM=_ENGINE.Matrix3DList([np.zeros((3, 3))]), linkCOMs=_ENGINE.Vector3DList([[1, 0, 0]]),
-            linkMasses=[1.0], baseOffset=[0, 0, 0], gravity=[0, 0, -gravity],
-        ))  # fmt: skip
-        sensor = made.AddSensor(items.SensorNode(
-            nodeNumber=node, writeToFile=False, storeInternal=True,
-            outputVariableType=exudyn.OutputVariableType.Coordinates,
-        ))  # fmt: skip
+        node = made.AddNode(
+            items.NodeGenericODE2(
+                referenceCoordinates=[0.0],
+                initialCoordinates=[0.0],
+                initialCoordinates_t=[0.0],
+                numberOfODE2Coordinates=1,
+            )
+        )
+        made.AddObject(
+            items.ObjectKinematicTree(
+                nodeNumber=node,
+                jointTypes=[exudyn.JointType.RevoluteY],
+                linkParents=[-1],
+                jointTransformations=_ENGINE.Matrix3DList([np.eye(3)]),
+                jointOffsets=_ENGINE.Vector3DList([[0, 0, 0]]),
+                linkInertiasCOM=_ENGINE.Matrix3DList([np.zeros((3, 3))]),
+                linkCOMs=_ENGINE.Vector3DList([[1, 0, 0]]),
+                linkMasses=[1.0],
+                baseOffset=[0, 0, 0],
+                gravity=[0, 0, -gravity],
+            )
+        )
+        sensor = made.AddSensor(
+            items.SensorNode(
+                nodeNumber=node,
+                writeToFile=False,
+                storeInternal=True,
+                outputVariableType=exudyn.OutputVariableType.Coordinates,
+            )
+        )
         made.Assemble()
         return container, made, [sensor]
 
@@ -146,10 +172,15 @@ def bars(links: Sequence[Link], hinges: Sequence[tuple[int, float, int, float]],
 
     def build() -> tuple[Any, Any, Sequence[Any]]:
         container, made, _ = linkage(links, hinges, grounded)
-        sensor = made.AddSensor(items.SensorBody(
-            bodyNumber=_FIRST_BAR, localPosition=[0.5, 0, 0], writeToFile=False, storeInternal=True,
-            outputVariableType=exudyn.OutputVariableType.Position,
-        ))  # fmt: skip
+        sensor = made.AddSensor(
+            items.SensorBody(
+                bodyNumber=_FIRST_BAR,
+                localPosition=[0.5, 0, 0],
+                writeToFile=False,
+                storeInternal=True,
+                outputVariableType=exudyn.OutputVariableType.Position,
+            )
+        )
         made.Assemble()
         return container, made, [sensor]
 
@@ -184,18 +215,27 @@ def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Tim
         for closure in closures:
             made.AddObject(items.RevoluteJoint2D(markerNumbers=[marker(closure.first), marker(closure.second)]))
         for spring in system.connections:
-            made.AddObject(items.SpringDamper(
-                markerNumbers=[marker(spring.first), marker(spring.second)],
-                stiffness=float(sf.evaluate(spring.stiffness, numbers)), damping=0.0,
-                referenceLength=float(sf.evaluate(spring.length, numbers)),
-            ))  # fmt: skip
+            made.AddObject(
+                items.SpringDamper(
+                    markerNumbers=[marker(spring.first), marker(spring.second)],
+                    stiffness=float(sf.evaluate(spring.stiffness, numbers)),
+                    damping=0.0,
+                    referenceLength=float(sf.evaluate(spring.length, numbers)),
+                )
+            )
         driven = made.AddMarker(items.MarkerBodyRigid(bodyNumber=carriers[0].body))
         made.AddLoad(items.LoadTorqueVector(markerNumber=driven, loadVector=[0.0, 0.0, torque]))
         sensors = [
-            made.AddSensor(items.SensorNode(nodeNumber=carrier.node, writeToFile=False, storeInternal=True,
-                                            outputVariableType=exudyn.OutputVariableType.Coordinates))
+            made.AddSensor(
+                items.SensorNode(
+                    nodeNumber=carrier.node,
+                    writeToFile=False,
+                    storeInternal=True,
+                    outputVariableType=exudyn.OutputVariableType.Coordinates,
+                )
+            )
             for carrier in carriers
-        ]  # fmt: skip
+        ]
         made.Assemble()
         return container, made, sensors
 
@@ -230,24 +270,40 @@ def held(system: sf.System, start: Array, targets: Array, stiffness: float, damp
     def build() -> tuple[Any, Any, Sequence[Any]]:
         container = exudyn.SystemContainer()
         made = container.AddSystem()
-        node = made.AddNode(items.NodeGenericODE2(
-            referenceCoordinates=[0.0] * n, initialCoordinates=start.tolist(), initialCoordinates_t=[0.0] * n,
-            numberOfODE2Coordinates=n,
-        ))  # fmt: skip
-        made.AddObject(items.ObjectKinematicTree(
-            nodeNumber=node, jointTypes=axes, linkParents=[mover.parent for mover in assembly.movers],
-            jointTransformations=_ENGINE.Matrix3DList([mover.X_AP.R for mover in assembly.movers]),
-            jointOffsets=_ENGINE.Vector3DList([mover.X_AP.p for mover in assembly.movers]),
-            linkInertiasCOM=_ENGINE.Matrix3DList([mass.J_BC for mass in masses]),
-            linkCOMs=_ENGINE.Vector3DList([mass.p_BC for mass in masses]), linkMasses=[m.mass for m in masses],
-            baseOffset=[0, 0, 0], gravity=assembly.gravity.tolist(), jointPControlVector=[stiffness] * n,
-            jointDControlVector=[damping] * n, jointPositionOffsetVector=targets.tolist(),
-            jointVelocityOffsetVector=[0.0] * n,
-        ))  # fmt: skip
-        sensor = made.AddSensor(items.SensorNode(
-            nodeNumber=node, writeToFile=False, storeInternal=True,
-            outputVariableType=exudyn.OutputVariableType.Coordinates,
-        ))  # fmt: skip
+        node = made.AddNode(
+            items.NodeGenericODE2(
+                referenceCoordinates=[0.0] * n,
+                initialCoordinates=start.tolist(),
+                initialCoordinates_t=[0.0] * n,
+                numberOfODE2Coordinates=n,
+            )
+        )
+        made.AddObject(
+            items.ObjectKinematicTree(
+                nodeNumber=node,
+                jointTypes=axes,
+                linkParents=[mover.parent for mover in assembly.movers],
+                jointTransformations=_ENGINE.Matrix3DList([mover.X_AP.R for mover in assembly.movers]),
+                jointOffsets=_ENGINE.Vector3DList([mover.X_AP.p for mover in assembly.movers]),
+                linkInertiasCOM=_ENGINE.Matrix3DList([mass.J_BC for mass in masses]),
+                linkCOMs=_ENGINE.Vector3DList([mass.p_BC for mass in masses]),
+                linkMasses=[m.mass for m in masses],
+                baseOffset=[0, 0, 0],
+                gravity=assembly.gravity.tolist(),
+                jointPControlVector=[stiffness] * n,
+                jointDControlVector=[damping] * n,
+                jointPositionOffsetVector=targets.tolist(),
+                jointVelocityOffsetVector=[0.0] * n,
+            )
+        )
+        sensor = made.AddSensor(
+            items.SensorNode(
+                nodeNumber=node,
+                writeToFile=False,
+                storeInternal=True,
+                outputVariableType=exudyn.OutputVariableType.Coordinates,
+            )
+        )
         made.Assemble()
         return container, made, [sensor]
 

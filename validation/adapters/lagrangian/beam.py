@@ -100,8 +100,9 @@ def centroids(beam: Flexible, x: Array, q: SX) -> SX:
 def angles(beam: Flexible, x: Array, q: SX, order: int = 0) -> Angles:
     """Angles of sections at stations, or their derivative by x."""
     q_v, q_w, q_F = _parts(beam, q)
-    return Angles(_modal(beam.twist, q_F, x, order), -_modal(beam.w, q_w, x, order + 1),
-                  _modal(beam.v, q_v, x, order + 1))  # fmt: skip
+    return Angles(
+        _modal(beam.twist, q_F, x, order), -_modal(beam.w, q_w, x, order + 1), _modal(beam.v, q_v, x, order + 1)
+    )
 
 
 def section(beam: Flexible, x: float, q: SX) -> tuple[SX, SX]:

@@ -175,10 +175,16 @@ def build(subject: Subject) -> TreeEngine | Unsupported:
     velocity = ca.vertcat(ca.SX(0, 1), *(ca.vertcat(frame.dp, frame.R @ frame.spin()) for frame in frames))
     function: Callable[[str, Any], Any] = symbols.function
     return LagrangianEngine(
-        tree, StatedForces(system, assembly), function("poses", pose), function("velocities", velocity),
-        function("accelerations", rate_of(symbols, velocity)), function("turnings", turning_of(symbols, velocity)),
-        len(frames), _offered(system), max(10, MOST_COLUMNS // max(assembly.nv, 1)),
-    )  # fmt: skip
+        tree,
+        StatedForces(system, assembly),
+        function("poses", pose),
+        function("velocities", velocity),
+        function("accelerations", rate_of(symbols, velocity)),
+        function("turnings", turning_of(symbols, velocity)),
+        len(frames),
+        _offered(system),
+        max(10, MOST_COLUMNS // max(assembly.nv, 1)),
+    )
 
 
 def _obstacle(assembly: Assembly) -> Unsupported | None:

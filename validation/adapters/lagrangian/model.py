@@ -21,12 +21,30 @@ from validation.mechanics.parts import coordinate_symbols, rate_symbols, speed_s
 from validation.mechanics.shape_functions import Shape
 
 _CASADI: Mapping[str, Callable[..., SX]] = {
-    "add": lambda a, b: a + b, "sub": lambda a, b: a - b, "mul": lambda a, b: a * b, "div": lambda a, b: a / b,
-    "pow": lambda a, b: a**b, "neg": lambda a: -a, "sqrt": ca.sqrt, "exp": ca.exp, "log": ca.log, "sin": ca.sin,
-    "cos": ca.cos, "tan": ca.tan, "asin": ca.asin, "acos": ca.acos, "atan": ca.atan, "atan2": ca.atan2,
-    "sinh": ca.sinh, "cosh": ca.cosh, "tanh": ca.tanh, "abs": ca.fabs, "sign": ca.sign, "min": ca.fmin,
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "div": lambda a, b: a / b,
+    "pow": lambda a, b: a**b,
+    "neg": lambda a: -a,
+    "sqrt": ca.sqrt,
+    "exp": ca.exp,
+    "log": ca.log,
+    "sin": ca.sin,
+    "cos": ca.cos,
+    "tan": ca.tan,
+    "asin": ca.asin,
+    "acos": ca.acos,
+    "atan": ca.atan,
+    "atan2": ca.atan2,
+    "sinh": ca.sinh,
+    "cosh": ca.cosh,
+    "tanh": ca.tanh,
+    "abs": ca.fabs,
+    "sign": ca.sign,
+    "min": ca.fmin,
     "max": ca.fmax,
-}  # fmt: skip
+}
 
 
 class Translation:
@@ -78,9 +96,15 @@ class Translation:
 
         rotors = tuple(self._rotors(mover))
         return Node(
-            mover.parent, solid, mover.part.speeds, motion, mover.joint.prescribed, manifold, rotors,
+            mover.parent,
+            solid,
+            mover.part.speeds,
+            motion,
+            mover.joint.prescribed,
+            manifold,
+            rotors,
             at=self._first(mover),
-        )  # fmt: skip
+        )
 
     def _first(self, mover: Mover) -> tuple[int, int]:
         """Its first coordinate and speed; parts of a joint need not come in the order of its coordinates."""
@@ -106,8 +130,10 @@ class Translation:
 
     def _general(self, joint: sf.Joint, x: SX) -> tuple[SX, SX]:
         values = self._numbers | {name: x[i] for i, name in enumerate(joint.coordinates)}
-        p, turn = ([ca.SX(evaluate(value, values, _CASADI)) for value in part]
-                   for part in (joint.moving_position, joint.moving_rotation.values))  # fmt: skip
+        p, turn = (
+            [ca.SX(evaluate(value, values, _CASADI)) for value in part]
+            for part in (joint.moving_position, joint.moving_rotation.values)
+        )
         return ca.vertcat(*p), _rotation(joint.moving_rotation.kind, turn)
 
     def _rotors(self, mover: Mover) -> list[Rotor]:
@@ -144,10 +170,17 @@ class Translation:
         # The square of u is the highest power in T; for n polynomials of degree n + 1 it has degree 4 n + 2.
         points = max(POINTS, 2 * max(counts) + 6)
         return Flexible(
-            L, v=functions[0], w=functions[1], twist=functions[2], damping=self.number(beam.damping),
-            foreshortening=beam.foreshortening, rotary_inertia=beam.rotary_inertia, breaks=tuple(sorted(breaks)),
-            points=points, **sections,
-        )  # fmt: skip
+            L,
+            v=functions[0],
+            w=functions[1],
+            twist=functions[2],
+            damping=self.number(beam.damping),
+            foreshortening=beam.foreshortening,
+            rotary_inertia=beam.rotary_inertia,
+            breaks=tuple(sorted(breaks)),
+            points=points,
+            **sections,
+        )
 
     def _section(self, value: sf.Expression | float) -> float | Callable[[float], float]:
         if not isinstance(value, sf.Expression):
@@ -205,10 +238,14 @@ class Translation:
             return lambda x: [ca.SX(evaluate(value, {**values, "x": x}, _CASADI)) for value in vector]
 
         return tuple(
-            Line(along(load.force), along(load.torque), None if load.at is None else load.at * length,
-                 load.axes == "world")
+            Line(
+                along(load.force),
+                along(load.torque),
+                None if load.at is None else load.at * length,
+                load.axes == "world",
+            )
             for load in beam.loads
-        )  # fmt: skip
+        )
 
 
 def _solid(mover: Mover) -> Solid:

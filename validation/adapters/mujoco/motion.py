@@ -63,8 +63,9 @@ def move(mjcf: str, q0: Array, v0: Array, t_end: float, samples: int = 200) -> M
     return MujocoMotion(np.array(d.qpos), np.array(d.qvel), np.array(energy), violation, ", ".join(said))
 
 
-def servo(engine: Any, q0: Array, v0: Array, targets: Array, stiffness: float, damping: float, h: float,
-          steps: int) -> tuple[Array, Array, float]:  # fmt: skip
+def servo(
+    engine: Any, q0: Array, v0: Array, targets: Array, stiffness: float, damping: float, h: float, steps: int
+) -> tuple[Array, Array, float]:
     """A tree held by a spring and a damper on each joint, stepped by MuJoCo's RK4.
 
     Args:

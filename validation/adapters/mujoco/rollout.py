@@ -13,9 +13,16 @@ from validation.mechanics.geometry import Array
 
 
 def roll_out(
-    engine: Any, q0: Array, v0: Array, targets: Array, stiffness: float, damping: float, h: float, steps: int,
+    engine: Any,
+    q0: Array,
+    v0: Array,
+    targets: Array,
+    stiffness: float,
+    damping: float,
+    h: float,
+    steps: int,
     threads: int = 1,
-) -> tuple[Array, float]:  # fmt: skip
+) -> tuple[Array, float]:
     """Trees held by a spring and a damper on each joint, stepped by RK4.
 
     Args:

@@ -205,8 +205,11 @@ def build(subject: Subject) -> TreeEngine | Unsupported:
     for i, mover in enumerate(assembly.movers):
         # Parts of one joint are several joints of one MuJoCo body, whose inertia the last part has.
         if not mover.continues:
-            last = next(k for k in range(i, len(assembly.movers)) if k + 1 == len(assembly.movers)
-                        or not assembly.movers[k + 1].continues)  # fmt: skip
+            last = next(
+                k
+                for k in range(i, len(assembly.movers))
+                if k + 1 == len(assembly.movers) or not assembly.movers[k + 1].continues
+            )
             body = _add_body(bodies[mover.parent + 1], mover, assembly.movers[last])
         bodies.append(body)
         _add_joints(body, mover, armature(subject.system, mover))

@@ -68,8 +68,9 @@ class LoopEngine:
             m = tie.model
             ends = (m.joint1_id, m.joint1_placement), (m.joint2_id, m.joint2_placement)
             size = "6" if m.type == pin.ContactType.CONTACT_6D else "3"
-            numbers = [[str(joint), *(repr(float(x)) for x in (*X.rotation.ravel(), *X.translation))]
-                       for joint, X in ends]  # fmt: skip
+            numbers = [
+                [str(joint), *(repr(float(x)) for x in (*X.rotation.ravel(), *X.translation))] for joint, X in ends
+            ]
             lines.append(" ".join([size, *numbers[0], *numbers[1]]))
         return lines
 

@@ -10,7 +10,7 @@ import pytest
 
 import reference_models
 import symofros as sf
-from tests.beams.cases import CASES
+from tests.mechanics.beams.cases import CASES
 from tests.validation.subjects import UNIT, every_kind, states_of, subject_of
 from validation.adapters import available, compiled
 from validation.adapters.compiled import keeping_all
@@ -42,8 +42,9 @@ def beam(name: str, joint: sf.Joint, **more: Any) -> sf.Beam:
     return sf.Beam(name, joint, 1.3, 2.0, **(stated | {"retain": "all", "family": "legendre"} | more))
 
 
-@pytest.mark.parametrize("name", ["planar_robot", "spinning_beam", "flexible_pendulum", "free_boom",
-                                  "flexible_slider_crank"])  # fmt: skip
+@pytest.mark.parametrize(
+    "name", ["planar_robot", "spinning_beam", "flexible_pendulum", "free_boom", "flexible_slider_crank"]
+)
 def test_reference_models_agree(name: str) -> None:
     result = checked(reference_models.MODELS[name])
     agreeing = {row.quantity for row in result.comparisons if row.engine == "lagrangian" and row.status == "agree"}
@@ -92,19 +93,34 @@ def test_all_that_a_model_may_have() -> None:
     spring = (sf.Spring(20.0, 0.1, 3.0), sf.Damper(0.4), sf.Stop(50.0, 1.0, -0.2, 0.2))
     rotors = (sf.Rotor(0.01, 30.0), sf.Rotor(0.02, 9.0, (1.0, 0.5, 0.2), "one"))
     hinge = sf.Joint("h", "revolute", "base", axis=(0, 1, 1), elements=spring, rotors=rotors[:1], armature=0.3)
-    wrist = sf.Joint("w", "general", "one", "tip", coordinates=("X", "A"), moving_position=("X", "a*X^2", "sin(A)"),
-                     moving_rotation=sf.Rotation.axis_angle((1.0, 0.2, 0.3), "A"))  # fmt: skip
+    wrist = sf.Joint(
+        "w",
+        "general",
+        "one",
+        "tip",
+        coordinates=("X", "A"),
+        moving_position=("X", "a*X^2", "sin(A)"),
+        moving_rotation=sf.Rotation.axis_angle((1.0, 0.2, 0.3), "A"),
+    )
     last = sf.Joint("l", "revolute", "tool", rotors=rotors[1:])
     load = sf.BeamLoad(("f*x", "dh", "cos(h)"))
     bodies = [
         sf.RigidBody("base", drive, UNIT),
-        beam("one", hinge, EI_z="3*(1 - x/3)^3", damping=0.01, loads=(load,), rotary_inertia=True,
-             rhoI_y=0.02, rhoI_z=0.03),
+        beam(
+            "one",
+            hinge,
+            EI_z="3*(1 - x/3)^3",
+            damping=0.01,
+            loads=(load,),
+            rotary_inertia=True,
+            rhoI_y=0.02,
+            rhoI_z=0.03,
+        ),
         sf.RigidBody("collar", sf.Joint("c", "fixed", "one", None, (0.1, 0, 0)), UNIT),
         sf.RigidBody("head", sf.Joint("e", "fixed", "one", "tip", (0.1, 0.2, 0)), UNIT),
         sf.RigidBody("tool", wrist, UNIT),
         beam("two", last, foreshortening=False),
-    ]  # fmt: skip
+    ]
     result = checked(sf.System("rich", bodies, [sf.Parameter("a", 0.7)], [sf.Input("f")]))
     compared = {row.quantity for row in result.comparisons if row.engine == "lagrangian"}
     assert {"generalized_force", "potential_energy", "motion_energy"} <= compared
@@ -134,9 +150,9 @@ def test_a_lower_power_is_found() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "quantity"), [({"rhoJ": 0.04001}, "mass_matrix"), ({"GJ": 1.501}, "generalized_force"),
-                             ({"foreshortening": False}, "bias")],
-)  # fmt: skip
+    ("change", "quantity"),
+    [({"rhoJ": 0.04001}, "mass_matrix"), ({"GJ": 1.501}, "generalized_force"), ({"foreshortening": False}, "bias")],
+)
 def test_another_beam_is_found(change: dict[str, Any], quantity: str) -> None:
     system = sf.System("s", [beam("b", sf.Joint("j", "revolute", axis=(1, 2, 2)))])
     other = replace(system, bodies=[replace(system.body("b"), **change)])
@@ -156,8 +172,13 @@ def test_what_it_is_not_asked_for() -> None:
 
 
 def test_forces_that_it_is_not_given_are_not_compared() -> None:
-    loaded = sf.System("s", [beam("b", sf.Joint("j", "revolute")), sf.RigidBody(
-        "m", sf.Joint("f", "fixed", "b", "tip"), UNIT, loads=(sf.Load((0, 1, 0)),))])  # fmt: skip
+    loaded = sf.System(
+        "s",
+        [
+            beam("b", sf.Joint("j", "revolute")),
+            sf.RigidBody("m", sf.Joint("f", "fixed", "b", "tip"), UNIT, loads=(sf.Load((0, 1, 0)),)),
+        ],
+    )
     assert not [row for row in rows(checked(loaded), "generalized_force") if row.engine == "lagrangian"]
 
 

@@ -83,10 +83,12 @@ def test_what_the_importer_ignores_is_no_disagreement(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ('<worldbody><body><joint name="f" type="free" armature="1"/><geom size="1"/></body></worldbody>',
-         "joint 'f': an armature along body axes"),
+        (
+            '<worldbody><body><joint name="f" type="free" armature="1"/><geom size="1"/></body></worldbody>',
+            "joint 'f': an armature along body axes",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_it_can_t_be_asked(tmp_path: Path, text: str, reason: str) -> None:
     built = mujoco_mjcf.build(subject(tmp_path, text))
     assert isinstance(built, Unsupported) and reason in built.reason

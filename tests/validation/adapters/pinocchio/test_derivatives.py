@@ -81,32 +81,44 @@ def test_against_pinocchio(name: str) -> None:
 
 
 SOLID = sf.Inertia(1.5, (0.1, -0.2, 0.05), (0.3, 0.4, 0.5))
-Z_X_Z = sf.Rotation.matrix([
-    ["cos(a)*cos(c) - sin(a)*cos(b)*sin(c)", "-cos(a)*sin(c) - sin(a)*cos(b)*cos(c)", "sin(a)*sin(b)"],
-    ["sin(a)*cos(c) + cos(a)*cos(b)*sin(c)", "-sin(a)*sin(c) + cos(a)*cos(b)*cos(c)", "-cos(a)*sin(b)"],
-    ["sin(b)*sin(c)", "sin(b)*cos(c)", "cos(b)"],
-])  # fmt: skip
+Z_X_Z = sf.Rotation.matrix(
+    [
+        ["cos(a)*cos(c) - sin(a)*cos(b)*sin(c)", "-cos(a)*sin(c) - sin(a)*cos(b)*cos(c)", "sin(a)*sin(b)"],
+        ["sin(a)*cos(c) + cos(a)*cos(b)*sin(c)", "-sin(a)*sin(c) + cos(a)*cos(b)*cos(c)", "-cos(a)*sin(b)"],
+        ["sin(b)*sin(c)", "sin(b)*cos(c)", "cos(b)"],
+    ]
+)
 JOINTS = {
     "universal": sf.Joint("j", "universal", "base", axis=(1, 0, 0), axis2=(0, 0.6, 0.8)),
-    "Euler angles": sf.Joint("j", "general", "base", coordinates=("a", "b", "c"),
-                             moving_rotation=sf.Rotation.rpy("c", "b", "a")),
+    "Euler angles": sf.Joint(
+        "j", "general", "base", coordinates=("a", "b", "c"), moving_rotation=sf.Rotation.rpy("c", "b", "a")
+    ),
     "Euler angles z-x-z": sf.Joint("j", "general", "base", coordinates=("a", "b", "c"), moving_rotation=Z_X_Z),
-    "a curve": sf.Joint("j", "general", "base", coordinates=("s",), moving_position=("cos(s)", "sin(s)", "s^2/4"),
-                        moving_rotation=sf.Rotation.rpy(0, 0, "s + s^3/6")),
+    "a curve": sf.Joint(
+        "j",
+        "general",
+        "base",
+        coordinates=("s",),
+        moving_position=("cos(s)", "sin(s)", "s^2/4"),
+        moving_rotation=sf.Rotation.rpy(0, 0, "s + s^3/6"),
+    ),
     "planar": sf.Joint("j", "planar", "base"),
     "cylindrical": sf.Joint("j", "cylindrical", "base", axis=(0, 0.6, 0.8)),
     "screw": sf.Joint("j", "screw", "base", axis=(0, 0.6, 0.8), pitch=0.2),
-}  # fmt: skip
+}
 
 
 def on_an_arm(kind: str) -> sf.System:
     """The joint between two hinges, so that what it carries and what carries it both turn."""
     frame = (sf.Frame("e", (0.4, 0.1, -0.2), sf.Rotation.rpy(0.3, -0.5, 0.7)),)
-    return sf.System("s", (
-        sf.RigidBody("base", sf.Joint("first", "revolute", axis=(0, 1, 0)), SOLID, frame),
-        sf.RigidBody("middle", replace(JOINTS[kind], frame="e"), SOLID, frame),
-        sf.RigidBody("tip", sf.Joint("last", "revolute", "middle", "e", axis=(1, 0, 0)), SOLID),
-    ))  # fmt: skip
+    return sf.System(
+        "s",
+        (
+            sf.RigidBody("base", sf.Joint("first", "revolute", axis=(0, 1, 0)), SOLID, frame),
+            sf.RigidBody("middle", replace(JOINTS[kind], frame="e"), SOLID, frame),
+            sf.RigidBody("tip", sf.Joint("last", "revolute", "middle", "e", axis=(1, 0, 0)), SOLID),
+        ),
+    )
 
 
 @pytest.mark.parametrize("kind", JOINTS)
@@ -132,11 +144,14 @@ def test_differences_in_40_digits(kind: str) -> None:
             # The error of a central difference is h^2.
             for exact, pairs in (
                 (by_q[:, k], (required(ahead, list(v)), required(back, list(v)))),
-                (by_v[:, k], tuple(
-                    required(list(q), [x + sign * s for x, s in zip(map(mpmath.mpf, v), step, strict=True)])
-                    for sign in (1, -1)
-                )),
-            ):  # fmt: skip
+                (
+                    by_v[:, k],
+                    tuple(
+                        required(list(q), [x + sign * s for x, s in zip(map(mpmath.mpf, v), step, strict=True)])
+                        for sign in (1, -1)
+                    ),
+                ),
+            ):
                 slope = np.array([float((x - y) / (2 * h)) for x, y in zip(*pairs, strict=True)])
                 assert np.abs(exact - slope).max() <= 1e-13 * max(1.0, np.abs(by_q).max(), np.abs(by_v).max())
 

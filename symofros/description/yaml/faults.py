@@ -1,0 +1,186 @@
+"""What pydantic found wrong with a file, as Problems: where it stands, what it is, the rule, the remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from pydantic_core import ErrorDetails
+
+from symofros.description.yaml.schema import VERSION, json_schema
+from symofros.description.yaml.yaml_nodes import Node
+from symofros.errors import Problem, did_you_mean, near_name
+
+Path = tuple[str | int, ...]
+
+# The mappings whose keys are names of things.
+_THINGS = {"bodies": "body", "parameters": "parameter", "inputs": "input", "frames": "frame"}
+
+# Pydantic's error types -> what the value must be, and how to write it.
+_NUMBER = ("a number", "write a finite number, such as 0.5; formulas are not read here")
+_MAPPING = ("a mapping", "write it as {name: value}, or on lines of their own")
+_KINDS = {
+    "float_type": _NUMBER,
+    "finite_number": ("a finite number", _NUMBER[1]),
+    "string_type": ("a text", "put it in quotes"),
+    "bool_type": ("true or false", "write true or false"),
+    "list_type": ("a list", "write it as [x, y, z]"),
+    "dict_type": _MAPPING,
+    "model_type": _MAPPING,
+}
+
+
+def path_of(error: ErrorDetails) -> Path:
+    """Where in the data the error is; pydantic marks one of a key itself by a last item "[key]"."""
+    loc = error["loc"]
+    return loc[:-1] if loc and loc[-1] == "[key]" else loc
+
+
+def line_of(error: ErrorDetails, root: Node) -> int:
+    """The line of a wrong key or value; of the mapping's key where an entry is missing."""
+    path = path_of(error)
+    if error["type"] == "missing":
+        return root.at(path[:-1]).key_line
+    node = root.at(path)
+    return node.key_line if error["type"] == "extra_forbidden" else node.line
+
+
+def problem_of(error: ErrorDetails, where: str) -> Problem:
+    """One of pydantic's errors as a Problem.
+
+    Args:
+        error: From ValidationError.errors().
+        where: "file:line" of it.
+    """
+    path = path_of(error)
+    context = error.get("ctx", {})
+    kind = error["type"]
+    if kind == "problem":
+        what, found, rule, remedy = (str(context[part]) for part in ("what", "found", "rule", "remedy"))
+        return Problem(_about(path, what), found, rule, remedy, where)
+    if kind == "extra_forbidden":
+        known = _known_keys(path[:-1])
+        key = _short(path[-1])
+        return Problem(
+            _about(path[:-1], f"unknown entry '{key}'"),
+            f"'{key}'",
+            f"the entries here are {', '.join(known)}",
+            near_name(key, known) or "remove it, or rename it",
+            where,
+        )
+    if kind == "missing":
+        return _missing(path, error["input"], where)
+    if kind == "literal_error":
+        return _not_a_choice(path, error["input"], where)
+    if kind in ("too_short", "too_long"):
+        return _wrong_count(path, kind, context, where)
+    expected, remedy = _KINDS.get(kind, ("", ""))
+    what = f"not {expected}" if expected else "not allowed"
+    rule = f"this is {expected}" if expected else error["msg"].lower()
+    return Problem(_about(path, what), f"'{_short(error['input'])}'", rule, remedy, where)
+
+
+def _missing(path: Path, owner: Any, where: str) -> Problem:
+    if path == ("symofros",):
+        return Problem(
+            "the file does not state its format",
+            "no entry 'symofros'",
+            "a description states the version of its format",
+            f"begin with: symofros: {VERSION}",
+            where,
+        )
+    found = ", ".join(map(_short, owner)) if isinstance(owner, Mapping) and owner else "nothing"
+    choices = " | ".join(str(choice) for schema in _schemas(path) for choice in _choices(schema))
+    return Problem(
+        _about(path[:-1], f"entry '{path[-1]}' is missing"),
+        found,
+        f"'{path[-1]}' is always given here",
+        f"add {path[-1]}: {choices or '…'}",
+        where,
+    )
+
+
+def _not_a_choice(path: Path, value: Any, where: str) -> Problem:
+    choices = [str(choice) for schema in _schemas(path) for choice in _choices(schema)]
+    if path == ("symofros",):
+        return Problem(
+            "another version of the format",
+            _short(value),
+            f"this program reads version {VERSION}",
+            "update symofros, or convert the file",
+            where,
+        )
+    found = f"'{_short(value)}'"
+    return Problem(
+        _about(path, f"unknown choice {found}"),
+        found,
+        f"one of {', '.join(choices)}",
+        did_you_mean(str(value), choices),
+        where,
+    )
+
+
+def _wrong_count(path: Path, kind: str, context: Mapping[str, Any], where: str) -> Problem:
+    count = context.get("actual_length") or "too many"
+    limit = context["min_length" if kind == "too_short" else "max_length"]
+    rule = f"at {'least' if kind == 'too_short' else 'most'} {limit}"
+    remedy = "add entries" if kind == "too_short" else "remove entries"
+    sizes = {(s.get("minItems"), s.get("maxItems")) for s in _schemas(path)}
+    if sizes == {(limit, limit)}:
+        rule, remedy = f"{limit} entries, in order", f"give all {limit}, zeros included"
+    return Problem(_about(path, "wrong number of entries"), f"{count} entries", rule, remedy, where)
+
+
+def _short(value: Any) -> str:
+    text = "nothing" if value is None else str(value)
+    return text if len(text) <= 60 else text[:59] + "…"
+
+
+def _about(path: Path, what: str) -> str:
+    """The fault with the name of what it is in: "body 'arm1': joint: axis[2]: not a number"."""
+    return ": ".join([*_words(path), what.removeprefix("value: ")])
+
+
+def _words(path: Path) -> Iterator[str]:
+    i = 0
+    while i < len(path):
+        step = path[i]
+        if step in _THINGS and i + 1 < len(path):
+            yield f"{_THINGS[str(step)]} '{_short(path[i + 1])}'"
+            i += 1
+        else:
+            indices = ""
+            while i + 1 < len(path) and isinstance(path[i + 1], int):
+                i += 1
+                indices += f"[{path[i]}]"
+            yield f"{_short(step)}{indices}"
+        i += 1
+
+
+def _known_keys(path: Path) -> list[str]:
+    return [key for schema in _schemas(path) for key in schema.get("properties", {})]
+
+
+def _choices(schema: Mapping[str, Any]) -> list[Any]:
+    return [*schema.get("enum", []), *([schema["const"]] if "const" in schema else [])]
+
+
+def _schemas(path: Path) -> list[dict[str, Any]]:
+    """The JSON Schemas of the value at a path; several where there are alternatives."""
+    schemas = _alternatives(json_schema())
+    for step in path:
+        inner: list[dict[str, Any]] = []
+        for schema in schemas:
+            child = schema.get("properties", {}).get(step) or schema.get("additionalProperties")
+            child = schema.get("items") if isinstance(step, int) else child
+            inner += _alternatives(child) if isinstance(child, dict) else []
+        schemas = inner
+    return schemas
+
+
+def _alternatives(schema: dict[str, Any]) -> list[dict[str, Any]]:
+    if "$ref" in schema:
+        return _alternatives(json_schema()["$defs"][schema["$ref"].rpartition("/")[2]])
+    if "anyOf" in schema:
+        return [one for choice in schema["anyOf"] for one in _alternatives(choice)]
+    return [schema]

@@ -1,0 +1,284 @@
+"""The native file in: YAML, with the parts it includes, to a System; every fault found, each with its line."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from symofros.description.constraints import Constraint
+from symofros.description.forces import Connection, Potential, VirtualPower
+from symofros.description.reading import Reading as Reading
+from symofros.description.reading import in_order, read_bytes, refuse_size
+from symofros.description.system import Body, Input, Parameter, System
+from symofros.description.yaml.faults import line_of, path_of, problem_of
+from symofros.description.yaml.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
+from symofros.description.yaml.yaml_nodes import Node, YamlFault, compose
+from symofros.description.yaml.yaml_writer import write_yaml as write_yaml
+from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
+
+MAX_BYTES = 4 << 20
+MAX_INCLUDE_DEPTH = 10
+MAX_FILES = 100
+SUFFIXES = (".yaml", ".yml")
+
+_SECTIONS = {
+    "parameters": "parameter",
+    "inputs": "input",
+    "bodies": "body",
+    "connections": "connection",
+    "virtual_power": "virtual_power",
+    "potentials": "potential",
+    "closures": "constraint",
+    "nonholonomic": "constraint",
+}
+_SUFFIXES = ("px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
+
+
+def read_yaml(path: str | os.PathLike[str], text: str | None = None) -> Reading:
+    """Read a native description and what it includes.
+
+    Args:
+        path: The main file. Files that it includes lie in its folder or below.
+        text: What the main file holds, where that is not written yet; then only its name and folder are used.
+
+    Returns:
+        The system without the entries that could not be read, and every problem. No system where names are missing
+        wholesale (a section or an included file), because each use of one would then look like a fault of its own.
+    """
+    main = Path(path)
+    merger = _Merger(main.parent.resolve())
+    if text is not None:
+        merger.unwritten[main.resolve()] = text.encode("utf-8")
+    merger.add(main, str(main), ())
+    return merger.reading(main.stem)
+
+
+@dataclass
+class _Merger:
+    """Collects the entries of a file and of the files it includes."""
+
+    folder: Path
+    system: SystemEntry = field(default_factory=SystemEntry)
+    parameters: list[Parameter] = field(default_factory=list)
+    inputs: list[Input] = field(default_factory=list)
+    bodies: list[Body] = field(default_factory=list)
+    connections: list[Connection] = field(default_factory=list)
+    virtual_power: list[VirtualPower] = field(default_factory=list)
+    potentials: list[Potential] = field(default_factory=list)
+    constraints: list[Constraint] = field(default_factory=list)
+    origin: dict[tuple[str, ...], str] = field(default_factory=dict)
+    problems: list[Problem] = field(default_factory=list)
+    broken: set[str] = field(default_factory=set)
+    incomplete: bool = False
+    seen: set[Path] = field(default_factory=set)
+    bytes_left: int = field(default_factory=lambda: MAX_BYTES)
+    unwritten: dict[Path, bytes] = field(default_factory=dict)
+
+    def reading(self, default_name: str) -> Reading:
+        problems, broken = tuple(self.problems), frozenset(self.broken)
+        if self.incomplete:
+            return Reading(None, problems, broken)
+        x, y, z = self.system.gravity
+        system = System(
+            self.system.name or default_name,
+            tuple(self.bodies),
+            tuple(self.parameters),
+            tuple(self.inputs),
+            (x, y, z),
+            tuple(self.connections),
+            tuple(self.virtual_power),
+            tuple(self.potentials),
+            tuple(self.constraints),
+            origin=self.origin,
+        )
+        return Reading(system, problems, broken)
+
+    def add(self, path: Path, shown: str, including: tuple[Path, ...]) -> None:
+        """Read one file, after the files it includes."""
+        self.seen.add(path.resolve())
+        try:
+            root, problems = compose(self.bytes_of(path), shown)
+            file, faults, broken = _validate(root, shown)
+        except (YamlFault, DescriptionError) as error:
+            self.problems += [error.problem] if isinstance(error, YamlFault) else error.problems
+            self.incomplete = True
+            return
+        self.problems += in_order([*problems, *faults])
+        self.broken |= broken
+        self.incomplete |= file is None
+        if file is None:
+            return
+        here = (*including, path.resolve())
+        for i, text in enumerate(file.include or ()):
+            where = f"{shown}:{root.at(('include', i)).line}"
+            self.include(text, path, shown, here, where)
+        self.merge(file, root, shown, bool(including))
+
+    def bytes_of(self, path: Path) -> bytes:
+        """A file's content; the limit is on the main file and all it includes together."""
+        data = self.unwritten.get(path.resolve())
+        if data is None:
+            data = read_bytes(path, self.bytes_left)
+        refuse_size(path, data, self.bytes_left)
+        self.bytes_left -= len(data)
+        return data
+
+    def include(self, text: str, path: Path, shown: str, here: tuple[Path, ...], where: str) -> None:
+        """Follow one include, if it is allowed; a file that is included twice counts once."""
+        try:
+            target = (path.resolve().parent / text).resolve()
+            problem = self.refusal(text, target, here)
+        except (OSError, ValueError) as error:  # A NUL character, or a loop of links.
+            problem = Problem(
+                "include: not a path", str(error), "an include is a relative path", "name a file of this folder"
+            )
+        if problem:
+            self.problems.append(Problem(problem.what, problem.found, problem.rule, problem.remedy, where))
+            self.incomplete = True
+        elif target not in self.seen:
+            self.add(target, os.path.normpath(Path(shown).parent / text), here)
+
+    def refusal(self, text: str, target: Path, here: tuple[Path, ...]) -> Problem | None:
+        """Why a file may not be included."""
+        what = f"include '{text:.100}'"
+        if Path(text).is_absolute() or not target.is_relative_to(self.folder):
+            return Problem(
+                f"{what} leaves the main file's folder",
+                text[:100],
+                "included files lie in that folder or below, links followed",
+                "copy the file there",
+            )
+        if target.suffix not in SUFFIXES:
+            return Problem(
+                f"{what} is not a native description",
+                target.suffix or "no suffix",
+                f"included files end in {' or '.join(SUFFIXES)}",
+                "rename it, or load it by itself",
+            )
+        if target in here:
+            names = " -> ".join(file.name for file in [*here[here.index(target) :], target])
+            return Problem(
+                f"{what} closes a cycle",
+                names,
+                "files include each other in one direction",
+                "remove one of the includes",
+            )
+        if len(here) > MAX_INCLUDE_DEPTH or len(self.seen) >= MAX_FILES:
+            return Problem(
+                f"{what} goes too far",
+                f"{len(here)} levels, {len(self.seen)} files",
+                f"at most {MAX_INCLUDE_DEPTH} levels and {MAX_FILES} files",
+                "put parts together in fewer files",
+            )
+        if not target.is_file():
+            there = [file.name for file in target.parent.glob("*.y*ml")] if target.parent.is_dir() else []
+            return Problem(
+                f"{what}: there is no such file",
+                text[:100],
+                "an included file exists",
+                did_you_mean(target.name, sorted(there)),
+            )
+        return None
+
+    def merge(self, file: NativeFile, root: Node, shown: str, included: bool) -> None:
+        """Add one file's entries to what is there."""
+        system_line = f"{shown}:{root.at(('system',)).key_line}"
+        if file.system is not None and included:
+            self.problems.append(
+                Problem(
+                    "an included file has a 'system' section",
+                    "system",
+                    "only the main file has one",
+                    "remove it, or move it there",
+                    system_line,
+                )
+            )
+        elif file.system is not None:
+            self.system = file.system
+            self.origin["system",] = system_line
+        for name, parameter in (file.parameters or {}).items():
+            if self.is_new("parameters", name, root, shown):
+                self.parameters.append(parameter.build(name))
+        for name, entry in (file.inputs or {}).items():
+            if self.is_new("inputs", name, root, shown):
+                self.inputs.append((entry or InputEntry()).build(name))
+        for name, body in (file.bodies or {}).items():
+            if self.is_new("bodies", name, root, shown):
+                self.bodies.append((body or BodyEntry()).build(name))
+                self.origin |= dict(_body_origin(self.bodies[-1], root, shown))
+        for name, connection in (file.connections or {}).items():
+            if self.is_new("connections", name, root, shown):
+                self.connections.append(connection.build(name))
+        for name, forces in (file.virtual_power or {}).items():
+            if self.is_new("virtual_power", name, root, shown):
+                self.virtual_power.append(VirtualPower(name, tuple(forces.items())))
+        for name, energy in (file.potentials or {}).items():
+            if self.is_new("potentials", name, root, shown):
+                self.potentials.append(Potential(name, energy))
+        for name, closure in (file.closures or {}).items():
+            if self.is_new("closures", name, root, shown):
+                self.constraints.append(closure.build(name))
+        for name, condition in (file.nonholonomic or {}).items():
+            if self.is_new("nonholonomic", name, root, shown):
+                self.constraints.append(condition.build(name))
+
+    def is_new(self, section: str, name: str, root: Node, shown: str) -> bool:
+        """Record where a named thing stands; whether no other file has one of that name."""
+        kind = _SECTIONS[section]
+        where = f"{shown}:{root.at((section, name)).key_line}"
+        first = self.origin.setdefault((kind, name), where)
+        if first == where:
+            return True
+        self.problems.append(
+            Problem(
+                f"{kind} '{name}' is in two files",
+                f"{first} and {where}",
+                "a name is given once in a file and all it includes",
+                "rename one of them",
+                where,
+            )
+        )
+        return False
+
+
+def _validate(root: Node, shown: str) -> tuple[NativeFile | None, list[Problem], set[str]]:
+    """A file's entries, faulty ones left out; None if a whole section is unreadable."""
+    data = root.plain()
+    try:
+        return NativeFile.model_validate(data), [], set()
+    except ValidationError as error:
+        faults = error.errors(include_url=False)
+    problems = first_of(problem_of(fault, f"{shown}:{line_of(fault, root)}") for fault in faults)
+    broken: set[str] = set()
+    for path in map(path_of, faults):
+        section = path[0] if path else ""
+        if section in _SECTIONS and len(path) > 1:
+            broken |= _names_of(str(section), str(path[1]), data[section].pop(path[1], None))
+        elif section in ("", "include", *_SECTIONS):
+            return None, problems, broken
+        else:
+            data.pop(section, None)
+    return NativeFile.model_validate({**data, "symofros": 1}), problems, broken
+
+
+def _names_of(section: str, name: str, entry: Any) -> set[str]:
+    """What others may call an unreadable entry: its name and, for a body, its coordinates and speeds."""
+    if section != "bodies":
+        return {name}
+    joint = entry.get("joint") if isinstance(entry, dict) else None
+    stated = joint.get("name") if isinstance(joint, dict) else None
+    own = stated if isinstance(stated, str) else default_joint_name(name)
+    return {name, own, f"d{own}", *(f"{own}.{suffix}" for suffix in _SUFFIXES)}
+
+
+def _body_origin(body: Body, root: Node, shown: str) -> Iterator[tuple[tuple[str, ...], str]]:
+    if body.joint is not None:
+        yield ("joint", body.joint.name), f"{shown}:{root.at(('bodies', body.name, 'joint')).key_line}"
+    for frame in body.frames:
+        line = root.at(("bodies", body.name, "frames", frame.name)).key_line
+        yield ("frame", body.name, frame.name), f"{shown}:{line}"

@@ -1,0 +1,226 @@
+"""Diagrams at the command line: what `symofros info` and `symofros simulate` do with a diagram's file."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from symofros.diagrams.compiled import Resolved
+from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.files.registry import kind_of
+from symofros.diagrams.jitter import Jitter, histogram, jitter_of
+from symofros.diagrams.plots import show_window
+from symofros.diagrams.result import DiagramRun
+from symofros.diagrams.simulate import run_compiled
+from symofros.diagrams.simulation import Simulation
+from symofros.errors import Problem, SymofrosError
+
+WINDOW = "window"
+_HEAD = re.compile(rb"^(\xef\xbb\xbf)?symofros_diagram[ \t]*:", re.MULTILINE)
+_LOOKED_AT = 1 << 16
+
+
+def is_diagram(path: Path) -> bool:
+    """Whether a file states a diagram, by the key that such a file has."""
+    if path.suffix.lower() not in (".yaml", ".yml") or not path.is_file():
+        return False
+    with path.open("rb") as stream:
+        return _HEAD.search(stream.read(_LOOKED_AT)) is not None
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What the command line asks of a run; None and "" where it leaves things to the diagram.
+
+    Attributes:
+        t_end: Where to end [s].
+        settings: Of `run_compiled`.
+        speed: Seconds of motion a second; 0: as fast as can be.
+        signals: Outputs that are saved and plotted.
+        output: File to save to.
+        plot: Picture to write, or WINDOW.
+        jitter: Picture of how late instants were.
+    """
+
+    t_end: float | None
+    settings: dict[str, Any]
+    speed: float
+    signals: tuple[str, ...]
+    output: Path | None
+    plot: str
+    jitter: Path | None
+
+
+def run_diagram(diagram: Diagram, wishes: Wishes, progress: bool) -> DiagramRun:
+    """Run a diagram as wished.
+
+    Raises:
+        SymofrosError: The diagram, a setting or a signal's name is wrong; nothing has run then.
+    """
+    simulation = Simulation(diagram)
+    t_end = wishes.t_end if wishes.t_end is not None else diagram.simulation.t_end
+    stated = {**diagram.simulation.keywords(), **wishes.settings}
+    if wishes.speed:
+        stated["realtime"] = wishes.speed
+    if wishes.jitter and not stated.get("realtime"):
+        raise SymofrosError(
+            str(
+                Problem(
+                    "--jitter: the run keeps no pace",
+                    "no --realtime",
+                    "jitter is measured in real time",
+                    "add --realtime",
+                )
+            )
+        )
+    for name in wishes.signals:
+        simulation.resolved.wired.check_signal(name)
+    return run_compiled(simulation.compiled, 1.0 if t_end is None else t_end, progress=progress, **stated)
+
+
+def write_files(run: DiagramRun, wishes: Wishes) -> list[str]:
+    """What was asked to be written; a window comes last, and waits until it is closed."""
+    files = run.save(wishes.output, *wishes.signals) if wishes.output else []
+    if wishes.jitter:
+        histogram(run.cost.late, run.compiled.resolved.wired.name).savefig(wishes.jitter, dpi=120)
+        files.append(wishes.jitter)
+    if wishes.plot == WINDOW:
+        show_window(run, *wishes.signals)
+    elif wishes.plot:
+        run.plot(*wishes.signals).savefig(wishes.plot, dpi=120)
+        files.append(Path(wishes.plot))
+    return list(map(str, files))
+
+
+def tell_run(run: DiagramRun, files: list[str], as_json: bool, out: Console) -> None:
+    """Outcome, cost, jitter, what was kept, last values."""
+    cost, outcome = run.cost, run.outcome
+    jitter = jitter_of(cost) if cost.late.size else None
+    counts = {
+        f"{block}.{name}": float(value)
+        for block, found in run.kept.items()
+        if "t" not in found
+        for name, value in found.items()
+    }
+    if as_json:
+        costs = {key: value for key, value in asdict(cost).items() if key not in ("late", "spacing")}
+        print(
+            json.dumps(
+                {
+                    "ok": outcome.ok,
+                    "outcome": {
+                        "kind": outcome.kind,
+                        "t": outcome.t,
+                        "reason": outcome.reason,
+                        "advice": outcome.advice,
+                        "notes": list(outcome.notes),
+                    },
+                    "statistics": costs,
+                    "jitter": asdict(jitter) if jitter else None,
+                    "counts": counts,
+                    "files": files,
+                    "crossings": [list(crossing) for crossing in run.crossings],
+                },
+                indent=1,
+            )
+        )
+        return
+    out.print(str(outcome), markup=False, highlight=False, soft_wrap=True)
+    span = float(run.t[-1] - run.t[0])
+    pace = span / max(cost.seconds, 1e-9)
+    out.print(
+        f"{len(run.t)} records; {cost.steps} steps, {cost.rejected} rejected, {cost.evaluations} evaluations; "
+        f"{cost.seconds:.3g} s, {pace:.3g} times real time",
+        markup=False,
+        soft_wrap=True,
+    )
+    _tell_more(run, jitter, counts, files, out)
+
+
+def _tell_more(
+    run: DiagramRun, jitter: Jitter | None, counts: dict[str, float], files: list[str], out: Console
+) -> None:
+    lines = [str(jitter)] if jitter else []
+    lines += [f"{name}: {value:g}" for name, value in counts.items()]
+    lines += [f"{crossing.block}: {crossing.crossing} at t = {crossing.t:.6g} s" for crossing in run.crossings[:20]]
+    lines += [f"wrote {file}" for file in files]
+    for line in lines:
+        out.print(line, markup=False, highlight=False, soft_wrap=True)
+
+
+def tell_diagram(diagram: Diagram, as_json: bool, out: Console) -> None:
+    """Blocks with their ports, rates and states, in the order in which they are evaluated; models; parameters.
+
+    Raises:
+        DescriptionError: With what is wrong with the diagram.
+    """
+    data = as_data(Simulation(diagram).resolved)
+    if as_json:
+        print(json.dumps(data, indent=1))
+        return
+    table = Table("block", "kind", "samples", "inputs", "outputs", "states", title=data["name"])
+    for name, block in data["blocks"].items():
+        inputs = [f"{port} <- {source}" for port, source in block["inputs"].items()]
+        outputs = [f"{port} {tuple(of['shape'])} {of['unit']}".strip() for port, of in block["outputs"].items()]
+        rows = ("\n".join(inputs), "\n".join(outputs), ", ".join(block["states"]))
+        table.add_row(name, block["kind"], _samples(block), *rows)
+    out.print(table)
+    order = " -> ".join(dict.fromkeys(name.rpartition(".")[0] for name in data["order"]))
+    lines = [
+        f"model {name}: nq {of['nq']}, nv {of['nv']}, nc {of['nc']}, {of['npar']} parameters"
+        for name, of in data["models"].items()
+    ]
+    lines += [f"order: {order}", f"{len(data['parts'])} parts move apart: {'; '.join(map(', '.join, data['parts']))}"]
+    lines += [f"parameter {name} = {value}" for name, value in data["parameters"].items()]
+    for line in lines:
+        out.print(line, markup=False, highlight=False, soft_wrap=True)
+
+
+def _samples(block: dict[str, Any]) -> str:
+    if block["period"] is None:
+        return "continuous"
+    return f"every {block['period']:g} s" + (f" from {block['offset']:g} s" if block["offset"] else "")
+
+
+def as_data(resolved: Resolved) -> dict[str, Any]:
+    """A diagram that holds together, as plain data."""
+    wired, layout = resolved.wired, resolved.layout
+    blocks: dict[str, Any] = {}
+    for name, block in wired.blocks.items():
+        piece, ports = resolved.pieces[name], wired.ports[name]
+        blocks[name] = {
+            "kind": kind_of(type(block)),
+            "period": block.period,
+            "offset": block.offset,
+            "inputs": {
+                port.name: ".".join(wired.sources[name, port.name])
+                if (name, port.name) in wired.sources
+                else f"{np.asarray(port.default).tolist()}"
+                for port in ports.inputs
+            },
+            "outputs": {port.name: {"shape": list(port.shape or ()), "unit": port.unit} for port in ports.outputs},
+            "states": [f"q ({len(piece.q)}), v ({len(piece.v)})"] * bool(block.mechanism())
+            + [f"{key} {values.shape}" for key, values in piece.states.items()]
+            + [f"{key} {values.shape} at samples" for key, values in piece.memory.items()],
+        }
+    records = {name: wired.models.record(name) for name in wired.models.names}
+    models = {
+        name: {"nq": len(r.q_names), "nv": len(r.v_names), "nc": r.nc, "npar": len(r.par_names)}
+        for name, r in records.items()
+    }
+    return {
+        "name": wired.name,
+        "blocks": blocks,
+        "models": models,
+        "order": [".".join(one) for one in resolved.order],
+        "parts": [list(part.blocks) for part in layout.parts],
+        "outlets": {k: ".".join(v) for k, v in wired.outlets.items()},
+        "parameters": {name: value for name, value in zip(layout.par_names, layout.par, strict=True)},
+    }

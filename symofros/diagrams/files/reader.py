@@ -1,0 +1,349 @@
+"""A diagram's YAML file in. It is as untrusted as a model: bounded, without tags; every fault with its line."""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from symofros.description.reading import in_order, read_bytes
+from symofros.description.system import System
+from symofros.description.yaml.yaml_nodes import Node, YamlFault, compose
+from symofros.diagrams.block import Block, ModelFile
+from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.files.entries import Entries
+from symofros.diagrams.files.fields import Misfit, read, required, types_of
+from symofros.diagrams.files.paths import DIAGRAMS, MODELS, refused
+from symofros.diagrams.files.registry import INPUTS, KIND, entry_of, kinds
+from symofros.diagrams.files.run_settings import read_settings
+from symofros.errors import DescriptionError, Problem, SymofrosError, did_you_mean
+from symofros.loading import load
+
+VERSION = 1
+MAX_BYTES = 4 << 20
+MAX_FILES = 100
+MAX_LEVELS = 10
+MAX_BLOCKS = 10_000
+
+HEAD = "symofros_diagram"
+SECTIONS = (HEAD, "name", "models", "simulation", "blocks", "parts", "inlets", "outlets", "wires")
+MODEL = ("file", "functions", "floating_base", "start", "parameters")
+PART = ("file", "diagram", "models", "inputs")
+COMMON = ("kind", "period", "offset", "inputs")
+
+_ARGUMENTS = frozenset(inspect.signature(Diagram.include).parameters) - {"inputs"}
+
+
+def load_diagram(path: str | os.PathLike[str], *, blocks: Iterable[type[Block]] = (), network: bool = False) -> Diagram:
+    """Read a diagram and the models it names (docs/diagrams.md).
+
+    Args:
+        path: A YAML file. Models and parts lie in its folder or below.
+        blocks: Classes of blocks of the caller's own, which files may state by their names in snake case.
+        network: Whether blocks may reach other machines than this one.
+
+    Raises:
+        DescriptionError: With every fault that was found. What concerns the diagram as a whole (wires, shapes, units,
+            loops) is found by `sf.Simulation`, which knows the same lines.
+    """
+    file = Path(path)
+    shared = _Shared(file.parent.resolve(), kinds(blocks), network)
+    found = shared.file(file, str(file), ())
+    if shared.problems or found is None:
+        raise DescriptionError(in_order(shared.problems))
+    return found
+
+
+@dataclass
+class _Shared:
+    """What the files of one diagram share."""
+
+    folder: Path
+    kinds: Mapping[str, type[Block]]
+    network: bool
+    problems: list[Problem] = field(default_factory=list)
+    systems: dict[tuple[Path, bool], System | None] = field(default_factory=dict)
+    files: int = 0
+    bytes_left: int = MAX_BYTES
+
+    def file(self, path: Path, shown: str, including: tuple[Path, ...]) -> Diagram | None:
+        """A file's diagram, as far as it can be read."""
+        self.files += 1
+        try:
+            data = read_bytes(path, self.bytes_left)
+            self.bytes_left -= len(data)
+            root, repeated = compose(data, shown)
+        except (YamlFault, DescriptionError) as error:
+            self.problems += [error.problem] if isinstance(error, YamlFault) else error.problems
+            return None
+        self.problems += repeated
+        reader = _Reader(self, path, shown, (*including, path.resolve()))
+        entries = reader.mapping(root, "the file", SECTIONS)
+        rule = f"a diagram's file begins with {HEAD}: {VERSION}"
+        if not reader.missing(root, "the file", HEAD, entries, rule) and entries[HEAD].value != VERSION:
+            reader.fault(
+                entries[HEAD],
+                f"{HEAD}: a version that is not known",
+                entries[HEAD].plain(),
+                rule,
+                "take a newer symofros",
+            )
+        found = reader.diagram(entries, path.stem)
+        found.file = str(path.resolve())
+        return found
+
+
+class _Reader(Entries):
+    """One file of a diagram."""
+
+    def __init__(self, shared: _Shared, path: Path, shown: str, here: tuple[Path, ...]) -> None:
+        super().__init__(shown, shared.problems)
+        self.shared, self.base, self.here = shared, path.parent, here
+
+    def diagram(self, entries: Mapping[str, Node], name: str) -> Diagram:
+        """What a file, or an inline part, states."""
+        found = Diagram(self.text(entries["name"], "name") if "name" in entries else name)
+        for key, read_one in (("models", self.model), ("blocks", self.block), ("parts", self.part)):
+            if key in entries:
+                for one, node in self.mapping(entries[key], key).items():
+                    read_one(found, one, node)
+        if "simulation" in entries:
+            found.simulation = read_settings(self, found, entries["simulation"])
+        if "wires" in entries:
+            for target, node in self.mapping(entries["wires"], "wires").items():
+                block, _, port = target.rpartition(".")
+                self.wire(found, block, port, node)
+        if "inlets" in entries:
+            for one, node in self.mapping(entries["inlets"], "inlets").items():
+                items = [node] if isinstance(node.value, str) else self.listed(node, f"inlet '{one:.60}'")
+                found.inlets[one] = tuple(self.text(item, f"inlet '{one:.60}'") for item in items)
+        if "outlets" in entries:
+            for one, node in self.mapping(entries["outlets"], "outlets").items():
+                found.outlets[one] = self.text(node, f"outlet '{one:.60}'")
+                found.origin["outlet", one] = self.where(node)
+        return found
+
+    def model(self, found: Diagram, name: str, node: Node) -> None:
+        """A model by its file."""
+        what = f"model '{name:.60}'"
+        entries = self.mapping(node, what, MODEL)
+        found.origin["model", name] = self.where(node, key=True)
+        if self.missing(node, what, "file", entries, "a model is read from a file"):
+            return
+        floating = "floating_base" in entries and self.one_of(entries["floating_base"], what, (True, False)) is True
+        functions = None
+        if "functions" in entries:
+            value = entries["functions"].value
+            if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= 100:
+                self.fault(
+                    entries["functions"],
+                    f"{what}: functions",
+                    value,
+                    "a whole number from 0 to 100",
+                    "0 makes it rigid",
+                )
+                return
+            functions = value
+        system = self.system(entries["file"], what, floating)
+        start, parameters = (
+            self.numbers(entries[key], f"{what}: {key}") if key in entries else {} for key in ("start", "parameters")
+        )
+        if system is None:
+            return
+        path, floats = str((self.base / entries["file"].value).resolve()), floating
+        try:
+            found.add_model(name, system, start, parameters, functions, ModelFile(path, functions, floats))
+        except DescriptionError as error:
+            self.take(node, error.problems)
+
+    def system(self, node: Node, what: str, floating_base: bool) -> System | None:
+        """The description in a file; the same object for the same file."""
+        text = self.text(node, f"{what}: file", 1000)
+        problem = refused(text, self.base, self.shared.folder, MODELS) if text else None
+        if not text or problem:
+            self.take(node, [problem] if problem else [])
+            return None
+        path = (self.base / text).resolve()
+        key = path, floating_base
+        if key not in self.shared.systems:
+            try:
+                shown = Path(os.path.relpath(path)) if not Path(self.file).is_absolute() else path
+                self.shared.systems[key] = load(shown, floating_base=floating_base)
+            except DescriptionError as error:
+                self.shared.systems[key] = None
+                self.take(node, error.problems)
+        return self.shared.systems[key]
+
+    def block(self, found: Diagram, name: str, node: Node) -> None:
+        """A block of a kind, its fields by the class."""
+        what = f"block '{name:.60}'"
+        if len(found.blocks) >= MAX_BLOCKS:
+            self.fault(node, "too many blocks", f"more than {MAX_BLOCKS}", f"at most {MAX_BLOCKS}", "split the diagram")
+            return
+        entries = self.mapping(node, what)
+        if self.missing(node, what, "kind", entries, "a block is of a kind"):
+            return
+        kind = self.text(entries["kind"], f"{what}: kind")
+        if kind not in self.shared.kinds:
+            if kind:
+                self.fault(
+                    entries["kind"],
+                    f"{what}: no kind of blocks '{kind:.60}'",
+                    f"'{kind:.60}'",
+                    "kinds are the classes of symofros.blocks in snake_case",
+                    did_you_mean(kind, self.shared.kinds),
+                )
+            return
+        owner = self.shared.kinds[kind]
+        block = self.made(what, kind, owner, name, node, entries)
+        if block is None:
+            return
+        reach = block.reaches()
+        if reach and not self.shared.network:
+            self.fault(
+                node,
+                f"{what} reaches another machine",
+                reach,
+                "a diagram's file stays on this machine unless its reader says otherwise",
+                "load_diagram(path, network=True), or simulate --network",
+            )
+        try:
+            found.add(block)
+        except DescriptionError as error:
+            self.take(node, error.problems)
+            return
+        found.origin["block", name] = self.where(node, key=True)
+        if "inputs" in entries:
+            for port, item in self.mapping(entries["inputs"], f"{what}: inputs").items():
+                self.wire(found, name, port, item)
+
+    def made(
+        self, what: str, kind: str, owner: type[Block], name: str, node: Node, entries: Mapping[str, Node]
+    ) -> Block | None:
+        """The block, if its fields are of their types and all there."""
+        names = {entry_of(name): name for name in types_of(owner) if name != "name"}
+        types = types_of(owner)
+        known = list(dict.fromkeys([*COMMON, *names]))
+        before = len(self.problems)
+        values: dict[str, Any] = {}
+        for key, item in self.mapping(node, f"{what} ({kind})", known).items():
+            if key in (KIND, INPUTS):
+                continue
+            try:
+                value = read(types[names[key]], item)
+                values[names[key]] = self.inside(value, item) if names[key] in owner.paths else value
+            except Misfit as error:
+                self.fault(
+                    error.node,
+                    f"{what}: {key} does not fit",
+                    error.node.plain(),
+                    error.rule,
+                    f"see the fields of {kind}",
+                )
+            except (SymofrosError, ValueError, TypeError) as error:
+                self.fault(item, f"{what}: {key} does not fit", f"{error}", f"as {kind} takes it", "mend it")
+        for key in sorted({entry_of(name) for name in required(owner) - {"name"}} - entries.keys()):
+            self.missing(node, what, key, entries, f"{kind} needs {key}")
+        if len(self.problems) > before:
+            return None
+        try:
+            return owner(name=name, **values)
+        except DescriptionError as error:
+            self.take(node, error.problems, key=True)
+        except (SymofrosError, ValueError, TypeError) as error:
+            problem = Problem(
+                f"{what} ({kind}) can't be made", f"{error}"[:200], "its fields fit each other", "mend them"
+            )
+            self.take(node, [problem], key=True)
+        return None
+
+    def inside(self, value: Any, node: Node) -> Any:
+        """The whole path of a file that a block names; nothing is read from elsewhere than the diagram's folder."""
+        if not isinstance(value, str) or not value:
+            return value
+        problem = refused(value, self.base, self.shared.folder)
+        self.take(node, [problem] if problem else [])
+        return str((self.base / value).resolve()) if not problem else value
+
+    def wire(self, found: Diagram, block: str, port: str, node: Node) -> None:
+        """An input and its source."""
+        source = self.text(node, f"input '{block:.60}.{port:.60}'", 1000)
+        if not source:
+            return
+        try:
+            found.connect(source, f"{block}.{port}")
+        except DescriptionError as error:
+            self.take(node, error.problems)
+        found.origin.setdefault(("input", block, port), self.where(node))
+
+    def part(self, found: Diagram, name: str, node: Node) -> None:
+        """A diagram inside this one, from a file or inline."""
+        what = f"part '{name:.60}'"
+        entries = self.mapping(node, what, PART)
+        if ("file" in entries) == ("diagram" in entries):
+            self.fault(
+                node,
+                f"{what} is not of one origin",
+                ", ".join(entries) or "nothing",
+                "a part has either a file or a diagram",
+                "add one of them",
+            )
+            return
+        if "diagram" in entries:
+            inside = self.mapping(entries["diagram"], f"{what}: diagram", SECTIONS[1:])
+            inner: Diagram | None = self.diagram(inside, name)
+        else:
+            inner = self.from_file(entries["file"], what)
+        models, inputs = (
+            self.texts(entries[key], f"{what}: {key}") if key in entries else {} for key in ("models", "inputs")
+        )
+        if inner is None:
+            return
+        if len(found.blocks) + len(inner.blocks) > MAX_BLOCKS:
+            self.fault(node, "too many blocks", f"more than {MAX_BLOCKS}", f"at most {MAX_BLOCKS}", "drop parts")
+            return
+        for reserved in inputs.keys() & _ARGUMENTS:
+            self.fault(
+                entries["inputs"],
+                f"{what}: no inlet can be called '{reserved}'",
+                f"'{reserved}'",
+                "the name is one of Diagram.include's own",
+                "rename the inlet",
+            )
+            del inputs[reserved]
+        try:
+            found.include(name, inner, models, **inputs)
+        except DescriptionError as error:
+            self.take(node, error.problems)
+        for inlet in inputs.keys() & inner.inlets.keys():
+            for target in inner.inlets[inlet]:
+                block, _, port = f"{name}/{target}".rpartition(".")
+                found.origin["input", block, port] = self.where(entries["inputs"].value[inlet])
+
+    def from_file(self, node: Node, what: str) -> Diagram | None:
+        """A part's file."""
+        text = self.text(node, f"{what}: file", 1000)
+        problem = refused(text, self.base, self.shared.folder, DIAGRAMS) if text else None
+        target = (self.base / text).resolve() if text and not problem else Path()
+        if not problem and text and target in self.here:
+            names = " -> ".join(file.name for file in [*self.here[self.here.index(target) :], target])
+            problem = Problem(
+                f"{what} closes a cycle",
+                names,
+                "diagrams contain each other in one direction",
+                "remove one of the parts",
+            )
+        if not problem and (len(self.here) > MAX_LEVELS or self.shared.files >= MAX_FILES):
+            problem = Problem(
+                f"{what} goes too far",
+                f"{len(self.here)} levels, {self.shared.files} files",
+                f"at most {MAX_LEVELS} levels and {MAX_FILES} files",
+                "put parts together",
+            )
+        if not text or problem:
+            self.take(node, [problem] if problem else [])
+            return None
+        return self.shared.file(self.base / text, os.path.normpath(Path(self.file).parent / text), self.here)

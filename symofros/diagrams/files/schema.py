@@ -1,0 +1,121 @@
+"""The JSON Schema of a diagram's file, made of the classes of blocks; editors complete and check by it."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin
+
+from symofros.diagrams.block import Block
+from symofros.diagrams.files.fields import required, types_of, words_for
+from symofros.diagrams.files.reader import HEAD, VERSION
+from symofros.diagrams.files.registry import entry_of, kinds
+from symofros.diagrams.files.run_settings import SETTINGS
+from symofros.simulation.methods import METHODS
+
+SCHEMA_FILE = Path(__file__).with_name("schema.json")
+
+Plain = dict[str, Any]
+_PLAIN: dict[Any, Plain] = {
+    float: {"type": "number"},
+    int: {"type": "integer"},
+    bool: {"type": "boolean"},
+    str: {"type": "string"},
+    NoneType: {"type": "null"},
+}
+_TEXTS: Plain = {"type": "object", "additionalProperties": {"type": "string"}}
+_NUMBERS: Plain = {"type": "object", "additionalProperties": {"type": "number"}}
+_ABOVE: Plain = {"type": "number", "exclusiveMinimum": 0}
+
+
+def of_type(kind: Any) -> Plain:
+    """The schema of a field of a type; without rules where no file can state one."""
+    origin, arguments = get_origin(kind), get_args(kind)
+    if kind in _PLAIN:
+        return _PLAIN[kind]
+    if origin is Literal:
+        return {"enum": list(arguments)}
+    if origin in (Union, UnionType):
+        return {"anyOf": [of_type(item) for item in arguments]}
+    if origin in (tuple, list):
+        is_open = len(arguments) == 1 or arguments[-1] is Ellipsis
+        if is_open:
+            return {"type": "array", "items": of_type(arguments[0])}
+        return {"type": "array", "prefixItems": [of_type(item) for item in arguments], "items": False}
+    if isinstance(origin, type) and issubclass(origin, Mapping):
+        return {"type": "object", "additionalProperties": of_type(arguments[1])}
+    if dataclasses.is_dataclass(kind) and isinstance(kind, type):
+        return _object({name: of_type(item) for name, item in types_of(kind).items()}, sorted(required(kind)))
+    return {"description": words_for(kind)}
+
+
+def json_schema() -> Plain:
+    """The schema of a file with the blocks of the library."""
+    blocks = {kind: _block(kind, owner) for kind, owner in kinds().items()}
+    model = {
+        "file": {"type": "string"},
+        "functions": {"type": "integer", "minimum": 0, "maximum": 100},
+        "floating_base": {"type": "boolean"},
+        "start": _NUMBERS,
+        "parameters": _NUMBERS,
+    }
+    sections = {
+        "name": {"type": "string"},
+        "models": _named(_object(model, ["file"])),
+        "blocks": _named({"oneOf": [{"$ref": f"#/$defs/{kind}"} for kind in blocks]}),
+        "parts": _named({"$ref": "#/$defs/part"}),
+        "wires": _TEXTS,
+        "inlets": _named({"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}),
+        "outlets": _TEXTS,
+    }
+    part = {"file": {"type": "string"}, "diagram": _object(sections), "models": _TEXTS, "inputs": _TEXTS}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A SYMOFROS diagram",
+        **_object({HEAD: {"const": VERSION}, **sections, "simulation": _settings()}, [HEAD]),
+        "$defs": {**blocks, "part": _object(part) | {"oneOf": [{"required": ["file"]}, {"required": ["diagram"]}]}},
+    }
+
+
+def _block(kind: str, owner: type[Block]) -> Plain:
+    properties: Plain = {"kind": {"const": kind}}
+    properties |= {entry_of(name): of_type(item) for name, item in types_of(owner).items() if name != "name"}
+    found = _object(properties | {"inputs": _TEXTS}, ["kind", *sorted(map(entry_of, required(owner) - {"name"}))])
+    return {"description": (inspect.getdoc(owner) or "").split("\n")[0], **found}
+
+
+def _settings() -> Plain:
+    signals: Plain = {"type": "array", "items": {"type": "string"}}
+    plot = {
+        "anyOf": [{"type": "string"}, signals, _object({"title": {"type": "string"}, "signals": signals}, ["signals"])]
+    }
+    known: Plain = {name: _ABOVE for name in SETTINGS}
+    known |= {
+        "t0": {"type": "number"},
+        "threads": {"type": "integer", "minimum": 1},
+        "method": {"enum": list(METHODS)},
+        "plots": {"type": "array", "items": plot},
+    }
+    return _object(known)
+
+
+def _object(properties: Plain, needed: list[str] | None = None) -> Plain:
+    found: Plain = {"type": "object", "properties": properties, "additionalProperties": False}
+    return found | ({"required": needed} if needed else {})
+
+
+def _named(of: Plain) -> Plain:
+    return {"type": "object", "additionalProperties": of}
+
+
+def schema_text() -> str:
+    """The JSON Schema as it is published."""
+    return json.dumps(json_schema(), indent=2) + "\n"
+
+
+if __name__ == "__main__":
+    SCHEMA_FILE.write_text(schema_text(), encoding="utf-8")

@@ -1,0 +1,276 @@
+"""sf.export: a description, compiled for somebody else's environment."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Literal, get_args
+
+import numpy as np
+
+from symofros.compiler import GENERATOR, compile_system, describe, generate, plan, requested
+from symofros.description.system import System
+from symofros.diagrams.compiled import resolve
+from symofros.diagrams.diagram import Diagram
+from symofros.errors import AssemblyError, ExportError, Problem, UnknownNameError, did_you_mean
+from symofros.exports.c_package import write_c_package
+from symofros.exports.diagram import write_diagram
+from symofros.exports.fmu import write_fmu2, write_fmu3
+from symofros.exports.folder import Exported as Exported
+from symofros.exports.folder import check_folder
+from symofros.exports.material import Material, Stepping
+from symofros.exports.mex import write_mex
+from symofros.exports.mjcf import write_mjcf
+from symofros.exports.reference import POINTS, checks
+from symofros.exports.sfunction import write_sfunction
+from symofros.exports.urdf import write_urdf
+from symofros.generator.codegen.interpreted import InterpretedUnit
+from symofros.generator.codegen.names import identifier
+from symofros.loading import load
+from symofros.options import FRAME_FUNCTIONS, Options
+from symofros.runtime.kernel import Array
+from symofros.runtime.model import Model
+from symofros.simulation.assembly import assemble
+from symofros.simulation.methods import METHODS, NEEDS
+
+Target = Literal["c", "mex", "sfunction", "fmu2", "fmu3", "urdf", "mjcf"]
+TARGETS: tuple[Target, ...] = get_args(Target)
+
+_COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
+    "c": write_c_package,
+    "mex": write_mex,
+    "sfunction": write_sfunction,
+    "fmu2": write_fmu2,
+    "fmu3": write_fmu3,
+}
+# Targets that give exact derivatives of their outputs, by inputs too.
+_DIFFERENTIATED = ("fmu2", "fmu3")
+_DESCRIBED: dict[str, Callable[[System, str | None, Path, str], Exported]] = {"urdf": write_urdf, "mjcf": write_mjcf}
+# What wrappers call: the paper's table 1, and what stepping and linearisation need.
+_FUNCTIONS = (
+    "mass_matrix",
+    "bias",
+    "generalized_force",
+    "dynamics",
+    "forward_dynamics",
+    "inverse_dynamics",
+    "kinetic_energy",
+    "potential_energy",
+    "forward_dynamics_derivatives",
+    "implicit_terms",
+)
+_CONSTRAINED = ("constraint", "constraint_rate", "constraint_jacobian", "constraint_bias", "project")
+_KINEMATICS = ("frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian", "frame_jacobian_rate")
+
+
+def export(
+    model: System | Diagram | str | os.PathLike[str],
+    target: Target,
+    folder: str | os.PathLike[str],
+    *,
+    name: str | None = None,
+    frames: Sequence[str] | None = None,
+    outputs: Sequence[str] | None = None,
+    start: Mapping[str, float] | None = None,
+    method: str = "rk4",
+    dt: float = 1e-3,
+    rtol: float = 1e-6,
+    atol: float = 1e-8,
+) -> Exported:
+    """Write a model for another environment; all targets wrap the same C, whose interface is symofros_model.h.
+
+    Args:
+        model: A system, or the path of its description; or a diagram, which becomes a program of its own ("c").
+        target: "c" (a package that builds by CMake, tests itself and simulates in real time), "mex" (Matlab, Octave),
+            "sfunction" (Simulink), "fmu2", "fmu3" (FMI, Model Exchange and Co-Simulation), "urdf" or "mjcf" (what
+            these can hold; the notes say what they can't).
+        folder: A new one, an empty one, or one of an earlier export.
+        name: Of files and functions; made of the system's name by default.
+        frames: Frames to generate kinematics for; all by default.
+        outputs: Of those, frames whose positions are outputs of FMUs; the last one by default. Of a diagram, the
+            signals that its program tells; by default what moves.
+        start: Names of coordinates, and d + names of speeds -> first values; the neutral state at rest by default.
+            A model with constraints starts at the nearest state that meets them.
+        method: How it steps by itself, as in `simulate`; not CVODE.
+        dt: Its step [s]; of an adaptive method the first.
+        rtol: Relative error of an adaptive method's step.
+        atol: Absolute error, alike.
+
+    Returns:
+        What was written, and notes on what the format lacks.
+
+    Raises:
+        ExportError: The folder is not ours, or the format can't hold the model.
+        DescriptionError: The description can't be a mechanism.
+        UnknownNameError: No such target, frame, coordinate or method.
+        AssemblyError: No state near the start meets the constraints.
+        CompileError: An FMU's binary does not compile.
+    """
+    if isinstance(model, Diagram):
+        return _export_diagram(model, target, Path(folder), outputs, method, dt)
+    system = model if isinstance(model, System) else load(model)
+    if target not in TARGETS:
+        raise UnknownNameError(
+            str(
+                Problem(
+                    f"export: no target '{target}'", str(target), ", ".join(TARGETS), did_you_mean(str(target), TARGETS)
+                )
+            )
+        )
+    place = Path(folder)
+    check_folder(place)  # Before the work, not only after it.
+    if target in _DESCRIBED:
+        plan(system)
+        return _DESCRIBED[target](system, name, place, GENERATOR)
+    stepping = _stepping(method, dt, rtol, atol)
+    material = _material(system, name, frames, outputs, start or {}, stepping, target in _DIFFERENTIATED)
+    return _COMPILED[target](material, place)
+
+
+def _export_diagram(
+    diagram: Diagram, target: str, folder: Path, outputs: Sequence[str] | None, method: str, dt: float
+) -> Exported:
+    """A diagram as a C program."""
+    if target != "c":
+        raise ExportError(
+            str(
+                Problem(
+                    f"diagram '{diagram.name}': no target '{target}'",
+                    target,
+                    "a diagram becomes a C program",
+                    "use target 'c'",
+                )
+            )
+        )
+    check_folder(folder)
+    resolved = resolve(diagram)
+    told = outputs or [
+        f"{name}.{port.name}"
+        for name, block in resolved.wired.blocks.items()
+        if block.mechanism()
+        for port in resolved.wired.ports[name].outputs
+        if port.name in ("q", "v")
+    ]
+    return write_diagram(resolved, folder, told, method, dt, GENERATOR)
+
+
+def _stepping(method: str, dt: float, rtol: float, atol: float) -> Stepping:
+    known = [item.name for item in METHODS.values() if item.kind != "cvode"]
+    if method not in known:
+        raise UnknownNameError(
+            str(Problem(f"export: no method '{method}'", method, ", ".join(known), did_you_mean(method, known)))
+        )
+    for label, value in (("dt", dt), ("rtol", rtol), ("atol", atol)):
+        if not (np.isfinite(value) and value > 0):
+            raise ExportError(
+                str(Problem(f"export: {label} is not positive", str(value), f"{label} > 0", "leave it out"))
+            )
+    return Stepping(METHODS[method], float(dt), float(rtol), float(atol))
+
+
+def _material(
+    system: System,
+    name: str | None,
+    frames: Sequence[str] | None,
+    outputs: Sequence[str] | None,
+    start: Mapping[str, float],
+    stepping: Stepping,
+    differentiated: bool,
+) -> Material:
+    """What an export is made of; `differentiated`: with the derivatives of outputs by prescribed motions, if any."""
+    tree = plan(system)
+    _refuse_variational(system, stepping)
+    needs = tuple(NEEDS.get(stepping.method.kind, {}).values())
+    own = _FUNCTIONS + (_CONSTRAINED if system.constraints else ())
+    functions = tuple(dict.fromkeys((*own, *needs, *_KINEMATICS)))
+    options = Options(functions, None if frames is None else tuple(frames))
+    requests = requested(tree, options)
+    record = describe(tree, options)
+    c_name = identifier(name or record.name)
+    shown = _outputs(record.frame_names, [key[1] for key in requests if key[0] in FRAME_FUNCTIONS], outputs)
+    if differentiated and record.driven and shown:
+        requests += requested(tree, Options(("frame_derivatives",), shown))
+    program, source = generate(tree, requests, record, c_name=c_name)
+    interpreted = compile_system(system, Options(backend="interpreter"))
+    q, v = _start(interpreted, start)
+    kernels = InterpretedUnit(program).kernels
+    order = tuple((request.name, request.frame) for request in requests)
+    return Material(
+        system,
+        record,
+        c_name,
+        source(),
+        order,
+        checks(record, kernels, order, q),
+        POINTS,
+        tuple(q.tolist()),
+        tuple(v.tolist()),
+        stepping,
+        shown,
+        GENERATOR,
+        system.notes,
+    )
+
+
+def _refuse_variational(system: System, stepping: Stepping) -> None:
+    if stepping.method.kind == "variational" and system.constraints:
+        raise ExportError(
+            str(
+                Problem(
+                    "export: 'variational' steps trees only",
+                    f"'{system.name}' has constraints",
+                    "its principle is written for free coordinates",
+                    "use rk4",
+                )
+            )
+        )
+
+
+def _outputs(known: Sequence[str], generated: Sequence[str], wanted: Sequence[str] | None) -> tuple[str, ...]:
+    made = list(dict.fromkeys(generated))
+    if wanted is None:
+        return tuple(made[-1:])
+    for frame in wanted:
+        if frame not in made:
+            raise UnknownNameError(
+                str(
+                    Problem(
+                        f"export: no frame '{frame}' among those generated",
+                        ", ".join(made[:12]),
+                        "outputs are frames of the model",
+                        did_you_mean(frame, made or list(known)),
+                    )
+                )
+            )
+    return tuple(wanted)
+
+
+def _start(model: Model, given: Mapping[str, float]) -> tuple[Array, Array]:
+    """The first state, on the constraints; coordinates that were given keep their values where that is possible."""
+    q, v = model.neutral(), np.zeros(model.nv)
+    speeds = [f"d{speed}" for speed in model.names.v]
+    for label, value in given.items():
+        if label in model.names.q:
+            q[model.names.q.index(label)] = value
+        elif label in speeds:
+            v[speeds.index(label)] = value
+        else:
+            raise UnknownNameError(
+                str(
+                    Problem(
+                        f"export: no coordinate or speed '{label}'",
+                        label,
+                        "start gives coordinates by name, speeds by d + name",
+                        did_you_mean(label, [*model.names.q, *speeds]),
+                    )
+                )
+            )
+    if not model.nc:
+        return q, v
+    held = [x for x in model.names.v if x in given or f"d{x}" in given]
+    try:
+        closed = assemble(model, q, v, held=held)
+    except AssemblyError:
+        closed = assemble(model, q, v)
+    return closed.q, closed.v

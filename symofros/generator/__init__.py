@@ -1,0 +1,1 @@
+"""From programs over the expression graph to C: passes, then the emitter of C."""

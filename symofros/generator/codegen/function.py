@@ -1,0 +1,264 @@
+"""One function of a program -> C text, in chunks of bounded length that pass values through `work`.
+
+Compilers are superlinear in the length of a function; a chunk is compiled by itself, at the same speed of the result.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from symofros.expr.evaluate import needed_nodes
+from symofros.expr.packs import WIDTH
+from symofros.expr.program import Output, Program
+from symofros.generator.codegen.packs import Store, runs_of_lanes, vector_lines, vector_name
+from symofros.generator.codegen.statements import Statement, StatementWriter
+from symofros.generator.codegen.trigonometry import block_lines
+from symofros.runtime.kernel import Lanes
+
+MAX_STATEMENTS = 1000
+# Past this length, shorter chunks compile twice as fast and run as fast (measured on a 52-link chain, gcc 12); below
+# it, long chunks run faster, because fewer values pass through memory.
+_LONG, _LONG_CHUNK = 6000, 300
+_ARRAY = re.compile(r"\b(\w+)\[|SYM_(?:AT|PUT)\((\w+),")
+# Up to so many angles the sines of one vector of states leave the processor idle (2 to 13 joints are 5 to 45 % faster
+# with a chunk of sines, 22 joints 2 % slower; gcc 12, AVX-512).
+_FEW_ANGLES = 16
+# Clear an output at once when at least this share of its entries is zero.
+_SPARSE = 0.25
+
+
+@dataclass(frozen=True)
+class FunctionText:
+    """C text of one function.
+
+    Attributes:
+        code: Definitions of its chunks and of the function that calls them.
+        work: Doubles of scratch it needs.
+        lanes: The same on vectors, one state a lane; none where it is not asked for.
+        lanes_work: Vectors of scratch that this needs.
+    """
+
+    code: str
+    work: int
+    lanes: str = ""
+    lanes_work: int = 0
+
+
+@dataclass(frozen=True)
+class _Cut:
+    """Statements in chunks.
+
+    Attributes:
+        chunks: The statements of each.
+        slots: Where values that cross from one into another lie.
+        work: Doubles that those take.
+    """
+
+    chunks: list[list[Statement]]
+    slots: dict[int, int]
+    work: int
+
+    @staticmethod
+    def of(chunks: list[list[Statement]]) -> _Cut:
+        """Find places for what crosses."""
+        slots = _allocate(chunks)
+        return _Cut(chunks, slots, max((slot + _doubles(key) for key, slot in slots.items()), default=0))
+
+
+class FunctionWriter:
+    """Writes one function.
+
+    Args:
+        program: Staged.
+        c_name: Of the C function.
+        inputs: Names of the input arrays, in order.
+        outputs: What to store, in order.
+        given: Whether parameter-only values are read from `pre` (false for the init function itself).
+        packs: Whether values that are computed alike share vectors.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        c_name: str,
+        inputs: Sequence[str],
+        outputs: Sequence[Output],
+        given: bool = True,
+        packs: bool = False,
+    ) -> None:
+        self.c_name = c_name
+        self.inputs = tuple(inputs)
+        self.outputs = tuple(outputs)
+        edges = [edge for output in outputs for edge in output.edges]
+        pre = program.pre if given else {}
+        stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
+        self.writer = StatementWriter(program.graph, needed_nodes(program.graph, edges, pre), pre, stores, packs)
+        self.statements = self.writer.statements()
+        self.cut = _Cut.of(_chunks(self.statements) or [[]])
+
+    def text(self, lanes: Lanes | None = None) -> FunctionText:
+        """The C text: chunk functions, then the function that unpacks pointers and calls them.
+
+        Args:
+            lanes: How to write it on vectors, too.
+        """
+        parts = [self._chunk(i) for i in range(len(self.cut.chunks))]
+        body = [f"    const double *restrict {name} = in[{i}];" for i, name in enumerate(self.inputs)]
+        body += [f"    double *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
+        body += [line for output in self.outputs for line in self._clear(output)]
+        arguments = ", ".join([*self.inputs, *(output.name for output in self.outputs), "work"])
+        body += [f"    {self.c_name}_{i}({arguments});" for i in range(len(self.cut.chunks))]
+        head = f"static void {self.c_name}(const double *const *in, double *const *out, double *restrict work) {{"
+        code = "\n".join([*parts, head, *body, "}"])
+        if lanes is None:
+            return FunctionText(code, self.cut.work)
+        cut = _Cut.of(_chunks_in_lanes(self.statements) or [[]])
+        return FunctionText(code, self.cut.work, self._lanes(cut, lanes.single), cut.work)
+
+    def _lanes(self, cut: _Cut, single: bool) -> str:
+        """On vectors: chunk by chunk, each for all vectors at hand; entries that are always zero are left out.
+
+        The chunks stay apart from the loops around them, out of which compilers would carry their constants.
+        """
+        writer = self.writer.in_lanes(single)
+        parts = [self._chunk_in_lanes(i, cut, writer) for i in range(len(cut.chunks))]
+        columns = [f"in[{i}]" for i in range(1, len(self.inputs))] + [f"out[{i}]" for i in range(len(self.outputs))]
+        arguments = ["(const sym_p *)(in[0].at + i * in[0].next)"]
+        arguments += [*(f"{x}.at + i * {x}.next, {x}.step" for x in columns), f"work + i * {cut.work}"]
+        calls = [
+            f"    for (i = 0; i < count; ++i)\n        {self.c_name}_v_{k}({', '.join(arguments)});"
+            for k in range(len(cut.chunks))
+        ]
+        head = f"static void {self.c_name}_v(int count, const sym_column *in, const sym_column *out, sym_v *work) {{"
+        return "\n".join([*parts, head, "    int i;", *calls, "}"])
+
+    def _clear(self, output: Output) -> list[str]:
+        zeros = [i for i, edge in enumerate(output.edges) if edge == 0]
+        if not zeros:
+            return []
+        if len(zeros) >= _SPARSE * len(output.edges) and len(zeros) > 4:
+            return [f"    memset({output.name}, 0, {len(output.edges)} * sizeof *{output.name});"]
+        return [f"    {output.name}[{i}] = 0.0;" for i in zeros]
+
+    def _chunk(self, index: int) -> str:
+        lines, used = self._body(index, self.cut, self.writer, "double")
+        names = [*self.inputs, *(output.name for output in self.outputs), "work"]
+        lines = [f"    (void){name};" for name in names if name not in used] + lines
+        arguments = [f"const double *restrict {name}" for name in self.inputs]
+        arguments += [f"double *restrict {output.name}" for output in self.outputs] + ["double *restrict work"]
+        # A single chunk may be inlined into its caller; several must stay apart.
+        kind = "static SYM_NOINLINE" if len(self.cut.chunks) > 1 else "static"
+        return "\n".join([f"{kind} void {self.c_name}_{index}({', '.join(arguments)}) {{", *lines, "}"])
+
+    def _chunk_in_lanes(self, index: int, cut: _Cut, writer: StatementWriter) -> str:
+        lines, used = self._body(index, cut, writer, "sym_v")
+        pre, *inputs = self.inputs
+        arguments = [f"const sym_p *restrict {pre}"]
+        arguments += [f"const sym_number *restrict {name}_at, ptrdiff_t {name}_step" for name in inputs]
+        arguments += [f"sym_number *restrict {o.name}_at, ptrdiff_t {o.name}_step" for o in self.outputs]
+        unused = [
+            f"    (void){name}_at, (void){name}_step;"
+            for name in (*inputs, *(o.name for o in self.outputs))
+            if name not in used
+        ]
+        unused += [f"    (void){name};" for name in (pre, "work") if name not in used]
+        head = f"static SYM_NOINLINE void {self.c_name}_v_{index}({', '.join([*arguments, 'sym_v *restrict work'])}) {{"
+        return "\n".join([head, *unused, *lines, "}"])
+
+    def _body(self, index: int, cut: _Cut, writer: StatementWriter, real: str) -> tuple[list[str], set[str]]:
+        """Lines of a chunk, and the arrays that they mention."""
+        statements = cut.chunks[index]
+        local = {key for statement in statements for key in statement.keys}
+        crossing = dict.fromkeys(n for statement in statements for n in statement.reads if n not in local)
+        lines = [self._load(key, cut.slots[key], writer, real) for key in crossing]
+        for statement in statements:
+            lines += self._lines(statement, cut.slots, writer, real)
+        used = {a or b for line in lines for a, b in _ARRAY.findall(line)}
+        return lines, used
+
+    def _load(self, key: int, slot: int, writer: StatementWriter, real: str) -> str:
+        if key < 0:
+            return f"    const sym_pack {vector_name(key)} = sym_pack_load(work + {slot});"
+        return f"    const {real} {writer.name(key)} = work[{slot}];"
+
+    def _lines(self, statement: Statement, slots: Mapping[int, int], writer: StatementWriter, real: str) -> list[str]:
+        if statement.angles:
+            lines = block_lines(writer, statement)
+        elif statement.vector is not None:
+            lines = vector_lines(statement.vector, writer.text)
+        else:
+            lines = [f"    const {real} {writer.name(node)} = {writer.operation(node)};" for node in statement.nodes]
+        for key in statement.keys:
+            if key in slots and key < 0:
+                lines.append(f"    sym_pack_store(work + {slots[key]}, {vector_name(key)});")
+            elif key in slots:
+                lines.append(f"    work[{slots[key]}] = {writer.name(key)};")
+        stores: Sequence[Store] = statement.stores
+        if statement.vector is not None:
+            runs, stores = runs_of_lanes(statement.vector, stores)
+            lines += runs
+        return lines + [f"    {writer.store(store)}" for store in stores]
+
+
+def _chunks(statements: list[Statement]) -> list[list[Statement]]:
+    """Statements in chunks of much the same length; none of none."""
+    longest = MAX_STATEMENTS if len(statements) <= _LONG else _LONG_CHUNK
+    count = max(1, -(-len(statements) // longest))
+    size = -(-len(statements) // count) if statements else 1
+    return [statements[i : i + size] for i in range(0, len(statements), size)]
+
+
+def _chunks_in_lanes(statements: list[Statement]) -> list[list[Statement]]:
+    """The same on vectors: a few sines and cosines that need no others come first, in a chunk of their own.
+
+    They are one long wait, operation after operation; those of the next vector of states fill it.
+    """
+    made = {key: i for i, statement in enumerate(statements) for key in statement.keys}
+    early: set[int] = set()
+    late: set[int] = set()  # What needs sines.
+    for i, statement in enumerate(statements):
+        needs = {made[key] for key in statement.reads}
+        if needs & late or any(statements[j].angles for j in needs):
+            late.add(i)
+        elif statement.angles:
+            waiting = [i]
+            while waiting:
+                early.add(at := waiting.pop())
+                waiting += {made[key] for key in statements[at].reads} - early
+    if sum(len(statements[i].angles) for i in early) > _FEW_ANGLES:
+        return _chunks(statements)
+    first = [statement for i, statement in enumerate(statements) if i in early]
+    return [first] * bool(first) + _chunks([statement for i, statement in enumerate(statements) if i not in early])
+
+
+def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
+    """Work slots for values that cross from one chunk into another; slots are reused once their value is dead."""
+    last: dict[int, int] = {}
+    for i, chunk in enumerate(chunks):
+        for statement in chunk:
+            for node in statement.reads:
+                last[node] = i
+    slots: dict[int, int] = {}
+    free: dict[int, list[int]] = {1: [], WIDTH: []}
+    ends: dict[int, list[int]] = {}
+    count = 0
+    for i, chunk in enumerate(chunks):
+        # A slot is free in the chunk after its value's last use, since that chunk loads before it stores.
+        for key in ends.pop(i - 1, []):
+            free[_doubles(key)].append(slots[key])
+        for key in (key for statement in chunk for key in statement.keys):
+            if last.get(key, i) > i:
+                mine = free[_doubles(key)]
+                if not mine:
+                    mine.append(count)
+                    count += _doubles(key)
+                slots[key] = mine.pop()
+                ends.setdefault(last[key], []).append(key)
+    return slots
+
+
+def _doubles(key: int) -> int:
+    """Doubles of a variable: vectors have negative keys."""
+    return 1 if key > 0 else WIDTH

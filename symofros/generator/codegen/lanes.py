@@ -1,0 +1,160 @@
+"""Batches: a loop over states, or several states at once, one in each lane of a vector."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from math import prod
+from string import Template
+
+from symofros.expr.graph import Edge
+from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
+from symofros.expr.program import Function, Program
+from symofros.generator.codegen import trigonometry
+from symofros.native import native_text
+from symofros.runtime.kernel import Lanes
+
+# Doubles of the widest vectors: scratch is laid out for them. As many lanes of floats as of doubles take half of that.
+_WIDEST = 8
+_MOST_LANES = 2 * _WIDEST
+# Vectors of states that a function of several chunks takes at a time, so that each chunk's code is fetched once for
+# all of them; as many as keep what they compute within so much of the second cache [bytes].
+_MOST, _CACHE = 8, 1 << 19
+
+
+def batch(c_name: str, function: Function, lanes: Lanes | None) -> str:
+    """The C function that evaluates many states, row by row.
+
+    Args:
+        c_name: Of the function that evaluates one.
+        function: Of one state.
+        lanes: Of the function on vectors, if there is one.
+    """
+    n_in, n_out = len(function.inputs) + 1, len(function.returns)
+    lines = [
+        f"static void {c_name}_batch(size_t n, const double *const *in, const size_t *in_stride, double *const *out,",
+        "    double *work) {",
+        f"    const double *x[{n_in}];",
+        f"    double *y[{n_out}];",
+        "    size_t i;",
+        *(_rows(c_name, function, lanes) if lanes is not None else ()),
+        f"    memcpy(x, in, {n_in} * sizeof *x);",
+        f"    memcpy(y, out, {n_out} * sizeof *y);",
+        "    for (i = 0; i < n; ++i) {",
+        f"        {c_name}((const double *const *)x, y, work);",
+        *(f"        x[{k}] += in_stride[{k}];" for k in range(n_in)),
+        *(f"        y[{k}] += {prod(shape)};" for k, (_, shape) in enumerate(function.returns)),
+        "    }",
+        "}",
+    ]
+    return "\n".join(lines)
+
+
+def _rows(c_name: str, function: Function, lanes: Lanes) -> list[str]:
+    """The way to the vectors, unless they share one set of parameters and are given several."""
+    n_in, n_out = len(function.inputs) + 1, len(function.returns)
+    return [
+        "#if SYM_LANES > 1",
+        # One state alone is evaluated as the others are where that is less precise.
+        f"    if (n > {0 if lanes.single else 1} && (SYM_OWN || in_stride[0] == 0)) {{",
+        f"        sym_strided from[{n_in}], to[{n_out}];",
+        f"        sym_way way[{n_in + n_out}];",
+        f"        sym_column columns[{n_in + n_out}];",
+        f"        sym_rows(&{c_name}_vectors, in, in_stride, out, from, to);",
+        f"        sym_batch_lanes(&{c_name}_vectors, n, from, to, {int(lanes.single)}, way, columns, work);",
+        "        return;",
+        "    }",
+        "#endif",
+    ]
+
+
+def strided(c_name: str, program: Program, function: Function, work: int) -> str:
+    """What the C file says of a function on vectors, and its batch in any layout.
+
+    Args:
+        c_name: Of the function that evaluates one state.
+        program: Of the function.
+        function: Of one state.
+        work: Scratch of one vector.
+    """
+    inputs = [len(program.init), *(program.sizes[name] for name in function.inputs)]
+    outputs = [prod(shape) for _, shape in function.returns]
+    zeros = [(k, *run) for k, output in enumerate(function.outputs) for run in _runs(output.edges)]
+    zero_runs = "".join(f"{k}, {first}, {count}, " for k, first, count in zeros)
+    most = vectors_at_once(program, function, work)
+    n = len(inputs) + len(outputs)
+    return "\n".join(
+        [
+            f"static const int {c_name}_in_size[] = {{{', '.join(map(str, inputs))}}};",
+            f"static const int {c_name}_out_size[] = {{{', '.join(map(str, outputs))}}};",
+            f"static const int {c_name}_zero[] = {{{zero_runs}-1}};",
+            f"static const sym_vectors {c_name}_vectors = {{{len(inputs)}, {len(outputs)}, {most}, {c_name}_in_size,",
+            f"    {c_name}_out_size, {c_name}_zero, {c_name}_v}};",
+            f"static void {c_name}_lanes(size_t n, const sym_strided *in, const sym_strided *out, double *work) {{",
+            f"    sym_way way[{n}];",
+            f"    sym_column columns[{n}];",
+            f"    sym_batch_lanes(&{c_name}_vectors, n, in, out, 0, way, columns, work);",
+            "}",
+        ]
+    )
+
+
+def _runs(edges: Sequence[Edge]) -> Iterator[tuple[int, int]]:
+    """Where entries that are always zero begin, and how many there are."""
+    first = 0
+    for is_zero, group in groupby(edge == 0 for edge in edges):
+        count = sum(1 for _ in group)
+        if is_zero:
+            yield first, count
+        first += count
+
+
+def vectors_at_once(program: Program, function: Function, work: int) -> int:
+    """Of states, which a function on vectors takes.
+
+    Args:
+        program: Of the function.
+        function: Of one state.
+        work: Scratch of one vector; none of a function of one chunk.
+    """
+    bytes_each = 8 * _WIDEST * (work + sum(_sizes(program, function)))
+    return max(1, min(_MOST, _CACHE // bytes_each)) if work else 1
+
+
+def scratch(program: Program, function: Function, work: int) -> int:
+    """Doubles of scratch that a batch in lanes needs, alignment included.
+
+    Args:
+        program: Of the function.
+        function: Whose inputs and outputs are kept in lanes.
+        work: Scratch of one vector.
+    """
+    zero_runs = "".join(f"{k}, {first}, {count}, " for k, first, count in zeros)
+    most = vectors_at_once(program, function, work)
+    return _WIDEST * (
+        1 + most * work + sum(most * size + max(0, _MOST_LANES - size) for size in _sizes(program, function))
+    )
+
+
+def _sizes(program: Program, function: Function) -> list[int]:
+    return [
+        len(program.init),
+        *(program.sizes[name] for name in function.inputs),
+        *(prod(shape) for _, shape in function.returns),
+    ]
+
+
+def routines(lanes: Lanes) -> str:
+    """The hand-written routines that batches in lanes call."""
+    makers = {1: "SYM_BY_LANE", 2: "SYM_BY_LANES"}
+    functions = [
+        f"{makers[op.arity]}({op.name}, {op.c.partition('(')[0]})"
+        for op in OPS.values()
+        if op.name not in (ADD, MUL, DIV, HELD)
+    ]
+    return Template(native_text("model/lanes.c.in")).substitute(
+        functions="\n".join(functions),
+        own=int(lanes.own),
+        single=int(lanes.single),
+        sines=trigonometry.of_lanes(lanes.single),
+    )

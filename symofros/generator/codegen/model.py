@@ -1,0 +1,200 @@
+"""Program + ModelRecord -> one C file, by filling a template with finished strings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from string import Template
+
+from symofros.expr.program import Function, Output, Program
+from symofros.generator.codegen import lanes, trigonometry
+from symofros.generator.codegen.function import FunctionWriter
+from symofros.generator.codegen.names import c_string, identifier
+from symofros.generator.codegen.solvers import ROUTINES, with_solver
+from symofros.generator.passes.count import count_program
+from symofros.native import native_text
+from symofros.runtime.kernel import Lanes
+from symofros.runtime.record import ModelRecord
+
+_INIT = "init_par"
+
+
+def model_source(
+    program: Program,
+    record: ModelRecord,
+    generator: str,
+    in_lanes: Lanes | None = None,
+    c_name: str | None = None,
+    packs: bool = False,
+) -> str:
+    """The C file of a program.
+
+    Args:
+        program: Staged.
+        record: Names and defaults.
+        generator: Name and version of what wrote it.
+        in_lanes: How batches take several states at once, if they do; functions with a solver never do: it takes the
+            time, and it pivots (docs/theory/code.md).
+        c_name: What symbols begin with; made of the record's name by default.
+        packs: Whether values that are computed alike share vectors, which takes a compiler of GNU C; not in lanes,
+            where every value is a vector already.
+    """
+    name = c_name or identifier(record.name)
+    vectors = in_lanes if any(function.solver is None for function in program.functions) else None
+    packs = packs and vectors is None
+    texts = [_init_function(program, name)]
+    rows = []
+    for i, function in enumerate(program.functions):
+        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}", vectors, packs)
+        texts.append(text)
+        rows.append(row)
+    counts = count_program(program)
+    lines = [f" *   {' of '.join(filter(None, key)):<24}{count}" for key, count in counts.items()]
+    return Template(native_text("model/model.c.in")).substitute(
+        title=_comment(record.name),
+        generator=generator,
+        hash=record.hash,
+        operations=_comment("\n".join(lines)),
+        functions="\n\n".join(
+            [
+                *trigonometry.routines(texts, vectors is not None),
+                *([lanes.routines(vectors)] if vectors is not None else []),
+                *([native_text("model/pack.c.in")] if packs and any("sym_pack " in text for text in texts) else []),
+                *_routines(program),
+                *texts,
+            ]
+        ),
+        tables="\n".join(
+            [*(row.tables for row in rows), _function_table(name, rows), *_lane_table(name, rows, vectors)]
+        ),
+        n_functions=len(rows),
+        lanes="NULL" if vectors is None else f"SYM_LANE_TABLE({name})",
+        c_name=name,
+        name=c_string(record.name),
+        nq=len(record.q_names),
+        nv=len(record.v_names),
+        nu=len(record.u_names),
+        npar=len(record.par_names),
+        nc=record.nc,
+        npre=len(program.init),
+        q_names=_strings(record.q_names),
+        v_names=_strings(record.v_names),
+        u_names=_strings(record.u_names),
+        par_names=_strings(record.par_names),
+        par_default=_numbers(record.par_default),
+        q_neutral=_numbers(record.q_neutral),
+    )
+
+
+def _routines(program: Program) -> list[str]:
+    """The hand-written routines that the functions call, and what those rest on."""
+    called = {function.solver.routine for function in program.functions if function.solver is not None}
+    return [native_text(f"model/{name}.c.in") for name in ROUTINES if any(name in ROUTINES[other] for other in called)]
+
+
+def _init_function(program: Program, name: str) -> str:
+    """Parameters -> pre, behind the plain signature of the struct's `init`."""
+    writer = FunctionWriter(
+        program, f"{name}_init", ["par"], [Output("pre", (len(program.init),), program.init)], False
+    )
+    text = writer.text()
+    lines = [
+        f"static void {name}_{_INIT}(const double *par, double *pre) {{",
+        f"    double work[{max(1, text.work)}];",
+        "    const double *in[1];",
+        "    double *out[1];",
+        "    in[0] = par;",
+        "    out[0] = pre;",
+        f"    {name}_init(in, out, work);",
+        "}",
+    ]
+    return "\n".join([text.code, *lines])
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A function in the tables of a C file.
+
+    Attributes:
+        tables: Of its arrays.
+        row: Of the table of functions.
+        lanes: Of the table of functions on vectors.
+    """
+
+    tables: str
+    row: str
+    lanes: str
+
+
+def _one_function(
+    program: Program, function: Function, c_name: str, in_lanes: Lanes | None, packs: bool
+) -> tuple[str, _Row]:
+    """Code, and what tables say of it."""
+    inputs = ["pre", *function.inputs]
+    if function.solver is None:
+        text = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs).text(in_lanes)
+    else:
+        text = with_solver(program, c_name, function, function.solver, packs)
+    vectors, work = [], text.work
+    if text.lanes:
+        vectors = ["#if SYM_LANES > 1", text.lanes, lanes.strided(c_name, program, function, text.lanes_work), "#endif"]
+        work = max(work, lanes.scratch(program, function, text.lanes_work))
+    code = "\n".join([text.code, *vectors, lanes.batch(c_name, function, in_lanes if text.lanes else None)])
+    arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)
+    arrays_out = ", ".join(f'{{"{name}", {len(s)}, {_rows(s)}, {_columns(s)}}}' for name, s in function.returns)
+    tables = (
+        f"static const sym_array {c_name}_in[] = {{{arrays_in}}};\n"
+        f"static const sym_array {c_name}_out[] = {{{arrays_out}}};"
+    )
+    of_lanes = f"    {{sizeof(sym_number), SYM_OWN, {work}, {c_name}_lanes}}" if text.lanes else "    {0, 0, 0, NULL}"
+    return code, _Row(tables, _row(function, c_name, len(inputs), work), of_lanes)
+
+
+def _row(function: Function, c_name: str, n_in: int, work: int) -> str:
+    frame = c_string(function.frame) if function.frame else "NULL"
+    return (
+        f"    {{{c_string(function.name)}, {frame}, {n_in}, {len(function.returns)}, {c_name}_in, {c_name}_out, "
+        f"{work}, {c_name}, {c_name}_batch}}"
+    )
+
+
+def _function_table(name: str, rows: Sequence[_Row]) -> str:
+    return f"static const sym_function {name}_functions[] = {{\n" + ",\n".join(row.row for row in rows) + "\n};"
+
+
+def _lane_table(name: str, rows: Sequence[_Row], vectors: Lanes | None) -> list[str]:
+    """Where the compiler has vectors."""
+    if vectors is None:
+        return []
+    table = f"static const sym_lanes {name}_lanes[] = {{\n" + ",\n".join(row.lanes for row in rows) + "\n};"
+    return [
+        "#if SYM_LANES > 1",
+        table,
+        "#define SYM_LANE_TABLE(name) name##_lanes",
+        "#else",
+        "#define SYM_LANE_TABLE(name) NULL",
+        "#endif",
+    ]
+
+
+def _rows(shape: tuple[int, ...]) -> int:
+    return shape[0] if shape else 1
+
+
+def _columns(shape: tuple[int, ...]) -> int:
+    return shape[1] if len(shape) > 1 else 1
+
+
+def _strings(names: Iterable[str]) -> str:
+    # C has no empty arrays; sizes say how many entries count.
+    return ", ".join(map(c_string, names)) or "NULL"
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return ", ".join(map(repr, values)) or "0.0"
+
+
+def _comment(text: str) -> str:
+    """Text that can't end a C comment, in ASCII, without trigraphs."""
+    plain = text.encode("ascii", "replace").decode()
+    return plain.replace("*/", "* /").replace("/*", "/ *").replace("?", "_")

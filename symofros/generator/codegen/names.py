@@ -1,0 +1,57 @@
+"""C names that are legal, stable and readable."""
+
+from __future__ import annotations
+
+import re
+
+_KEYWORDS = frozenset(
+    "auto break case char const continue default do double else enum extern float for goto if inline int long"
+    " register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while asm"
+    " main".split()
+)
+# Names that a header, an operating system, FMI or Matlab has taken; the first row would clash with symofros_model.h.
+_TAKEN = frozenset(
+    "sym symofros"
+    " assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdarg stdbool stddef"
+    " stdint stdio stdlib string tgmath time wchar wctype windows"
+    " con prn aux nul fmi fmi2 fmi3 fmu mex mexfunction simstruc simulink symosfunction selftest"
+    " break catch class elseif end function global otherwise parfor persistent try".split()
+)
+_OURS = ("symofros_", "sym_", "fmi2", "fmi3")
+_ILLEGAL = re.compile(r"[^A-Za-z0-9]+")
+_MAX_LENGTH = 48
+
+
+def identifier(text: str) -> str:
+    """A C identifier that looks like the text; "m" before a leading digit, "_" after what is taken already.
+
+    It also serves as the name of files and of a function of Matlab.
+    """
+    name = _ILLEGAL.sub("_", text).strip("_")[:_MAX_LENGTH].rstrip("_") or "model"
+    if name[0].isdigit():
+        name = f"m{name}"
+    lower = name.lower()
+    taken = name in _KEYWORDS or lower in _TAKEN
+    if lower.startswith(_OURS):
+        name = f"m_{name}"
+    return f"{name}_" if taken else name
+
+
+def local_name(label: str, node: int) -> str:
+    """The local variable of a labelled node: w_WB_B[arm][2] -> w_WB_B__arm_2.
+
+    Args:
+        label: As given in the graph.
+        node: Makes names unique that would otherwise coincide.
+    """
+    head, *rest = [_ILLEGAL.sub("_", part).strip("_") for part in re.split(r"[\[\]]+", label)]
+    tail = "_".join(part for part in rest if part)
+    return f"{head}__{tail[:_MAX_LENGTH]}_{node}" if tail else f"{head}_{node}"
+
+
+def c_string(text: str) -> str:
+    """A C string literal; bytes outside printable ASCII become octal escapes."""
+    escaped = "".join(
+        chr(byte) if 32 <= byte < 127 and chr(byte) not in '\\"?' else f"\\{byte:03o}" for byte in text.encode()
+    )
+    return f'"{escaped}"'

@@ -1,0 +1,97 @@
+"""Functions that generated code begins and a hand-written routine finishes (templates/)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from symofros.expr.program import Function, Program, Solver
+from symofros.generator.codegen.function import FunctionText, FunctionWriter
+
+# Routine -> the template files it needs, in the order in which C must see them; the keys are in that order, too.
+ROUTINES: dict[str, tuple[str, ...]] = {
+    "dense": ("dense",),
+    "kkt": ("dense", "kkt"),
+    "constrained": ("dense", "kkt", "constrained"),
+    "null_space": ("dense", "null_space"),
+    "project": ("dense", "kkt", "constrained", "project"),
+    "differentiate": ("dense", "kkt", "differentiate"),
+}
+
+
+def with_solver(program: Program, c_name: str, function: Function, solver: Solver, packs: bool = False) -> FunctionText:
+    """The C text of a function and of its parts, and the call of the routine that finishes it.
+
+    Args:
+        program: Staged.
+        c_name: Of the C function.
+        function: What generated code computes.
+        solver: What is made of it.
+        packs: Whether values that are computed alike share vectors.
+    """
+    terms = FunctionWriter(program, f"{c_name}_terms", ["pre", *function.inputs], function.outputs, packs=packs).text()
+    parts = [
+        FunctionWriter(program, f"{c_name}_{part.name}", ["pre", *part.inputs], part.outputs, packs=packs).text()
+        for part in solver.parts
+    ]
+    needs = max(text.work for text in (terms, *parts))
+    head = f"static void {c_name}(const double *const *in, double *const *out, double *restrict work) {{"
+    body, work = _CALLS[solver.routine](c_name, function, needs)
+    return FunctionText("\n".join([terms.code, *(part.code for part in parts), head, *body, "}"]), work)
+
+
+def _constrained(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+    """M, r, G, c -> a, lam, rank, by multipliers."""
+    m, n = function.outputs[2].shape
+    return _on_terms("sym_constrained", c_name, m, n, max(needs, _scratch(n, m) + m))
+
+
+def _null_space(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+    """The same in the coordinates that the constraints leave free."""
+    m, n = function.outputs[2].shape
+    return _on_terms("sym_null_space", c_name, m, n, max(needs, 4 * n * n + m * n + 2 * m * m + 4 * n))
+
+
+def _on_terms(routine: str, c_name: str, m: int, n: int, scratch: int) -> tuple[list[str], int]:
+    """A routine that turns r and c, in the places of the results, into a and lam."""
+    start = n * n + m * n
+    lines = [
+        "    double *terms[4];",
+        f"    terms[0] = work, terms[1] = out[0], terms[2] = work + {n * n}, terms[3] = out[1];",
+        f"    {c_name}_terms(in, terms, work + {start});",
+        f"    *out[2] = {routine}({n}, {m}, terms[0], out[0], terms[2], out[1], work + {start});",
+    ]
+    return lines, start + scratch
+
+
+def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+    """The state -> the nearest one on the constraints."""
+    m, n = function.outputs[1].shape
+    nq = function.returns[0][1][0]
+    lines = [
+        f"    *out[3] = sym_project({nq}, {n}, {m}, {c_name}_terms, {c_name}_move, in, out[0], out[1], out[2], work);"
+    ]
+    return lines, n * n + m * n + 3 * m + n + nq + max(needs, _scratch(n, m) + m)
+
+
+def _differentiate(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
+    """The state -> derivatives of a and lam."""
+    m, n = function.outputs[2].shape
+    columns = [shape[1] for _, shape in function.returns]
+    lines = [
+        f"    static const int columns[{len(columns)}] = {{{', '.join(map(str, columns))}}};",
+        f"    sym_differentiate({n}, {m}, {len(columns)}, columns, {c_name}_terms, {c_name}_slopes, in, out, work);",
+    ]
+    return lines, n * n + m * n + n + m + _scratch(n, m) + m * max(1, *columns) + needs
+
+
+def _scratch(n: int, m: int) -> int:
+    """What sym_kkt_factor asks for."""
+    return n * n + n + 2 * m * n + 2 * m * m
+
+
+_CALLS: dict[str, Callable[[str, Function, int], tuple[list[str], int]]] = {
+    "constrained": _constrained,
+    "null_space": _null_space,
+    "project": _project,
+    "differentiate": _differentiate,
+}

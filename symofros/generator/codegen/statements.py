@@ -1,0 +1,272 @@
+"""Nodes -> C statements: a value used once stands where it is used, every other has a variable.
+
+Sines and cosines are evaluated together, up to `WIDEST` angles at a time: those with as many
+sines beneath them. None of these choices changes a bit of the result: C evaluates the parenthesised text
+as the graph states it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass
+from heapq import merge
+
+from symofros.expr.evaluate import needed_nodes
+from symofros.expr.graph import Edge, Graph, Slot
+from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
+from symofros.generator.codegen.names import local_name
+from symofros.generator.codegen.packs import PackPlan, Store, Vector, vector_name
+
+# Operations per statement at most: long lines help neither people nor compilers.
+_MAX_INLINE = 8
+# Angles evaluated at once: the doubles of the widest vectors.
+WIDEST = 8
+_TRIGONOMETRIC = frozenset(("sin", "cos"))
+
+
+@dataclass(frozen=True)
+class Statement:
+    """One C statement.
+
+    Attributes:
+        nodes: What it computes: none for a store alone, several for sines and cosines.
+        stores: Output entries it fills.
+        reads: Keys of the variables that its text mentions.
+        angles: Edges whose sines and cosines it computes; none for any other statement.
+        vector: The vector it defines, from which its nodes are read; none for any other statement.
+    """
+
+    nodes: tuple[int, ...]
+    stores: tuple[Store, ...]
+    reads: tuple[int, ...]
+    angles: tuple[Edge, ...] = ()
+    vector: Vector | None = None
+
+    @property
+    def keys(self) -> tuple[int, ...]:
+        """Keys of the variables it defines: a node's own, or its vector's."""
+        return self.nodes if self.vector is None else (self.vector.key,)
+
+
+class StatementWriter:
+    """Turns the nodes of one function into statements and their text.
+
+    Args:
+        graph: Of the program.
+        nodes: What the function computes, operands first.
+        given: Nodes to read from an input array instead.
+        stores: The function's outputs.
+        packs: Whether values that are computed alike share vectors.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        nodes: Sequence[int],
+        given: Mapping[int, Slot],
+        stores: Sequence[Store],
+        packs: bool = False,
+    ) -> None:
+        self.graph = graph
+        self.given = given
+        self.stores = stores
+        self._home: dict[int, Vector] = {}
+        self._vectors: list[Vector] = []
+        if packs and graph.packs:
+            plan = PackPlan(graph, nodes, given, [store.edge for store in stores])
+            nodes, self._home, self._vectors = plan.nodes, plan.home, plan.vectors
+        self._inlined = self._choose_inlined(nodes, stores)
+        self._nodes = nodes
+        self._own = [node for node in nodes if node not in self._inlined]
+        self._names: dict[int, str] = {}
+        self.lanes, self._suffix = False, ""
+
+    def in_lanes(self, single: bool = False) -> StatementWriter:
+        """The same statements on vectors, one state a lane; numbers are one for all lanes, and so may given values be.
+
+        Args:
+            single: Whether lanes hold floats.
+        """
+        twin = copy(self)
+        twin.lanes, twin._suffix = True, "f" if single else ""
+        return twin
+
+    def _choose_inlined(self, nodes: Sequence[int], stores: Sequence[Store]) -> set[int]:
+        graph, home = self.graph, self._home
+        uses: dict[int, int] = {}
+        for node in nodes:
+            for arg in graph.args[node] if node not in home else ():
+                uses[abs(arg)] = uses.get(abs(arg), 0) + 1
+        # Vectors read variables: what a vector needs may be needed by several lanes.
+        stored = {abs(store.edge) for store in stores} | {abs(e) for vector in self._vectors for e in vector.edges}
+        size: dict[int, int] = {}
+        inlined: set[int] = set()
+        for node in nodes:
+            if node in home:
+                continue
+            parts = [abs(arg) for arg in graph.args[node] if abs(arg) in inlined]
+            total = 1 + sum(size[part] for part in parts)
+            if total > _MAX_INLINE:
+                # The largest operand gets a variable of its own; the rest fits.
+                largest = max(parts, key=lambda part: size[part])
+                inlined.discard(largest)
+                total -= size[largest]
+            size[node] = total
+            # Function calls keep a variable: sines and cosines are evaluated by blocks, other calls stay in view.
+            if uses.get(node) == 1 and node not in stored and node not in graph.label and self._is_arithmetic(node):
+                inlined.add(node)
+        return inlined
+
+    def _is_arithmetic(self, node: int) -> bool:
+        return self.graph.op[node] in (ADD, MUL, DIV)
+
+    def statements(self) -> list[Statement]:
+        """The statements, operands first; each output is stored as soon as its value is known."""
+        waiting: dict[int, list[Store]] = {}
+        own = set(self._own)
+        result = []
+        for store in self.stores:
+            node = abs(store.edge)
+            if node in own:
+                waiting.setdefault(node, []).append(store)
+            elif node != 0:  # A number or an input; zeros are cleared at once.
+                result.append(Statement((), (store,), ()))
+        for nodes, angles, vector in self._ordered():
+            stores = tuple(store for node in nodes for store in waiting.get(node, ()))
+            if vector is None:
+                reads = dict.fromkeys(self._mentioned(angles or self.graph.args[nodes[0]]))
+            else:
+                reads = dict.fromkeys([*self._mentioned(vector.edges), *(v.key for v in vector.operands)])
+            result.append(Statement(nodes, stores, tuple(reads), angles, vector))
+        return result
+
+    def _ordered(self) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
+        """(nodes, angles, vector) of each statement: nodes one by one, sines and cosines by blocks, vectors whole."""
+        blocks, own, done = self._blocks(), set(self._own), set[int]()
+
+        def prepare(edges: Iterable[Edge]) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
+            missing = [edge for edge in edges if abs(edge) not in done and not self._is_at_hand(abs(edge))]
+            for before in needed_nodes(self.graph, missing, self.given) if missing else ():
+                if before in own:
+                    yield from emit(before)
+
+        def form(vector: Vector) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
+            if vector.key in done:
+                return
+            for operand in vector.operands:
+                yield from form(operand)
+            yield from prepare(vector.edges)
+            done.update((vector.key, *vector.nodes))
+            yield tuple(vector.nodes), (), vector
+
+        def emit(node: int) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
+            if node in done:
+                return
+            if node in self._home:
+                yield from form(self._home[node])
+                return
+            angles, nodes = blocks.get(node, ((), (node,)))
+            yield from prepare(angles)
+            done.update(nodes)
+            yield nodes, angles, None
+
+        # Vectors that are no sums are formed where they are read.
+        sums = ((vector.start, form(vector)) for vector in self._vectors if vector.terms)
+        scalars = ((node, emit(node)) for node in self._own)
+        for _, drafts in merge(sums, scalars, key=lambda item: item[0]):
+            yield from drafts
+
+    def _blocks(self) -> dict[int, tuple[tuple[Edge, ...], tuple[int, ...]]]:
+        """Sine or cosine -> (angles, sines and cosines) of its block: angles that as many others lie under."""
+        graph = self.graph
+        depth: dict[int, int] = {}
+        levels: dict[int, dict[Edge, list[int]]] = {}
+        for node in self._nodes:
+            depth[node] = max((depth.get(abs(arg), 0) for arg in graph.args[node]), default=0)
+            if graph.op[node] in _TRIGONOMETRIC:
+                levels.setdefault(depth[node], {}).setdefault(graph.args[node][0], []).append(node)
+                depth[node] += 1
+        blocks = {}
+        for level in levels.values():
+            for i in range(0, len(level), WIDEST):
+                angles = tuple(level)[i : i + WIDEST]
+                nodes = tuple(node for angle in angles for node in level[angle])
+                blocks.update(dict.fromkeys(nodes, (angles, nodes)))
+        return blocks
+
+    def _mentioned(self, edges: Iterable[Edge]) -> Iterator[int]:
+        """Nodes with variables in the text of some edges."""
+        stack = list(edges)
+        while stack:
+            arg = abs(stack.pop())
+            if arg in self._inlined:
+                stack.extend(self.graph.args[arg])
+            elif not self._is_at_hand(arg):
+                yield self._home[arg].key if arg in self._home else arg
+
+    def _is_at_hand(self, node: int) -> bool:
+        """Whether a node is a number or an entry of an input array."""
+        return node == 0 or node in self.given or node in self.graph.value or node in self.graph.slot
+
+    def name(self, node: int) -> str:
+        """Where a node's value is read: its variable, or its lane of a vector."""
+        if node in self._home:
+            vector = self._home[node]
+            return f"{vector_name(vector.key)}[{vector.nodes[node][0]}]"
+        if node not in self._names:
+            label = self.graph.label.get(node)
+            self._names[node] = local_name(label, node) if label else f"t{node}"
+        return self._names[node]
+
+    def operation(self, node: int) -> str:
+        """The right-hand side of a node's statement."""
+        graph = self.graph
+        op, args = graph.op[node], graph.args[node]
+        if op == ADD:
+            a, b = args  # The first is positive by construction.
+            return f"{self._operand(a)} {'+' if b > 0 else '-'} {self._operand(abs(b), is_right=True)}"
+        if op in (MUL, DIV):
+            a, b = args  # Both are positive by construction.
+            return OPS[op].c.format(self._operand(a, is_factor=True), self._operand(b, is_factor=True, is_right=True))
+        if op == HELD:
+            return self.whole(args[0])
+        if self.lanes:
+            return f"sym_v_{op}({', '.join(map(self.whole, args))})"
+        return OPS[op].c.format(*map(self.text, args))
+
+    def whole(self, edge: Edge) -> str:
+        """The text of an edge where a vector may stand and a single number may not."""
+        text = self.text(edge)
+        if self.lanes and self.graph.is_constant(edge):
+            return f"sym_set({text})"
+        return f"SYM_WHOLE({text})" if self.lanes and abs(edge) in self.given else text
+
+    def store(self, store: Store) -> str:
+        """The statement that fills an output's entry."""
+        if self.lanes:
+            return f"SYM_PUT({store.array}, {store.index}, {self.whole(store.edge)});"
+        return f"{store.array}[{store.index}] = {self.whole(store.edge)};"
+
+    def _operand(self, node: int, is_factor: bool = False, is_right: bool = False) -> str:
+        """An operand's text, in parentheses where C would otherwise group or associate differently."""
+        if node not in self._inlined:
+            return self.text(node)
+        is_sum = self.graph.op[node] == ADD
+        needs = is_sum and (is_factor or is_right) or (is_factor and is_right)
+        return f"({self.operation(node)})" if needs else self.operation(node)
+
+    def text(self, edge: Edge) -> str:
+        """The text of an edge: a number, an input entry, a variable, or an inlined operation."""
+        node, is_negative = abs(edge), edge < 0
+        number = self.graph.number(edge)
+        if number is not None:
+            return f"{number!r}{self._suffix}"
+        slot = self.given.get(node) or self.graph.slot.get(node)
+        if slot is not None:
+            in_columns = self.lanes and node not in self.given
+            text = f"SYM_AT({slot.group}, {slot.index})" if in_columns else f"{slot.group}[{slot.index}]"
+        else:
+            text = f"({self.operation(node)})" if node in self._inlined else self.name(node)
+            is_negative ^= node in self._home and self._home[node].nodes[node][1]
+        return f"-{text}" if is_negative else text

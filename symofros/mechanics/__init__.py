@@ -1,0 +1,1 @@
+"""From a checked description to its equations of motion: topology, beams, kinematics, dynamics."""

@@ -1,0 +1,159 @@
+"""How a beam deforms: its axis, sections and curvatures to second order (docs/theory/beams.md, sections 1 and 3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, lru_cache
+
+from symofros.description.beam import DIRECTIONS, Beam, Family, UserShape
+from symofros.mechanics.beams.fields import Field, unit_field
+from symofros.mechanics.beams.piecewise import XI
+from symofros.mechanics.beams.shape_functions import Shape, shapes
+
+_HALF = Fraction(1, 2)
+# Slope and twist [rad] up to which second-order theory errs by less than a percent.
+SMALL = 0.1
+_SAMPLES = 32
+
+
+@dataclass(frozen=True)
+class Deformation:
+    """The second-order displacement field of one beam.
+
+    Attributes:
+        functions: Shape functions, one an elastic coordinate: those of bend_y, then bend_z, then twist.
+        counts: How many of each.
+        foreshortening: Whether bending pulls the axis back.
+    """
+
+    functions: tuple[Shape, ...]
+    counts: tuple[int, int, int]
+    foreshortening: bool
+
+    @cached_property
+    def lengths(self) -> tuple[bool, ...]:
+        """For each coordinate whether it is a displacement."""
+        return tuple(shape.length for shape in self.functions)
+
+    def _modal(self, direction: int, power: int) -> Field:
+        start = sum(self.counts[:direction])
+        chosen = range(start, start + self.counts[direction])
+        return Field(power, self.lengths, {(i,): self.functions[i].phi for i in chosen})
+
+    @cached_property
+    def v(self) -> Field:
+        """Displacement along y."""
+        return self._modal(0, 1)
+
+    @cached_property
+    def w(self) -> Field:
+        """Displacement along z."""
+        return self._modal(1, 1)
+
+    @cached_property
+    def roll(self) -> Field:
+        """The rotation of sections about x."""
+        return self._modal(2, 0)
+
+    @cached_property
+    def yaw(self) -> Field:
+        """The rotation of sections about z: v' (eq. 3)."""
+        return self.v.along()
+
+    @cached_property
+    def pitch(self) -> Field:
+        """The rotation of sections about y: -w' (eq. 3)."""
+        return -self.w.along()
+
+    @cached_property
+    def u(self) -> Field:
+        """Foreshortening: -1/2 the integral of v'^2 + w'^2 from the root (eq. 2)."""
+        if not self.foreshortening:
+            return Field(1, self.lengths, {})
+        slopes = self.yaw.times(self.yaw) + self.pitch.times(self.pitch)
+        return slopes.from_root().scaled(_HALF).scaled(-1)
+
+    @cached_property
+    def position(self) -> tuple[Field, Field, Field]:
+        """p_BS, from the root to the section's centroid, in B (eq. 1)."""
+        return Field(1, self.lengths, {(): XI}) + self.u, self.v, self.w
+
+    @cached_property
+    def rotation(self) -> tuple[tuple[Field, Field, Field], ...]:
+        """R_BS to second order, row by row (eq. 4)."""
+        one = unit_field(self.lengths)
+        P, T, F = self.yaw, self.pitch, self.roll
+        PP, TT, FF = (x.times(x).scaled(_HALF) for x in (P, T, F))
+        return (
+            (one - PP - TT, F.times(T) - P, F.times(P) + T),
+            (P, one - FF - PP, P.times(T) - F),
+            (-T, F, one - FF - TT),
+        )
+
+    @cached_property
+    def partial_spins(self) -> tuple[tuple[Field, Field, Field], ...]:
+        """Partial angular velocities of the section, along its own axes, one triple a coordinate (eq. 5)."""
+        P, T, F = self.yaw, self.pitch, self.roll
+        found = []
+        for i in range(len(self.functions)):
+            Pi, Ti, Fi = P.by(i), T.by(i), F.by(i)
+            found.append((Fi - T.times(Pi), Ti + F.times(Pi), Pi - F.times(Ti)))
+        return tuple(found)
+
+    @cached_property
+    def turning(self) -> tuple[tuple[Field, Field, Field], ...]:
+        """Partial angular velocities of the section in the axes of B, to first order, one triple a coordinate."""
+        P, T = self.yaw, self.pitch
+        found = []
+        for i in range(len(self.functions)):
+            Pi, Ti, Fi = P.by(i), T.by(i), self.roll.by(i)
+            found.append((Fi - P.times(Ti), Ti + P.times(Fi), Pi - T.times(Fi)))
+        return tuple(found)
+
+    @cached_property
+    def curvatures(self) -> tuple[Field, Field, Field]:
+        """Twist rate and curvatures to second order (eq. 6)."""
+        P, T, F = self.yaw, self.pitch, self.roll
+        dP, dT, dF = P.along(), T.along(), F.along()
+        return dF - T.times(dP), dT + F.times(dP), dP - F.times(dT)
+
+
+def deformation_of(beam: Beam) -> Deformation:
+    """The displacement field of a beam, shared between beams that have the same.
+
+    Raises:
+        FamilyError: The family has no such functions.
+    """
+    counts = (beam.bend_y, beam.bend_z, beam.twist)
+    user = tuple(beam.user_shapes(direction) for direction in DIRECTIONS)
+    return _cached(beam.family, counts, user, beam.foreshortening)
+
+
+def small_coordinates(beam: Beam, length: float) -> tuple[float, ...]:
+    """Sizes of the elastic coordinates that second-order theory is good for, to sample within.
+
+    With every coordinate of a direction at its size, no slope and no twist angle exceeds SMALL.
+
+    Args:
+        beam: What the user stated.
+        length: Of the beam [m].
+    """
+    shape = deformation_of(beam)
+    sizes = []
+    for i, function in enumerate(shape.functions):
+        direction = 0 if i < shape.counts[0] else 1 if i < sum(shape.counts[:2]) else 2
+        angle = function.phi if direction == 2 else function.phi.derivative()
+        largest = max(abs(float(angle(Fraction(k, _SAMPLES)))) for k in range(_SAMPLES + 1))
+        sizes.append(SMALL / (largest * shape.counts[direction]) * (length if function.length else 1.0))
+    return tuple(sizes)
+
+
+@lru_cache(maxsize=64)
+def _cached(
+    family: Family, counts: tuple[int, int, int], user: tuple[tuple[UserShape, ...], ...], foreshortening: bool
+) -> Deformation:
+    chosen: tuple[Shape, ...] = ()
+    for direction, count, own in zip(DIRECTIONS, counts, user, strict=True):
+        chosen += shapes(family, direction, count, own)
+    return Deformation(chosen, counts, foreshortening)

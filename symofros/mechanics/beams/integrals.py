@@ -1,0 +1,111 @@
+"""Integrals over the length of a beam: Fields weighted by section properties become Forms.
+
+A property that is the same along the beam stands before the integral, which is then exact (rational where the shape
+functions are). One that changes is taken at Gauss stations on every interval between knots, where fields are rounded
+once: a product of polynomials of high degree has coefficients that cancel, twelve digits of them for eight functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from symofros.description.beam import STATION
+from symofros.description.values import Value, symbols
+from symofros.expr.expression import Expression
+from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.mechanics.beams.fields import Field, Form, Monomial, length_power
+from symofros.mechanics.beams.piecewise import Number, Piecewise, stations
+
+# Gauss nodes an interval for properties that change along the beam, exact to degree 31: what pieces of splines and of
+# fitted functions ask for. Polynomials over the whole length get as many more as their own degree takes.
+POINTS = 16
+
+Lower = Callable[[Value], Edge]
+
+
+@dataclass(frozen=True)
+class Along:
+    """What integration over one beam needs.
+
+    Attributes:
+        g: The graph.
+        lower: Values of the description -> edges.
+        length: The beam's length, as it was stated and as an edge.
+        coordinates: Edges of its elastic coordinates.
+        knots: Where its shape functions' pieces meet.
+        points: Gauss nodes an interval.
+    """
+
+    g: Graph
+    lower: Lower
+    length: Value
+    L: Edge
+    coordinates: tuple[Edge, ...]
+    knots: tuple[Number, ...]
+    points: int = POINTS
+
+    def integral(self, field: Field, weight: Value) -> Form:
+        """The integral of weight times field over the beam's length."""
+        g = self.g
+        if STATION not in symbols(weight):
+            uniform = self.lower(weight)
+            numbers = {mono: g.constant(float(f.integral())) for mono, f in field.terms.items()}
+            terms = {mono: g.mul(number, uniform) for mono, number in numbers.items()}
+        else:
+            assert isinstance(weight, Expression)
+            xi, w = stations(self.knots, self.points)
+            values = [self.lower(at_station(weight, self.length, x)) for x in xi]
+            terms = {mono: _weighted(g, f, xi, w, values) for mono, f in field.terms.items()}
+        return self._scaled(field, terms)
+
+    def shares(self, weight: Value) -> list[tuple[float, Edge]]:
+        """Gauss stations, and what each has of the weight's integral: for what is no polynomial of the coordinates."""
+        g = self.g
+        found = []
+        for xi, w in zip(*stations(self.knots, self.points), strict=True):
+            here = at_station(weight, self.length, xi) if isinstance(weight, Expression) else weight
+            found.append((xi, g.mul(g.constant(w), g.mul(self.lower(here), self.L))))
+        return found
+
+    def at(self, field: Field, xi: float) -> Form:
+        """The field at one station."""
+        return field.at(self.g, self.coordinates, self.L, xi)
+
+    def _scaled(self, field: Field, terms: dict[Monomial, Edge]) -> Form:
+        g = self.g
+        return Form(
+            g,
+            self.coordinates,
+            {
+                mono: g.mul(edge, length_power(g, self.L, field.exponent(mono) + 1))
+                for mono, edge in terms.items()
+                if edge != ZERO
+            },
+        )
+
+
+def _weighted(g: Graph, f: Piecewise, xi: Sequence[float], w: Sequence[float], values: Sequence[Edge]) -> Edge:
+    return g.sum(g.mul(g.constant(a * x), value) for a, x, value in zip(w, f.rounded(xi), values, strict=True))
+
+
+def points_for(functions: Sequence[Piecewise]) -> int:
+    """Gauss nodes an interval for shape functions: exact for every field of theirs, times a weight of degree 15.
+
+    The field of highest degree is u^2 in the second moments, 4 d - 2 for functions of degree d.
+    """
+    if any(len(phi.pieces) > 1 for phi in functions):
+        return POINTS
+    return max(POINTS, 2 * max((phi.degree for phi in functions), default=0) + 7)
+
+
+def at_station(formula: Expression, length: Value, xi: float) -> Expression:
+    """A formula of the station x with x = xi times the length."""
+    if formula.kind == "symbol" and formula.name == STATION:
+        whole = length if isinstance(length, Expression) else Expression("number", number=length)
+        return Expression("mul", (Expression("number", number=xi), whole))
+    if not formula.args:
+        return formula
+    return Expression(
+        formula.kind, tuple(at_station(arg, length, xi) for arg in formula.args), formula.number, formula.name
+    )

@@ -1,0 +1,96 @@
+"""Loads along beams: their virtual power on root and elastic coordinates (docs/theory/beams.md, section 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from symofros.description.beam import BeamLoad
+from symofros.description.values import Value
+from symofros.expr.graph import ZERO, Edge
+from symofros.expr.vector import Vec3
+from symofros.mechanics.beams.fields import EVERY_DEGREE, Field, Form, unit_field
+from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench
+from symofros.mechanics.kinematics.frames import FrameKinematics
+from symofros.mechanics.kinematics.links import Motion, MovingBeam
+
+# A field, weighted by a component of a load, at its station or over the length.
+Weighted = Callable[[Field, Value], Form]
+
+
+def beam_loads(motion: Motion, frames: FrameKinematics, beam: MovingBeam) -> tuple[Wrench, list[Edge]]:
+    """What the loads along a beam do (eqs. 18, 19).
+
+    Args:
+        motion: The tree.
+        frames: For components in world axes.
+        beam: The beam.
+
+    Returns:
+        The wrench on its root in the link frame, and the force on each elastic coordinate.
+    """
+    g, R_LB = motion.g, motion.links[beam.root].R_LB
+    wrench = no_wrench(g)
+    modal = [ZERO] * beam.forms.beam.modes
+    for load in beam.forms.beam.loads:
+        weighted = partial(_at_station, beam, load.at) if load.at is not None else beam.forms.along.integral
+        directions = _directions(motion, frames, beam, load)
+        for d, force, torque in zip(directions, load.force, load.torque, strict=True):
+            one, forces = _along(beam, weighted, load.at, d, force, torque)
+            wrench = wrench + Wrench(R_LB.times(one.f), R_LB.times(one.n))
+            modal = [g.add(a, b) for a, b in zip(modal, forces, strict=True)]
+    return wrench, modal
+
+
+def _at_station(beam: MovingBeam, xi: float, field: Field, weight: Value) -> Form:
+    return beam.forms.along.at(field, xi).scaled(beam.forms.along.lower(weight))
+
+
+def _directions(motion: Motion, frames: FrameKinematics, beam: MovingBeam, load: BeamLoad) -> list[Vec3]:
+    """The axes that a load's components are along, in B."""
+    if load.axes == "body":
+        return [Vec3.unit(motion.g, k) for k in range(3)]
+    R_WL, R_LB = frames.link_pose(beam.root).R, motion.links[beam.root].R_LB
+    return [R_LB.T.times(R_WL.row(k)) for k in range(3)]
+
+
+def _along(
+    beam: MovingBeam, weighted: Weighted, at: float | None, d: Vec3, force: Value, torque: Value
+) -> tuple[Wrench, list[Edge]]:
+    """One component of a load along a direction d: the wrench about Bo, and the elastic coordinates' forces."""
+    g, forms = d.g, beam.forms
+    shape, order = forms.shape, forms.order
+    one = unit_field(forms.shape.lengths)
+    wrench, modal = no_wrench(g), [ZERO] * forms.beam.modes
+
+    def vector(fields: tuple[Field, ...], weight: Value) -> Vec3:
+        return Vec3(g, *(weighted(field, weight).value(order) for field in fields))
+
+    if force != 0.0:
+        total = d.scaled(weighted(one, force).value())
+        wrench = wrench + Wrench(total, vector(shape.position, force).cross(d))
+        for i in range(forms.beam.modes):
+            partial_velocity = vector(tuple(field.by(i) for field in shape.position), force)
+            modal[i] = g.add(modal[i], partial_velocity.dot(d))
+    if torque != 0.0:
+        wrench = wrench + Wrench(Vec3(g), d.scaled(weighted(one, torque).value()))
+        if order == EVERY_DEGREE:
+            turned = _turned(beam, at, d, torque)
+        else:
+            turned = [vector(turning, torque).dot(d) for turning in shape.turning]
+        modal = [g.add(a, b) for a, b in zip(modal, turned, strict=True)]
+    return wrench, modal
+
+
+def _turned(beam: MovingBeam, at: float | None, d: Vec3, torque: Value) -> list[Edge]:
+    """What a moment along d does to the elastic coordinates, its sections turned exactly, as the tip is (eq. 19)."""
+    g, along = d.g, beam.forms.along
+    modal = [ZERO] * beam.forms.beam.modes
+    for xi, share in along.shares(torque) if at is None else [(at, along.lower(torque))]:
+        angles = beam.forms.angles(xi)
+        (cP, sP), (cT, sT) = ((g.call("cos", x), g.call("sin", x)) for x in (form.value() for form in angles[:2]))
+        axes = Vec3.unit(g, 2), Vec3(g, -sP, cP, ZERO), Vec3(g, g.mul(cP, cT), g.mul(sP, cT), -sT)
+        for axis, angle in zip(axes, angles, strict=True):
+            moment = g.mul(share, axis.dot(d))
+            modal = [g.add(x, g.mul(part.value(), moment)) for x, part in zip(modal, angle.gradient, strict=True)]
+    return modal

@@ -1,0 +1,85 @@
+"""Joint elements: springs, dampers, stops and friction as force and energy of one coordinate (theory, section 10)."""
+
+from __future__ import annotations
+
+from symofros.description.forces import Damper, Friction, JointElement, Spring, Stop
+from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.mechanics.kinematics.lowering import Lowering
+
+# Stribeck velocity where none is given, as a multiple of the minimum velocity.
+_STRIBECK = 10.0
+
+
+def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge) -> Edge:
+    """The force of an element on its own speed.
+
+    Args:
+        lowering: For its numbers.
+        element: What the user stated.
+        q: The coordinate it acts on; unused by dampers and friction.
+        v: The speed.
+    """
+    g = lowering.g
+    if isinstance(element, Spring):
+        x = g.sub(q, lowering.value(element.rest))
+        cubic = g.mul(lowering.value(element.cubic), g.mul(x, x))
+        return -g.mul(g.add(lowering.value(element.stiffness), cubic), x)
+    if isinstance(element, Damper):
+        quadratic = g.mul(lowering.value(element.quadratic), g.call("abs", v))
+        return -g.mul(g.add(lowering.value(element.coefficient), quadratic), v)
+    if isinstance(element, Stop):
+        return _stop_force(lowering, element, q, v)
+    return _friction(lowering, element, v)
+
+
+def element_energy(lowering: Lowering, element: JointElement, q: Edge) -> Edge:
+    """The potential energy an element stores."""
+    g = lowering.g
+    if isinstance(element, Spring):
+        x = g.sub(q, lowering.value(element.rest))
+        x2 = g.mul(x, x)
+        quartic = g.mul(g.mul(g.constant(0.5), lowering.value(element.cubic)), x2)
+        return g.mul(g.mul(g.constant(0.5), g.add(lowering.value(element.stiffness), quartic)), x2)
+    if isinstance(element, Stop):
+        total = ZERO
+        for beyond, _ in _beyond(lowering, element, q):
+            total = g.add(total, g.mul(beyond, beyond))
+        return g.mul(g.mul(g.constant(0.5), lowering.value(element.stiffness)), total)
+    return ZERO
+
+
+def _beyond(lowering: Lowering, stop: Stop, q: Edge) -> list[tuple[Edge, int]]:
+    """How far q is beyond each limit, and the direction that leads further."""
+    g = lowering.g
+    found = []
+    if stop.upper is not None:
+        found.append((g.call("max", g.sub(q, lowering.value(stop.upper)), ZERO), 1))
+    if stop.lower is not None:
+        found.append((g.call("max", g.sub(lowering.value(stop.lower), q), ZERO), -1))
+    return found
+
+
+def _stop_force(lowering: Lowering, stop: Stop, q: Edge, v: Edge) -> Edge:
+    g = lowering.g
+    total = ZERO
+    for beyond, outward in _beyond(lowering, stop, q):
+        # The damper acts beyond the limit, and on motion further out only: a stop pushes, it never pulls.
+        inward = g.call("max", outward * v, ZERO)
+        push = g.mul(lowering.value(stop.stiffness), beyond)
+        push = g.add(push, g.mul(g.mul(lowering.value(stop.damping), inward), g.call("sign", beyond)))
+        total = g.add(total, -outward * push)
+    return total
+
+
+def _friction(lowering: Lowering, friction: Friction, v: Edge) -> Edge:
+    g = lowering.g
+
+    dynamic, slow = lowering.value(friction.dynamic), lowering.value(friction.minimum_velocity)
+    level = dynamic
+    if friction.static is not None:
+        stated = friction.stribeck_velocity
+        range_ = g.mul(g.constant(_STRIBECK), slow) if stated is None else lowering.value(stated)
+        x = g.div(v, range_)
+        level = g.add(dynamic, g.mul(g.sub(lowering.value(friction.static), dynamic), g.call("exp", -g.mul(x, x))))
+    sliding = g.mul(level, g.call("tanh", g.mul(g.div(ONE, slow), v)))
+    return -g.add(sliding, g.mul(lowering.value(friction.viscous), v))

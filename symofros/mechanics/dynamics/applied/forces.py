@@ -1,0 +1,160 @@
+"""Generalized forces Q and the potential energy of everything that is a force (docs/theory/rigid.md, section 10)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from symofros.expr.derivative import along
+from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.mechanics.dynamics.acceleration import no_wrench
+from symofros.mechanics.dynamics.applied.beam_loads import beam_loads
+from symofros.mechanics.dynamics.applied.elements import element_energy, element_force
+from symofros.mechanics.dynamics.applied.loads import connection_energy, wrenches
+from symofros.mechanics.dynamics.beams import elastic_forces
+from symofros.mechanics.dynamics.jourdain import virtual_power
+from symofros.mechanics.kinematics.frames import FrameKinematics
+from symofros.mechanics.kinematics.links import Motion, MovingBeam
+from symofros.mechanics.kinematics.lowering import Lowering
+from symofros.mechanics.kinematics.rotations import quaternion_matrix
+from symofros.mechanics.topology.coordinates import coordinate_names, speed_symbols
+from symofros.mechanics.topology.tree import Link
+
+
+def generalized_forces(motion: Motion, frames: FrameKinematics) -> list[Edge]:
+    """Q: joint efforts and elements, virtual power by formula, potentials, loads and connections.
+
+    Args:
+        motion: The tree.
+        frames: Its frames, where loads and connections act.
+
+    Returns:
+        One edge a speed.
+    """
+    g, system = motion.g, motion.tree.system
+    total = _joint_forces(motion)
+    index = {name: motion.lowering.coordinates.symbols[name].index for name in _free_speeds(motion)}
+    for power in system.virtual_power:
+        for speed, formula in power.forces:
+            total[index[speed]] = g.add(total[index[speed]], motion.lowering.value(formula))
+    potentials = [motion.lowering.value(potential.energy) for potential in system.potentials]
+    if potentials:
+        total = [g.sub(force, slope) for force, slope in zip(total, _gradient(motion, g.sum(potentials)), strict=True)]
+    acting = wrenches(motion, frames)
+    for beam in motion.beams:
+        if beam.forms.beam.loads:
+            wrench, modal = beam_loads(motion, frames, beam)
+            acting = acting or [no_wrench(g) for _ in motion.links]
+            acting[beam.root] = acting[beam.root] + wrench
+            _add_modal(motion, beam, total, modal)
+        _add_modal(motion, beam, total, elastic_forces(motion, beam))
+    if acting is not None:
+        total = [g.add(a, b) for a, b in zip(total, virtual_power(motion, acting), strict=True)]
+    return total
+
+
+def _add_modal(motion: Motion, beam: MovingBeam, total: list[Edge], forces: list[Edge]) -> None:
+    if beam.tip is not None:
+        for k, force in enumerate(forces, start=motion.links[beam.tip].v):
+            total[k] = motion.g.add(total[k], force)
+
+
+def stored_energy(motion: Motion, frames: FrameKinematics) -> Edge:
+    """The potential energy of joint elements, connections and formulas; gravity's is another function's."""
+    g, lowering = motion.g, motion.lowering
+    parts = [lowering.value(potential.energy) for potential in motion.tree.system.potentials]
+    for link in motion.tree.links:
+        for element in link.joint.elements:
+            parts.append(element_energy(lowering, element, _coordinate(lowering, link, element.coordinate)))
+    parts += [beam.forms.strain_energy.value() for beam in motion.beams]
+    return g.sum([*parts, connection_energy(motion, frames)])
+
+
+def _free_speeds(motion: Motion) -> list[str]:
+    return [name for link in motion.tree.links if not link.joint.prescribed for name in speed_symbols(link.joint)]
+
+
+def _coordinate(lowering: Lowering, link: Link, index: int) -> Edge:
+    """The coordinate an element acts on; the zero where the joint has fewer (dampers do without)."""
+    names = coordinate_names(link.joint)
+    return lowering.symbol(names[index]) if index < len(names) else ZERO
+
+
+def _joint_forces(motion: Motion) -> list[Edge]:
+    """Efforts, motors and elements: their virtual power on their own speed is the force itself (eq. 23)."""
+    g, lowering, tree = motion.g, motion.lowering, motion.tree
+    total: list[Edge] = [ZERO] * motion.nv
+    motor = len(tree.system.inputs)
+
+    def add(k: int, edge: Edge) -> None:
+        total[k] = g.add(total[k], edge)
+
+    for link in tree.links:
+        start, size = link.v
+        if size == 0:
+            continue  # Forces on a prescribed motion do no virtual power.
+        speeds = [lowering.symbol(name) for name in speed_symbols(link.joint)]
+        for k, value in enumerate(link.joint.effort):
+            add(start + k, lowering.value(value))
+        for element in link.joint.elements:
+            k = element.coordinate
+            add(start + k, element_force(lowering, element, _coordinate(lowering, link, k), speeds[k]))
+        if link.joint.actuated:
+            for k in range(size):
+                add(start + k, g.input("u", motor + k))
+            motor += size
+    return total
+
+
+def _gradient(motion: Motion, energy: Edge) -> list[Edge]:
+    """The rate of an energy per unit of each speed: its gradient through q' = N v (eq. 38)."""
+    return along(motion.g, [energy], rates_per_speed(motion))[0]
+
+
+def rates_per_speed(motion: Motion) -> list[dict[Edge, Edge]]:
+    """For each speed, the rates of coordinates per unit of it: the columns of N in q' = N v."""
+    return [
+        _RATES.get(link.joint.kind, _own_rate)(motion.lowering, coordinate_names(link.joint), k)
+        for link in motion.tree.links
+        for k in range(link.v[1])
+    ]
+
+
+def coordinate_rates(motion: Motion) -> dict[Edge, Edge]:
+    """The rate of every coordinate, q' = N v; of prescribed ones, their given speeds."""
+    g, lowering = motion.g, motion.lowering
+    rates: dict[Edge, Edge] = {}
+    for link in motion.tree.links:
+        names, speeds = coordinate_names(link.joint), speed_symbols(link.joint)
+        for k, speed in enumerate(speeds):
+            for coordinate, slope in _RATES.get(link.joint.kind, _own_rate)(lowering, names, k).items():
+                part = g.mul(slope, lowering.symbol(speed))
+                rates[coordinate] = g.add(rates.get(coordinate, ZERO), part)
+    return rates
+
+
+def _own_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
+    return {lowering.symbol(names[k]): ONE}
+
+
+def _ball_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
+    """Rates of a quaternion per unit angular velocity along axis k of D: half the product with that axis."""
+    g = lowering.g
+    e, s = [lowering.symbol(name) for name in names[:3]], lowering.symbol(names[3])
+    half = g.constant(0.5)
+    i, j = (k + 1) % 3, (k + 2) % 3
+    rates = {e[k]: s, e[i]: e[j], e[j]: -e[i], s: -e[k]}
+    return {edge: g.mul(half, rate) for edge, rate in rates.items()}
+
+
+def _free_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
+    """Rates of position and quaternion per unit body velocity: the position moves along column k of R_PD."""
+    if k >= 3:
+        return _ball_rate(lowering, names[3:], k - 3)
+    from_quaternion = quaternion_matrix(lowering.g, *(lowering.symbol(name) for name in names[3:]))
+    return {lowering.symbol(name): edge for name, edge in zip(names[:3], from_quaternion.column(k), strict=True)}
+
+
+_RATES: dict[str, Callable[[Lowering, tuple[str, ...], int], dict[Edge, Edge]]] = {
+    "ball": _ball_rate,
+    "free": _free_rate,
+}

@@ -1,0 +1,161 @@
+"""What the deformation of beams adds to the equations of motion (docs/theory/beams.md, section 4).
+
+A beam is one body in the recursion: a wrench on its root, and one force for each elastic coordinate. Everything
+follows from its kinetic energy by Boltzmann and Hamel's equations, so the same forms give M, h and T.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.vector import Mat3, Vec3
+from symofros.mechanics.beams.elastic import PAIRS
+from symofros.mechanics.beams.fields import Form
+from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, inertia_wrench
+from symofros.mechanics.dynamics.inertia import deformed
+from symofros.mechanics.kinematics.links import Motion, MovingBeam
+
+Triple = tuple[Form, Form, Form]
+
+
+def modal_mass(beam: MovingBeam, i: int, j: int) -> Edge:
+    """M_ij of two elastic coordinates of one beam (eq. 11)."""
+    return beam.forms.modal_mass[min(i, j), max(i, j)].value(beam.forms.order)
+
+
+def added_momentum(motion: Motion, beam: MovingBeam, i: int) -> tuple[Vec3, Vec3]:
+    """Linear momentum and angular momentum about the root, in the link frame, per unit rate of coordinate i."""
+    order, R = beam.forms.order, motion.links[beam.root].R_LB
+    P = Vec3(motion.g, *(form.gradient[i].value(order) for form in beam.forms.first_moment))
+    return R.times(P), R.times(_vector(motion.g, beam.forms.angular[i], order))
+
+
+def beam_forces(
+    motion: Motion, beam: MovingBeam, state: LinkMotion, speeds: Sequence[Edge], rates: Sequence[Edge]
+) -> tuple[Wrench, list[Edge]]:
+    """What a beam's inertia asks for beyond that of the undeformed beam (eqs. 15-17).
+
+    Args:
+        motion: The tree.
+        beam: The beam.
+        state: Motion of its root.
+        speeds: Rates of its elastic coordinates.
+        rates: Their second derivatives.
+
+    Returns:
+        The wrench on the root in the link frame, and the force on each elastic coordinate.
+    """
+    R = motion.links[beam.root].R_LB
+    w, alpha, a = (R.T.times(x) for x in (state.w, state.alpha, state.a))
+    relative = _relative_wrench(beam, w, speeds, rates)
+    straight = inertia_wrench(deformed(motion, beam), state)
+    wrench = straight + Wrench(R.times(relative.f), R.times(relative.n))
+    return wrench, [_modal_force(beam, i, w, alpha, a, speeds, rates) for i in range(len(speeds))]
+
+
+def _relative_wrench(beam: MovingBeam, w: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]) -> Wrench:
+    """Force and moment of the motion relative to B, and of Coriolis' acceleration (eqs. 15, 16)."""
+    g, order, forms = w.g, beam.forms.order, beam.forms
+    S_rate = Vec3(g, *(form.rate(speeds, order) for form in forms.first_moment))
+    twice = w + w
+    f = twice.cross(S_rate) + Vec3(g, *(form.second_rate(speeds, order) for form in forms.first_moment))
+    E_rate = [form.rate(speeds, order) for form in forms.second_moment]
+    n = _moment_rate(g, E_rate).times(w)
+    spin = Vec3(g)
+    for i, (Q, speed, rate) in enumerate(zip(forms.angular, speeds, rates, strict=True)):
+        P = Vec3(g, *(form.gradient[i].value(order) for form in forms.first_moment))
+        f = f + P.scaled(rate)
+        n = n + _vector(g, Q, order).scaled(rate)
+        n = n + Vec3(g, *(form.rate(speeds, order - 1) for form in Q)).scaled(speed)
+        spin = spin + _vector(g, Q, order - 1).scaled(speed)
+    return Wrench(f, n + w.cross(spin))
+
+
+def _modal_force(
+    beam: MovingBeam, i: int, w: Vec3, alpha: Vec3, a: Vec3, speeds: Sequence[Edge], rates: Sequence[Edge]
+) -> Edge:
+    """The inertia force on elastic coordinate i (eq. 17)."""
+    g, order, forms = w.g, beam.forms.order, beam.forms
+    P = Vec3(g, *(form.gradient[i].value(order) for form in forms.first_moment))
+    total = g.add(P.dot(a), _vector(g, forms.angular[i], order).dot(alpha))
+    total = g.add(total, g.sum(g.mul(modal_mass(beam, i, j), rate) for j, rate in enumerate(rates)))
+    total = g.add(total, _centrifugal(g, w, [form.gradient[i].value(order) for form in forms.second_moment]))
+    curl = Vec3(g)
+    for j, speed in enumerate(speeds):
+        there = _vector(g, _slopes(forms.angular[i], j), order - 1)
+        back = _vector(g, _slopes(forms.angular[j], i), order - 1)
+        curl = curl + (there - back).scaled(speed)
+    return g.add(g.add(total, w.dot(curl)), _convective(beam, i, speeds))
+
+
+def _centrifugal(g: Graph, w: Vec3, E: Sequence[Edge]) -> Edge:
+    """-1/2 w . J w for J = tr(E) 1 - E: the sum over axes of 1/2 (w w^T - w.w 1) : E."""
+    x, y, z = w
+    xx, yy, zz = g.mul(x, x), g.mul(y, y), g.mul(z, z)
+    half = g.constant(0.5)
+    squares = (g.add(yy, zz), g.add(xx, zz), g.add(xx, yy))
+    total = g.sum(-g.mul(g.mul(half, E[k]), squares[k]) for k in range(3))
+    for k, (a, b) in enumerate(PAIRS[3:], start=3):
+        total = g.add(total, g.mul(E[k], g.mul(tuple(w)[a], tuple(w)[b])))
+    return total
+
+
+def _convective(beam: MovingBeam, i: int, speeds: Sequence[Edge]) -> Edge:
+    """The sum over j, k of (d_k M_ij - 1/2 d_i M_jk) v_j v_k."""
+    g, order, M = beam.forms.along.g, beam.forms.order, beam.forms.modal_mass
+    half, total = g.constant(0.5), ZERO
+    for j, speed in enumerate(speeds):
+        total = g.add(total, g.mul(M[min(i, j), max(i, j)].rate(speeds, order - 1), speed))
+        for k in range(j, len(speeds)):
+            slope = M[j, k].gradient[i].value(order - 2)
+            product = g.mul(speed, speeds[k])
+            total = g.sub(total, g.mul(slope, g.mul(half, product) if j == k else product))
+    return total
+
+
+def kinetic_energy_twice(motion: Motion, beam: MovingBeam, w_L: Vec3, v_L: Vec3, speeds: Sequence[Edge]) -> Edge:
+    """Twice what deformation adds to the kinetic energy (eq. 12).
+
+    Args:
+        motion: The tree.
+        beam: The beam.
+        w_L: Angular velocity of its root, in the link frame.
+        v_L: Velocity of its root, alike.
+        speeds: Rates of its elastic coordinates.
+    """
+    g = motion.g
+    change = deformed(motion, beam)
+    crossed = w_L.cross(change.S)
+    total = g.add(v_L.dot(crossed + crossed), w_L.dot(change.J.times(w_L)))
+    for i, speed in enumerate(speeds):
+        p, n = added_momentum(motion, beam, i)
+        coupling = g.add(p.dot(v_L), n.dot(w_L))
+        own = g.sum(g.mul(modal_mass(beam, i, j), other) for j, other in enumerate(speeds))
+        total = g.add(total, g.mul(speed, g.add(g.add(coupling, coupling), own)))
+    return total
+
+
+def elastic_forces(motion: Motion, beam: MovingBeam) -> list[Edge]:
+    """Elastic and damping forces on the elastic coordinates (eqs. 7, 14)."""
+    g, forms = motion.g, beam.forms
+    dissipation = forms.damping_energy(() if beam.tip is None else motion.links[beam.tip].speeds)
+    return [
+        -g.add(elastic.value(), viscous.value())
+        for elastic, viscous in zip(forms.strain_energy.gradient, dissipation.gradient, strict=True)
+    ]
+
+
+def _vector(g: Graph, forms: Triple, upto: float) -> Vec3:
+    return Vec3(g, *(form.value(upto) for form in forms))
+
+
+def _slopes(forms: Triple, i: int) -> Triple:
+    x, y, z = (form.gradient[i] for form in forms)
+    return x, y, z
+
+
+def _moment_rate(g: Graph, E_rate: Sequence[Edge]) -> Mat3:
+    """J' = tr(E') 1 - E'."""
+    xx, yy, zz, xy, xz, yz = E_rate
+    return Mat3(g, (g.add(yy, zz), -xy, -xz, -xy, g.add(xx, zz), -yz, -xz, -yz, g.add(xx, yy)))

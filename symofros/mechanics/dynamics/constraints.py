@@ -1,0 +1,247 @@
+"""Constraints: phi(q) = 0 and G v = b as rows of the equations of motion (docs/theory/constraints.md).
+
+Each condition is written by the motion of the frames it joins; G and gamma follow from the frames' Jacobians and
+accelerations, so prescribed joints and the tips of beams need nothing of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from symofros.description.constraints import AXES, AxisName, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
+from symofros.description.forces import Anchor
+from symofros.expr.derivative import directional
+from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.vector import Mat3, Vec3
+from symofros.mechanics.dynamics.applied.forces import coordinate_rates, rates_per_speed
+from symofros.mechanics.kinematics.frames import FrameKinematics
+from symofros.mechanics.kinematics.links import Motion
+from symofros.mechanics.topology.tree import frame_of
+
+
+class Lever(NamedTuple):
+    """A part of a row: sign (force . J_v + moment . J_w) of a body's frame, in world axes."""
+
+    frame: str
+    force: Vec3 | None
+    moment: Vec3 | None
+    sign: int
+
+
+@dataclass(frozen=True)
+class Row:
+    """One condition.
+
+    Attributes:
+        phi: Its residual; zero for one that binds speeds only.
+        G: Its row of the Jacobian (nv).
+        rate: G v - b: the rate of phi, or the residual of the condition on speeds.
+        gamma: What G v' must equal.
+        levers: What G is made of, and what the multiplier acts through.
+    """
+
+    phi: Edge
+    G: tuple[Edge, ...]
+    rate: Edge
+    gamma: Edge
+    levers: tuple[Lever, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Body:
+    """A frame in motion, in world axes: name, pose, velocities, accelerations at v' = 0, Jacobian rows."""
+
+    name: str
+    p: Vec3
+    R: Mat3
+    v: Vec3
+    w: Vec3
+    a: Vec3
+    alpha: Vec3
+    J: list[list[Edge]]
+
+
+class Constraints:
+    """The rows of every constraint of a tree, in the order of description."""
+
+    def __init__(self, frames: FrameKinematics) -> None:
+        self.frames, self.motion, self.g = frames, frames.motion, frames.g
+        self.nv = self.motion.nv
+        self._bodies: dict[str, _Body] = {}
+
+    def rows(self) -> list[Row]:
+        """All rows."""
+        make: dict[type, Callable[..., Iterator[Row]]] = {
+            Closure: self._closure,
+            Rod: self._rod,
+            KnifeEdge: self._edge,
+            Rolling: self._rolling,
+            Nonholonomic: self._stated,
+        }
+        return [row for item in self.motion.tree.system.constraints for row in make[type(item)](item)]
+
+    def _body(self, anchor: Anchor) -> _Body:
+        frame = frame_of(self.motion.tree, *anchor)
+        if frame.qualified not in self._bodies:
+            pose = self.frames.pose(frame)
+            velocity = self.frames.velocity(frame)
+            acceleration = self.frames.acceleration(frame, [ZERO] * self.nv)
+            v, w = Vec3(self.g, *velocity[:3]), Vec3(self.g, *velocity[3:])
+            a, alpha = Vec3(self.g, *acceleration[:3]), Vec3(self.g, *acceleration[3:])
+            J = self.frames.jacobian(frame)
+            self._bodies[frame.qualified] = _Body(frame.qualified, pose.p, pose.R, v, w, a, alpha, J)
+        return self._bodies[frame.qualified]
+
+    # Closures.
+
+    def _closure(self, closure: Closure) -> Iterator[Row]:
+        A, B = self._body(closure.first), self._body(closure.second)
+        for axis in closure.translations:
+            yield self._offset(A, B, A.R.column(AXES.index(axis)))
+        for pairs in _conditions(closure.rotations):
+            yield self._between(A, B, pairs)
+
+    def _offset(self, A: _Body, B: _Body, n: Vec3) -> Row:
+        """Condition d . n = 0 for d = p_B - p_A and n fixed in A (eq. 3)."""
+        d, d_rate = B.p - A.p, B.v - A.v
+        n_rate = A.w.cross(n)
+        turned = n.cross(d)  # (w x n) . d = w . (n x d)
+        g, parts = self.g, [(B, n, None, 1), (A, n, None, -1), (A, None, turned, 1)]
+        rate = g.add(d_rate.dot(n), d.dot(n_rate))
+        drift = g.add((B.a - A.a).dot(n), d.dot(A.alpha.cross(n) + A.w.cross(n_rate)))
+        drift = g.add(drift, (d_rate + d_rate).dot(n_rate))
+        return self._row(d.dot(n), rate, -drift, parts)
+
+    def _between(self, A: _Body, B: _Body, pairs: Sequence[tuple[int, int, float]]) -> Row:
+        """The sum of c a_i . b_j = 0, for axes a_i of A and b_j of B (eqs. 4, 5)."""
+        g = self.g
+        phi, rate, drift, lever = ZERO, ZERO, ZERO, Vec3(g)
+        relative, relative_rate = B.w - A.w, B.alpha - A.alpha
+        for i, j, factor in pairs:
+            c = g.constant(factor)
+            a, b = A.R.column(i).scaled(c), B.R.column(j)
+            cross = b.cross(a)  # The rate of a . b is (w_B - w_A) . (b x a).
+            cross_rate = B.w.cross(b).cross(a) + b.cross(A.w.cross(a))
+            phi = g.add(phi, a.dot(b))
+            rate = g.add(rate, relative.dot(cross))
+            drift = g.add(drift, g.add(relative_rate.dot(cross), relative.dot(cross_rate)))
+            lever = lever + cross
+        return self._row(phi, rate, -drift, [(B, None, lever, 1), (A, None, lever, -1)])
+
+    def _rod(self, rod: Rod) -> Iterator[Row]:
+        """(d . d - L^2)/(2 L) = 0 (eq. 6): a polynomial, with the unit of a length."""
+        g = self.g
+        A, B = self._body(rod.first), self._body(rod.second)
+        length = self.motion.lowering.value(rod.length)
+        per_length = g.div(ONE, length)
+        d, d_rate = B.p - A.p, B.v - A.v
+        n = d.scaled(per_length)
+        phi = g.mul(g.constant(0.5), g.sub(d.dot(n), length))
+        drift = g.add((B.a - A.a).dot(n), g.mul(per_length, d_rate.dot(d_rate)))
+        yield self._row(phi, d_rate.dot(n), -drift, [(B, n, None, 1), (A, n, None, -1)])
+
+    # Rolling and sliding.
+
+    def _edge(self, edge: KnifeEdge) -> Iterator[Row]:
+        """Condition v . n = 0 for n fixed in the frame (eq. 7)."""
+        B = self._body(edge.anchor)
+        n = B.R.column(AXES.index(edge.axis))
+        drift = self.g.add(B.a.dot(n), B.v.dot(B.w.cross(n)))
+        yield self._row(ZERO, B.v.dot(n), -drift, [(B, n, None, 1)])
+
+    def _rolling(self, rolling: Rolling) -> Iterator[Row]:
+        """The contact point's velocity vanishes; so does its height (eqs. 8, 9)."""
+        g = self.g
+        B = self._body(rolling.anchor)
+        radius, height = self.motion.lowering.value(rolling.radius), self.motion.lowering.value(rolling.height)
+        up = Vec3.unit(g, 2)
+        if rolling.shape == "sphere":
+            r, r_rate, drop = -up.scaled(radius), Vec3(g), radius
+        else:
+            n = B.R.column(2)
+            n_rate = B.w.cross(n)
+            s = up - n.scaled(n.z)  # From the centre upwards in the plane of the disc.
+            s_rate = -n.scaled(n_rate.z) - n_rate.scaled(n.z)
+            size = g.sqrt(s.dot(s))
+            unit = Vec3(g, *(g.div(x, size) for x in s))
+            along = s_rate.dot(unit)
+            unit_rate = Vec3(g, *(g.div(x, size) for x in s_rate - unit.scaled(along)))
+            r, r_rate, drop = -unit.scaled(radius), -unit_rate.scaled(radius), g.mul(radius, size)
+        contact = B.v + B.w.cross(r)
+        drift = B.a + (B.alpha.cross(r) + B.w.cross(r_rate))
+        for k, e in enumerate((Vec3.unit(g, 0), Vec3.unit(g, 1), up)):
+            phi = g.sub(g.sub(B.p.z, height), drop) if k == 2 else ZERO
+            yield self._row(phi, contact.dot(e), -drift.dot(e), [(B, e, r.cross(e), 1)])
+
+    def _stated(self, constraint: Nonholonomic) -> Iterator[Row]:
+        """A(q, t) v = b(q, t), differentiated along the motion (eq. 10)."""
+        g, lowering = self.g, self.motion.lowering
+        G = [ZERO] * self.nv
+        for name, formula in constraint.coefficients:
+            k = lowering.coordinates.symbols[name].index
+            G[k] = g.add(G[k], lowering.value(formula))
+        speeds = [g.input("v", k) for k in range(self.nv)]
+        rate = g.sub(g.sum(g.mul(a, v) for a, v in zip(G, speeds, strict=True)), lowering.value(constraint.right))
+        seeds = coordinate_rates(self.motion) | {lowering.symbol("t"): ONE}
+        yield Row(ZERO, tuple(G), rate, -directional(g, [rate], seeds)[0])
+
+    def _row(self, phi: Edge, rate: Edge, gamma: Edge, parts: Sequence[_Part]) -> Row:
+        """A row with its G: the sum of sign (f . J_v + n . J_w) over bodies."""
+        g: Graph = self.g
+        row = [ZERO] * self.nv
+        for body, f, n, sign in parts:
+            for k in range(self.nv):
+                column = [line[k] for line in body.J]
+                for vector, part in ((f, column[:3]), (n, column[3:])):
+                    if vector is not None:
+                        row[k] = g.add(row[k], sign * vector.dot(Vec3(g, *part)))
+        return Row(phi, tuple(row), rate, gamma, tuple(Lever(body.name, f, n, sign) for body, f, n, sign in parts))
+
+
+def moved(motion: Motion) -> list[Edge]:
+    """The coordinates after a small step along the manifold: q + N step, quaternions made unit again (nq).
+
+    It leads where `Model.integrate` does but for terms of the second order, which Newton's method does not feel.
+    """
+    g, tree = motion.g, motion.tree
+    q = [g.input("q", k) for k in range(len(tree.coordinates.q))]
+    found = dict(zip(q, q, strict=True))
+    for k, rates in enumerate(rates_per_speed(motion)):
+        for coordinate, rate in rates.items():
+            found[coordinate] = g.add(found[coordinate], g.mul(rate, g.input("step", k)))
+    for link in tree.links:
+        if link.joint.kind in ("ball", "free") and not link.joint.prescribed:
+            parts = q[link.q[0] + link.q[1] - 4 : link.q[0] + link.q[1]]
+            size = g.sqrt(g.sum(g.mul(found[part], found[part]) for part in parts))
+            found |= {part: g.div(found[part], size) for part in parts}
+    return list(found.values())
+
+
+# A lever with its body.
+_Part = tuple[_Body, Vec3 | None, Vec3 | None, int]
+# Pairs (axis of A, axis of B, factor) of one condition.
+_Pairs = tuple[tuple[int, int, float], ...]
+
+
+def _conditions(blocked: Sequence[AxisName]) -> tuple[_Pairs, ...]:
+    """Conditions whose rates at the closed configuration are the blocked components of the angular velocity."""
+    which = [AXES.index(axis) for axis in blocked]
+    found: list[_Pairs] = []
+    for k in which:
+        i, j = (k + 1) % 3, (k + 2) % 3
+        if len(which) == 3:
+            # 1/2 (R - R^T): regular up to a right angle.
+            found.append(((j, i, 0.5), (i, j, -0.5)))
+        elif len(which) == 2:
+            # The free axis of B stays along that of A: it has no component along the other blocked axis.
+            free = next(m for m in range(3) if m not in which)
+            other = next(m for m in which if m != k)
+            found.append(((other, free, 1.0 if (k, free, other) in _CYCLIC else -1.0),))
+        else:
+            found.append(((j, i, 1.0),))
+    return tuple(found)
+
+
+_CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))

@@ -1,0 +1,32 @@
+"""Derivatives of the equations of motion with respect to coordinates, speeds and inputs (docs/theory/linear.md).
+
+Columns are directional derivatives along the manifold of q: along the motion of one speed at a time, q' = N v. They
+are taken on the graph by forward differentiation, so they are exact, and share what they have in common.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from symofros.expr.derivative import along, partials
+from symofros.expr.graph import Edge
+from symofros.mechanics.dynamics.applied.forces import rates_per_speed
+from symofros.mechanics.kinematics.links import Motion, speeds_by_path
+
+Matrix = list[list[Edge]]
+
+
+def by_configuration(motion: Motion, edges: Sequence[Edge]) -> Matrix:
+    """One row an edge, one column a speed: the change of the edge as q moves with that speed alone."""
+    return along(motion.g, edges, rates_per_speed(motion), _together(motion))
+
+
+def by_inputs(motion: Motion, edges: Sequence[Edge], group: str, count: int) -> Matrix:
+    """One row an edge, one column an input of a group such as "v" or "u"."""
+    inputs = [motion.g.input(group, k) for k in range(count)]
+    return partials(motion.g, edges, inputs, _together(motion) if group == "v" else None)
+
+
+def _together(motion: Motion) -> list[list[int]]:
+    """Speeds that move the same links, in ascending order, as they stand in a row."""
+    return [sorted(path) for path in speeds_by_path(motion)]

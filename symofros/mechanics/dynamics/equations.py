@@ -1,0 +1,237 @@
+"""The equations of motion of one tree, each part formed when it is first needed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cached_property
+
+from symofros.errors import DescriptionError, Problem
+from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.substitute import substitute
+from symofros.expr.vector import Vec3
+from symofros.mechanics.dynamics.applied.forces import generalized_forces, stored_energy
+from symofros.mechanics.dynamics.articulated import articulated_acceleration, is_local
+from symofros.mechanics.dynamics.constraints import Constraints, Row
+from symofros.mechanics.dynamics.derivatives import by_inputs
+from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
+from symofros.mechanics.dynamics.forward import Factors, SingularMassMatrixError
+from symofros.mechanics.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
+from symofros.mechanics.dynamics.jourdain import inertia_forces
+from symofros.mechanics.dynamics.mass_matrix import Matrix, mass_matrix
+from symofros.mechanics.dynamics.momentum import coadjoint, momentum_rate
+from symofros.mechanics.dynamics.rotors import MovingRotor, rotors_of
+from symofros.mechanics.kinematics.frames import FrameKinematics
+from symofros.mechanics.kinematics.links import Motion, set_in_motion
+from symofros.mechanics.topology.tree import SpanningTree
+
+_DIVIDES = "forward dynamics divides by the inertia that each speed moves"
+
+
+class Equations:
+    """The equations of motion of one tree: M v' + h = Q, its energies and its frames.
+
+    Each property is formed when it is first needed, in one graph, so functions share what they have in common.
+    """
+
+    def __init__(self, tree: SpanningTree) -> None:
+        self.tree = tree
+        self.g = Graph()
+        self.nv = len(tree.coordinates.v)
+        self.efforts = tree.coordinates.efforts
+        # Prescribed motions are inputs that every function may depend on.
+        self.always = ("u",) if len(tree.coordinates.u) > self.efforts else ()
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The tree in motion."""
+        return set_in_motion(self.g, self.tree)
+
+    @cached_property
+    def _inertias(self) -> tuple[list[LinkInertia], LinkInertia]:
+        return link_inertias(self.motion)
+
+    @cached_property
+    def rotors(self) -> list[MovingRotor]:
+        """Rotors and armatures."""
+        return rotors_of(self.motion)
+
+    @cached_property
+    def gravity(self) -> Vec3:
+        """Acceleration of gravity in the world."""
+        return self.motion.lowering.vector(self.tree.system.gravity)
+
+    @cached_property
+    def M(self) -> Matrix:
+        """Mass matrix (nv x nv)."""
+        return mass_matrix(self.motion, self._inertias[0], self.rotors)
+
+    @cached_property
+    def h(self) -> list[Edge]:
+        """Coriolis, centrifugal and gravity terms (nv)."""
+        return inertia_forces(self.motion, self._inertias[0], self.rotors, [ZERO] * self.nv, self.gravity)
+
+    @cached_property
+    def Q(self) -> list[Edge]:
+        """Generalized forces (nv)."""
+        return generalized_forces(self.motion, self.frames)
+
+    @cached_property
+    def v_rate(self) -> list[Edge]:
+        """The input a, as edges (nv)."""
+        return [self.g.input("a", i) for i in range(self.nv)]
+
+    @cached_property
+    def acceleration(self) -> list[Edge]:
+        """V' = M^-1 (Q - h)."""
+        return self.factors.solve(self.net)
+
+    @property
+    def is_articulated(self) -> bool:
+        """Whether each joint concerns its link and its parent alone, rotors included."""
+        return all(is_local(self.motion, rotor) for rotor in self.rotors)
+
+    @cached_property
+    def articulated(self) -> list[Edge]:
+        """The same by articulated bodies.
+
+        Raises:
+            DescriptionError: As for `factors`; or not `is_articulated`.
+        """
+        if not self.is_articulated:
+            raise DescriptionError(
+                Problem(
+                    f"system '{self.tree.system.name}': forward dynamics by articulated bodies",
+                    "a rotor that is borne by another body than the parent of the joint that drives it",
+                    "a joint's speeds move its link, and rotors on its parent or on the base, alone",
+                    "choose Options(forward_dynamics='factors'), or 'auto'",
+                )
+            )
+        inertias, _ = link_inertias(self.motion, regrouped=False)
+        with self._refusing_singular():
+            return articulated_acceleration(self.motion, inertias, self.rotors, self.gravity, self.Q)
+
+    @cached_property
+    def factors(self) -> Factors:
+        """Those of M.
+
+        Raises:
+            DescriptionError: A speed moves no mass whatever the state, and so has no acceleration.
+        """
+        with self._refusing_singular():
+            return Factors(self.g, self.M)
+
+    @contextmanager
+    def _refusing_singular(self) -> Iterator[None]:
+        """In words, where the matter is that M is singular in every state."""
+        try:
+            yield
+        except SingularMassMatrixError as error:
+            self.refuse_massless()
+            name = self.tree.coordinates.v[error.speed]
+            raise DescriptionError(
+                Problem(
+                    f"system '{self.tree.system.name}': speed '{name}' moves nothing that those after it do not"
+                    " move alike",
+                    "M is singular in every state",
+                    f"{_DIVIDES} alone",
+                    "give the bodies between mass, turn one of the axes, or bind it by a constraint",
+                )
+            ) from None
+
+    def refuse_massless(self) -> None:
+        """Raise DescriptionError for a speed that moves no mass."""
+        for k, name in enumerate(self.tree.coordinates.v):
+            if self.M[k][k] == ZERO:
+                raise DescriptionError(
+                    Problem(
+                        f"system '{self.tree.system.name}': speed '{name}' moves no mass",
+                        "its row of M is zero",
+                        _DIVIDES,
+                        "give it an inertia, or bind it by a constraint",
+                    )
+                )
+
+    @cached_property
+    def net(self) -> list[Edge]:
+        """Q - h (nv)."""
+        return [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)]
+
+    @cached_property
+    def constraints(self) -> list[Row]:
+        """One row a condition."""
+        return Constraints(self.frames).rows()
+
+    @cached_property
+    def stabilised(self) -> list[Edge]:
+        """What G v' must equal, with Baumgarte's terms: gamma - 2 alpha (G v - b) - beta^2 phi (nc)."""
+        g, nc = self.g, len(self.constraints)
+        found = []
+        for i, row in enumerate(self.constraints):
+            alpha, beta = g.input("gains", i), g.input("gains", nc + i)
+            damped = g.mul(g.add(alpha, alpha), row.rate)
+            found.append(g.sub(g.sub(row.gamma, damped), g.mul(g.mul(beta, beta), row.phi)))
+        return found
+
+    @cached_property
+    def required(self) -> list[Edge]:
+        """M a + h - Q(q, v, 0): what the inputs must supply for an acceleration a."""
+        total = inertia_forces(self.motion, self._inertias[0], self.rotors, self.v_rate, self.gravity)
+        passive = substitute(self.g, self.Q, {self.g.input("u", i): ZERO for i in range(self.efforts)})
+        return [self.g.sub(needed, given) for needed, given in zip(total, passive, strict=True)]
+
+    def unbalanced(self, a: Sequence[Edge]) -> list[Edge]:
+        """M a + h - Q (nv)."""
+        total = inertia_forces(self.motion, self._inertias[0], self.rotors, a, self.gravity)
+        return [self.g.sub(needed, given) for needed, given in zip(total, self.Q, strict=True)]
+
+    @cached_property
+    def residual(self) -> list[Edge]:
+        """M a + h - Q - G^T lam, then G a - gamma: zero for the motion that the inputs produce (nv + nc)."""
+        g, a = self.g, self.v_rate
+        found = self.unbalanced(a)
+        for i, row in enumerate(self.constraints):
+            lam = g.input("lam", i)
+            found = [g.sub(one, g.mul(lam, entry)) for one, entry in zip(found, row.G, strict=True)]
+        bound = [
+            g.sub(g.sum(g.mul(x, y) for x, y in zip(row.G, a, strict=True)), row.gamma) for row in self.constraints
+        ]
+        return found + bound
+
+    @cached_property
+    def momentum(self) -> list[Edge]:
+        """P = M v (nv)."""
+        return [self.g.sum(self.g.mul(m, self.g.input("v", k)) for k, m in enumerate(row)) for row in self.M]
+
+    @cached_property
+    def momentum_force(self) -> list[Edge]:
+        """F with p' = F + ad_v^T p, for which the equations of motion give F = dM/dt v + Q - h - ad_v^T p (nv)."""
+        g = self.g
+        rate = momentum_rate(self.motion, self.momentum)
+        turning = coadjoint(self.motion, self.momentum)
+        total = [g.sub(g.add(r, Q), g.add(h, c)) for r, Q, h, c in zip(rate, self.Q, self.h, turning, strict=True)]
+        return total
+
+    @cached_property
+    def regressor(self) -> list[list[Edge]]:
+        """Y with M a + h = Y pi for rigid links: the sum is linear in their inertial parameters (nv x 10 links)."""
+        own = inertia_inputs(self.motion)
+        total = inertia_forces(self.motion, own, [], self.v_rate, self.gravity)
+        return by_inputs(self.motion, total, "pi", 10 * len(own))
+
+    @cached_property
+    def T(self) -> Edge:
+        """Kinetic energy."""
+        return kinetic_energy(self.motion, self._inertias[0], self.rotors)
+
+    @cached_property
+    def V(self) -> Edge:
+        """Potential energy: of the weight, and what forces store."""
+        weight = potential_energy(self.frames.motion, *self._inertias, self.gravity)
+        return self.g.add(weight, stored_energy(self.motion, self.frames))
+
+    @cached_property
+    def frames(self) -> FrameKinematics:
+        """Kinematics of the frames, at their deflected places."""
+        as_stated = all(beam.forms.order > 0 for beam in self.motion.beams)
+        return FrameKinematics(self.motion if as_stated else set_in_motion(self.g, self.tree, as_seen=True))

@@ -1,0 +1,69 @@
+"""Formulas of the user's own over a mechanism's coordinates, speeds, inputs, parameters and time -> a Program."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from symofros.description.values import Value, symbols
+from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
+from symofros.expr.derivative import directional
+from symofros.expr.graph import ONE, Edge, Graph
+from symofros.expr.program import Function, Output, Program
+from symofros.mechanics.dynamics.derivatives import by_configuration, by_inputs
+from symofros.mechanics.kinematics.links import Motion, set_in_motion
+from symofros.mechanics.topology.tree import SpanningTree
+
+
+def formula_program(tree: SpanningTree, values: Sequence[tuple[Value, int]], derivatives: bool = True) -> Program:
+    """One function, "formulas", of q, v, u and t: the values, and their derivatives along the manifold of q and by v.
+
+    Args:
+        tree: Its names are what formulas may use.
+        values: Numbers and formulas, and how often each is differentiated by t.
+        derivatives: Whether to form those by q and v.
+
+    Raises:
+        UnknownNameError: A formula uses a name that the mechanism lacks.
+        DescriptionError: One that is differentiated depends on more than t and parameters.
+    """
+    names = tree.coordinates
+    known = {*names.symbols, *names.constants}
+    for value, _ in values:
+        for name in sorted(symbols(value) - known):
+            raise UnknownNameError(
+                str(
+                    Problem(
+                        f"system '{tree.system.name}': unknown symbol '{name}'",
+                        f"'{value}'",
+                        "a formula uses coordinates, speeds (d and the coordinate's name), inputs, parameters and t",
+                        did_you_mean(name, known) or "see model.names",
+                    )
+                )
+            )
+    motion = set_in_motion(Graph(), tree)
+    g, nv, n = motion.g, len(names.v), len(values)
+    edges = [_rate(motion, value, order) for value, order in values]
+    outputs = [Output("value", (n,), tuple(edges))]
+    if derivatives:
+        slopes = {"by_q": by_configuration(motion, edges), "by_v": by_inputs(motion, edges, "v", nv)}
+        outputs += [Output(name, (n, nv), tuple(edge for row in rows for edge in row)) for name, rows in slopes.items()]
+    sizes = {"q": len(names.q), "v": nv, "u": len(names.u), "par": len(names.par), "t": 1}
+    return Program(tree.system.name, g, sizes, (Function("formulas", "", ("q", "v", "u", "t"), tuple(outputs)),))
+
+
+def _rate(motion: Motion, value: Value, order: int) -> Edge:
+    names, g = motion.tree.coordinates, motion.g
+    moving = {name for name, slot in names.symbols.items() if slot.group in ("q", "v", "u")}
+    if order and (used := sorted(symbols(value) & moving)):
+        raise DescriptionError(
+            Problem(
+                f"system '{motion.tree.system.name}': a motion that depends on '{used[0]}'",
+                f"'{value}'",
+                "the rates of a prescribed motion are found for formulas of t and parameters only",
+                "give its speeds and their rates as well",
+            )
+        )
+    edge = motion.lowering.value(value)
+    for _ in range(order):
+        edge = directional(g, [edge], {g.input("t", 0): ONE})[0]
+    return edge

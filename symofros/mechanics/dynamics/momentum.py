@@ -1,0 +1,40 @@
+"""Momenta and the forces that change them, for variational stepping (docs/theory/simulation.md, section 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from symofros.expr.derivative import directional
+from symofros.expr.graph import ZERO, Edge
+from symofros.expr.vector import Vec3
+from symofros.mechanics.dynamics.applied.forces import coordinate_rates
+from symofros.mechanics.kinematics.links import Motion
+
+
+def momentum_rate(motion: Motion, momentum: Sequence[Edge]) -> list[Edge]:
+    """The rate of p = M v while the speeds stay as they are: dM/dt v (nv)."""
+    return directional(motion.g, momentum, coordinate_rates(motion))
+
+
+def coadjoint(motion: Motion, momentum: Sequence[Edge]) -> list[Edge]:
+    """ad_v^T p (nv): how the momenta of balls and free joints change because their axes turn; zero elsewhere."""
+    g = motion.g
+    found = [ZERO] * motion.nv
+    for link in motion.tree.links:
+        if link.joint.prescribed or link.joint.kind not in ("ball", "free"):
+            continue
+        start, size = link.v
+        w = _three(motion, [g.input("v", k) for k in range(start + size - 3, start + size)])
+        n = _three(motion, momentum[start + size - 3 : start + size])
+        turned = n.cross(w)
+        if size == 6:
+            f = _three(motion, momentum[start : start + 3])
+            velocity = _three(motion, [g.input("v", k) for k in range(start, start + 3)])
+            turned = turned + f.cross(velocity)
+            found[start : start + 3] = list(f.cross(w))
+        found[start + size - 3 : start + size] = list(turned)
+    return found
+
+
+def _three(motion: Motion, edges: Sequence[Edge]) -> Vec3:
+    return Vec3(motion.g, edges[0], edges[1], edges[2])

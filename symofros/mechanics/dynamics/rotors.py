@@ -1,0 +1,82 @@
+"""Rotors behind reducers: the spin of a motor as seen from the joint it drives (docs/theory/rigid.md, section 9).
+
+The carrier's inertia contains the rotor as if it were locked; what is added here is the spin alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from symofros.description.forces import Rotor
+from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.expr.vector import Vec3
+from symofros.mechanics.kinematics.links import Motion
+from symofros.mechanics.kinematics.rotations import unit_vector
+from symofros.mechanics.topology.tree import BASE
+
+
+@dataclass(frozen=True)
+class MovingRotor:
+    """A rotor on its carrier.
+
+    Attributes:
+        link: Index of the link whose joint drives it.
+        coordinate: Which speed of that joint.
+        k: Index of that speed in v; None where the motion is prescribed.
+        carrier: Index of the link it spins in, or BASE.
+        axis: Unit spin axis in that link's frame.
+        inertia: About the axis.
+        ratio: Spin per joint speed.
+    """
+
+    link: int
+    coordinate: int
+    k: int | None
+    carrier: int
+    axis: Vec3
+    inertia: Edge
+    ratio: Edge
+
+    def spin(self, motion: Motion) -> Edge:
+        """Angular speed relative to the carrier."""
+        return motion.g.mul(self.ratio, motion.links[self.link].speeds[self.coordinate])
+
+    def rate(self, motion: Motion, v_rate: Sequence[Edge]) -> Edge:
+        """Rate of the driving speed."""
+        return motion.links[self.link].rates_given(v_rate)[self.coordinate]
+
+
+def rotors_of(motion: Motion) -> list[MovingRotor]:
+    """The rotors and armatures of a tree; an armature is a rotor whose carrier is taken to rest."""
+    found = []
+    for i, link in enumerate(motion.tree.links):
+        speeds = len(motion.links[i].columns)
+        free = motion.links[i].rates is None
+        armature = motion.lowering.value(link.joint.armature)
+        if armature != ZERO:
+            still = Vec3.unit(motion.g, 2)
+            found += [
+                MovingRotor(i, c, link.v[0] + c if free else None, BASE, still, armature, ONE) for c in range(speeds)
+            ]
+        for rotor in link.joint.rotors:
+            carrier, axis = _bearing(motion, i, rotor)
+            k = link.v[0] + rotor.coordinate if free else None
+            inertia, ratio = motion.lowering.value(rotor.inertia), motion.lowering.value(rotor.ratio)
+            found.append(MovingRotor(i, rotor.coordinate, k, carrier, axis, inertia, ratio))
+    return found
+
+
+def _bearing(motion: Motion, index: int, rotor: Rotor) -> tuple[int, Vec3]:
+    """The link that bears a rotor, and the spin axis in that link's frame."""
+    link = motion.links[index]
+    if rotor.axis is None:
+        # A joint's own axis is the same vector in the parent, whatever the angle.
+        return link.parent, unit_vector(link.R_AL.apply(link.columns[rotor.coordinate].w))
+    stated = motion.lowering.vector(rotor.axis)
+    name = rotor.carrier or motion.tree.links[index].joint.parent
+    body = next((frame for frame in motion.tree.frames if frame.qualified == name), None)
+    if body is None or body.link == BASE:
+        return BASE, unit_vector(stated)  # What rests has no rotation to couple with.
+    R_LB, _ = motion.lowering.placement(body.placement, motion.in_link(body.link))
+    return body.link, unit_vector(R_LB.times(stated))

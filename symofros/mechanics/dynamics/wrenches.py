@@ -1,0 +1,65 @@
+"""Forces and moments of a constraint on the bodies it joins (docs/theory/constraints.md, eq. 14)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from symofros.description.constraints import Closure, Constraint, Nonholonomic, Rod
+from symofros.expr.graph import Edge, Graph
+from symofros.expr.vector import Vec3
+from symofros.mechanics.dynamics.constraints import Row
+from symofros.mechanics.kinematics.frames import FrameKinematics
+from symofros.mechanics.topology.tree import frame_of
+
+# Force and moment, in world axes.
+Wrench = tuple[Edge, ...]
+
+
+def acts_on_bodies(constraints: Iterable[Constraint]) -> list[str]:
+    """Names of the constraints with a wrench: all but conditions by formula, which know no bodies."""
+    return [constraint.name for constraint in constraints if not isinstance(constraint, Nonholonomic)]
+
+
+def closure_wrenches(frames: FrameKinematics, rows: Sequence[Row]) -> tuple[list[Wrench], list[Wrench]]:
+    """The wrench of each constraint on its second frame and on its first, each about that frame's origin.
+
+    The first frame of what binds a single body is the world.
+
+    Args:
+        frames: Of the tree.
+        rows: Of all constraints, in order.
+    """
+    tree, g = frames.motion.tree, frames.g
+    on_second, on_first, at = [], [], 0
+    for constraint in tree.system.constraints:
+        count = len(constraint.conditions)
+        own = [(g.input("lam", at + i), row) for i, row in enumerate(rows[at : at + count])]
+        at += count
+        if isinstance(constraint, Nonholonomic):
+            continue
+        if isinstance(constraint, Closure | Rod):
+            first, second = (frame_of(tree, *anchor) for anchor in (constraint.first, constraint.second))
+            on_first.append(_sum(g, own, first.qualified))
+        else:
+            second = frame_of(tree, *constraint.anchor)
+            on_first.append(_on_ground(g, _sum(g, own, second.qualified), frames.pose(second).p))
+        on_second.append(_sum(g, own, second.qualified))
+    return on_second, on_first
+
+
+def _sum(g: Graph, own: Sequence[tuple[Edge, Row]], frame: str) -> Wrench:
+    """The levers on one frame, by their multipliers."""
+    force, moment = Vec3(g), Vec3(g)
+    for lam, row in own:
+        for lever in row.levers:
+            if lever.frame == frame:
+                by = lam if lever.sign > 0 else -lam
+                force = force if lever.force is None else force + lever.force.scaled(by)
+                moment = moment if lever.moment is None else moment + lever.moment.scaled(by)
+    return (*force, *moment)
+
+
+def _on_ground(g: Graph, wrench: Wrench, p: Vec3) -> Wrench:
+    """The reaction of a wrench at p, about the origin of the world."""
+    force, moment = Vec3(g, *wrench[:3]), Vec3(g, *wrench[3:])
+    return (*-force, *-(moment + p.cross(force)))

@@ -1,0 +1,141 @@
+"""Position, velocity, acceleration and Jacobians of frames, in world axes (docs/theory/rigid.md, section 8)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from symofros.expr.graph import ZERO, Edge
+from symofros.expr.vector import Mat3, Vec3
+from symofros.mechanics.kinematics.joint import Column
+from symofros.mechanics.kinematics.links import Motion
+from symofros.mechanics.topology.tree import BASE, NamedFrame
+
+
+@dataclass(frozen=True)
+class Pose:
+    """p_WF and R_WF of a frame, or of a link."""
+
+    p: Vec3
+    R: Mat3
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Velocity (v, w) and acceleration (a, alpha) of a point and its frame, in world axes."""
+
+    v: Vec3
+    w: Vec3
+    a: Vec3
+    alpha: Vec3
+
+
+class FrameKinematics:
+    """The frames of one tree; link results are shared between frames and functions."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion = motion
+        self.g = motion.g
+        self._poses: dict[int, Pose] = {BASE: Pose(Vec3(self.g), Mat3.identity(self.g))}
+
+    def link_pose(self, index: int) -> Pose:
+        """Pose of a link."""
+        path = [i for i in self.motion.tree.ancestors(index) if i not in self._poses]
+        for i in reversed(path):
+            link = self.motion.links[i]
+            parent = self._poses[link.parent]
+            p = (parent.p + parent.R.times(link.p_AL)).named(f"p_WLo_W[{link.name}]")
+            self._poses[i] = Pose(p, link.R_AL.after(parent.R))
+        return self._poses[index]
+
+    def pose(self, frame: NamedFrame) -> Pose:
+        """Pose of a frame."""
+        link = self.link_pose(frame.link)
+        R_LF, p_LF = self._in_link(frame)
+        return Pose(link.p + link.R.times(p_LF), link.R @ R_LF)
+
+    def _in_link(self, frame: NamedFrame) -> tuple[Mat3, Vec3]:
+        return self.motion.lowering.placement(frame.placement, self.motion.in_link(frame.link))
+
+    def _partials(self, index: int) -> list[Column]:
+        """Partial velocities of a link's own joint in world axes; their rates are those seen in the link."""
+        R = self.link_pose(index).R
+        return [
+            Column(*map(R.times, (column.w, column.v, column.w_rate, column.v_rate)))
+            for column in self.motion.links[index].columns
+        ]
+
+    def _link_rates(self, frame: NamedFrame, v_rate: Sequence[Edge] | None) -> dict[int, Rates]:
+        """Rates of every link on the way to a frame (eqs. 28, 29); without v', accelerations are left zero."""
+        zero = Vec3(self.g)
+        rates = {BASE: Rates(zero, zero, zero, zero)}
+        for i in reversed(self.motion.tree.ancestors(frame.link)):
+            link = self.motion.links[i]
+            parent = rates[link.parent]
+            r = self.link_pose(i).p - self.link_pose(link.parent).p
+            w_AL, v_AL, w_rate, v_rate_rel = zero, zero, zero, zero
+            given = [ZERO] * len(link.columns) if v_rate is None else link.rates_given(v_rate)
+            for partial, speed, rate in zip(self._partials(i), link.speeds, given, strict=True):
+                w_AL, v_AL = w_AL + partial.w.scaled(speed), v_AL + partial.v.scaled(speed)
+                w_rate = w_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
+                v_rate_rel = v_rate_rel + (partial.v.scaled(rate) + partial.v_rate.scaled(speed))
+            w_r = parent.w.cross(r)
+            alpha = parent.alpha + (w_rate + parent.w.cross(w_AL))
+            a = parent.a + (parent.alpha.cross(r) + parent.w.cross(w_r))
+            a = a + (v_rate_rel + (parent.w + parent.w + w_AL).cross(v_AL))
+            rates[i] = Rates(parent.v + w_r + v_AL, parent.w + w_AL, a, alpha)
+        return rates
+
+    def velocity(self, frame: NamedFrame) -> list[Edge]:
+        """Linear, then angular velocity of the frame (6)."""
+        rates = self._rates(frame, None)
+        return [*rates.v, *rates.w]
+
+    def acceleration(self, frame: NamedFrame, v_rate: Sequence[Edge]) -> list[Edge]:
+        """Linear, then angular acceleration: the rate of `velocity` (6)."""
+        rates = self._rates(frame, v_rate)
+        return [*rates.a, *rates.alpha]
+
+    def _rates(self, frame: NamedFrame, v_rate: Sequence[Edge] | None) -> Rates:
+        link = self._link_rates(frame, v_rate)[frame.link]
+        r = self.link_pose(frame.link).R.times(self._in_link(frame)[1])
+        w_r = link.w.cross(r)
+        return Rates(link.v + w_r, link.w, link.a + (link.alpha.cross(r) + link.w.cross(w_r)), link.alpha)
+
+    def jacobian(self, frame: NamedFrame) -> list[list[Edge]]:
+        """The partial velocities of the frame: 6 rows of nv edges (eq. 30)."""
+        p = self.pose(frame).p
+        rows = self._empty()
+        for i in self._free(frame):
+            r = p - self.link_pose(i).p
+            for k, partial in enumerate(self._partials(i)):
+                self._fill(rows, self.motion.links[i].v + k, partial.v + partial.w.cross(r), partial.w)
+        return rows
+
+    def jacobian_rate(self, frame: NamedFrame) -> list[list[Edge]]:
+        """The time derivative of `jacobian` (eq. 31)."""
+        rates = self._link_rates(frame, None)
+        v_F = self._rates(frame, None).v
+        p = self.pose(frame).p
+        rows = self._empty()
+        for i in self._free(frame):
+            r, r_rate = p - self.link_pose(i).p, v_F - rates[i].v
+            for k, partial in enumerate(self._partials(i)):
+                # Partial velocities turn with the link, on top of what they change in it.
+                w_k_rate = partial.w_rate + rates[i].w.cross(partial.w)
+                v_k_rate = partial.v_rate + rates[i].w.cross(partial.v)
+                linear = v_k_rate + (w_k_rate.cross(r) + partial.w.cross(r_rate))
+                self._fill(rows, self.motion.links[i].v + k, linear, w_k_rate)
+        return rows
+
+    def _free(self, frame: NamedFrame) -> list[int]:
+        """Links on the way to a frame whose motion is not prescribed."""
+        return [i for i in self.motion.tree.ancestors(frame.link) if self.motion.links[i].rates is None]
+
+    def _empty(self) -> list[list[Edge]]:
+        return [[ZERO] * self.motion.nv for _ in range(6)]
+
+    @staticmethod
+    def _fill(rows: list[list[Edge]], k: int, linear: Vec3, angular: Vec3) -> None:
+        for row, edge in zip(rows, (*linear, *angular), strict=True):
+            row[k] = edge

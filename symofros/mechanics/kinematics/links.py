@@ -1,0 +1,193 @@
+"""From the spanning tree to its motion: each link's frame in its parent's, and its partial velocities.
+
+A link's own frame L shares its origin with the body frame B, but is turned so that the joint axis lies along a
+coordinate axis: a joint about any constant axis then costs what a joint about z costs (docs/theory/rigid.md, 2.3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from symofros.expr.graph import Edge, Graph
+from symofros.expr.vector import Mat3, Vec3
+from symofros.mechanics.beams.elastic import BeamForms, beam_forms
+from symofros.mechanics.kinematics.flexible import across_beam
+from symofros.mechanics.kinematics.joint import Axis, Column, across_joint
+from symofros.mechanics.kinematics.lowering import Lowering
+from symofros.mechanics.kinematics.rotations import Turn, constant_turn, frame_with_axis, snapped, unit_vector
+from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
+from symofros.mechanics.topology.tree import BASE, Link, SpanningTree
+
+
+@dataclass(frozen=True)
+class MovingLink:
+    """One link's motion on its parent A (a link, or the base).
+
+    Attributes:
+        name: Of the link's body.
+        parent: Index of the parent, or BASE.
+        R_AL: Rotation from link to parent.
+        p_AL: From Ao to Lo, in A [m].
+        columns: Partial velocities of L in A, in L.
+        speeds: Edge of each column's speed.
+        rates: Edge of each speed's rate where the motion is prescribed; None where it is free.
+        v: Index of the first speed, where the motion is free.
+        R_LB: The body frame in the link frame.
+        fixed_origin: Whether Lo is fixed in A, so that mass at Lo may be booked on A.
+        axis: The coordinate axis of L that the joint turns about; None if it is not a turn about one.
+    """
+
+    name: str
+    parent: int
+    R_AL: Turn
+    p_AL: Vec3
+    columns: tuple[Column, ...]
+    speeds: tuple[Edge, ...]
+    rates: tuple[Edge, ...] | None
+    v: int
+    R_LB: Mat3
+    fixed_origin: bool
+    axis: int | None
+
+    @property
+    def free_columns(self) -> tuple[Column, ...]:
+        """The columns that have a speed among v."""
+        return self.columns if self.rates is None else ()
+
+    def rates_given(self, v_rate: Sequence[Edge]) -> Sequence[Edge]:
+        """Rates of the speeds: prescribed, or this link's part of v'."""
+        return v_rate[self.v : self.v + len(self.columns)] if self.rates is None else self.rates
+
+
+@dataclass(frozen=True)
+class MovingBeam:
+    """A beam in the tree.
+
+    Attributes:
+        root: Index of the link at its root.
+        tip: Index of the link at its tip, which its elastic coordinates move; None for a rigid beam.
+        forms: Its inertia, strain energy and displacements, by those coordinates.
+    """
+
+    root: int
+    tip: int | None
+    forms: BeamForms
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The whole tree in motion, in one graph.
+
+    Attributes:
+        g: The graph.
+        lowering: Values -> edges.
+        tree: What it was made from.
+        links: Parents before children.
+        nv: Number of speeds.
+        beams: The beams.
+    """
+
+    g: Graph
+    lowering: Lowering
+    tree: SpanningTree
+    links: tuple[MovingLink, ...]
+    nv: int
+    beams: tuple[MovingBeam, ...]
+
+    def in_link(self, index: int) -> Mat3:
+        """R_LB of a link; the identity for the base."""
+        return Mat3.identity(self.g) if index == BASE else self.links[index].R_LB
+
+
+def speeds_by_path(motion: Motion) -> list[list[int]]:
+    """Indices of all speeds by paths to the base: what lies on one path is carried over the same joints.
+
+    The longest path takes all it passes, each branch what is left of it.
+
+    Returns:
+        One list a path, outermost speed first.
+    """
+    depth: list[int] = []
+    for link in motion.links:
+        depth.append(len(link.free_columns) + (depth[link.parent] if link.parent != BASE else 0))
+    taken: set[int] = set()
+    paths: list[list[int]] = []
+    for i in sorted(range(len(motion.links)), key=lambda i: -depth[i]):
+        path: list[int] = []
+        while i != BASE and i not in taken:
+            taken.add(i)
+            link = motion.links[i]
+            path += range(link.v + len(link.free_columns) - 1, link.v - 1, -1)
+            i = link.parent
+        if path:
+            paths.append(path)
+    return paths
+
+
+def set_in_motion(g: Graph, tree: SpanningTree, as_seen: bool = False) -> Motion:
+    """Lower a tree's joints, beams and offsets into a graph.
+
+    Args:
+        g: Where the operations go.
+        tree: Checked and numbered.
+        as_seen: With every tip where its deflection puts it; otherwise the tips of beams of zeroth order stay at
+            their undeformed places, as their equations of motion take it.
+    """
+    lowering = Lowering(g, tree.coordinates)
+    links: list[MovingLink] = []
+    beams: list[MovingBeam] = []
+    for i, link in enumerate(tree.links):
+        R_LB_parent = Mat3.identity(g) if link.parent == BASE else links[link.parent].R_LB
+        R_AP, p_AP = lowering.placement(link.placement, R_LB_parent)
+        # P and D are turned alike by A, so that the axis lies along a coordinate axis of both.
+        A, axis = _aligned(lowering, link)
+        q = tuple(lowering.symbol(name) for name in coordinate_names(link.joint))
+        speeds = tuple(lowering.symbol(name) for name in speed_symbols(link.joint))
+        rates = tuple(lowering.symbol(name) for name in rate_symbols(link.joint)) if link.joint.prescribed else None
+        if link.beam is not None:
+            elastic = tuple(map(lowering.symbol, link.beam.coordinates))
+            forms = beam_forms(g, lowering.value, link.beam, elastic)
+            beams.append(MovingBeam(i, i + 1 if elastic else None, forms))
+        if link.tip_of is None:
+            across = across_joint(lowering, link.joint, q, speeds, axis)
+        else:
+            across = across_beam(beams[-1].forms, q, speeds, as_seen or link.tip_of.retain != "zeroth_order")
+        constant = constant_turn(snapped(R_AP @ A))
+        links.append(
+            MovingLink(
+                name=link.name,
+                parent=link.parent,
+                R_AL=constant @ across.R_PD,
+                p_AL=p_AP + constant.apply(across.p_PD),
+                columns=across.columns,
+                speeds=speeds,
+                rates=rates,
+                v=link.v[0],
+                R_LB=A.T,
+                fixed_origin=across.p_PD.is_zero,
+                axis=axis.k if link.joint.kind in _TURN_ABOUT_AXIS else None,
+            )
+        )
+    return Motion(g, lowering, tree, tuple(links), len(tree.coordinates.v), tuple(beams))
+
+
+# Joints with a main axis that any constant direction is turned into a coordinate axis for.
+_ALIGNED = ("revolute", "continuous", "prismatic", "screw", "cylindrical")
+# Joints whose only turn is about their main axis.
+_TURN_ABOUT_AXIS = ("revolute", "continuous", "screw", "cylindrical", "planar")
+
+
+def _aligned(lowering: Lowering, link: Link) -> tuple[Mat3, Axis]:
+    """The rotation A of a link's frame, and the joint's axis seen in the turned frames."""
+    g, joint = lowering.g, link.joint
+    if joint.kind == "universal":
+        return Mat3.identity(g), Axis(unit_vector(lowering.vector(joint.axis)), None, False)
+    if joint.kind not in _ALIGNED:
+        return Mat3.identity(g), Axis(Vec3.unit(g, 2), 2, False)
+    n = unit_vector(lowering.vector(joint.axis))
+    found = frame_with_axis(n)
+    if found is None:
+        return Mat3.identity(g), Axis(n, None, False)
+    A, k, negative = found
+    return A, Axis(-Vec3.unit(g, k) if negative else Vec3.unit(g, k), k, negative)

@@ -1,0 +1,99 @@
+"""Whether constraints refer to what exists, and bind what can be bound."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from symofros.description.constraints import Closure, Nonholonomic, Rod
+from symofros.description.forces import Anchor
+from symofros.description.system import WORLD, Body, System
+from symofros.errors import Problem, did_you_mean
+from symofros.mechanics.topology.coordinates import speed_symbols
+from symofros.mechanics.topology.frames import frame_remedy, frames_of
+from symofros.mechanics.topology.numbers import Numbers
+
+
+def anchor_problems(
+    what: str, anchor: Anchor, bodies: Mapping[str, Body], base: Body, broken: frozenset[str], where: str
+) -> Iterator[Problem]:
+    """A frame that is not there.
+
+    Args:
+        what: The thing that names it, for the message.
+        anchor: (body, frame).
+        bodies: By name.
+        base: The base, which "world" stands for.
+        broken: Names that could not be read; nothing is said of them.
+        where: "file:line".
+    """
+    name, frame = anchor
+    body = base if name in (WORLD, base.name) else bodies.get(name)
+    if body is None:
+        if name not in broken:
+            yield Problem(
+                f"{what}: no body '{name}'",
+                f"'{name}'",
+                "it joins frames of bodies, or of 'world'",
+                did_you_mean(name, [WORLD, *bodies]),
+                where,
+            )
+    elif frame is not None and frame not in {item.name for item in body.frames}:
+        yield Problem(
+            f"{what}: frame '{frame}' is not on body '{name}'",
+            frames_of(body),
+            "it joins frames that exist on their bodies",
+            frame_remedy(bodies.values(), body, frame, "body: ") or "add the frame",
+            where,
+        )
+
+
+def constraint_problems(
+    system: System, bodies: Mapping[str, Body], base: Body, broken: frozenset[str]
+) -> Iterator[Problem]:
+    """Constraints on frames, bodies and speeds that are not there, or that can't be bound."""
+    speeds = {
+        name
+        for body in system.bodies
+        if body.joint is not None and not body.joint.prescribed
+        for name in speed_symbols(body.joint)
+    }
+    for item in system.constraints:
+        what, where = f"constraint '{item.name}'", system.origin.get(("constraint", item.name), "")
+        if isinstance(item, Nonholonomic):
+            for speed, _ in item.coefficients:
+                if speed not in speeds | broken:
+                    yield Problem(
+                        f"{what}: '{speed}' is not a speed",
+                        ", ".join(sorted(speeds)[:12]),
+                        "a coefficient is given for a free speed: d and the coordinate's name",
+                        did_you_mean(speed, speeds),
+                        where,
+                    )
+            continue
+        anchors = [item.first, item.second] if isinstance(item, (Closure, Rod)) else [item.anchor]
+        for anchor in anchors:
+            yield from anchor_problems(what, anchor, bodies, base, broken, where)
+        names = {base.name if name == WORLD else name for name, _ in anchors}
+        if len(anchors) == 2 and len(names) == 1:
+            yield Problem(
+                f"{what}: both frames are on body '{anchors[0][0]}'",
+                f"'{anchors[0][1]}', '{anchors[1][1]}'",
+                "a closure joins two different bodies",
+                "name a frame of another body",
+                where,
+            )
+
+
+def constraint_number_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
+    """Lengths and radii that are none."""
+    for item in system.constraints:
+        for label in ("length", "radius"):
+            value = getattr(item, label, None)
+            if value is not None and not numbers.value(value) > 0.0:
+                yield Problem(
+                    f"constraint '{item.name}': {label} {numbers.value(value):g}",
+                    f"'{value}'",
+                    f"the {label} is positive",
+                    "for two points that coincide, use a closure",
+                    system.origin.get(("constraint", item.name), ""),
+                )

@@ -1,0 +1,246 @@
+"""Every value of a description with what it may depend on, and the check that it depends on nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields
+from typing import Literal, NamedTuple
+
+from symofros.description.beam import DIRECTIONS, SECTION, STATION, Beam, Samples
+from symofros.description.constraints import Constraint, Nonholonomic
+from symofros.description.system import Joint, RigidBody, System
+from symofros.description.values import Value, symbols
+from symofros.errors import Problem, did_you_mean
+from symofros.mechanics.topology.coordinates import QUASI_VELOCITIES, coordinate_names, rate_symbols, speed_symbols
+
+TIME = "t"
+# What a formula may use: parameters alone; also the configuration and t; also speeds and inputs; a general joint's
+# own coordinates; parameters and the station x of a beam; everything and x; the station xi = x/L alone.
+Scope = Literal["parameters", "configuration", "motion", "joint", "section", "spread", "shape"]
+
+
+class Stated(NamedTuple):
+    """A value of the description.
+
+    Attributes:
+        what: The object it belongs to, for messages.
+        value: The number or formula.
+        key: Of System.origin.
+        scope: What it may depend on.
+        joint: The joint whose coordinates it may use, with scope "joint".
+    """
+
+    what: str
+    value: Value
+    key: tuple[str, ...]
+    scope: Scope = "parameters"
+    joint: Joint | None = None
+
+
+def stated_values(system: System) -> Iterator[Stated]:
+    """Every value of a description."""
+    for value in system.gravity:
+        yield Stated(f"system '{system.name}': gravity", value, ("system",))
+    for body in system.bodies:
+        if body.joint is not None:
+            yield from _joint_values(body.joint)
+        yield from _beam_values(body) if isinstance(body, Beam) else _body_values(body)
+    for connection in system.connections:
+        for label in ("stiffness", "length", "damping"):
+            key = ("connection", connection.name)
+            yield Stated(f"connection '{connection.name}': {label}", getattr(connection, label), key)
+    for power in system.virtual_power:
+        for speed, value in power.forces:
+            key = ("virtual_power", power.name)
+            yield Stated(f"virtual power '{power.name}': force on {speed}", value, key, "motion")
+    for constraint in system.constraints:
+        yield from _constraint_values(constraint)
+    for potential in system.potentials:
+        key = ("potential", potential.name)
+        yield Stated(f"potential '{potential.name}'", potential.energy, key, "configuration")
+
+
+def _constraint_values(constraint: Constraint) -> Iterator[Stated]:
+    what, key = f"constraint '{constraint.name}'", ("constraint", constraint.name)
+    for label in ("length", "radius", "height"):
+        if hasattr(constraint, label):
+            yield Stated(f"{what}: {label}", getattr(constraint, label), key)
+    if isinstance(constraint, Nonholonomic):
+        for speed, value in constraint.coefficients:
+            yield Stated(f"{what}: coefficient of {speed}", value, key, "configuration")
+        yield Stated(f"{what}: right", constraint.right, key, "configuration")
+
+
+def _joint_values(joint: Joint) -> Iterator[Stated]:
+    what, key = f"joint '{joint.name}'", ("joint", joint.name)
+    constant: list[tuple[str, Iterable[Value]]] = [
+        ("position", joint.position),
+        ("rotation", joint.rotation),
+        ("axis", joint.axis),
+        ("axis2", joint.axis2),
+        ("pitch", (joint.pitch,)),
+        ("armature", (joint.armature,)),
+    ]
+    for element in joint.elements:
+        numbers = [getattr(element, item.name) for item in fields(element) if item.name != "coordinate"]
+        constant.append((type(element).__name__.lower(), [x for x in numbers if x is not None]))
+    for rotor in joint.rotors:
+        constant.append(("rotor", (rotor.inertia, rotor.ratio, *(rotor.axis or ()))))
+    for label, values in constant:
+        for value in values:
+            yield Stated(f"{what}: {label}", value, key)
+    for label, values in (("moving_position", joint.moving_position), ("moving_rotation", joint.moving_rotation)):
+        for value in values:
+            yield Stated(f"{what}: {label}", value, key, "joint", joint)
+    for value in joint.effort:
+        yield Stated(f"{what}: effort", value, key, "motion")
+
+
+def _body_values(body: RigidBody) -> Iterator[Stated]:
+    what, key = f"body '{body.name}'", ("body", body.name)
+    if body.inertia is not None:
+        inertia = body.inertia
+        yield Stated(f"{what}: mass", inertia.mass, key)
+        for label, values in (
+            ("center_of_mass", inertia.center_of_mass),
+            ("inertia", inertia.moments),
+            ("inertia rotation", inertia.rotation),
+        ):
+            for value in values:
+                yield Stated(f"{what}: {label}", value, key)
+    for frame in body.frames:
+        for value in (*frame.position, *frame.rotation):
+            yield Stated(f"frame '{frame.name}' of {what}", value, ("frame", body.name, frame.name))
+    for load in body.loads:
+        for value in (*load.force, *load.torque):
+            yield Stated(f"{what}: load", value, key, "motion")
+
+
+def _beam_values(beam: Beam) -> Iterator[Stated]:
+    what, key = f"beam '{beam.name}'", ("body", beam.name)
+    for label in ("length", "damping"):
+        yield Stated(f"{what}: {label}", getattr(beam, label), key)
+    for label in SECTION:
+        yield Stated(f"{what}: {label}", getattr(beam, label), key, "section")
+    for load in beam.loads:
+        for value in (*load.force, *load.torque):
+            yield Stated(f"{what}: load", value, key, "spread" if load.at is None else "motion")
+    for direction in DIRECTIONS:
+        for shape in beam.user_shapes(direction):
+            if not isinstance(shape, Samples):
+                yield Stated(f"{what}: shapes of {direction}", shape, key, "shape")
+
+
+@dataclass(frozen=True)
+class _Known:
+    """The names that exist, by what they are."""
+
+    parameters: frozenset[str]
+    configuration: frozenset[str]
+    motion: frozenset[str]
+
+    def of(self, stated: Stated) -> frozenset[str]:
+        if stated.scope == "joint":
+            assert stated.joint is not None
+            return self.parameters | frozenset(stated.joint.coordinates)
+        if stated.scope == "section":
+            return self.parameters | {STATION}
+        if stated.scope == "spread":
+            return self.motion | {STATION}
+        if stated.scope == "shape":
+            return frozenset({"xi"})
+        return frozenset(getattr(self, stated.scope))
+
+
+def _known(system: System) -> _Known:
+    parameters = frozenset(item.name for item in system.parameters)
+    configuration, motion = set(parameters) | {TIME}, {item.name for item in system.inputs}
+    for body in system.bodies:
+        if body.joint is not None:
+            configuration.update(coordinate_names(body.joint))
+            motion.update(speed_symbols(body.joint))
+            motion.update(rate_symbols(body.joint) if body.joint.prescribed else ())
+    return _Known(parameters, frozenset(configuration), frozenset(configuration | motion))
+
+
+_RULES: dict[Scope, str] = {
+    "parameters": "geometry, inertia, gravity and the constants of forces depend on parameters only",
+    "configuration": "a potential depends on coordinates, parameters and t only",
+    "motion": "a formula uses names that the description declares",
+    "section": "a section property depends on parameters and on the station x only",
+    "spread": "a spread load uses names that the description declares, and the station x",
+    "shape": "a shape function depends on xi = x/L only",
+    "joint": "a joint's own R_PD and p_PD depend on its coordinates and on parameters only",
+}
+
+
+_REMEDIES: dict[Scope, str] = {
+    "parameters": "declare a parameter for it; what moves acts through loads, efforts, virtual power and potentials",
+    "configuration": "state forces that depend on speeds or inputs as loads, efforts or virtual power",
+    "motion": "",
+    "joint": "name it under the joint's coordinates, or use a parameter",
+    "section": "use parameters and x; what moves acts through loads",
+    "spread": "",
+    "shape": "use xi alone; lengths belong to the beam",
+}
+
+
+def formula_problems(system: System, broken: frozenset[str]) -> Iterator[Problem]:
+    """Formulas that use unknown names, or names that exist but may not be used there."""
+    known = _known(system)
+    for stated in stated_values(system):
+        allowed = known.of(stated)
+        for name in sorted(symbols(stated.value) - allowed - broken):
+            where = system.origin.get(stated.key, "")
+            if name in known.motion:
+                yield Problem(
+                    f"{stated.what}: '{name}' may not be used here",
+                    f"'{stated.value}'",
+                    _RULES[stated.scope],
+                    _REMEDIES[stated.scope],
+                    where,
+                )
+            else:
+                remedy = did_you_mean(name, allowed) if allowed else f"declare it under parameters: {name}"
+                yield Problem(
+                    f"{stated.what}: unknown symbol '{name}'", f"'{stated.value}'", _RULES["motion"], remedy, where
+                )
+
+
+def power_problems(system: System, broken: frozenset[str]) -> Iterator[Problem]:
+    """Virtual power on speeds that do not exist, or that are prescribed."""
+    joints = [body.joint for body in system.bodies if body.joint is not None]
+    speeds = {name for joint in joints if not joint.prescribed for name in speed_symbols(joint)}
+    for power in system.virtual_power:
+        for speed, _ in power.forces:
+            if speed not in speeds | broken:
+                yield Problem(
+                    f"virtual power '{power.name}': '{speed}' is not a speed",
+                    ", ".join(sorted(speeds)[:12]),
+                    "a force is given for a free speed: d and the coordinate's name",
+                    did_you_mean(speed, speeds),
+                    system.origin.get(("virtual_power", power.name), ""),
+                )
+
+
+def element_problems(joint: Joint, where: str) -> Iterator[Problem]:
+    """Elements and rotors on coordinates that do not exist, or that have no sense for them."""
+    speeds = len(speed_symbols(joint))
+    for thing in (*joint.elements, *joint.rotors):
+        label = type(thing).__name__.lower()
+        if not 0 <= thing.coordinate < speeds:
+            yield Problem(
+                f"joint '{joint.name}': {label} on coordinate {thing.coordinate}",
+                f"{speeds} speeds",
+                "coordinates of a joint count from 0",
+                f"use 0 to {speeds - 1}",
+                where,
+            )
+        elif label in ("spring", "stop") and joint.kind in QUASI_VELOCITIES:
+            yield Problem(
+                f"joint '{joint.name}': a {label} on a {joint.kind} joint",
+                "quaternion coordinates",
+                "springs and stops act on coordinates whose rates are the speeds",
+                "use a potential, or a general joint with angles",
+                where,
+            )

@@ -1,0 +1,330 @@
+"""Everything that can be wrong with a description, found in one go and reported together."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
+from itertools import chain
+
+import numpy as np
+
+from symofros.description.beam import STATION, Beam, BeamLoad
+from symofros.description.forces import Load
+from symofros.description.system import WORLD, Body, Joint, RigidBody, System
+from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
+from symofros.expr.expression import CONSTANTS
+from symofros.expr.ops import FUNCTIONS
+from symofros.mechanics.topology.beams import beam_number_problems, beam_problems
+from symofros.mechanics.topology.constraints import anchor_problems, constraint_number_problems, constraint_problems
+from symofros.mechanics.topology.coordinates import coordinate_names, speed_symbols
+from symofros.mechanics.topology.formulas import TIME, formula_problems, power_problems, stated_values
+from symofros.mechanics.topology.frames import frame_remedy, frames_of
+from symofros.mechanics.topology.joints import IDENTIFIER, joint_number_problems, joint_problems
+from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology.physics import inertia_problems, massless_tip_problems
+
+_MAX_NAME = 200
+_SHOWN = 12  # Names listed in a message.
+
+
+def check(system: System) -> None:
+    """Refuse a system that can't be a mechanism.
+
+    Raises:
+        DescriptionError: With every problem found.
+    """
+    problems = find_problems(system)
+    if problems:
+        raise DescriptionError(problems)
+
+
+@np.errstate(all="ignore")  # Numbers that overflow are found as numbers that are not finite.
+def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]:
+    """Every problem of a description.
+
+    Args:
+        system: What the user stated.
+        broken: Names of bodies, parameters and inputs that exist but could not be read; that something refers to
+            them is not reported again.
+    """
+    checker = _Checker(system, frozenset(broken))
+    formulas = formula_problems(system, checker.broken)
+    problems = first_of(chain(checker.names(), checker.structure(), checker.acting(), formulas))
+    if not problems and not broken:
+        numbers = Numbers(system)
+        problems = first_of(checker.values(numbers))
+        if not problems:
+            problems = first_of(chain(inertia_problems(system, numbers), massless_tip_problems(system, numbers)))
+    elif not any("cycle" in p.what for p in problems):
+        # Physics of single bodies can be judged even where the tree can't.
+        problems += first_of(inertia_problems(system, Numbers(system)))
+    # Two joints of one name, for instance, have the same fault in the same place.
+    return list(dict.fromkeys(problems))
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first few names, each in quotes."""
+    return ", ".join(f"'{name}'" for name in names[:_SHOWN]) + (", …" if len(names) > _SHOWN else "")
+
+
+class _Checker:
+    def __init__(self, system: System, broken: frozenset[str]) -> None:
+        self.system = system
+        self.broken = broken
+        self.bodies = {body.name: body for body in system.bodies}
+        self.joints = [body.joint for body in system.bodies if body.joint is not None]
+        bases = [body for body in system.bodies if body.joint is None]
+        self.base: Body = bases[0] if bases else RigidBody(WORLD)
+        self.extra_bases = bases[1:]
+
+    def where(self, *key: str) -> str:
+        return self.system.origin.get(key, "")
+
+    # Names.
+
+    def names(self) -> Iterator[Problem]:
+        yield from self._unique("body", [body.name for body in self.system.bodies])
+        yield from self._joints_unique()
+        for body in self.system.bodies:
+            yield from self._unique("frame", [frame.name for frame in body.frames], body.name)
+            if body.name == WORLD and body.joint is not None:
+                yield Problem(
+                    f"body '{WORLD}' has a joint",
+                    f"joint '{body.joint.name}'",
+                    f"'{WORLD}' is the ground's own name",
+                    "choose another name",
+                    self.where("body", WORLD),
+                )
+        yield from self._symbols_unique()
+        for kind, name in self._all_names():
+            if not name or len(name) > _MAX_NAME or not name.isprintable():
+                yield Problem(
+                    f"{kind} with an unusable name",
+                    f"{name!r:.60}",
+                    f"1 to {_MAX_NAME} printable characters",
+                    "rename it",
+                    self.where(kind, name),
+                )
+
+    def _all_names(self) -> Iterator[tuple[str, str]]:
+        yield "system", self.system.name
+        for body in self.system.bodies:
+            yield "body", body.name
+            for frame in body.frames:
+                yield "frame", frame.name
+        for joint in self.joints:
+            yield "joint", joint.name
+
+    def _joints_unique(self) -> Iterator[Problem]:
+        bodies: dict[str, list[str]] = {}
+        for body in self.system.bodies:
+            if body.joint is not None:
+                bodies.setdefault(body.joint.name, []).append(body.name)
+        for name, owners in bodies.items():
+            if len(owners) > 1:
+                yield Problem(
+                    f"joint '{name}' appears {len(owners)} times",
+                    f"it carries bodies {listed(owners)}",
+                    "names of joints are unique",
+                    "rename all but one",
+                    self.where("joint", name),
+                )
+
+    def _unique(self, kind: str, names: list[str], owner: str = "") -> Iterator[Problem]:
+        on = f" on body '{owner}'" if owner else ""
+        for name, count in Counter(names).items():
+            if count > 1:
+                yield Problem(
+                    f"{kind} '{name}' appears {count} times{on}",
+                    f"{count} of them",
+                    f"names of {kind}s are unique{on}",
+                    "rename all but one",
+                    self.where(kind, *([owner] if owner else []), name),
+                )
+
+    def _symbols_unique(self) -> Iterator[Problem]:
+        """Parameters, inputs, coordinates and speeds share the name space of formulas."""
+        taken: dict[str, str] = {TIME: "the time", **dict.fromkeys(CONSTANTS, "a constant")}
+        taken |= dict.fromkeys(FUNCTIONS, "a function")
+        if any(isinstance(body, Beam) for body in self.system.bodies):
+            taken[STATION] = "the station along a beam"
+        stated = [("parameter", item.name) for item in self.system.parameters]
+        stated += [("input", item.name) for item in self.system.inputs]
+        for kind, name in stated:
+            if not IDENTIFIER.match(name):
+                yield Problem(
+                    f"{kind} '{name:.60}': not a legal name",
+                    repr(name)[:60],
+                    "a letter or underscore, then letters, digits, underscores",
+                    "rename it",
+                    self.where(kind, name),
+                )
+            elif name in taken:
+                yield Problem(
+                    f"{kind} '{name}': the name is taken",
+                    f"'{name}' is also {taken[name]}",
+                    "names that formulas use are unique",
+                    "rename one of them",
+                    self.where(kind, name),
+                )
+            taken.setdefault(name, f"a {kind}" if kind == "parameter" else "an input")
+        for joint in self.joints:
+            for role, names in (("coordinate", coordinate_names(joint)), ("speed", speed_symbols(joint))):
+                for name in names:
+                    if taken.get(name, "a coordinate") not in ("a coordinate", "a speed"):
+                        yield Problem(
+                            f"joint '{joint.name}': the name of its {role} is taken",
+                            f"'{name}' is also {taken[name]}",
+                            "names that formulas use are unique",
+                            "rename the joint or the other",
+                            self.where("joint", joint.name),
+                        )
+
+    # The tree.
+
+    def structure(self) -> Iterator[Problem]:
+        if self.extra_bases:
+            bases = [body.name for body in [self.base, *self.extra_bases]]
+            yield Problem(
+                f"two bases: bodies {listed(bases)} have no joint",
+                f"{len(bases)} bodies without a joint",
+                "one body at most has no joint, and is the base; every other is connected by its joint",
+                "give the others a joint (kind: free for one that floats)",
+                self.where("body", self.extra_bases[0].name),
+            )
+        for body in self.system.bodies:
+            if body.joint is not None:
+                yield from self._joint(body, body.joint)
+        yield from self._cycles()
+        moving = any(joint.kind != "fixed" for joint in self.joints)
+        moving = moving or any(isinstance(body, Beam) and body.modes for body in self.system.bodies)
+        if not moving and not self.broken:
+            yield Problem(
+                f"system '{self.system.name}': nothing moves",
+                f"{len(self.system.bodies)} bodies, no moving joint",
+                "a model has at least one joint that is not fixed",
+                "add a joint; floating_base=True frees a URDF root",
+            )
+
+    def _joint(self, body: Body, joint: Joint) -> Iterator[Problem]:
+        where = self.where("joint", joint.name)
+        parent = self.base if joint.parent in (WORLD, self.base.name) else self.bodies.get(joint.parent)
+        if parent is None:
+            if joint.parent not in self.broken:
+                yield Problem(
+                    f"body '{body.name}' is disconnected: joint '{joint.name}' names a parent that does not exist",
+                    f"parent '{joint.parent}'",
+                    "a joint's parent is a body of the system, or 'world'",
+                    did_you_mean(joint.parent, [WORLD, *self.bodies]),
+                    where,
+                )
+        elif joint.frame is not None and joint.frame not in {frame.name for frame in parent.frames}:
+            yield Problem(
+                f"joint '{joint.name}': frame '{joint.frame}' is not on body '{parent.name}'",
+                frames_of(parent),
+                "a joint sits in a named frame of its parent, or in its body frame",
+                frame_remedy(self.system.bodies, parent, joint.frame, "parent: ") or "add the frame, or drop the entry",
+                where,
+            )
+        yield from joint_problems(joint, self.bodies, where)
+        if isinstance(body, Beam):
+            yield from beam_problems(body, self.where("body", body.name))
+
+    def _cycles(self) -> Iterator[Problem]:
+        """Follow each body's parents; a body met again on the same walk is on a cycle."""
+        done: set[str] = {self.base.name, WORLD}
+        for start in self.bodies:
+            walk: dict[str, None] = {}  # In order; a list would take square time on a long chain.
+            name = start
+            while name in self.bodies and name not in done and name not in walk:
+                walk[name] = None
+                joint = self.bodies[name].joint
+                name = joint.parent if joint is not None else WORLD
+            if name in walk:
+                loop = list(walk)[list(walk).index(name) :]
+                shown = [*loop, name] if len(loop) <= _SHOWN else [*loop[:_SHOWN], "…", name]
+                joints = [joint.name for body in loop if (joint := self.bodies[body].joint) is not None]
+                yield Problem(
+                    f"cycle of joints: bodies {' -> '.join(shown)} carry each other",
+                    f"{len(loop)} bodies; their joints are {listed(joints)}",
+                    "joints form a tree that starts at the base",
+                    "give one of these joints a parent that none of the bodies carries, such as 'world'; "
+                    "a loop of the mechanism itself is cut at one joint and closed by a closure",
+                    self.where("body", name),
+                )
+            done.update(walk)
+
+    # Forces.
+
+    def acting(self) -> Iterator[Problem]:
+        """Loads, connections and powers that refer to what does not exist."""
+        for body in self.system.bodies:
+            for load in body.loads:
+                yield from self._load(body, load)
+        for kind, named in (
+            ("connection", self.system.connections),
+            ("virtual power", self.system.virtual_power),
+            ("potential", self.system.potentials),
+        ):
+            yield from self._unique(kind, [item.name for item in named])
+        for connection in self.system.connections:
+            where, what = self.where("connection", connection.name), f"connection '{connection.name}'"
+            for anchor in (connection.first, connection.second):
+                yield from anchor_problems(what, anchor, self.bodies, self.base, self.broken, where)
+        yield from self._unique("constraint", [item.name for item in self.system.constraints])
+        yield from constraint_problems(self.system, self.bodies, self.base, self.broken)
+        yield from power_problems(self.system, self.broken)
+
+    def _load(self, body: Body, load: Load | BeamLoad) -> Iterator[Problem]:
+        where = self.where("body", body.name)
+        if isinstance(body, Beam) or isinstance(load, BeamLoad):
+            if isinstance(body, Beam) != isinstance(load, BeamLoad):
+                yield Problem(
+                    f"body '{body.name}': a {type(load).__name__} on a {type(body).__name__}",
+                    type(load).__name__,
+                    "a BeamLoad acts on a Beam, a Load on a RigidBody",
+                    "use the other kind",
+                    where,
+                )
+            return
+        frames = ["body", "center_of_mass", *(frame.name for frame in body.frames)]
+        if load.at not in frames:
+            yield Problem(
+                f"body '{body.name}': load at '{load.at}', which is not on it",
+                frames_of(body),
+                "a load acts at 'body', 'center_of_mass' or a frame of its body",
+                did_you_mean(load.at, frames),
+                where,
+            )
+        if load.at == "center_of_mass" and body.inertia is None:
+            yield Problem(
+                f"body '{body.name}': load at the mass centre of a massless body",
+                "no inertia",
+                "a mass centre needs a mass",
+                "use at: body",
+                where,
+            )
+
+    # Numbers.
+
+    def values(self, numbers: Numbers) -> Iterator[Problem]:
+        """That every constant is a finite number, every rotation a rotation, every axis a direction."""
+        for stated in stated_values(self.system):
+            if stated.scope == "parameters":
+                yield from numbers.value_problems(stated.what, stated.value, self.where(*stated.key))
+        for body in self.system.bodies:
+            for what, rotation, where in self._rotations(body):
+                yield from numbers.rotation_problems(what, rotation, where)
+        yield from joint_number_problems(self.system, numbers)
+        yield from beam_number_problems(self.system, numbers)
+        yield from constraint_number_problems(self.system, numbers)
+
+    def _rotations(self, body: Body) -> Iterator[tuple[str, object, str]]:
+        if body.joint is not None:
+            joint = body.joint
+            yield f"joint '{joint.name}': rotation", joint.rotation, self.where("joint", joint.name)
+        if body.inertia is not None:
+            yield f"body '{body.name}': inertia rotation", body.inertia.rotation, self.where("body", body.name)
+        for frame in body.frames:
+            what = f"frame '{frame.name}' of body '{body.name}': rotation"
+            yield what, frame.rotation, self.where("frame", body.name, frame.name)

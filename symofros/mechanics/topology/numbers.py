@@ -1,0 +1,132 @@
+"""The description at its parameters' default values: are its numbers numbers, its rotations rotations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.description.system import Joint, System
+from symofros.description.values import Rotation, Value
+from symofros.errors import Problem
+from symofros.expr.expression import evaluate
+
+Array = npt.NDArray[np.float64]
+
+# Entries typed with seven digits still pass; a reflection or a shear does not.
+ROTATION_TOLERANCE = 1e-6
+
+
+class Numbers:
+    """Evaluates values of a system at its parameters' defaults.
+
+    Args:
+        system: For its parameters.
+        more: Values of further symbols.
+    """
+
+    def __init__(self, system: System, more: Mapping[str, float] | None = None) -> None:
+        self.system = system
+        self.parameters = {**system.parameter_values(), **(more or {})}
+
+    def extended(self, more: Mapping[str, float]) -> Numbers:
+        """The same with values of further symbols, such as coordinates."""
+        return Numbers(self.system, more)
+
+    def value(self, value: Value) -> float:
+        """The number of a value; NaN where it has none."""
+        try:
+            return float(evaluate(value, self.parameters))
+        except (ArithmeticError, KeyError):
+            return math.nan
+
+    def values(self, values: Any) -> Array:
+        """The numbers of several values."""
+        return np.array([self.value(value) for value in values])
+
+    def rotation(self, rotation: Rotation) -> Array:
+        """The 3x3 matrix of a rotation; NaN where it has none."""
+        x = self.values(rotation)
+        if not np.all(np.isfinite(x)):
+            return np.full((3, 3), math.nan)
+        if rotation.kind == "matrix":
+            return x.reshape(3, 3)
+        if rotation.kind == "rpy":
+            return _about(2, x[2]) @ _about(1, x[1]) @ _about(0, x[0])
+        norm = float(np.linalg.norm(x if rotation.kind == "quaternion" else x[:3]))
+        if not 0.0 < norm < math.inf:
+            return np.full((3, 3), math.nan)
+        if rotation.kind == "quaternion":
+            vector, scalar = x[:3] / norm, x[3] / norm
+        else:
+            vector, scalar = x[:3] / norm * math.sin(x[3] / 2), math.cos(x[3] / 2)
+        cross = skew(vector)
+        R: Array = np.eye(3) + 2 * scalar * cross + 2 * cross @ cross
+        return R
+
+    def value_problems(self, what: str, value: Value, where: str) -> Iterator[Problem]:
+        """A value that is not finite at the defaults."""
+        if not math.isfinite(self.value(value)):
+            yield Problem(
+                f"{what}: not a finite number at the parameters' values",
+                f"'{value}'",
+                "every formula is finite at the default parameters",
+                "mind divisions by zero and function domains",
+                where,
+            )
+
+    def rotation_problems(self, what: str, rotation: Any, where: str) -> Iterator[Problem]:
+        """A rotation that is none."""
+        if not np.all(np.isfinite(self.values(rotation))):
+            return  # Reported as values that are not finite.
+        R = self.rotation(rotation)
+        if not np.all(np.isfinite(R)):
+            yield Problem(
+                f"{what}: has no direction",
+                f"{rotation.kind} {_show(rotation)}",
+                "axis and quaternion are neither zero nor endless",
+                "give a direction",
+                where,
+            )
+            return
+        error = float(np.abs(R @ R.T - np.eye(3)).max())
+        if error > ROTATION_TOLERANCE or np.linalg.det(R) < 0.0:
+            yield Problem(
+                f"{what}: the matrix is not a rotation",
+                f"|R R^T - 1| = {error:.2g}, determinant {np.linalg.det(R):.3g}",
+                f"R R^T = 1 within {ROTATION_TOLERANCE:g} and determinant +1",
+                "give more digits, or state it as rpy, axis_angle or quaternion",
+                where,
+            )
+
+    def axis_problems(self, joint: Joint, where: str) -> Iterator[Problem]:
+        """An axis of no length, or of one that overflows."""
+        if not 1e-9 < np.linalg.norm(self.values(joint.axis)) < math.inf:
+            yield Problem(
+                f"joint '{joint.name}': the axis has no direction",
+                _show(joint.axis),
+                "the axis of a joint is neither zero nor endless",
+                "give a direction such as [0, 0, 1]",
+                where,
+            )
+
+
+def skew(p: Array) -> Array:
+    """The matrix of the cross product with p."""
+    return np.array([[0.0, -p[2], p[1]], [p[2], 0.0, -p[0]], [-p[1], p[0], 0.0]])
+
+
+def _about(axis: int, angle: float) -> Array:
+    c, s = math.cos(angle), math.sin(angle)
+    R = np.eye(3)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    R[i, i] = R[j, j] = c
+    R[i, j], R[j, i] = -s, s
+    return R
+
+
+def _show(values: Any) -> str:
+    return "[" + ", ".join(str(value) for value in values) + "]"

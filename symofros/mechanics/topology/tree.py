@@ -1,0 +1,225 @@
+"""SpanningTree: the checked system as numbered links, with fixed bodies merged into the links that carry them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from symofros.description.beam import Beam
+from symofros.description.system import WORLD, Body, Inertia, Joint, RigidBody, System
+from symofros.description.values import IDENTITY, Rotation, Vector
+from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates
+
+BASE = -1
+
+
+class Step(NamedTuple):
+    """One constant displacement: from a frame to the next, stated in the first."""
+
+    position: Vector
+    rotation: Rotation
+
+
+Placement = tuple[Step, ...]
+
+
+@dataclass(frozen=True)
+class Link:
+    """A body that moves, with everything rigidly attached to it.
+
+    Attributes:
+        name: Of the body whose frame is the link's.
+        joint: What carries it.
+        parent: Index of the parent link, or BASE.
+        placement: From the parent's frame to the joint's proximal frame P.
+        inertias: Of the body and of the bodies fixed to it, each with where it sits.
+        q: Its slice of q, as (start, size); empty where the motion is prescribed.
+        v: Its slice of v, alike.
+        beam: The beam whose root this link is.
+        tip_of: The beam whose tip this link is: its joint stands for the beam's deformation.
+    """
+
+    name: str
+    joint: Joint
+    parent: int
+    placement: Placement
+    inertias: tuple[tuple[Placement, Inertia], ...]
+    q: tuple[int, int]
+    v: tuple[int, int]
+    beam: Beam | None = None
+    tip_of: Beam | None = None
+
+
+@dataclass(frozen=True)
+class NamedFrame:
+    """A frame that can be asked for.
+
+    Attributes:
+        name: Its public name: its own where that is unique in the system, otherwise "body.frame".
+        qualified: "body.frame", or the body's name for a body frame.
+        link: Index of the link it is on, or BASE.
+        placement: From the link's frame to it.
+    """
+
+    name: str
+    qualified: str
+    link: int
+    placement: Placement
+
+
+@dataclass(frozen=True)
+class SpanningTree:
+    """The mechanism as it is computed with.
+
+    Attributes:
+        system: What the user stated.
+        links: Moving bodies, depth first in the order of description; parents precede children.
+        frames: Every named frame.
+        coordinates: Which name has which index of q, v, u, par.
+    """
+
+    system: System
+    links: tuple[Link, ...]
+    frames: tuple[NamedFrame, ...]
+    coordinates: CoordinateMap
+
+    def ancestors(self, index: int) -> list[int]:
+        """The link and the links that carry it, tip to base."""
+        path = []
+        while index != BASE:
+            path.append(index)
+            index = self.links[index].parent
+        return path
+
+    def frame(self, name: str) -> NamedFrame:
+        """The frame of that public or qualified name.
+
+        Raises:
+            KeyError: There is none.
+        """
+        for frame in self.frames:
+            if name in (frame.name, frame.qualified):
+                return frame
+        raise KeyError(name)
+
+
+def frame_of(tree: SpanningTree, body: str, frame: str | None = None) -> NamedFrame:
+    """The frame of a body, or its body frame; the base answers to "world" too.
+
+    Args:
+        tree: Of a checked system, whose names exist.
+        body: Name of the body.
+        frame: Of one of its extremity frames.
+    """
+    if frame is None:
+        return next((found for found in tree.frames if found.qualified == body), tree.frames[0])
+    known = next((found for found in tree.frames if found.qualified == f"{body}.{frame}"), None)
+    # Frames of a base that goes by another name than "world".
+    return known or tree.frame(f"{tree.frames[0].qualified}.{frame}")
+
+
+def build_tree(system: System) -> SpanningTree:
+    """Number a system that has been checked (`graph.check`).
+
+    Args:
+        system: Without problems; this function relies on it.
+    """
+    children: dict[str, list[Body]] = {}
+    base_names = {WORLD} | {body.name for body in system.bodies if body.joint is None}
+    for body in system.bodies:
+        if body.joint is not None:
+            parent = WORLD if body.joint.parent in base_names else body.joint.parent
+            children.setdefault(parent, []).append(body)
+    base = next((body for body in system.bodies if body.joint is None), RigidBody(WORLD))
+    builder = _Builder(children)
+    builder.place(base, BASE, (), WORLD)
+    links = tuple(builder.links[i].freeze(builder.inertias[i]) for i in range(len(builder.links)))
+    return SpanningTree(system, links, _public_names(builder.frames), map_coordinates(system, [x.joint for x in links]))
+
+
+class _Draft(NamedTuple):
+    name: str
+    joint: Joint
+    parent: int
+    placement: Placement
+    q: tuple[int, int]
+    v: tuple[int, int]
+    beam: Beam | None
+    tip_of: Beam | None
+
+    def freeze(self, inertias: list[tuple[Placement, Inertia]]) -> Link:
+        return Link(
+            self.name, self.joint, self.parent, self.placement, tuple(inertias), self.q, self.v, self.beam, self.tip_of
+        )
+
+
+class _Builder:
+    def __init__(self, children: dict[str, list[Body]]) -> None:
+        self.children = children
+        self.links: list[_Draft] = []
+        self.inertias: list[list[tuple[Placement, Inertia]]] = []
+        self.frames: list[tuple[str, str, int, Placement]] = []
+        self.nq = self.nv = 0
+
+    def place(self, body: Body, link: int, placement: Placement, key: str) -> None:
+        """Put a body, and then what it carries, at a placement on a link; depth first without recursion."""
+        stack = [(body, link, placement, key)]
+        while stack:
+            body, link, placement, key = stack.pop()
+            beam = body if isinstance(body, Beam) else None
+            if body.joint is not None and (body.joint.kind != "fixed" or beam is not None):
+                link, placement = self._add_link(body.name, body.joint, link, placement, beam), ()
+            ends = self._attach(body, link, placement)
+            carried = []
+            for child in self.children.get(key, ()):
+                assert child.joint is not None
+                joint = child.joint
+                on, at = ends.get(joint.frame, ends[None])
+                carried.append((child, on, (*at, Step(joint.position, joint.rotation)), child.name))
+            stack.extend(reversed(carried))
+
+    def _add_link(
+        self,
+        name: str,
+        joint: Joint,
+        parent: int,
+        placement: Placement,
+        beam: Beam | None = None,
+        tip_of: Beam | None = None,
+    ) -> int:
+        nq, nv = (0, 0) if joint.prescribed else joint_sizes(joint)
+        self.links.append(_Draft(name, joint, parent, placement, (self.nq, nq), (self.nv, nv), beam, tip_of))
+        self.inertias.append([])
+        self.nq, self.nv = self.nq + nq, self.nv + nv
+        return len(self.links) - 1
+
+    def _attach(self, body: Body, link: int, placement: Placement) -> dict[str | None, tuple[int, Placement]]:
+        """Add a body's inertia and frames to its link; where each of its frames is (None: the body frame)."""
+        if body.inertia is not None and link != BASE:
+            self.inertias[link].append((placement, body.inertia))
+        self.frames.append((body.name, body.name, link, placement))
+        ends: dict[str | None, tuple[int, Placement]] = {None: (link, placement)}
+        tip = self._add_tip(body, link) if isinstance(body, Beam) else None
+        for frame in body.frames:
+            on, at = tip if tip is not None else (link, (*placement, Step(frame.position, frame.rotation)))
+            ends[frame.name] = (on, at)
+            self.frames.append((frame.name, f"{body.name}.{frame.name}", on, at))
+        return ends
+
+    def _add_tip(self, beam: Beam, root: int) -> tuple[int, Placement]:
+        """The place of a beam's tip: a link of its own, which the elastic coordinates move, if there are any."""
+        if not beam.modes:
+            return root, (Step((beam.length, 0.0, 0.0), IDENTITY),)
+        elastic = Joint(f"{beam.name}.elastic", "general", beam.name, coordinates=beam.coordinates)
+        return self._add_link(f"{beam.name}.tip", elastic, root, (), tip_of=beam), ()
+
+
+def _public_names(found: list[tuple[str, str, int, Placement]]) -> tuple[NamedFrame, ...]:
+    count: dict[str, int] = {}
+    for own, _, _, _ in found:
+        count[own] = count.get(own, 0) + 1
+    # A body frame keeps the body's name; an extremity frame of that name is then the qualified one.
+    return tuple(
+        NamedFrame(own if count[own] == 1 or own == qualified else qualified, qualified, link, placement)
+        for own, qualified, link, placement in found
+    )

@@ -1,0 +1,251 @@
+"""sf.advise: the cheapest model that meets a scene's tolerance, each step of the way verified by simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from symofros.description.beam import Beam
+from symofros.description.system import System
+from symofros.errors import DescriptionError, Problem, SymofrosError, did_you_mean
+from symofros.options import Options
+from symofros.studio.advice.advice import Advice, Choice, Verdict
+from symofros.studio.advice.bench import Bench, Trial, Truth
+from symofros.studio.advice.candidates import Reduction, candidates, constants, fewer_functions
+from symofros.studio.advice.loads import BeamLoads, Observed
+from symofros.studio.advice.richer import richer
+from symofros.studio.advice.scene import Scene
+from symofros.studio.advice.stepping import cheapest
+
+# Shares of the tolerance: what is left out may err by the first, stepping by the second.
+MODEL, STEPPING = 0.8, 0.2
+# A description whose own truncation takes more than this share is refined before anything is left out.
+REFINE = 0.4
+_ROUNDS = 3
+# Estimates err by less than this factor; what is expected to be worse is not simulated, foreshortening excepted.
+HOPELESS = 30.0
+# Slopes from which on second-order theory itself is off by a percent.
+_LARGE = 0.1
+
+
+def advise(system: System, scene: Scene, tolerance: float | Mapping[str, float] | None = None) -> Advice:
+    """Find the cheapest model of a system that a scene can be served with.
+
+    Estimators order what may be left out; each thing left out is verified by simulating the reduced model against a
+    richer one, which has more functions than described. Last come the integrator and its step.
+
+    Args:
+        system: As rich as it may have to be.
+        scene: Inputs, first state, outputs of interest and their tolerances.
+        tolerance: Absolute ones in place of the scene's: one for all outputs, or by name.
+
+    Returns:
+        The reduced system, how to step it, every choice with its numbers, costs and errors.
+
+    Raises:
+        DescriptionError: The scene does not fit the system.
+        UnknownNameError: An input or a first coordinate does not exist.
+        SymofrosError: The motion can't be computed to the tolerance.
+    """
+    return _Search(system, scene.within(tolerance)).advice()
+
+
+class _Search:
+    """One search: the current system, what it errs by, what was decided."""
+
+    def __init__(self, system: System, scene: Scene) -> None:
+        _check(system, scene)
+        self.full, self.scene, self.bench = system, scene, Bench(scene)
+        self.choices: list[Choice] = []
+        self.notes: list[str] = []
+        self.current = system
+        self.truth = self._settle()
+        self.seen = Observed.of(self.current, scene, self.truth)
+        self.loads = {b.name: self.seen.beam(b) for b in self.current.bodies if isinstance(b, Beam) and b.modes}
+
+    def advice(self) -> Advice:
+        """Reduce, then choose the stepping, of the full model as well."""
+        self._reduce()
+        trial, _ = self.bench.exact(self.current)
+        stepping, _, _, methods = cheapest(self.bench, self.current, trial, STEPPING)
+        full_trial, _ = self.bench.exact(self.full)
+        full_stepping, _, _, _ = cheapest(self.bench, self.full, full_trial, STEPPING)
+        found = self.bench.trial(self.current, stepping)
+        self._remark()
+        return Advice(
+            self.scene,
+            self.full,
+            self.current,
+            stepping,
+            full_stepping,
+            self.bench.timed(self.current, stepping),
+            self.bench.timed(self.full, full_stepping),
+            tuple(self.choices),
+            self.bench.errors(found, self.truth.trial),
+            self.bounds,
+            self.truncation,
+            Options(self.bench.functions(self.current, stepping.method), self.scene.frames),
+            tuple(methods),
+            self.bench.runs,
+            tuple(self.notes),
+        )
+
+    def _settle(self) -> Truth:
+        """The richer model; the description is refined until its own truncation is small beside the tolerance."""
+        reference = self.bench.exact(self.current)[0]
+        for _ in range(_ROUNDS):
+            above = richer(self.current)
+            truth = self.bench.exact(above)[0] if above != self.current else reference
+            off = self.bench.error(reference, truth)
+            if self.current is self.full:
+                self.truncation = off
+            if off <= REFINE:
+                break
+            self.notes.append(f"the model errs by {off:.2g} of the tolerance against one of more functions: refined")
+            self.current, reference = above, truth
+        else:
+            self.notes.append("more functions still change the outputs; the tolerance is near what beams can give")
+        self.bounds = {output.name: output.bound(truth.values[output.name]) for output in self.scene.outputs}
+        return Truth(above, truth)
+
+    def _reduce(self) -> None:
+        pool = sorted(candidates(self.seen), key=lambda one: one.estimate)
+        promising = [one for one in pool if one.estimate <= 1.0]
+        taken = self._take_most(promising)
+        rest = [one for one in pool if one not in promising[:taken]]
+        for one in sorted(rest, key=_order):
+            if one.kind not in ("foreshortening", "order"):
+                self._consider(one)
+        self._fewer()
+        for one in sorted(rest, key=_order):
+            if one.kind in ("foreshortening", "order"):
+                self._consider(one)
+        if self.current.parameters:
+            one = constants(self.current, self.scene.keep)
+            if one.apply(self.current) != self.current:
+                self._consider(one)
+
+    def _fewer(self) -> None:
+        """Fewer functions: alike for all beams first, then beam by beam."""
+        beams = [b for b in self.current.bodies if isinstance(b, Beam) and b.modes]
+        if len(beams) > 1:
+            first = [next(iter(self._hopeful(beam)), None) for beam in beams]
+            together = [one for one in first if one is not None]
+            if len(together) == len(beams) and self._take_most(together, whole=True):
+                return
+        for beam in beams:
+            for one in self._hopeful(beam):
+                if self._consider(one):
+                    break
+
+    def _hopeful(self, beam: Beam) -> Iterable[Reduction]:
+        loads: BeamLoads = self.loads[beam.name]
+        return (one for one in fewer_functions(loads, beam) if one.estimate <= HOPELESS)
+
+    def _take_most(self, ordered: Sequence[Reduction], whole: bool = False) -> int:
+        """Take as many of the first reductions as the tolerance bears, found by halving; all or none where `whole`.
+
+        Returns:
+            How many were taken.
+        """
+        if not ordered:
+            return 0
+        error = self._try(ordered)
+        good, bad = (len(ordered), len(ordered) + 1) if error <= MODEL else (0, len(ordered))
+        if whole and not good:
+            return 0
+        while bad - good > 1:
+            middle = (good + bad) // 2
+            off = self._try(ordered[:middle])
+            good, bad, error = (middle, bad, off) if off <= MODEL else (good, middle, error)
+        for one in ordered[:good]:
+            self._note(one, "taken", error)
+        self.current = _all(ordered[:good], self.current)
+        return good
+
+    def _consider(self, one: Reduction) -> bool:
+        """Take a reduction, or refuse it, by simulation; whether it was taken."""
+        if one.apply(self.current) == self.current or self._rigid(one):
+            return False
+        if one.estimate > HOPELESS and one.kind != "foreshortening":
+            self._note(one, "not tried", None)
+            return False
+        error = self._try([one])
+        if error > MODEL:
+            self._note(self._worse(one) if one.kind == "foreshortening" else one, "refused", error)
+            return False
+        self.current = one.apply(self.current)
+        self._note(one, "taken", error)
+        return True
+
+    def _rigid(self, one: Reduction) -> bool:
+        """Whether it is about a beam that bends no more."""
+        return any(
+            isinstance(b, Beam) and not b.modes and one.subject == f"beam '{b.name}'" for b in self.current.bodies
+        )
+
+    def _worse(self, one: Reduction) -> Reduction:
+        """A refused "no foreshortening", with what becomes of a model that keeps the softening alone."""
+        name = one.subject.split("'")[1]
+        body = self.current.body(name)
+        assert isinstance(body, Beam)
+        softened = self.current.with_bodies(replace(body, foreshortening=False, retain="first_order"))
+        found = self._attempt(softened)
+        off = self.bench.error(found, self.truth.trial)
+        end = f"ends: {found.failure}" if found.failure else f"errs by {off:.3g} of the tolerance"
+        reason = f"{one.reason}; a model that keeps the softening by the spin, without the stiffening, {end}"
+        return replace(one, reason=reason, numbers={**one.numbers, "softened_error": off})
+
+    def _try(self, some: Sequence[Reduction]) -> float:
+        """The error of the current system with some reductions more."""
+        return self.bench.error(self._attempt(_all(some, self.current)), self.truth.trial)
+
+    def _attempt(self, system: System) -> Trial:
+        """The motion of a candidate, stepped as the description was; none where it can't be stated."""
+        _, stepping = self.bench.exact(self.full)
+        try:
+            return self.bench.trial(system, stepping)
+        except SymofrosError as error:
+            return Trial(None, str(error).splitlines()[0], {})
+
+    def _note(self, one: Reduction, verdict: Verdict, error: float | None) -> None:
+        self.choices.append(
+            Choice(one.subject, one.change, one.kind, verdict, one.estimate, error, one.reason, one.numbers)
+        )
+
+    def _remark(self) -> None:
+        for name, loads in self.loads.items():
+            slope = loads.tip / loads.length
+            if slope > _LARGE:
+                self.notes.append(
+                    f"beam '{name}' bends by {slope:.2g} of its length: second-order theory itself errs"
+                    f" by {'a percent' if slope < 0.2 else 'several percent'} there"
+                )
+
+
+# What saves most comes first.
+_PRIORITY = ("rigid", "elastic joint", "direction", "rotor", "rotary inertia", "order", "foreshortening")
+
+
+def _order(one: Reduction) -> tuple[int, float]:
+    return _PRIORITY.index(one.kind), one.estimate
+
+
+def _all(some: Sequence[Reduction], system: System) -> System:
+    for one in some:
+        system = one.apply(system)
+    return system
+
+
+def _check(system: System, scene: Scene) -> None:
+    names = [parameter.name for parameter in system.parameters]
+    for name in scene.keep:
+        if name not in names:
+            raise DescriptionError(
+                Problem(
+                    f"scene: keep: no parameter '{name}'",
+                    ", ".join(names) or "none",
+                    "what is kept at run time is a parameter",
+                    did_you_mean(name, names),
+                )
+            )

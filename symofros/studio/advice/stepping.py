@@ -1,0 +1,93 @@
+"""Which integrator and which step: the cheapest that errs by no more than a share of the tolerance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from symofros.description.system import System
+from symofros.errors import Problem, SymofrosError
+from symofros.simulation.methods import METHODS
+from symofros.studio.advice.bench import Bench, Cost, Stepping, Trial
+
+_FIXED = ("rk4", "semi_implicit_euler", "implicit_euler", "generalized_alpha")
+_ADAPTIVE = ("dopri5", "dop853", "rodas4")
+# Of fixed steps the longest that is tried, and how much shorter the next is.
+_COARSEST, _FINER = 32, 2.0
+_LEVELS = 14
+_LOOSEST = 1e-2
+# Derivatives of larger models take minutes to compile, which no scene pays back.
+LARGEST = 250_000
+
+
+def cheapest(bench: Bench, system: System, truth: Trial, share: float) -> tuple[Stepping, Cost, float, list[str]]:
+    """The cheapest way to step a model through the scene.
+
+    Args:
+        bench: Of the scene.
+        system: What to step.
+        truth: Its exact motion.
+        share: Of the tolerance, which the error of stepping may take.
+
+    Returns:
+        The stepping, its cost, its error in units of what is allowed, and a line on each method tried.
+
+    Raises:
+        SymofrosError: No method will do, as may be where only fixed steps may be taken.
+    """
+    if bench.model(system).nv == 0:
+        return bench.given, bench.cost(system, truth, "rk4"), 0.0, ["no speeds are left: nothing is integrated"]
+    best: tuple[Stepping, Cost, float] | None = None
+    lines = []
+    for method in _FIXED if bench.scene.fixed_step else (*_ADAPTIVE, *_FIXED):
+        if METHODS[method].kind in ("rosenbrock", "alpha") and not _small(bench, system):
+            lines.append(f"{method}: not tried, derivatives of more than {LARGEST} operations")
+            continue
+        found = _coarsest(bench, system, truth, share, method, None if best is None else best[1].total)
+        if found is None:
+            lines.append(f"{method}: dearer, or never within {share:.2g} of the tolerance")
+            continue
+        stepping, cost, error = found
+        lines.append(f"{stepping}: {cost.total} operations, error {error:.2g} of the tolerance")
+        if best is None or cost.total < best[1].total:
+            best = found
+    if best is None:
+        raise SymofrosError(
+            str(
+                Problem(
+                    f"advise: no way to step '{system.name}' through the scene",
+                    "; ".join(lines),
+                    "one method is within its share of the tolerance",
+                    "allow adaptive steps, or a larger tolerance",
+                )
+            )
+        )
+    return (*best, lines)
+
+
+def _small(bench: Bench, system: System) -> bool:
+    """Whether a model's derivatives may be compiled; those of models with few operations are not counted for it."""
+    return bench.operations(system, ("implicit_terms",))["implicit_terms"] <= LARGEST
+
+
+def _coarsest(
+    bench: Bench, system: System, truth: Trial, share: float, method: str, dearest: int | None
+) -> tuple[Stepping, Cost, float] | None:
+    """The coarsest setting of a method that will do; None where it costs more than `dearest` before it does."""
+    for stepping in _ladder(bench.scene.t_end, method):
+        found = bench.trial(system, stepping)
+        if found.run is None:
+            continue
+        cost, error = bench.cost(system, found, method), bench.error(found, truth)
+        if dearest is not None and cost.total >= dearest:
+            return None
+        if error <= share:
+            return stepping, cost, error
+    return None
+
+
+def _ladder(t_end: float, method: str) -> Iterator[Stepping]:
+    if METHODS[method].adaptive:
+        yield from (Stepping(method, rtol=_LOOSEST * 10.0**-k) for k in range(9))
+        return
+    for k in range(_LEVELS):
+        yield Stepping(method, dt=t_end / round(_COARSEST * _FINER**k))

@@ -1,0 +1,95 @@
+"""`symofros edit`: open the server on this machine, and a browser on it."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import webbrowser
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Literal
+
+import uvicorn
+
+import symofros
+from symofros.description.yaml.files import SUFFIXES, write_yaml
+from symofros.errors import Problem
+from symofros.studio.editor.app import application
+from symofros.studio.editor.session import Session
+from symofros.studio.editor.workspace import FileError, Workspace
+
+HOST = "127.0.0.1"
+# Of the 3-D view; the package comes with viser, and without it there is nothing to connect to.
+SOCKETS: Literal["websockets-sansio", "none"] = "websockets-sansio" if find_spec("websockets") else "none"
+
+
+def serve(file: Path | None, port: int, token: str | None, browser: bool, tell: Callable[[str], object]) -> None:
+    """Serve the editor until it is interrupted.
+
+    Args:
+        file: What to open; its folder is the workspace. None: an empty document in the current folder.
+        port: Where to listen; 0: any that is free.
+        token: What requests must carry; None: drawn at random.
+        browser: Whether to open the page.
+        tell: Receives the page's address once the server listens.
+
+    Raises:
+        FileError: The file can't be opened.
+        DescriptionError: A file of another format can't be read.
+        OSError: The port is taken.
+    """
+    session = _opened(file)
+    token = token or secrets.token_urlsafe(32)
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as listener:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind((HOST, port))
+        port = listener.getsockname()[1]
+        config = uvicorn.Config(
+            application(session, token, port),
+            log_level="warning",
+            access_log=False,
+            server_header=False,
+            timeout_graceful_shutdown=1,
+            lifespan="on",
+            ws=SOCKETS,
+            ws_per_message_deflate=False,
+        )
+        server = _Server(config, lambda: _ready(f"http://{HOST}:{port}/?token={token}", browser, tell))
+        server.run(sockets=[listener])
+
+
+def _opened(file: Path | None) -> Session:
+    """A native file as it stands; of another format, a new document that says the same."""
+    if file is None:
+        return Session(Workspace(Path.cwd()))
+    path = file.resolve()
+    if not path.parent.is_dir():
+        raise FileError(Problem(f"'{file}' can't be opened", "no such folder", "its folder exists", "make it first"))
+    workspace = Workspace(path.parent)
+    if path.suffix.lower() in SUFFIXES:
+        return Session(workspace, path)
+    text = write_yaml(symofros.load(path))
+    session = Session(workspace)
+    session.storage.adopt(path.name, text)
+    return session
+
+
+def _ready(url: str, browser: bool, tell: Callable[[str], object]) -> None:
+    tell(url)
+    if browser:
+        webbrowser.open(url)
+
+
+class _Server(uvicorn.Server):
+    """One that says when it listens."""
+
+    def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
+        super().__init__(config)
+        self.ready = ready
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen, then say so."""
+        await super().startup(sockets)
+        if not self.should_exit:
+            self.ready()

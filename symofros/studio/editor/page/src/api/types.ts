@@ -1,0 +1,191 @@
+/** What the server sends and takes: the contract of symofros/studio/editor/app.py. */
+
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+export type JsonMap = { [key: string]: Json };
+export type Key = string | number;
+export type Path = readonly Key[];
+export type Point = readonly [number, number];
+
+export interface Fault {
+  object: string;
+  found: string;
+  rule: string;
+  remedy: string;
+}
+
+export interface Problem extends Fault {
+  path: Path;
+  line: number;
+  node: string;
+}
+
+export interface Port {
+  name: string;
+  kind: "root" | "origin" | "frame";
+}
+
+export type NodeKind = "base" | "rigid_body" | "massless_body" | "beam" | "nonholonomic";
+export type EdgeKind = "joint" | "closure" | "connection" | "constraint";
+
+export interface GraphNode {
+  id: string;
+  kind: NodeKind;
+  title: string;
+  subtitle: string;
+  path: Path;
+  ports: Port[];
+  problems: number;
+}
+
+export interface GraphEdge {
+  id: string;
+  kind: EdgeKind;
+  source: string;
+  source_port: string;
+  target: string;
+  target_port: string;
+  path: Path;
+  label: string;
+}
+
+export interface Graph {
+  nodes: GraphNode[];
+  edges: GraphEdge[];
+}
+
+export interface Parameter {
+  name: string;
+  value: Json;
+  unit: string;
+  constant: boolean;
+  number: number | null;
+}
+
+export interface Document {
+  path: string;
+  name: string;
+  revision: number;
+  dirty: boolean;
+  can_undo: boolean;
+  can_redo: boolean;
+  undo_label: string | null;
+  redo_label: string | null;
+  text: string;
+  data: JsonMap;
+  layout: Record<string, Point>;
+  graph: Graph;
+  problems: Problem[];
+  parameters: Parameter[];
+  recovered: boolean;
+  /** Somebody else wrote the file since it was read or saved. */
+  disk_changed: boolean;
+  /** Why unsaved work could not be kept beside the file, if it could not. */
+  unkept: Fault | null;
+}
+
+export type Edit =
+  | { op: "set"; path: Path; value: Json }
+  /** As somebody typed it: a number keeps its figures, such as 8.0e-4. */
+  | { op: "set"; path: Path; text: string }
+  | { op: "remove"; path: Path }
+  | { op: "insert"; path: Path; key: string; value: Json }
+  | { op: "insert"; path: Path; index: number; value: Json }
+  | { op: "rename"; path: Path; to: string }
+  | { op: "move"; path: Path; index: number };
+
+export interface PaletteItem {
+  kind: string;
+  title: string;
+  help: string;
+  template: Json;
+  section: string;
+  name: string;
+}
+
+export interface Method {
+  name: string;
+  adaptive: boolean;
+  order: number;
+  help: string;
+}
+
+export interface Catalogue {
+  schema: JsonMap;
+  palette: PaletteItem[];
+  methods: Method[];
+  units: string[];
+  targets: string[];
+  version?: string;
+}
+
+/** Of the user's library. */
+export interface LibraryPart {
+  name: string;
+  path: string;
+  bodies: string[];
+}
+
+/** Bodies with what they use, on their way from one place to another. */
+export interface Part {
+  name: string;
+  parameters: JsonMap;
+  inputs: JsonMap;
+  bodies: JsonMap;
+  closures: JsonMap;
+}
+
+export interface FileEntry {
+  path: string;
+  bytes: number;
+}
+
+export interface Checked {
+  ok: boolean;
+  value?: number | null;
+  names?: string[];
+  error?: { found: string; rule: string; remedy: string; column: number | null };
+}
+
+export interface Curves {
+  xi: number[];
+  curves: { values: number[]; length: boolean }[];
+}
+
+/** What moves the 3-D view: one degree of freedom. */
+export interface Coordinate {
+  name: string;
+  unit: string;
+  low: number;
+  high: number;
+  elastic: boolean;
+}
+
+/** Where the 3-D view stands. */
+export interface Stand {
+  q: Record<string, number>;
+  exaggeration: number;
+  /** Largest residual of the conditions that close loops; null where there are none. */
+  gap: number | null;
+}
+
+export interface View extends Stand {
+  address: string;
+  coordinates: Coordinate[];
+  flexible: boolean;
+  /** Names of the parameters that move it at once; others need the model to be built anew. */
+  run_time: string[];
+  /** Why it is not the document as it is now, but the last one that could be shown. */
+  fault: Fault | null;
+}
+
+export interface Pose {
+  q?: Record<string, number>;
+  par?: Record<string, number>;
+  exaggeration?: number;
+  reset?: boolean;
+}
+
+export interface Posed extends Stand {
+  /** Why the loops can't be closed there: then nothing has moved. */
+  why: string;
+}

@@ -1,0 +1,98 @@
+"""What a worker process does: reads one request, says how far it is, answers, ends.
+
+Lines of JSON: in comes the request; out go {"progress": …}, and at last {"result": …} or {"error": …}. When the server
+is gone, the request's pipe ends, and so does the worker with all that it started.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from symofros.description.reading import in_order
+from symofros.description.system import System
+from symofros.description.yaml.files import read_yaml
+from symofros.errors import DescriptionError, SymofrosError
+from symofros.mechanics.topology.graph import find_problems
+
+Json = dict[str, Any]
+Tell = Callable[[int, int, str], None]
+
+
+def system_of(request: Json) -> System:
+    """The system of a request's text.
+
+    Raises:
+        DescriptionError: It is not a mechanism.
+    """
+    reading = read_yaml(Path(request["file"]), request["text"])
+    found = find_problems(reading.system, reading.broken) if reading.system is not None else []
+    if reading.system is None or reading.problems or found:
+        raise DescriptionError(in_order([*reading.problems, *found]))
+    return reading.system
+
+
+def error_of(error: Exception) -> Json:
+    """An exception in the four parts."""
+    if isinstance(error, DescriptionError) and error.problems:
+        first, rest = error.problems[0], len(error.problems) - 1
+        more = f" (and {rest} more)" if rest else ""
+        return {"object": first.what + more, "found": first.found, "rule": first.rule, "remedy": first.remedy}
+    parts = {"object": "", "found": "", "rule": "", "remedy": ""}
+    head: list[str] = []
+    for line in str(error).splitlines():
+        label, _, text = line.strip().partition(":")
+        if line.startswith("  ") and label in parts:
+            parts[label] = text.strip()
+        else:
+            head.append(line)
+    return {**parts, "object": "\n".join(head) or type(error).__name__}
+
+
+def main() -> None:
+    """Serve one request."""
+    # Whatever writes to the standard output, a compiler or a library, must not garble the answer.
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    request = json.loads(sys.stdin.readline())
+    threading.Thread(target=_end_with_the_server, daemon=True).start()
+
+    def say(message: Json) -> None:
+        answers.write(json.dumps(message) + "\n")
+        answers.flush()
+
+    def tell(done: int, total: int, text: str) -> None:
+        say({"progress": {"done": done, "total": total, "text": text}})
+
+    try:
+        say({"result": task(request["kind"])(request, tell)})
+    except (SymofrosError, ValueError, OSError) as error:
+        say({"error": error_of(error)})
+    except Exception as error:
+        traceback.print_exc()
+        say({"error": {**error_of(error), "rule": "this should not happen", "remedy": "please report it"}})
+
+
+def task(kind: str) -> Callable[[Json, Tell], Any]:
+    """What a kind of work is; each brings its own imports, which the others do not pay for."""
+    from symofros.studio.editor import work
+
+    return work.TASKS[kind]
+
+
+def _end_with_the_server() -> None:
+    # By the descriptor: a buffered read would hold a lock that the end of the interpreter waits for.
+    while os.read(0, 4096):
+        pass
+    os.killpg(0, signal.SIGKILL)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,222 @@
+"""Recordings: a motion as a web page that plays by itself, as a film, or as a moving picture; a posture as a picture.
+
+Films and pictures are drawn by `raster`, so nothing opens a browser.
+"""
+
+from __future__ import annotations
+
+import io
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from symofros.atomic import write_atomically
+from symofros.description.system import System
+from symofros.diagrams.result import DiagramRun
+from symofros.errors import Problem, SymofrosError, did_you_mean
+from symofros.studio.viewer.camera import Camera
+from symofros.studio.viewer.motion import Motion, Played, finite, motion_of, positive
+from symofros.studio.viewer.of_run import shown_of
+from symofros.studio.viewer.poses import Mechanism, Posture
+from symofros.studio.viewer.raster import Image, picture
+from symofros.studio.viewer.scene import Scene, shown_at_first
+from symofros.studio.viewer.server import LOOPBACK, start_server, stop_server
+from symofros.studio.viewer.tracks import tracks_of
+
+MOST_FRAMES = 20_000  # Eleven minutes at thirty a second.
+_SUFFIXES = (".html", ".mp4", ".gif", ".png")
+
+
+class _Recording:
+    """A motion at the times of its pictures."""
+
+    def __init__(self, mechanism: Mechanism, motion: Motion, period: float, speed: float, exaggeration: float) -> None:
+        self.period = period
+        count = int(np.ceil((motion.end - motion.start) / (speed * period) - 1e-9)) + 1
+        if count > MOST_FRAMES:
+            raise SymofrosError(
+                str(
+                    Problem(
+                        "record: too long",
+                        f"{count} pictures",
+                        f"{MOST_FRAMES} at most",
+                        "raise the speed, or lower the pictures a second",
+                    )
+                )
+            )
+        q, u = motion.at(np.minimum(motion.start + speed * period * np.arange(count), motion.end))
+        self.drawing = mechanism.drawing(motion.par)
+        self.postures = mechanism.posture(q, u, motion.par, exaggeration)
+        self.layers = shown_at_first(self.drawing)
+        self.count = count
+
+    def __iter__(self) -> Iterator[Posture]:
+        return (self.postures[i] for i in range(self.count))
+
+    def pictures(self, size: tuple[int, int]) -> Iterator[Image]:
+        camera = Camera.of(self.drawing)
+        return (picture(self.drawing, posture, self.layers, camera, *size) for posture in self)
+
+
+def record(
+    system: System | DiagramRun,
+    run: Played | str | Path,
+    path: str | Path | None = None,
+    *,
+    block: str = "",
+    exaggeration: float = 1.0,
+    speed: float = 1.0,
+    paths: Sequence[Sequence[Any]] = (),
+    rate: float = 30.0,
+    size: tuple[int, int] = (960, 720),
+) -> Path:
+    """Write a motion as a file that others can look at without SYMOFROS.
+
+    `sf.record(system, run, "run.html")`, or `sf.record(run, "run.html")` of a diagram's run.
+
+    Args:
+        system: What moves, or a diagram's run.
+        run: A trajectory of it, or times (n) and coordinates (n, nq); left out where a diagram's run is stated.
+        path: .html (a page with the scene in it, to turn and to play; needs viser, and no network), .mp4 (needs ffmpeg,
+            as the extra `video` brings it), .gif, or .png (the last state).
+        block: Of a diagram's run: the block whose mechanism is shown; where there is one only, that.
+        exaggeration: What multiplies elastic coordinates.
+        speed: Seconds of the motion a second.
+        paths: Curves drawn beside it, as of `Viewer`.
+        rate: Pictures a second; those of a GIF last whole hundredths of a second.
+        size: Width and height of films and pictures, even numbers.
+
+    Returns:
+        The path; the file is there whole or not at all.
+
+    Raises:
+        SymofrosError: Another suffix, too long a motion, a size or a rate that can't be, or an extra that is missing.
+        ShapeError: The motion does not fit the system, or a path can't be drawn.
+        UnknownNameError: The diagram's run has no such mechanism, or several.
+    """
+    system, run, file = _asked(system, run, path, block)
+    check_suffix(file)
+    speed, rate, exaggeration = positive("speed", speed), positive("rate", rate), finite("exaggeration", exaggeration)
+    if any(side < 2 or side % 2 or side > 4096 for side in size):
+        raise SymofrosError(
+            str(Problem("record: no such size", str(size), "even numbers of pixels, 2 to 4096", "such as (960, 720)"))
+        )
+    mechanism = Mechanism(system, tracks_of(paths))
+    motion = motion_of(mechanism.model, run)
+    if file.suffix == ".png":
+        motion = Motion(motion.model, motion.t[-1:], motion.q[-1:], motion.u[-1:], motion.par)
+    period = max(round(100.0 / rate), 1) / 100.0 if file.suffix == ".gif" else 1.0 / rate
+    frames = _Recording(mechanism, motion, period, speed, exaggeration)
+    write: dict[str, Callable[[], bytes]] = {
+        ".html": lambda: _page(frames),
+        ".mp4": lambda: _film(frames, size),
+        ".gif": lambda: _gif(frames, size),
+        ".png": lambda: _png(frames, size),
+    }
+    write_atomically(file, write[file.suffix]())
+    return file
+
+
+def check_suffix(file: Path) -> None:
+    """Refuse what can't be recorded to.
+
+    Raises:
+        SymofrosError: Its suffix is another.
+    """
+    if file.suffix not in _SUFFIXES:
+        raise SymofrosError(
+            str(
+                Problem(
+                    f"record: can't write '{file.name}'",
+                    file.suffix or "no suffix",
+                    f"one of {', '.join(_SUFFIXES)}",
+                    did_you_mean(file.suffix, _SUFFIXES),
+                )
+            )
+        )
+
+
+def _asked(
+    system: System | DiagramRun, run: Played | str | Path, path: str | Path | None, block: str
+) -> tuple[System, Played, Path]:
+    """What moves, how, and where to write it."""
+    if isinstance(system, DiagramRun) and isinstance(run, (str, Path)) and path is None:
+        return *shown_of(system, block), Path(run)
+    if isinstance(system, DiagramRun) or isinstance(run, (str, Path)) or path is None:
+        raise SymofrosError(
+            str(
+                Problem(
+                    "record: what is to be written?",
+                    "other arguments",
+                    "a system, its motion and a path; or a diagram's run and a path",
+                    'for example sf.record(system, run, "run.html")',
+                )
+            )
+        )
+    return system, run, Path(path)
+
+
+def _page(frames: _Recording) -> bytes:
+    server = start_server(LOOPBACK, 0)
+    try:
+        scene = Scene(server, frames.drawing, frames.postures[0], frames.layers)
+        serializer = server.get_scene_serializer()
+        for posture in frames:
+            scene.move(posture)
+            serializer.insert_sleep(frames.period)
+        page: str = serializer.as_html()
+        return page.encode()
+    finally:
+        stop_server(server)
+
+
+def _film(frames: _Recording, size: tuple[int, int]) -> bytes:
+    ffmpeg = _extra("imageio_ffmpeg", "MP4 needs ffmpeg", "symofros[video]")
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "film.mp4"
+        # H.264 in 4:2:0 is what every browser and player shows; macro blocks of 2 keep the size as it is.
+        writer = ffmpeg.write_frames(
+            str(target),
+            size,
+            fps=1.0 / frames.period,
+            codec="libx264",
+            quality=7,
+            pix_fmt_out="yuv420p",
+            macro_block_size=2,
+        )
+        writer.send(None)
+        for image in frames.pictures(size):
+            writer.send(np.ascontiguousarray(image))
+        writer.close()
+        return target.read_bytes()
+
+
+def _gif(frames: _Recording, size: tuple[int, int]) -> bytes:
+    images = _extra("PIL.Image", "GIF needs Pillow", "symofros[view]")
+    # A palette of its own for each picture flickers; that of the first serves all, as the pieces are the same.
+    first, *others = (images.fromarray(image) for image in frames.pictures(size))
+    palette = first.quantize(255)
+    paletted = [one.quantize(palette=palette, dither=images.Dither.NONE) for one in others]
+    stream = io.BytesIO()
+    palette.save(stream, "GIF", save_all=True, append_images=paletted, duration=round(1000 * frames.period), loop=0)
+    return stream.getvalue()
+
+
+def _png(frames: _Recording, size: tuple[int, int]) -> bytes:
+    images = _extra("PIL.Image", "PNG needs Pillow", "symofros[view]")
+    stream = io.BytesIO()
+    images.fromarray(next(frames.pictures(size))).save(stream, "PNG", optimize=True)
+    return stream.getvalue()
+
+
+def _extra(module: str, why: str, install: str) -> Any:
+    try:
+        return import_module(module)
+    except ImportError:
+        raise SymofrosError(
+            str(Problem(f"record: {why}", f"no module {module}", "recording is an extra", f"pip install '{install}'"))
+        ) from None

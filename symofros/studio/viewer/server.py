@@ -1,0 +1,82 @@
+"""viser, loaded when it is needed and kept quiet: the web server that shows scenes in browsers."""
+
+from __future__ import annotations
+
+import logging
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
+
+from symofros.errors import Problem, SymofrosError
+
+LOOPBACK = "127.0.0.1"
+PORT = 8080
+
+
+def load_viser() -> Any:
+    """The package viser.
+
+    Raises:
+        SymofrosError: It is not installed.
+    """
+    try:
+        return import_module("viser")
+    except ImportError:
+        missing = Problem(
+            "view: viser is not installed", "no module viser", "the viewer is an extra", "pip install 'symofros[view]'"
+        )
+        raise SymofrosError(str(missing)) from None
+
+
+def start_server(host: str, port: int) -> Any:
+    """A viser server that serves.
+
+    Args:
+        host: Address to bind to; LOOPBACK is seen from this machine only.
+        port: 0 for any free one. One that is taken is an error: browsers would be sent to what else is there.
+
+    Raises:
+        SymofrosError: viser is not installed, or the address can't be bound to.
+    """
+    viser = load_viser()
+    if not 0 <= port <= 65535:
+        _refuse(host, port, "no such port", "a port is a whole number, 0 to 65535")
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as trial:
+        trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            trial.bind((host, port))
+        except OSError as error:
+            _refuse(host, port, error.strerror or str(error), "the address is one of this machine's, the port is free")
+    # It logs every connection that ends before its handshake, such as a browser's spare ones.
+    logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
+    with _quiet():
+        return viser.ViserServer(host=host, port=port, verbose=False)
+
+
+def stop_server(server: Any) -> None:
+    """Stop it, and wait for its thread."""
+    with _quiet():
+        server.stop()
+
+
+def _refuse(host: str, port: int, found: str, rule: str) -> None:
+    raise SymofrosError(
+        str(
+            Problem(
+                f"view: can't serve at {host}:{port}", found, rule, "choose another port, or 0 for any that is free"
+            )
+        )
+    )
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Viser announces itself through rich's console whatever it is asked; that console is silent meanwhile."""
+    console = import_module("rich").get_console()
+    before, console.quiet = console.quiet, True
+    try:
+        yield
+    finally:
+        console.quiet = before

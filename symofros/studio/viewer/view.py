@@ -1,0 +1,78 @@
+"""One call to look at a mechanism."""
+
+from __future__ import annotations
+
+import os
+import webbrowser
+from collections.abc import Sequence
+from typing import Any
+
+from symofros.description.system import System
+from symofros.diagrams.result import DiagramRun
+from symofros.loading import load
+from symofros.runtime.model import Given
+from symofros.studio.viewer.motion import Played
+from symofros.studio.viewer.of_run import shown_of
+from symofros.studio.viewer.server import LOOPBACK, PORT
+from symofros.studio.viewer.viewer import Viewer
+
+
+def view(
+    system: System | DiagramRun | str | os.PathLike[str],
+    run: Played | None = None,
+    *,
+    block: str = "",
+    q: Given | None = None,
+    u: Given | None = None,
+    par: Given | None = None,
+    exaggeration: float = 1.0,
+    speed: float = 1.0,
+    paths: Sequence[Sequence[Any]] = (),
+    host: str = LOOPBACK,
+    port: int = PORT,
+    browser: bool = True,
+) -> Viewer:
+    """Look at a mechanism: serve it as a page, and open that in the browser.
+
+    Returns at once, so that a notebook or a loop can go on; a script that ends takes the page with it, unless it calls
+    `wait()` on what is returned.
+
+    Args:
+        system: A system, or the path of a description; or a diagram's run, whose motion is played.
+        run: A motion to play: a trajectory of the system, or times (n) and coordinates (n, nq).
+        block: Of a diagram's run: the block whose mechanism is shown; where there is one only, that.
+        q: Otherwise coordinates (nq) to show; by default neutral ones, with loops closed.
+        u: Inputs (nu), for prescribed motions.
+        par: Run-time parameters (npar).
+        exaggeration: What multiplies elastic coordinates in the picture.
+        speed: Seconds of the motion a second.
+        paths: Curves drawn beside it, as of `Viewer`.
+        host: Address that it is served at.
+        port: Of the page; 0 for any free one.
+        browser: Whether to open the page.
+
+    Returns:
+        The viewer, to show, push, play and close.
+
+    Raises:
+        DescriptionError: The system can't be read, or can't be a mechanism.
+        ShapeError: An array does not fit the model, or a path can't be drawn.
+        UnknownNameError: The diagram's run has no such mechanism, or several.
+        SymofrosError: viser is not installed, or the address can't be served at.
+    """
+    if isinstance(system, DiagramRun):
+        stated, run = shown_of(system, block)
+    else:
+        stated = system if isinstance(system, System) else load(system)
+    viewer = Viewer(stated, host=host, port=port, exaggeration=exaggeration, paths=paths)
+    try:
+        if run is not None:
+            viewer.play(run, speed=speed)
+        elif q is not None or u is not None or par is not None:
+            viewer.show(q, u=u, par=par)
+    except Exception:
+        viewer.close()
+        raise
+    if browser:
+        webbrowser.open(viewer.url)
+    return viewer

@@ -1,0 +1,249 @@
+"""Viewer: a mechanism in the browser, shown, played or followed live."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from types import TracebackType
+from typing import Any, NamedTuple, Self
+
+from symofros.description.system import System
+from symofros.runtime.model import Given
+from symofros.studio.viewer.motion import Played, finite, motion_of, positive
+from symofros.studio.viewer.player import Player
+from symofros.studio.viewer.poses import Mechanism, State
+from symofros.studio.viewer.screen import Screen
+from symofros.studio.viewer.server import LOOPBACK, PORT, start_server, stop_server
+from symofros.studio.viewer.tracks import tracks_of
+
+RATE = 60.0  # Pictures a second at most; browsers show no more.
+
+
+class _Wanted(NamedTuple):
+    """A state to be shown, and its time [s]."""
+
+    state: State
+    t: float
+
+
+class Viewer(Screen):
+    """A web page with a mechanism in it, for any number of browsers.
+
+    The page is served from this process until `close()`, or the end of a `with`. Methods may be called from any thread.
+
+    Args:
+        system: What to show.
+        host: Address that it is served at; the default is seen from this machine only. Nothing asks for a password:
+            whoever reaches the address sees the model, and may move its controls.
+        port: Of the page; 0 for any free one.
+        exaggeration: What multiplies elastic coordinates in the picture.
+        rate: Pictures a second at most.
+        controls: Whether the page has sliders and buttons; not, for a page that is embedded in another.
+        paths: Curves drawn beside it, each (name, points) or (name, points, color): points (n, 3) in the world, or
+            (n, 2) in its plane z = 0 [m]; red, green and blue, 0 to 255.
+
+    Attributes:
+        painted: How many pictures were shown.
+        dropped: How many pushed states were not, because newer ones came first.
+
+    Raises:
+        DescriptionError: The system can't be a mechanism.
+        ShapeError: A path can't be drawn.
+        SymofrosError: viser is not installed (the extra `view`), or the address can't be served at.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        *,
+        host: str = LOOPBACK,
+        port: int = PORT,
+        exaggeration: float = 1.0,
+        rate: float = RATE,
+        controls: bool = True,
+        paths: Sequence[Sequence[Any]] = (),
+    ) -> None:
+        self._period = 1.0 / positive("rate", rate)
+        exaggeration = finite("exaggeration", exaggeration)
+        mechanism = Mechanism(system, tracks_of(paths))
+        server = start_server(host, port)
+        self._wake = threading.Condition()  # Guards what is wanted; held for moments only, never while painting.
+        self._wanted: _Wanted | None = None
+        self._closing = False
+        self.dropped = 0
+        try:
+            super().__init__(server, mechanism, exaggeration, controls)
+        except BaseException:
+            stop_server(server)
+            raise
+        self._worker = threading.Thread(target=self._work, name="symofros view", daemon=True)
+        self._worker.start()
+
+    # Where it is.
+
+    @property
+    def host(self) -> str:
+        """The address it is served at."""
+        return str(self._server.get_host())
+
+    @property
+    def port(self) -> int:
+        """The port it is served at."""
+        return int(self._server.get_port())
+
+    @property
+    def url(self) -> str:
+        """What to open in a browser, or in an iframe."""
+        return f"http://{f'[{self.host}]' if ':' in self.host else self.host}:{self.port}"
+
+    @property
+    def clients(self) -> int:
+        """How many browsers look at it."""
+        return len(self._server.get_clients())
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether it serves no more."""
+        return self._closing
+
+    # What is shown.
+
+    def set_system(self, system: System) -> None:
+        """Show another mechanism, or the same one changed.
+
+        Browsers keep their cameras; where the coordinates are the same, they stay as they are, loops closed.
+
+        Raises:
+            DescriptionError: The system can't be a mechanism; the picture stays as it was.
+        """
+        mechanism = Mechanism(system, self.mechanism.tracks)
+        with self._painting:
+            self._discard()
+            self._player = None
+            self._stage.change(mechanism)
+            self._panel = self._new_panel()
+
+    def show(self, q: Given | None = None, *, u: Given | None = None, par: Given | None = None) -> None:
+        """Show a configuration, now; a motion that plays is paused.
+
+        Args:
+            q: Coordinates (nq); the neutral ones by default.
+            u: Inputs (nu), for prescribed motions.
+            par: Run-time parameters (npar); the mechanism is drawn anew where they change it.
+
+        Raises:
+            ShapeError: An array does not fit the model.
+        """
+        state = self.mechanism.state(q, u, par)
+        with self._painting:
+            self._discard()
+            self._stand(state)
+
+    def push(self, t: float, q: Given, *, u: Given | None = None, par: Given | None = None) -> None:
+        """Show a configuration soon, without waiting: for loops that have no time to lose.
+
+        The newest state is what is shown: states that come faster than pictures are dropped. A state that is not finite
+        leaves the picture as it is.
+
+        Args:
+            t: Time [s], shown beside the picture.
+            q: Coordinates (nq); copied.
+            u: Inputs (nu), for prescribed motions.
+            par: Run-time parameters (npar).
+
+        Raises:
+            ShapeError: An array does not fit the model.
+        """
+        wanted = _Wanted(self.mechanism.state(q, u, par), float(t))
+        with self._wake:
+            self.dropped += self._wanted is not None
+            self._wanted = wanted
+            self._wake.notify()
+
+    def play(self, run: Played, *, speed: float = 1.0, loop: bool = True) -> None:
+        """Show a motion from its beginning, with controls to pause, to go to a time, and to change the speed.
+
+        Args:
+            run: A trajectory of this system, or times (n) and coordinates (n, nq).
+            speed: Seconds of the motion a second: 0.1 is ten times slower than it happens.
+            loop: Whether it begins again at its end.
+
+        Raises:
+            ShapeError: The motion does not fit the model.
+            SymofrosError: The speed is not a number above 0.
+        """
+        player = Player(motion_of(self.mechanism.model, run), speed, loop)
+        player.start()
+        with self._painting:
+            self._discard()
+            self._player = player
+            self._panel = self._new_panel()
+            self._paint_motion()
+        self._call_worker()
+
+    def toggle(self) -> None:
+        """Play or pause the motion."""
+        super().toggle()
+        self._call_worker()
+
+    # Its end.
+
+    def wait(self) -> None:
+        """Wait until it is closed, or the user interrupts."""
+        with suppress(KeyboardInterrupt):
+            while self._worker.is_alive():
+                self._worker.join(0.5)
+
+    def close(self) -> None:
+        """Stop serving; browsers keep the last picture."""
+        with self._wake:
+            if self._closing:
+                return
+            self._closing = True
+            self._wake.notify()
+        self._worker.join()
+        stop_server(self._server)
+
+    def __enter__(self) -> Self:
+        """The viewer."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close it."""
+        self.close()
+
+    # How it works: a thread of its own paints what was pushed or is played; all else is painted by who asks for it.
+
+    def _work(self) -> None:
+        last = time.monotonic()
+        while True:
+            with self._wake:
+                while not (self._closing or self._wanted or self._is_playing()):
+                    self._wake.wait()
+                    last = time.monotonic()
+                if self._closing:
+                    return
+            began = time.monotonic()
+            with self._painting:
+                # Taken only now: what is shown meanwhile by another thread is newer than what waited.
+                with self._wake:
+                    wanted, self._wanted = self._wanted, None
+                if wanted is not None:
+                    self._live(wanted.state, wanted.t)
+                elif self._player is not None:
+                    self._player.advance(began - last)
+                    self._paint_motion()
+            last = began
+            time.sleep(max(0.0, self._period - (time.monotonic() - began)))
+
+    def _call_worker(self) -> None:
+        with self._wake:
+            self._wake.notify()
+
+    def _discard(self) -> None:
+        with self._wake:
+            self._wanted = None

@@ -1,0 +1,91 @@
+"""`symofros simulate --view` and `--record-view`, of models and of diagrams."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner, Result
+
+import symofros as sf
+from symofros.__main__ import app
+from tests.diagrams.files.cases import ARM, TEXT, folder_with
+
+SECOND = "  second:\n    kind: forward_dynamics\n    model: arm\n"
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["simulate", *map(str, arguments)])
+
+
+@pytest.fixture
+def seen(monkeypatch: pytest.MonkeyPatch) -> list[sf.Viewer]:
+    """The viewers that were waited for; nothing opens a browser."""
+    found: list[sf.Viewer] = []
+    monkeypatch.setattr(sf.Viewer, "wait", lambda self: found.append(self))
+    monkeypatch.setattr("webbrowser.open", lambda url: True)
+    return found
+
+
+def test_a_model_is_recorded(tmp_path: Path) -> None:
+    found = run(ARM, "0.1", "--set", "q1=0.5", "--record-view", tmp_path / "r.gif", "-o", tmp_path / "r.npz")
+    assert found.exit_code == 0 and f"wrote {tmp_path / 'r.gif'}" in found.output, found.output
+    assert (tmp_path / "r.gif").read_bytes().startswith(b"GIF89a") and (tmp_path / "r.npz").exists()
+
+
+def test_a_diagram_is_recorded(tmp_path: Path) -> None:
+    found = run(folder_with(tmp_path), "--record-view", tmp_path / "r.png", "--json")
+    assert found.exit_code == 0 and str(tmp_path / "r.png") in found.stdout, found.output
+    assert (tmp_path / "r.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_model_is_played(seen: list[sf.Viewer]) -> None:
+    found = run(ARM, "0.1", "--set", "q1=0.5", "--view", "--exaggeration", "2")
+    (viewer,) = seen
+    assert found.exit_code == 0 and f"it plays at {viewer.url} (Ctrl-C ends)" in found.output, found.output
+    assert viewer._player is not None and viewer._player.motion.end == pytest.approx(0.1)
+    assert viewer.exaggeration == 2.0 and viewer.is_closed
+
+
+def test_a_diagram_is_played(seen: list[sf.Viewer], tmp_path: Path) -> None:
+    found = run(folder_with(tmp_path), "--view")
+    (viewer,) = seen
+    assert found.exit_code == 0 and viewer._player is not None and viewer.is_closed, found.output
+    assert viewer._player.motion.end == pytest.approx(0.2) and viewer.painted > 0
+
+
+def test_a_diagram_in_real_time_is_shown_as_it_goes(seen: list[sf.Viewer], tmp_path: Path) -> None:
+    found = run(folder_with(tmp_path), "--view", "--realtime")
+    (viewer,) = seen
+    assert found.exit_code == 0, found.output
+    assert "view3d.shown: 6" in found.output and f"view3d: {viewer.url}" in found.output  # Every 0.04 s of 0.2 s.
+    assert viewer._player is not None and viewer._player.motion.end == pytest.approx(0.2)  # Then it is played.
+
+
+def test_one_of_several_mechanisms_is_chosen(seen: list[sf.Viewer], tmp_path: Path) -> None:
+    file = folder_with(tmp_path, TEXT.replace("blocks:\n", "blocks:\n" + SECOND))
+    refused = run(file, "--view")
+    assert refused.exit_code == 2 and "blocks that move one: second, plant" in refused.output and not seen
+    found = run(file, "--view", "--view-block", "second")
+    (viewer,) = seen
+    q = sf.Simulation(sf.load_diagram(file)).run()["second.q"]
+    assert found.exit_code == 0 and viewer._player is not None
+    assert np.array_equal(viewer._player.motion.q, q)
+
+
+@pytest.mark.parametrize("of", ["model", "diagram"])
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["--record-view", "r.avi"], "one of .html, .mp4, .gif, .png"),
+        (["--view"], "pip install 'symofros[view]'"),
+    ],
+)
+def test_what_can_not_be_shown_is_not_run(
+    of: str, arguments: list[str], expected: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "viser", None)
+    file = ARM if of == "model" else folder_with(tmp_path)
+    found = run(file, "0.1", "-o", tmp_path / "r.npz", *arguments)
+    assert found.exit_code == 2 and expected in found.output and not (tmp_path / "r.npz").exists()

@@ -1,0 +1,109 @@
+"""`symofros simulate` and `symofros info` of a diagram."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as parquet
+import pytest
+from typer.testing import CliRunner
+
+import symofros as sf
+from symofros.__main__ import app
+from symofros.diagrams.files.command import is_diagram
+from tests.diagrams.files.cases import ARM, TEXT, folder_with
+
+
+def run(*arguments: object):
+    return CliRunner().invoke(app, list(map(str, arguments)))
+
+
+def test_a_diagram_is_known_by_its_key(tmp_path: Path) -> None:
+    assert is_diagram(folder_with(tmp_path)) and not is_diagram(ARM) and not is_diagram(tmp_path / "none.yaml")
+
+
+def test_it_says_how_the_run_went_and_writes_it(tmp_path: Path) -> None:
+    file, table, picture = folder_with(tmp_path), tmp_path / "r.csv", tmp_path / "r.png"
+    found = run("simulate", file, "-o", table, "--plot", picture, "--json", "--signals", "plant.q,pd.effort[1]")
+    assert found.exit_code == 0, found.output
+    said = json.loads(found.stdout)
+    assert said["ok"] and said["outcome"]["t"] == 0.2 and said["files"] == [str(table), str(picture)]
+    rows = list(csv.reader(table.open()))
+    assert rows[0] == ["t [s]", "plant.q[0] [rad]", "plant.q[1] [rad]", "pd.effort[1]"] and len(rows) == 22
+    assert picture.stat().st_size > 10_000
+
+
+def test_files_hold_what_the_run_gave(tmp_path: Path) -> None:
+    run_ = sf.Simulation(sf.load_diagram(folder_with(tmp_path))).run()
+    run_.save(tmp_path / "r.npz")
+    arrays = np.load(tmp_path / "r.npz")
+    assert np.array_equal(arrays["plant.q"], run_["plant.q"])
+    assert dict(zip(arrays["names"], arrays["units"], strict=True))["plant.v"] == "rad/s"
+    run_.save(tmp_path / "r.parquet", "plant.q")
+    columns = parquet.read_table(tmp_path / "r.parquet")
+    assert columns.column_names == ["t", "plant.q[0]", "plant.q[1]"]
+    assert columns.schema.field("plant.q[0]").metadata == {b"unit": b"rad"}
+    assert np.array_equal(columns["plant.q[1]"].to_numpy(), run_["plant.q"][:, 1])
+    with pytest.raises(sf.SymofrosError, match="can't save as 'r.xlsx'"):
+        run_.save(tmp_path / "r.xlsx")
+
+
+def test_parameters_are_set(tmp_path: Path) -> None:
+    file = folder_with(tmp_path)
+    ends = []
+    for values in ("40,20", "[0,0]", "0"):
+        found = run(
+            "simulate", file, "--set", f"pd.kp={values}", "--set", "pd.kd=0", "-o", tmp_path / "r.npz", "--json"
+        )
+        assert found.exit_code == 0, found.output
+        ends.append(np.load(tmp_path / "r.npz")["pd.effort"][-1])
+    assert np.all(ends[1] == 0.0) and np.all(ends[2] == 0.0)
+
+
+def test_real_time(tmp_path: Path) -> None:
+    found = run("simulate", folder_with(tmp_path), "--speed", "2", "--jitter", tmp_path / "j.png", "--json")
+    said = json.loads(found.stdout)
+    jitter = said["jitter"]
+    assert (
+        said["statistics"]["seconds"] >= 0.0999 and jitter["instants"] == 21 and jitter["spacing"] == 0.005
+    )  # On the clock.
+    assert 0.0 <= jitter["minimum"] <= jitter["median"] <= jitter["p999"] <= jitter["maximum"]
+    assert (tmp_path / "j.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--signals", "plant.x"], "has no output 'x'"),
+        (["--signals", "plant.q[7]"], "no such entry"),
+        (["--set", "pd.ki=1"], "no run-time parameter 'pd.ki'"),
+        (["--set", "pd.kp=1,2,3"], "does not fit"),
+        (["--input", "q1=0"], "inputs are blocks"),
+        (["--jitter", "j.png"], "add --realtime"),
+        (["--method", "bdf"], "no method 'bdf'"),
+        (["-o", "r.xlsx"], "can't save as"),
+        (["--plot", "window"], "a window needs a screen"),
+    ],
+)
+def test_what_does_not_fit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], words: str) -> None:
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    found = run("simulate", folder_with(tmp_path), "0.02", *arguments)
+    assert found.exit_code == 2 and words in found.output, found.output
+
+
+def test_info_shows_what_a_diagram_is(tmp_path: Path) -> None:
+    file = folder_with(tmp_path)
+    found = run("info", file, "--json")
+    assert found.exit_code == 0, found.output
+    said = json.loads(found.stdout)
+    assert said["blocks"]["pd"]["inputs"]["v_desired"] == "0.0" and said["blocks"]["pd"]["period"] == 0.01
+    assert said["order"].index("plant.q") < said["order"].index("pd.effort") and said["models"]["arm"]["nv"] == 2
+    assert said["parameters"]["pd.kp[0]"] == 40.0 and said["parameters"]["arm.m2"] == 0.9
+    for_people = run("info", file)
+    assert for_people.exit_code == 0 and "order: plant -> pd" in for_people.output
+    file.write_text(TEXT.replace("q: plant.q\n", "q: plant.z\n", 1))
+    spoilt = run("info", file)
+    assert spoilt.exit_code == 2 and "diagram.yaml:24" in spoilt.output

@@ -1,0 +1,50 @@
+"""The published JSON Schema of diagrams is current, legal, and agrees with the reader."""
+
+from __future__ import annotations
+
+import json
+
+import jsonschema
+import pytest
+from ruamel.yaml import YAML
+
+from symofros.diagrams.files.schema import SCHEMA_FILE, json_schema, schema_text
+from tests.diagrams.files.cases import TEXT
+
+PART = "parts:\n  p: {file: x.yaml, inputs: {a: b.c}}\n  r: {diagram: {blocks: {s: {kind: scope, signals: [x]}}}}\n"
+
+
+def check(text: str) -> None:
+    jsonschema.validate(YAML(typ="safe", pure=True).load(text), json_schema())
+
+
+def test_the_published_schema_is_current() -> None:
+    assert SCHEMA_FILE.read_text(encoding="utf-8") == schema_text(), "run: python -m symofros.diagrams.files.schema"
+
+
+def test_it_is_a_legal_schema() -> None:
+    jsonschema.Draft202012Validator.check_schema(json.loads(schema_text()))
+
+
+def test_it_accepts_what_the_reader_does() -> None:
+    check(TEXT)
+    check(TEXT + PART)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("kind: joint_pd", "kind: joint_pdd"),
+        ("kd: 2", "gain: 2"),
+        ("period: 0.01", "period: soon"),
+        ("    kd: 2\n", ""),
+        ("t_end: 0.2", "t_end: 0"),
+        ("signals: [plant.q]", "signals: plant.q"),
+        ("symofros_diagram: 1", "symofros_diagram: 2"),
+        ("{file: x.yaml,", "{file: x.yaml, diagram: {},"),
+    ],
+)
+def test_it_refuses_what_the_reader_does(old: str, new: str) -> None:
+    assert old in TEXT + PART
+    with pytest.raises(jsonschema.ValidationError):
+        check((TEXT + PART).replace(old, new, 1))

@@ -1,0 +1,57 @@
+"""Efforts count numbers as they are and packs by their weight; what is liked best wins where they can't tell."""
+
+from __future__ import annotations
+
+import pytest
+
+from symofros.expr.graph import ONE, Edge, Graph, Slot
+from symofros.expr.packs import WIDTH, Pack, combined
+from symofros.expr.program import Function, Output, Program
+from symofros.generator.codegen.effort import PACKED, TIE, cheapest, effort
+
+
+def program(g: Graph, edges: list[Edge]) -> Program:
+    return Program("p", g, {}, (Function("f", "", ("q",), (Output("y", (len(edges),), tuple(edges)),)),))
+
+
+def chained(operations: int) -> Program:
+    """So many sums, one after the other."""
+    g = Graph()
+    total = g.input("q", 0)
+    for i in range(operations):
+        total = g.add(total, g.input("q", i + 1))
+    return program(g, [total])
+
+
+def spent(p: Program) -> float:
+    return effort(p, p.functions[0])
+
+
+def test_numbers_count_once() -> None:
+    assert spent(chained(7)) == 7.0
+
+
+def test_a_pack_counts_its_operations_not_its_lanes() -> None:
+    g = Graph()
+    x, y = (Pack(tuple(g.input(name, i) for i in range(WIDTH))) for name in ("x", "y"))
+    _, pack = combined(g, [(g.input("q", 0), (ONE, x)), (g.input("q", 1), (ONE, y))])
+    put = 2 * WIDTH  # What the two packs of inputs are made of, lane by lane.
+    assert spent(program(g, list(pack.lanes))) == PACKED * (2 + put)
+
+
+def test_constants_and_parameters_cost_nothing() -> None:
+    g = Graph()
+    product = g.mul(g.input("par", 0), g.input("par", 1))
+    staged = Program(
+        "p", g, {}, (Function("f", "", ("q",), (Output("y", (), (product,)),)),), (product,), {product: Slot("pre", 0)}
+    )
+    assert effort(staged, staged.functions[0]) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "name"), [(100, 100, "first"), (104, 100, "first"), (107, 100, "second"), (90, 100, "first")]
+)
+def test_the_cheapest_and_ties(first: int, second: int, name: str) -> None:
+    assert 1.04 < TIE < 1.07
+    assert cheapest({"first": chained(first), "second": chained(second)}) == name
+    assert cheapest({"only": chained(first)}) == "only"

@@ -1,0 +1,242 @@
+"""Batches by vectors give the bits of batches by a loop: every function, any number of states, any width of vectors.
+
+Where the compiler fuses multiplications with additions it may choose other pairs on vectors: then within rounding.
+"""
+
+from __future__ import annotations
+
+import platform
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.compiler import compile_library, describe, generate, plan
+from symofros.generator.codegen.model import model_source
+from symofros.native import native_text
+from symofros.options import MODEL_FUNCTIONS
+from symofros.runtime import library
+from symofros.runtime.kernel import Array, Kernel, Lanes, Manner
+from symofros.runtime.library import CompiledUnit
+from symofros.runtime.toolchain import DEFAULT_FLAGS, cpu_identity
+from tests.generator.codegen.test_source import COMPILERS, compile_strictly
+
+# Two lanes, four, and what this processor has.
+# gcc 12 fuses pairs of neighbouring statements even with contraction off, unless it leaves them apart.
+EXACT = (*DEFAULT_FLAGS, "-ffp-contract=off", "-fno-tree-slp-vectorize")
+WIDTHS = {"sse2": ("-O2", "-ffp-contract=off"), "avx": ("-O2", "-mavx2", "-mfma", *EXACT[-2:]), "native": EXACT}
+# Of the largest value: fused operations round once instead of twice; forward dynamics divides by M.
+SHIPPED = 1e-11
+CHEAP = ("mass_matrix", "bias", "generalized_force", "dynamics", "forward_dynamics")
+# Results of one number a state: shorter than a vector, so that each overruns into the next.
+SCALAR = ("kinetic_energy", "potential_energy")
+HAS = {width: "-mavx2" not in flags or "avx2" in cpu_identity() for width, flags in WIDTHS.items()}
+
+
+def stated(case: str) -> sf.System:
+    return OPERATIONS if case == "operations" else MODELS[case]
+
+
+def parameters(case: str) -> tuple[float, ...]:
+    return describe(plan(stated(case)), sf.Options()).par_default
+
+
+@cache
+def unit(case: str, batch: str, flags: tuple[str, ...], functions: tuple[str, ...]) -> CompiledUnit:
+    system = stated(case)
+    options = sf.Options(functions=functions, flags=flags, batch=batch)  # type: ignore[arg-type]
+    path, symbol = compile_library(system, options)
+    return CompiledUnit(path, symbol, native_text("model/symofros_model.h"), describe(plan(system), options).hash)
+
+
+def given(kernel: Kernel, n: int, shared: tuple[str, ...] = ()) -> list[Array]:
+    rng = np.random.default_rng(n)
+    return [rng.uniform(-2.0, 2.0, (1 if name in shared else n, size)) for name, size in kernel.signature.inputs]
+
+
+def assert_alike(case: str, flags: tuple[str, ...], functions: tuple[str, ...], sizes: list[int], *shared: str) -> None:
+    loops, vectors = (unit(case, batch, flags, functions) for batch in ("loop", "vector"))
+    for key, kernel in loops.kernels.items():
+        pre = kernel.prepare(np.array([parameters(case)]))
+        for n in sizes:
+            inputs = given(kernel, n, shared)
+            results = [k.run(n, pre, inputs) for k in (kernel, vectors.kernels[key])]
+            for expected, found in zip(*results, strict=True):
+                assert np.array_equal(found, expected, equal_nan=True), (key, n)
+
+
+@pytest.mark.parametrize("case", ["double_pendulum", "cart_pole", "planar_robot"])
+def test_every_function(case: str) -> None:
+    assert_alike(case, EXACT, MODEL_FUNCTIONS, [2, 17])
+
+
+@pytest.mark.parametrize("case", ["planar_robot", "friction_arm", "chain7"])
+def test_within_rounding_as_shipped(case: str) -> None:
+    loops, vectors = (unit(case, batch, DEFAULT_FLAGS, CHEAP) for batch in ("loop", "vector"))
+    for key, kernel in loops.kernels.items():
+        pre, inputs = kernel.prepare(np.array([parameters(case)])), given(kernel, 40)
+        for expected, found in zip(*(k.run(40, pre, inputs) for k in (kernel, vectors.kernels[key])), strict=True):
+            np.testing.assert_allclose(found, expected, rtol=0.0, atol=SHIPPED * max(1.0, np.abs(expected).max()))
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("case", ["chain7", "friction_arm", "heavy_top"])
+def test_any_number_of_states(case: str, width: str) -> None:
+    if not HAS[width]:
+        pytest.skip("a processor without these vectors")
+    assert_alike(case, WIDTHS[width], (*CHEAP, *SCALAR), list(range(1, 21)))
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_columns_of_any_number_of_states(width: str) -> None:
+    """In place, but for fewer states than lanes; entries that are always zero are cleared."""
+    if not HAS[width]:
+        pytest.skip("a processor without these vectors")
+    vectors = unit("friction_arm", "vector", WIDTHS[width], (*CHEAP, *SCALAR))
+    for kernel in vectors.compiled.values():
+        pre = kernel.prepare(np.array([parameters("friction_arm")]))
+        for n in (1, 2, 3, 7, 8, 9, 16, 21):
+            inputs = given(kernel, n)
+            columns = kernel._by_lanes(n, pre, [*map(np.asfortranarray, inputs)], Manner(columns=True))
+            for found, expected in zip(columns, kernel._by_rows(n, [pre, *inputs], 1), strict=True):
+                assert np.array_equal(found, expected) and (found.strides[0] == 8 or n == 1)
+
+
+@pytest.mark.parametrize("shared", [("q",), ("v", "u", "t"), ("q", "v", "u", "a", "t")])
+def test_inputs_that_all_states_share(shared: tuple[str, ...]) -> None:
+    assert_alike("chain7", EXACT, CHEAP, [2, 8, 13], *shared)
+
+
+FORMULAS = (
+    "sin(u1) + cos(2e5*u2)",
+    "tan(u1)*asin(u2/4)",
+    "acos(u2/4) - atan(u1)",
+    "atan2(u1, u2)",
+    "sqrt(abs(u1))",
+    "exp(u1)/log(2 + abs(u2))",
+    "sinh(u1) - cosh(u2) - tanh(u1)",
+    "min(u1, u2) - max(u1, -u2)",
+    "sign(u1)*u2",
+    "abs(u1)^1.7 + 1.5^u2",
+    "max(u1, 1)*min(k, u2) + k^u1",
+    "u1/u2",
+    "k",
+    "atan2(1, u1)",
+    "-u1 - k*(2 - u2)",
+)
+OPERATIONS = sf.System(
+    "operations",
+    [
+        sf.RigidBody(f"b{i}", sf.Joint(f"x{i}", "prismatic", effort=(text,)), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+        for i, text in enumerate(FORMULAS)
+    ],
+    [sf.Parameter("k", 0.7)],
+    inputs=[sf.Input("u1"), sf.Input("u2")],
+)
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_every_operation(width: str) -> None:
+    if not HAS[width]:
+        pytest.skip("a processor without these vectors")
+    assert_alike("operations", WIDTHS[width], ("generalized_force", "mass_matrix"), [5, 16])
+
+
+def test_nothing_is_written_beyond_the_last_state() -> None:
+    """Short rows are written by whole vectors, which must not reach past the array."""
+    kernel = unit("double_pendulum", "vector", EXACT, MODEL_FUNCTIONS).kernels["bias", ""]
+    ffi, function = kernel._unit.ffi, kernel._function  # type: ignore[attr-defined]
+    pre = kernel.prepare(np.array([parameters("double_pendulum")]))
+    for n in range(1, 30):
+        inputs = [pre, *given(kernel, n)]
+        guarded = np.full(2 * n + 16, 7.0)
+        buffers = [ffi.from_buffer("double[]", np.ascontiguousarray(x)) for x in inputs]
+        strides = [0, *(x.shape[1] for x in inputs[1:])]
+        function.batch(
+            n,
+            ffi.new("double *[]", buffers),
+            ffi.new("size_t[]", strides),
+            ffi.new("double *[]", [ffi.from_buffer("double[]", guarded)]),
+            ffi.new("double[]", function.work),
+        )
+        assert np.all(guarded[2 * n :] == 7.0) and not np.any(guarded[: 2 * n] == 7.0)
+
+
+def test_large_batches_take_vectors_by_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
+    model, loop = (sf.compile(MODELS["chain7"], sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
+    rng = np.random.default_rng(0)
+    q, v = rng.standard_normal((2, library.MANY + 3, 7))
+    made: list[tuple[tuple[str, str], Lanes]] = []
+    unit = model.kernel("dynamics")._unit  # type: ignore[attr-defined]
+    original = unit.in_lanes
+    monkeypatch.setattr(unit, "in_lanes", lambda key, how: made.append((key, how)) or original(key, how))
+    for n in (library.MANY - 1, library.MANY, library.MANY + 3):
+        for found, expected in zip(model.dynamics(q[:n], v[:n], None), loop.dynamics(q[:n], v[:n], None), strict=True):
+            assert np.array_equal(found, expected)
+    assert made == [(("dynamics", ""), Lanes())]
+
+
+@pytest.mark.parametrize("case", ["rx90", "friction_arm", "operations"])
+def test_parameters_of_each_state(case: str) -> None:
+    """One set for each state, and one for all through the same library."""
+    model, loop = (sf.compile(stated(case), sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
+    rng = np.random.default_rng(0)
+    n = library.MANY + 3
+    q, v = rng.uniform(-2.0, 2.0, (2, n, model.nq))
+    u, par = rng.uniform(-2.0, 2.0, (n, model.nu)), model.parameter_values * rng.uniform(0.5, 1.5, (n, model.npar))
+    assert model.npar > 0
+    for found, expected in zip(model.dynamics(q, v, u, par=par), loop.dynamics(q, v, u, par=par), strict=True):
+        assert np.array_equal(found, expected, equal_nan=True)
+    kernel = model.kernel("dynamics")
+    pre, inputs = kernel.prepare(par[:1]), [q, v, u, np.zeros((1, 1))]
+    own = kernel.in_lanes(Lanes(own=True))  # type: ignore[attr-defined]
+    for found, expected in zip(own.run(n, pre, inputs), kernel.run(n, pre, inputs), strict=True):
+        assert own is not kernel and np.array_equal(found, expected, equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    "lanes", [Lanes(own, precision) for own in (False, True) for precision in ("double", "single")], ids=str
+)
+@pytest.mark.parametrize(
+    "flags", [(), ("-std=gnu99", "-O2"), ("-std=gnu99", "-O2", "-mavx512f"), ("-std=gnu99", "-mavx")]
+)
+def test_builds_without_warnings(flags: tuple[str, ...], lanes: Lanes, tmp_path: Path) -> None:
+    """As strict C99, where batches are loops, and on vectors of every width."""
+    if not any(word in platform.machine() for word in ("x86", "AMD64")) and len(flags) > 1:
+        pytest.skip("flags of another processor")
+    tree = plan(MODELS["friction_arm"])
+    record = describe(tree, sf.Options())
+    program, _ = generate(tree, [("dynamics", ""), ("forward_dynamics", "")], record)
+    compile_strictly(tmp_path, model_source(program, record, "test", in_lanes=lanes), COMPILERS[0], *flags)
+
+
+@pytest.mark.parametrize(("case", "first"), [("open_chain_5r", True), ("chain22", False)])
+def test_few_sines_come_first(case: str, first: bool) -> None:
+    """Those of several vectors follow each other, so that none waits; many angles fill the processor by themselves."""
+    tree = plan(MODELS[case])
+    record = describe(tree, sf.Options())
+    program, _ = generate(tree, [("mass_matrix", "")], record)
+    text = model_source(program, record, "test", Lanes())
+    chunk = text.partition(f"{record.name}_mass_matrix_f0_v_0(")[2].partition("\n}")[0]
+    assert "sym_sincos_v(" in chunk
+    assert ("SYM_PUT" not in chunk and "work[" in chunk) is first
+
+
+def test_sines_of_sines_wait() -> None:
+    """The sine of an angle that another sine leads to is not among the first."""
+    joint = sf.Joint("x", "prismatic", effort=("sin(2*x + sin(x))*sin(3*x)",))
+    system = sf.System("nested", [sf.RigidBody("b", joint, sf.Inertia(1.0))])
+    options = sf.Options(("generalized_force",), batch="vector", flags=EXACT)
+    path, symbol = compile_library(system, options)
+    first, _, others = path.with_suffix(".c").read_text(encoding="utf-8").partition("_v_0(")[2].partition("_v_1(")
+    assert "sym_sincos_v(2," in first and "sym_sincos_v(1," not in first and "sym_sincos_v(1," in others
+    kernel = CompiledUnit(
+        path, symbol, native_text("model/symofros_model.h"), describe(plan(system), options).hash
+    ).kernels["generalized_force", ""]
+    x = np.linspace(-3.0, 3.0, 999)[:, None]
+    inputs = [x if name == "q" else np.zeros((1, size)) for name, size in kernel.signature.inputs]
+    (found,) = kernel.run(len(x), kernel.prepare(np.zeros((1, 0))), inputs)
+    np.testing.assert_allclose(found, np.sin(2 * x + np.sin(x)) * np.sin(3 * x), rtol=0, atol=1e-14)

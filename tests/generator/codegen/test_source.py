@@ -1,0 +1,218 @@
+"""The C text: strict C99 without warnings, legal names, one exported symbol, no state."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.compiler import describe, generate, plan, requested
+from symofros.generator.codegen.names import c_string, identifier, local_name
+from symofros.native import native_text
+from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
+from tests.models import system
+
+COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
+STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1"]
+
+
+def source_of(stated: sf.System) -> str:
+    """Every function but derivatives, which compile for long and are built on a small mechanism below."""
+    every = MODEL_FUNCTIONS + FRAME_FUNCTIONS
+    functions = [name for name in every if "derivative" not in name and "by_par" not in name]
+    return source_of_functions(stated, tuple(functions))
+
+
+def compile_strictly(folder: Path, source: str, compiler: str, *more: str) -> Path:
+    (folder / "symofros_model.h").write_text(native_text("model/symofros_model.h"))
+    (folder / "model.c").write_text(source)
+    done = subprocess.run(
+        [compiler, *STRICT, *more, "-c", "model.c", "-o", "model.o"], cwd=folder, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr[:2000]
+    return folder / "model.o"
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("case", ["tree0", "tree5", "parametrised2"])
+def test_builds_as_strict_c99(case: str, compiler: str, tmp_path: Path) -> None:
+    compile_strictly(tmp_path, source_of(system(case)), compiler)
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("form", ["multipliers", "null_space"])
+def test_derivatives_and_solvers_build_as_strict_c99(form: str, compiler: str, tmp_path: Path) -> None:
+    options = sf.Options(functions=MODEL_FUNCTIONS + FRAME_FUNCTIONS)
+    tree = plan(MODELS["slider_crank"])
+    compile_strictly(tmp_path, generate(tree, requested(tree, options), describe(tree, options), form)[1](), compiler)
+
+
+@pytest.mark.skipif(shutil.which("nm") is None, reason="needs binutils")
+def test_exports_one_symbol_and_keeps_no_state(tmp_path: Path) -> None:
+    done = compile_strictly(tmp_path, source_of(system("tree1")), COMPILERS[0])
+    symbols = subprocess.run(["nm", str(done)], capture_output=True, text=True).stdout.splitlines()
+    exported = [line.split()[-1] for line in symbols if re.search(r" [A-TV-Z] ", line)]
+    assert exported == ["random_tree1_model"]
+    writable = [line for line in symbols if re.search(r" [bBdDcC] ", line) and "rel.ro" not in line]
+    # Tables of pointers are constant; a position-dependent object keeps them in .data.rel.ro, which nm shows as d.
+    assert all(re.search(r"_(names|in|out|functions|struct|default|neutral)$", line) for line in writable), writable
+
+
+@pytest.mark.parametrize(
+    "name", ["arm", "7dof arm", "int", "größe", "a*/b", 'quote"back\\slash', "x" * 150, "?" + "?/", "main"]
+)
+def test_any_name_makes_legal_c(name: str, tmp_path: Path) -> None:
+    body = sf.RigidBody(
+        f"body {name}",
+        sf.Joint(f"joint {name}", "revolute"),
+        sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1)),
+        [sf.Frame(f"frame {name}")],
+    )
+    stated = sf.System(name, [body])
+    compile_strictly(tmp_path, source_of(stated), COMPILERS[0])
+    model = sf.compile(stated)
+    assert model.names.q == (f"joint {name}",)
+    assert model.mass_matrix([0.0]).shape == (1, 1)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "int",
+        "double",
+        "while",
+        "restrict",
+        "main",
+        "NULL",
+        "M",
+        "q",
+        "v",
+        "u",
+        "par",
+        "pre",
+        "h",
+        "sym_model",
+        "_t",
+        "EOF",
+    ],
+)
+def test_parameters_inputs_and_coordinates_may_be_words_of_c(name: str) -> None:
+    """Each names another thing in turn; what the C computes does not depend on what its things are called."""
+    inertia = sf.Inertia(f"2*{name}", (0.1, 0, 0), (1, 1, 1))
+    as_parameter = sf.System(name, [sf.RigidBody("b", sf.Joint("x_", "prismatic"), inertia)], [sf.Parameter(name, 3.0)])
+    assert sf.compile(as_parameter).mass_matrix([0.0]) == 6.0
+    solid = sf.Inertia(2.0, (0.1, 0, 0), (1, 1, 1))
+    as_input = sf.System(
+        "s", [sf.RigidBody("b", sf.Joint("x_", "prismatic", effort=(f"3*{name}",)), solid)], inputs=[sf.Input(name)]
+    )
+    assert sf.compile(as_input).generalized_force([0.0], [0.0], [2.0]) == 6.0
+    joint = sf.Joint(name, "prismatic", effort=(f"-3*{name} - d{name}",))
+    as_coordinate = sf.System("s", [sf.RigidBody(name, joint, solid, [sf.Frame(f"{name}_tip")])])
+    assert sf.compile(as_coordinate).generalized_force([1.0], [2.0], []) == -5.0
+
+
+def test_names_are_readable() -> None:
+    assert identifier("SSRMS arm") == "SSRMS_arm"
+    assert identifier("2R") == "m2R"
+    assert identifier("double") == "double_"
+    assert identifier("äöü") == "model"
+    assert local_name("w_WL_L[forearm][2]", 41) == "w_WL_L__forearm_2_41"
+    assert c_string('a"\\?é') == '"a\\042\\134\\077\\303\\251"'
+
+
+def test_functions_stay_within_the_chunk_limit() -> None:
+    from reference_models.rigid.chain import chain
+
+    lines = source_of_functions(chain(24), ("dynamics",)).split("\n")
+    longest = run = 0
+    for line in lines:
+        run = 0 if line.startswith("}") else run + line.strip().startswith(("const double", "M[", "h["))
+        longest = max(longest, run)
+    assert 300 < longest <= 2000  # A statement and its store are two lines.
+
+
+def source_of_functions(stated: sf.System, functions: tuple[str, ...]) -> str:
+    options = sf.Options(functions=functions)
+    tree = plan(stated)
+    return generate(tree, requested(tree, options), describe(tree, options))[1]()
+
+
+def test_what_no_output_needs_is_not_emitted() -> None:
+    """The gravity alone of an arm needs no speeds; a pose no inertia; one frame no other branch."""
+    stated = system("parametrised0")
+    text = source_of_functions(stated, ("potential_energy",))
+    assert "v[" not in text.split("static const char")[0]
+    assert source_of_functions(stated, ("mass_matrix",)).count("v[") == 0
+
+
+def test_every_operation_prints_what_it_computes() -> None:
+    """One model whose efforts use every row of the op table, compiled and interpreted."""
+    import numpy as np
+
+    formulas = [
+        "sin(u1) + cos(u2)",
+        "tan(u1)*asin(u2/4)",
+        "acos(u2/4) - atan(u1)",
+        "atan2(u1, u2)",
+        "sqrt(abs(u1))",
+        "exp(u1)/log(2 + abs(u2))",
+        "sinh(u1) - cosh(u2) - tanh(u1)",
+        "min(u1, u2) - max(u1, -u2)",
+        "sign(u1)*u2",
+        "abs(u1)^1.7 + u1^3 - u2^(-2)",
+        "-(u1 - u2) - (u1 - (u2 - 1))",
+        "u1/(u2/(u1*u2 + 3))",
+        "(u1 + u2)*(u1 - u2)/u2",
+        "2*u1 - 3*(u2*4)",
+        "-u1*-u2 - -sin(-u1)",
+        "u1 - u2*(u1 + 1)",
+    ]
+    bodies = [
+        sf.RigidBody(f"b{i}", sf.Joint(f"q{i}", "revolute", effort=(formula,)), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+        for i, formula in enumerate(formulas)
+    ]
+    stated = sf.System("ops", bodies, inputs=[sf.Input("u1"), sf.Input("u2")])
+    u = np.random.default_rng(0).uniform(-3, 3, (200, 2))
+    zero = np.zeros(len(formulas))
+    exact = sf.compile(stated, sf.Options(flags=("-O2", "-ffp-contract=off")))
+    twin = sf.compile(stated, sf.Options(backend="interpreter"))
+    expected = twin.generalized_force(zero, zero, u)
+    assert np.array_equal(exact.generalized_force(zero, zero, u), expected)
+    # And both are what Python makes of the same text.
+    for i, formula in enumerate(formulas):
+        for (u1, u2), value in zip(u[:20], expected[:20, i], strict=True):
+            names = {name: getattr(np, name, None) for name in ("sin", "cos", "tan", "sqrt", "exp", "log", "sign")}
+            names |= {"asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "abs": abs}
+            names |= {"sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh, "min": min, "max": max, "u1": u1, "u2": u2}
+            assert value == pytest.approx(eval(formula.replace("^", "**"), {}, names), rel=1e-13, abs=1e-13), formula
+
+
+def test_one_description_gives_one_text() -> None:
+    """Whatever the order in which a process keeps its sets of names: libraries are known by their text."""
+    program = (
+        "import hashlib, symofros as sf; from tests.generator.codegen.test_source import source_of_functions;"
+        "joint = sf.Joint('q', 'revolute', effort=('b*a - c*(a + q) - (d*c - b*q)',));"
+        "inputs = [sf.Input(name) for name in 'abcd'];"
+        "body = sf.RigidBody('body', joint, sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)));"
+        "text = source_of_functions(sf.System('s', [body], inputs=inputs), ('generalized_force',));"
+        "print(hashlib.sha256(text.encode()).hexdigest())"
+    )
+    said = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            cwd=Path(__file__).parents[3],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("1", "2", "3", "4")
+    }
+    assert len(said) == 1

@@ -1,0 +1,41 @@
+from __future__ import annotations
+
+import numpy as np
+
+import symofros as sf
+from symofros.compiler import plan
+from symofros.expr.evaluate import needed_nodes
+from symofros.generator.passes import run_passes
+from symofros.generator.passes.count import count_operations, count_program
+from symofros.generator.passes.stage import hoist_parameters
+from symofros.mechanics.dynamics.functions import Request, write_program
+from tests.models import system
+
+
+def test_parameter_work_moves_to_init() -> None:
+    raw = write_program(plan(system("parametrised0")), [Request("mass_matrix")])
+    staged = hoist_parameters(raw)
+    before = count_operations(raw.graph, raw.functions[0].edges())
+    counts = count_program(staged)
+    init, rest = counts["init", ""], counts["mass_matrix", ""]
+    assert init.total > 0 and rest.total < before.total
+    assert init.total + rest.total == before.total
+    for node in needed_nodes(staged.graph, staged.functions[0].edges(), staged.pre):
+        assert all(
+            staged.graph.slot[abs(arg)].group != "par"
+            for arg in staged.graph.args[node]
+            if abs(arg) in staged.graph.slot and abs(arg) not in staged.pre
+        )
+
+
+def test_constants_leave_nothing_to_init() -> None:
+    staged = run_passes(write_program(plan(system("tree0")), [Request("dynamics")]))
+    assert staged.init == ()
+
+
+def test_an_output_that_is_a_parameter() -> None:
+    """The mass matrix of a slider is its mass: nothing is left to compute per call."""
+    slider = sf.RigidBody("b", sf.Joint("q", "prismatic"), sf.Inertia("m"))
+    model = sf.compile(sf.System("s", [slider], [sf.Parameter("m", 3.0)]))
+    np.testing.assert_array_equal(model.mass_matrix([0.5]), [[3.0]])
+    np.testing.assert_array_equal(model.with_parameters(m=4.0).mass_matrix([[0.5], [0.6]]), [[[4.0]], [[4.0]]])

@@ -1,0 +1,108 @@
+"""Piecewise polynomials: the algebra that modal integrals rest on, exact with fractions."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import scipy.interpolate
+
+from symofros.mechanics.beams.piecewise import XI, Piecewise, fitted, gauss, polynomial, stations
+
+THIRDS = tuple(Fraction(k, 3) for k in range(4))
+HALVES = tuple(Fraction(k, 2) for k in range(3))
+STATIONS = [Fraction(k, 24) for k in range(25)]
+
+
+def some(knots: tuple[Fraction, ...], seed: int, degree: int = 3) -> Piecewise:
+    """Random fractions as coefficients."""
+    rng = np.random.default_rng(seed)
+    numbers = rng.integers(-9, 10, (len(knots) - 1, degree + 1)).tolist()
+    return Piecewise(knots, tuple(tuple(Fraction(c, 7) for c in piece) for piece in numbers))
+
+
+ONE, OTHER = some(THIRDS, 1), some(HALVES, 2)
+
+
+@pytest.mark.parametrize("xi", STATIONS)
+def test_algebra_is_that_of_values_exactly(xi: Fraction) -> None:
+    assert (ONE + OTHER)(xi) == ONE(xi) + OTHER(xi)
+    assert (ONE * OTHER)(xi) == ONE(xi) * OTHER(xi)
+    assert ONE.scaled(Fraction(2, 3))(xi) == Fraction(2, 3) * ONE(xi)
+    assert ONE.refined(tuple(Fraction(k, 6) for k in range(7)))(xi) == ONE(xi)
+    assert ONE.antiderivative().derivative()(xi) == ONE(xi)
+
+
+def test_values_are_those_of_scipy() -> None:
+    knots = [float(k) for k in THIRDS]
+    coefficients = np.array([[float(c) for c in reversed(piece)] for piece in ONE.pieces]).T
+    other = scipy.interpolate.PPoly(coefficients, knots)
+    xi = np.linspace(0.01, 0.99, 50)
+    np.testing.assert_allclose([float(ONE(x)) for x in xi], other(xi), rtol=1e-13)
+    np.testing.assert_allclose([float(ONE.derivative()(x)) for x in xi], other.derivative()(xi), rtol=1e-12)
+    assert float(ONE.integral()) == pytest.approx(float(other.integrate(0, 1)), rel=1e-14)
+
+
+def test_the_antiderivative_starts_at_zero_and_is_continuous() -> None:
+    F = ONE.antiderivative()
+    assert F(Fraction(0)) == 0
+    assert F(Fraction(1)) == ONE.integral()
+    tiny = Fraction(1, 10**12)
+    for knot in THIRDS[1:-1]:
+        assert abs(F(knot + tiny) - F(knot)) < 100 * tiny
+
+
+def test_products_of_fractions_stay_fractions() -> None:
+    total = (XI * XI * polynomial(1, -2)).integral()
+    assert isinstance(total, Fraction) and total == Fraction(-1, 6)
+
+
+def test_zero_is_known_as_zero() -> None:
+    assert (ONE + ONE.scaled(-1)).is_zero
+    assert (ONE * polynomial(0)).is_zero
+    assert polynomial(3).derivative().is_zero
+    assert not ONE.is_zero
+    assert polynomial(1, 0, 2).degree == 2
+
+
+@pytest.mark.parametrize("pieces", [1, 3])
+def test_a_smooth_function_is_fitted_to_rounding(pieces: int) -> None:
+    found = fitted(lambda x: np.exp(x) * np.cos(3 * x), pieces)
+    xi = np.linspace(0, 1, 97)
+    expected = np.exp(xi) * np.cos(3 * xi)
+    np.testing.assert_allclose([float(found(x)) for x in xi], expected, atol=1e-13)
+
+
+@pytest.mark.parametrize("points", [2, 5, 16])
+def test_gauss_is_exact_to_its_degree_and_no_further(points: int) -> None:
+    nodes, weights = (np.array(x) for x in gauss(points))
+    for degree in (0, 1, 2 * points - 1):
+        assert weights @ nodes**degree == pytest.approx(1 / (degree + 1), rel=1e-13)
+    missed = abs(weights @ nodes ** (2 * points) * (2 * points + 1) - 1.0)
+    assert missed > 1e-6 or points > 5  # With more, the error of the next degree is below rounding.
+
+
+def test_stations_integrate_across_a_kink_between_intervals() -> None:
+    xi, w = stations((0, Fraction(1, 3), 1), 4)
+    kinked = np.abs(np.array(xi) - 1 / 3)
+    assert np.dot(w, kinked) == pytest.approx((1 / 9 + 4 / 9) / 2, rel=1e-14)
+
+
+def test_values_are_rounded_once_whatever_cancels() -> None:
+    """A Chebyshev polynomial of degree 40, 1 at most, with coefficients up to 1e15; knots of their own are kept."""
+    chebyshev = np.polynomial.chebyshev.Chebyshev.basis(40, domain=[0, 1])
+    one, two = polynomial(1), polynomial(-1, 2)
+    for _ in range(39):
+        one, two = two, polynomial(-2, 4) * two + one.scaled(-1)
+    xi = [0.0, 0.1, 0.35, 0.5, 0.77, 1.0]
+    np.testing.assert_allclose(two.rounded(xi), chebyshev(np.array(xi)), atol=1e-13)
+    assert two.rounded(xi) == [float(two(Fraction(x))) for x in xi]
+    assert max(abs(float(two(x)) - y) for x, y in zip(xi, two.rounded(xi), strict=True)) > 1.0
+    refined = two.refined((Fraction(0), Fraction(1, 3), Fraction(1, 2), Fraction(1)))
+    assert refined.rounded(xi) == two.rounded(xi)
+
+
+def test_values_of_float_coefficients_are_those_of_horners_rule() -> None:
+    phi = fitted(np.exp, 3)
+    assert phi.rounded([0.0, 1 / 3, 0.4, 1.0]) == [float(phi(x)) for x in (0.0, 1 / 3, 0.4, 1.0)]

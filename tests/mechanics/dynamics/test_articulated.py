@@ -1,0 +1,218 @@
+"""Articulated bodies against the factors of M: the same accelerations, linear growth, digits kept under heavy loads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Literal
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import symofros as sf
+from reference_models import MODELS
+from reference_models.rigid.chain import INERTIAL, chain
+from reference_models.rigid.random_tree import MORE_KINDS, SERIES_KINDS, random_tree
+from symofros.compiler import plan
+from symofros.description.forces import Rotor
+from symofros.expr.precise import evaluate_precisely
+from symofros.expr.program import Program
+from symofros.generator.codegen.interpreted import InterpretedUnit
+from symofros.generator.passes import run_passes
+from symofros.generator.passes.count import Operations, count_program
+from symofros.mechanics.dynamics.functions import Request, methods, write_program
+from tests.mechanics.beams.cases import CASES
+
+Way = Literal["articulated", "factors"]
+WAYS: tuple[Way, ...] = ("articulated", "factors")
+NAME = "forward_dynamics"
+TREES = tuple(name for name, system in MODELS.items() if not system.constraints)
+# Rounding times the condition of M: up to 3e7 among the reference models.
+TOLERANCE = 1e-10
+SOLID = sf.Inertia(1.0, (0.2, 0.1, -0.3), (1.0, 1.2, 0.9))
+
+
+def interpreted(system: sf.System, way: Way) -> sf.Model:
+    return sf.compile(system, sf.Options((NAME,), (), backend="interpreter", forward_dynamics=way))
+
+
+def difference(system: sf.System, seed: int = 0) -> float:
+    """Of the two at some states, relative to the largest acceleration; prescribed motions as they are by default."""
+    rng = np.random.default_rng(seed)
+    models = [interpreted(system, way) for way in WAYS]
+    q, v = (np.array(x) for x in zip(*(models[0].random_state(rng) for _ in range(4)), strict=True))
+    u = np.array(models[0].record.u_default) + np.zeros((4, models[0].nu))
+    efforts = plan(system).coordinates.efforts
+    u[:, :efforts] = rng.uniform(-1.0, 1.0, (4, efforts))
+    one, other = (model.forward_dynamics(q, v, u) for model in models)
+    return float((np.abs(one - other).max(-1) / np.abs(other).max(-1)).max())
+
+
+@pytest.mark.parametrize("name", TREES)
+def test_reference_models(name: str) -> None:
+    """Flexible arms, rotors, springs and loads among them."""
+    assert difference(MODELS[name]) < TOLERANCE
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(seed=st.integers(0, 10**6), n=st.integers(1, 8))
+def test_random_trees(seed: int, n: int) -> None:
+    """Joints of every kind, the user's own among them."""
+    assert difference(random_tree(seed, n, (*MORE_KINDS, *SERIES_KINDS)), seed) < TOLERANCE
+
+
+@pytest.mark.filterwarnings("ignore::symofros.InconsistentModelWarning")  # One is without foreshortening on purpose.
+@pytest.mark.parametrize("retain", ["zeroth_order", "first_order", "all"])
+@pytest.mark.parametrize("case", CASES)
+def test_beams(case: str, retain: str) -> None:
+    """In series, branching, with bodies on their tips, on a driven base."""
+    assert difference(CASES[case].retaining(retain)) < TOLERANCE
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_prescribed_motion_inside_a_tree(seed: int, rng: np.random.Generator) -> None:
+    stated = random_tree(900 + seed, kinds=("revolute", "prismatic", "universal", "ball"))
+    body = next(b for b in stated.bodies[2:] if b.joint is not None and b.joint.kind != "ball")
+    assert body.joint is not None
+    driven = stated.with_bodies(replace(body, joint=replace(body.joint, prescribed=True, actuated=False)))
+    models = [interpreted(driven, way) for way in WAYS]
+    q, v = models[0].random_state(rng)
+    u = rng.uniform(-1.0, 1.0, models[0].nu)  # Coordinates, speeds and rates of the motion among them.
+    one, other = (model.forward_dynamics(q, v, u) for model in models)
+    np.testing.assert_allclose(one, other, rtol=0, atol=TOLERANCE * np.abs(other).max())
+
+
+def geared(carrier: str | None) -> sf.System:
+    """Three links, a rotor that the last joint drives."""
+    rotor = Rotor(2e-3, 30.0, (0.3, 0.4, 0.8), carrier)
+    bodies = [
+        sf.RigidBody(
+            f"b{i}",
+            sf.Joint(
+                f"q{i}",
+                "revolute",
+                f"b{i - 1}" if i else "world",
+                position=(0.3, 0.1, 0.2),
+                axis=(1, i, -i),
+                rotors=(rotor,) if i == 2 else (),
+            ),
+            SOLID,
+        )
+        for i in range(3)
+    ]
+    return sf.System("geared", bodies)
+
+
+@pytest.mark.parametrize("carrier", ["b1", "world"])
+def test_rotors_on_the_parent_or_at_rest(carrier: str) -> None:
+    assert methods(plan(geared(carrier))) == WAYS
+    assert difference(geared(carrier)) < TOLERANCE
+
+
+@pytest.mark.parametrize("carrier", ["b0", "b2"])
+def test_rotors_on_a_third_body_need_the_factors(carrier: str) -> None:
+    """Its own link counts as one: the rotor turns with what it drives."""
+    assert methods(plan(geared(carrier))) == ("factors",)
+    with pytest.raises(sf.DescriptionError, match=r"rotor.*\n.*\n.*remedy.*'factors'"):
+        interpreted(geared(carrier), "articulated")
+
+
+def massless(system: sf.System, way: Way) -> str:
+    with pytest.raises(sf.DescriptionError) as caught:
+        interpreted(system, way)
+    return str(caught.value)
+
+
+def test_the_same_refusals() -> None:
+    """A speed that moves no mass, and two that move the same mass alike."""
+    tip = sf.RigidBody("b", sf.Joint("q2", "revolute", "a"), None, waive=("massless_tip",))
+    light = sf.System("s", (sf.RigidBody("a", sf.Joint("q1", "revolute"), SOLID), tip))
+    between = sf.RigidBody("a", sf.Joint("q1", "revolute"), None)
+    alike = sf.System("s", (between, sf.RigidBody("b", sf.Joint("q2", "revolute", "a"), SOLID)))
+    for system, words in ((light, "speed 'q2' moves no mass"), (alike, "speed 'q1' moves nothing that")):
+        assert words in massless(system, "articulated")
+        assert massless(system, "articulated") == massless(system, "factors")
+
+
+@cache
+def program(links: int, way: Way) -> Program:
+    """Forward dynamics of a chain whose inertias are run-time parameters."""
+    return run_passes(write_program(plan(chain(links)), [Request(NAME)], method=way))
+
+
+def counted(links: int, way: Way) -> Operations:
+    return count_program(program(links, way))[NAME, ""]
+
+
+def test_growth_with_the_number_of_links() -> None:
+    """Recursion: operations grow as n; those of the factors tend to n^3, and take n^2 to form M."""
+    grown = {way: np.log2(counted(52, way).total / counted(26, way).total) for way in WAYS}
+    assert grown["articulated"] == pytest.approx(1.0, abs=0.05)
+    assert grown["factors"] > 2.2
+
+
+def test_zeros_of_free_joints_cost_nothing() -> None:
+    """A revolute joint passes no moment about its axis on: a link of the chain costs 15 entries, not 21."""
+    per_link = (counted(52, "articulated").total - counted(26, "articulated").total) / 26
+    assert per_link <= 390
+
+
+@cache
+def error(links: int, way: Way, load: float) -> float:
+    """Of accelerations in doubles, against forty digits: the geometric mean over states.
+
+    The last link is so many times as heavy as it was.
+    """
+    heavy = {f"{name}{links}" for name in INERTIAL if name[0] in "mI"}
+    par = np.array([p.value * (load if p.name in heavy else 1.0) for p in chain(links).parameters], dtype=float)
+    ours = program(links, way)
+    kernel, exact = InterpretedUnit(ours).kernels[NAME, ""], program(links, "articulated")
+    rng, errors = np.random.default_rng(links), []
+    for _ in range(4):
+        given = {"q": rng.uniform(-1.0, 1.0, links), "v": rng.uniform(-1.0, 1.0, links), "u": np.zeros(links)}
+        given |= {"t": np.zeros(1), "par": par}
+        expected = np.array(evaluate_precisely(exact, exact.functions[0], given, 40)[0], dtype=float)
+        a = kernel.run(1, kernel.prepare(par[None]), [given[name][None] for name, _ in kernel.signature.inputs])[0][0]
+        errors.append(np.abs(a - expected).max() / np.abs(expected).max())
+    return float(np.exp(np.mean(np.log(errors))))
+
+
+def test_digits_and_the_length_of_a_chain() -> None:
+    """Twice the links: factors lose a digit more (n^4), articulated bodies nothing to speak of (below n)."""
+    lost = {way: np.log2(error(16, way, 1.0) / error(8, way, 1.0)) for way in WAYS}
+    assert lost["articulated"] < 1.0
+    assert lost["factors"] > 3.0
+
+
+def test_digits_and_the_weight_of_a_load() -> None:
+    """Both lose in proportion to the load on sixteen links, from levels that lie hundreds of times apart."""
+    for way in WAYS:
+        slope = np.log10(error(16, way, 1e8) / error(16, way, 1e4)) / 4.0
+        assert slope == pytest.approx(1.0, abs=0.25)
+    assert error(16, "factors", 1e8) > 100.0 * error(16, "articulated", 1e8)
+    assert error(16, "articulated", 1e8) < 1e-7
+
+
+@pytest.mark.parametrize(
+    ("make", "way"),
+    [
+        (lambda: MODELS["puma560"], "factors"),
+        (lambda: MODELS["chain7"], "factors"),
+        (lambda: MODELS["joint_zoo"], "factors"),
+        (lambda: MODELS["planar_robot"], "articulated"),
+        (lambda: MODELS["mss"], "articulated"),
+        (lambda: MODELS["flexible_arm"], "articulated"),
+        (lambda: chain(32), "articulated"),
+    ],
+)
+def test_auto_is_what_was_measured_to_be_faster(make: Callable[[], sf.System], way: Way) -> None:
+    """docs/theory/code.md, section 2, states the times."""
+    system = make()
+    ours = count_program(sf.program_of(system, [NAME]))[NAME, ""]
+    alone = run_passes(write_program(plan(system), [Request(NAME)], method=way))
+    assert ours == count_program(alone)[NAME, ""]
+    other = run_passes(write_program(plan(system), [Request(NAME)], method=WAYS[way == "articulated"]))
+    assert ours != count_program(other)[NAME, ""]

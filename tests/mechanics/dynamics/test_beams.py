@@ -1,0 +1,284 @@
+"""Physics that every tree with beams obeys, at every order."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import symofros as sf
+from symofros.generator.passes.count import count_program
+from tests.mechanics.beams.cases import CASES
+
+ORDERS = ("zeroth_order", "first_order", "all")
+NAMES = ("hub about another axis", "free base, rotary inertia", "two in series", "body hinged to the tip", "tapered")
+# Sums of some hundred terms of size one.
+ROUNDING = 1e-12
+# Central differences: error h^2 and eps/h.
+STEP, DIFFERENCE = 1e-5, 1e-7
+STATES = 4
+
+
+@cache
+def model(name: str, retain: str) -> sf.Model:
+    return sf.compile(CASES[name].retaining(retain), sf.Options(backend="interpreter"))
+
+
+def states(m: sf.Model, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Deflections of a tenth of the length or so: second-order theory is good there, and M positive."""
+    elastic = np.array(["[" in name for name in m.names.q])
+    size = np.where(elastic, 0.05, 1.0)
+    return size * rng.standard_normal((STATES, m.nq)), rng.standard_normal((STATES, m.nv))
+
+
+@pytest.mark.parametrize("retain", ORDERS)
+@pytest.mark.parametrize("name", NAMES)
+def test_mass_matrix_and_kinetic_energy(name: str, retain: str, rng: np.random.Generator) -> None:
+    m = model(name, retain)
+    q, v = states(m, rng)
+    M = m.mass_matrix(q)
+    assert np.array_equal(M, np.swapaxes(M, -1, -2))
+    assert np.linalg.eigvalsh(M).min() > 0.0
+    np.testing.assert_allclose(m.kinetic_energy(q, v), 0.5 * np.einsum("ni,nij,nj->n", v, M, v), rtol=ROUNDING)
+
+
+@pytest.mark.parametrize("retain", ORDERS)
+@pytest.mark.parametrize("name", NAMES)
+def test_forward_undoes_inverse(name: str, retain: str, rng: np.random.Generator) -> None:
+    """Ties M, by composite bodies, to M a + h, by accelerations: they share no term."""
+    m = model(name, retain)
+    q, v = states(m, rng)
+    a = rng.standard_normal((STATES, m.nv))
+    M, h, Q = m.dynamics(q, v, np.zeros(m.nu))
+    expected = np.einsum("nij,nj->ni", M, a) + h - Q
+    np.testing.assert_allclose(m.inverse_dynamics(q, v, a), expected, atol=ROUNDING * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_energy_changes_by_what_damping_takes(name: str, rng: np.random.Generator) -> None:
+    """d(T + V)/dt along the motion is the power of the damping forces, if everything is kept."""
+    m = model(name, "all")
+    q, v = states(m, rng)
+    a = m.forward_dynamics(q, v, np.zeros(m.nu))
+
+    def energy(h: float) -> np.ndarray:
+        return m.kinetic_energy(q + h * v, v + h * a) + m.potential_energy(q + h * v)
+
+    rate = (energy(STEP) - energy(-STEP)) / (2 * STEP)
+    viscous = m.generalized_force(q, v, ()) - m.generalized_force(q, np.zeros(m.nv), ())
+    power = np.sum(v * viscous, axis=-1)
+    assert np.all(power < 0.0)
+    # What the energy gains and loses in its parts is larger than its change.
+    scale = np.abs(m.kinetic_energy(q, v)).max() * np.abs(a).max()
+    np.testing.assert_allclose(rate, power, atol=DIFFERENCE * scale)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_statics_is_the_gradient_of_the_potential(name: str, rng: np.random.Generator) -> None:
+    m = model(name, "all")
+    q, _ = states(m, rng)
+    still = np.zeros(m.nv)
+    force = m.bias(q, still) - m.generalized_force(q, still, ())
+    steps = STEP * np.eye(m.nv)
+    slope = (m.potential_energy(q[:, None] + steps) - m.potential_energy(q[:, None] - steps)) / (2 * STEP)
+    np.testing.assert_allclose(slope, force, atol=DIFFERENCE * np.abs(force).max())
+
+
+@pytest.mark.parametrize("retain", ORDERS)
+@pytest.mark.parametrize("name", NAMES)
+def test_frames_move_as_their_poses_do(name: str, retain: str, rng: np.random.Generator) -> None:
+    """Velocity, acceleration and Jacobians of the last frame against differences of its pose; at any order, it is
+    where the deflection puts it."""
+    m = model(name, retain)
+    frame = m.names.frames[-1]
+    q, v = states(m, rng)
+    a = rng.standard_normal((STATES, m.nv))
+    J, J_rate = m.frame_jacobian(frame, q), m.frame_jacobian_rate(frame, q, v)
+    velocity = m.frame_velocity(frame, q, v)
+    np.testing.assert_allclose(velocity, np.einsum("nij,nj->ni", J, v), atol=ROUNDING * np.abs(velocity).max())
+    acceleration = m.frame_acceleration(frame, q, v, a)
+    expected = np.einsum("nij,nj->ni", J, a) + np.einsum("nij,nj->ni", J_rate, v)
+    np.testing.assert_allclose(acceleration, expected, atol=ROUNDING * np.abs(expected).max())
+    (p0, R0), (p1, R1) = (m.frame_pose(frame, q + h * v) for h in (-STEP, STEP))
+    W = np.einsum("nij,nkj->nik", R1 - R0, m.frame_pose(frame, q)[1]) / (2 * STEP)
+    spin = np.stack([W[:, 2, 1], W[:, 0, 2], W[:, 1, 0]], axis=-1)
+    differences = np.concatenate([(p1 - p0) / (2 * STEP), spin], axis=-1)
+    np.testing.assert_allclose(velocity, differences, atol=DIFFERENCE * np.abs(velocity).max())
+    v0, v1 = (m.frame_velocity(frame, q + h * v, v + h * a) for h in (-STEP, STEP))
+    np.testing.assert_allclose(acceleration, (v1 - v0) / (2 * STEP), atol=DIFFERENCE * np.abs(acceleration).max())
+
+
+def test_the_tip_is_where_the_displacement_field_puts_it() -> None:
+    beam = sf.Beam(
+        "b",
+        sf.Joint("root", "fixed"),
+        2.0,
+        1.0,
+        EI_z=1,
+        EI_y=1,
+        GJ=1,
+        rhoJ=1,
+        bend_y=1,
+        bend_z=1,
+        twist=1,
+        family="polynomial",
+    )
+    m = sf.compile(sf.System("s", [beam]), sf.Options(("frame_pose",), ("tip",), backend="interpreter"))
+    v, w, phi = 0.12, -0.08, 0.3
+    p, R = m.frame_pose("tip", (v, w, phi))
+    # v = v_tip xi^2: u(L) = -1/2 int (2 v_tip x/L^2)^2 dx = -2/3 v_tip^2/L.
+    np.testing.assert_allclose(p, (2.0 - 2 / 3 * (v**2 + w**2) / 2.0, v, w), rtol=1e-15)
+    np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-15)
+    np.testing.assert_allclose(R[:, 0], (np.cos(v) * np.cos(w), np.sin(v) * np.cos(w), np.sin(w)), rtol=1e-15)
+
+
+@pytest.mark.parametrize("retain", ORDERS)
+def test_a_quaternion_base_moves_as_one_with_euler_angles(retain: str, rng: np.random.Generator) -> None:
+    """The same motion, stated with other coordinates: its forces have the same virtual power."""
+    euler = model("free base, rotary inertia", retain)
+    body = CASES["free base, rotary inertia"].retaining(retain).bodies[0]
+    floating = replace(body, joint=sf.Joint("base", "free"))
+    stated = replace(CASES["free base, rotary inertia"].system, bodies=(floating,))
+    free = sf.compile(stated, sf.Options(("inverse_dynamics",), backend="interpreter"))
+    q, v = (x[0] for x in states(euler, rng))
+    a = rng.standard_normal(euler.nv)
+    p, R = euler.frame_pose("beam", q)
+    velocity, acceleration = euler.frame_velocity("beam", q, v), euler.frame_acceleration("beam", q, v, a)
+    # Body velocities and their rates: the linear one is seen to turn.
+    turned = acceleration[:3] - np.cross(velocity[3:], velocity[:3])
+    v_free = np.concatenate([R.T @ velocity[:3], R.T @ velocity[3:], v[6:]])
+    a_free = np.concatenate([R.T @ turned, R.T @ acceleration[3:], a[6:]])
+    q_free = np.concatenate([p, Rotation.from_matrix(R).as_quat(), q[6:]])
+    partial = np.eye(euler.nv)
+    partial[:6] = np.kron(np.eye(2), R.T) @ euler.frame_jacobian("beam", q)
+    expected = euler.inverse_dynamics(q, v, a)
+    found = partial.T @ free.inverse_dynamics(q_free, v_free, a_free)
+    np.testing.assert_allclose(found, expected, atol=ROUNDING * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("orders", [("zeroth_order", "all"), ("all", "zeroth_order"), ("first_order", "all")])
+def test_orders_mix_in_one_tree(orders: tuple[str, str], rng: np.random.Generator) -> None:
+    """Each beam has its own order; M, h and the frames still belong together."""
+    stated = CASES["two in series"].system
+    bodies = [replace(body, retain=retain) for body, retain in zip(stated.bodies, orders, strict=True)]
+    m = sf.compile(replace(stated, bodies=tuple(bodies)), sf.Options(backend="interpreter"))
+    q, v = states(m, rng)
+    M, h, Q = m.dynamics(q, v, ())
+    a = rng.standard_normal((STATES, m.nv))
+    expected = np.einsum("nij,nj->ni", M, a) + h - Q
+    np.testing.assert_allclose(m.inverse_dynamics(q, v, a), expected, atol=ROUNDING * np.abs(expected).max())
+    np.testing.assert_allclose(m.kinetic_energy(q, v), 0.5 * np.einsum("ni,nij,nj->n", v, M, v), rtol=ROUNDING)
+    (p, _), (other, _) = m.frame_pose("two.tip", q), model("two in series", "all").frame_pose("two.tip", q)
+    np.testing.assert_allclose(p, other, rtol=ROUNDING)
+
+
+@pytest.mark.parametrize("retain", ["first_order", "all"])
+def test_a_spring_on_the_tip_is_conservative(retain: str, rng: np.random.Generator) -> None:
+    """A connection to the tip pulls where the tip is: its force is the gradient of its energy at any order."""
+    spring = sf.Connection("spring", ("beam", "tip"), ("world", None), stiffness=7.0, length=0.3)
+    cases = [CASES["hub about another axis"].retaining(retain)]
+    cases.append(replace(cases[0], connections=(spring,)))
+    free, held = (sf.compile(case, sf.Options(backend="interpreter")) for case in cases)
+    q, v = states(held, rng)
+    force = held.generalized_force(q, v, ()) - free.generalized_force(q, v, ())
+    steps = STEP * np.eye(held.nv)
+    ahead, behind = (
+        held.potential_energy(q[:, None] + dq) - free.potential_energy(q[:, None] + dq) for dq in (steps, -steps)
+    )
+    np.testing.assert_allclose(-(ahead - behind) / (2 * STEP), force, atol=DIFFERENCE * np.abs(force).max())
+
+
+# Rigid limits.
+
+LENGTH, RHO_A, RHO_J, RHO_Y, RHO_Z = 1.3, 2.0, 0.04, 0.03, 0.01
+
+
+def arm(kind: str, rotary: bool, parametrised: bool = False) -> sf.System:
+    """Two links in series and a body on the last: beams without shape functions, or the same written by hand."""
+    L, m = ("L", "rho*L") if parametrised else (LENGTH, RHO_A * LENGTH)
+    slender = RHO_A * LENGTH**3 / 3
+    moments: tuple[Any, ...]
+    if parametrised:
+        moments = ("J*L", "rho*L^3/3 + Iy*L", "rho*L^3/3 + Iz*L") if rotary else ("J*L", "rho*L^3/3", "rho*L^3/3")
+    elif rotary:
+        moments = (RHO_J * LENGTH, slender + RHO_Y * LENGTH, slender + RHO_Z * LENGTH)
+    else:
+        moments = (RHO_J * LENGTH, slender, slender)
+    section = (
+        {"rhoA": "rho", "rhoJ": "J", "rhoI_y": "Iy", "rhoI_z": "Iz"}
+        if parametrised
+        else {"rhoA": RHO_A, "rhoJ": RHO_J, "rhoI_y": RHO_Y, "rhoI_z": RHO_Z}
+    )
+    bodies: list[sf.Beam | sf.RigidBody] = []
+    for i, axis in enumerate(((0, 0, 1), (1, 2, 2))):
+        joint = sf.Joint(f"q{i}", "revolute", "b0" if i else "world", "tip" if i else None, axis=axis)
+        if kind == "beams":
+            bodies.append(sf.Beam(f"b{i}", joint, L, rotary_inertia=rotary, **section))  # type: ignore[arg-type]
+        else:
+            middle = ("L/2", 0, 0) if parametrised else (LENGTH / 2, 0, 0)
+            solid = sf.Inertia(m, middle, moments, about="body")
+            bodies.append(sf.RigidBody(f"b{i}", joint, solid, (sf.Frame("tip", (L, 0, 0)),)))
+    joint = sf.Joint("q2", "revolute", "b1", "tip", axis=(0, 1, 0))
+    bodies.append(sf.RigidBody("load", joint, sf.Inertia(0.5, (0.1, 0.2, 0), (0.01, 0.02, 0.025))))
+    numbers = {"L": LENGTH, "rho": RHO_A, "J": RHO_J, "Iy": RHO_Y, "Iz": RHO_Z} if parametrised else {}
+    return sf.System("arm", bodies, [sf.Parameter(*item) for item in numbers.items()])
+
+
+FUNCTIONS = ("mass_matrix", "bias", "generalized_force", "kinetic_energy", "potential_energy", "inverse_dynamics")
+
+
+@pytest.mark.parametrize("rotary", [False, True])
+@pytest.mark.parametrize("parametrised", [False, True])
+def test_a_beam_without_shape_functions_is_a_rigid_body(
+    rotary: bool, parametrised: bool, rng: np.random.Generator
+) -> None:
+    systems = [arm(kind, rotary, parametrised) for kind in ("beams", "by hand")]
+    one, other = (sf.compile(s, sf.Options(FUNCTIONS, backend="interpreter")) for s in systems)
+    q, v = rng.standard_normal((2, 10, 3))
+    for function in ("mass_matrix", "potential_energy"):
+        a, b = (getattr(m, function)(q) for m in (one, other))
+        np.testing.assert_allclose(a, b, atol=1e-14 * np.abs(b).max())
+    for function in ("bias", "kinetic_energy"):
+        a, b = (getattr(m, function)(q, v) for m in (one, other))
+        np.testing.assert_allclose(a, b, atol=1e-14 * np.abs(b).max())
+    for name in FUNCTIONS:
+        counts = [count_program(sf.program_of(s, [name]))[name, ""] for s in systems]
+        assert counts[0] == counts[1], name
+
+
+def test_no_function_in_a_direction_is_no_motion_in_it(rng: np.random.Generator) -> None:
+    """A beam that only bends along y is one that bends in space, its other coordinates held at zero."""
+    planar = replace(CASES["free base"].system.bodies[0], bend_z=0, twist=0)
+    m = model("free base", "all")
+    other = sf.compile(replace(CASES["free base"].system, bodies=(planar,)), sf.Options(backend="interpreter"))
+    kept = [m.names.q.index(name) for name in other.names.q]
+    q, v = rng.standard_normal((2, other.nq))
+    full_q, full_v = np.zeros((2, m.nq))
+    full_q[kept], full_v[kept] = q, v
+    np.testing.assert_allclose(other.mass_matrix(q), m.mass_matrix(full_q)[np.ix_(kept, kept)], rtol=ROUNDING)
+    np.testing.assert_allclose(other.bias(q, v), m.bias(full_q, full_v)[kept], rtol=ROUNDING)
+
+
+# Generated code.
+
+EXACT_FLAGS = ("-O2", "-ffp-contract=off")
+
+
+@pytest.mark.parametrize(("name", "retain"), [("two in series", "first_order"), ("tapered", "all")])
+def test_c_equals_the_interpreter_bit_for_bit(name: str, retain: str, rng: np.random.Generator) -> None:
+    stated = CASES[name].retaining(retain)
+    functions = ("dynamics", "kinetic_energy", "potential_energy", "frame_acceleration")
+    # Of the same functions: what is formed first decides the order of sums.
+    options = sf.Options(functions, ("tip",) if name == "tapered" else ("two.tip",), flags=EXACT_FLAGS)
+    c, twin = sf.compile(stated, options), sf.compile(stated, replace(options, backend="interpreter"))
+    q, v = states(c, rng)
+    for one, other in zip(c.dynamics(q, v, ()), twin.dynamics(q, v, ()), strict=True):
+        assert np.array_equal(one, other)
+    assert np.array_equal(c.kinetic_energy(q, v), twin.kinetic_energy(q, v))
+    assert np.array_equal(c.potential_energy(q), twin.potential_energy(q))
+    frame = c.names.frames[-1]
+    assert np.array_equal(c.frame_acceleration(frame, q, v, v), twin.frame_acceleration(frame, q, v, v))

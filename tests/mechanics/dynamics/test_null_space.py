@@ -1,0 +1,86 @@
+"""Forward dynamics in what the constraints leave free: the same motion and forces as by multipliers, of any rank."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from tests.models import GUESSES
+
+# Off their constraints, at random: the equations hold there as well.
+LOOSE = ("grasp", "flexible_slider_crank")
+SOLID = sf.Inertia(1.5, (0.1, -0.2, 0.05), (0.3, 0.4, 0.5))
+
+
+@cache
+def model(name: str, form: str, backend: str = "c") -> sf.Model:
+    return sf.compile(MODELS[name], sf.Options(constraints=form, backend=backend))  # type: ignore[arg-type]
+
+
+def state(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    m, rng = model(name, "multipliers"), np.random.default_rng(0)
+    q, v = m.random_state(rng)
+    if name in GUESSES:
+        at = sf.assemble(m, GUESSES[name], rng.normal(size=m.nv))
+        q, v = at.q, at.v
+    return q, v, rng.normal(size=m.nu)
+
+
+@pytest.mark.parametrize("backend", ["c", "interpreter"])
+@pytest.mark.parametrize("name", [*GUESSES, *LOOSE])
+def test_the_same_as_by_multipliers(name: str, backend: str) -> None:
+    q, v, u = state(name)
+    gains = np.random.default_rng(1).uniform(0, 5, 2 * model(name, "multipliers").nc)
+    a, lam, rank = model(name, "multipliers").constrained_dynamics(q, v, u, gains=gains)
+    b, mu, same = model(name, "null_space", backend).constrained_dynamics(q, v, u, gains=gains)
+    # Light bodies and beams: rounding grows with the condition of M, 1e7 at the grasp.
+    assert rank == same and np.abs(a - b).max() < 1e-10 * np.abs(a).max()
+    assert np.abs(lam - mu).max() < 1e-10 * max(1.0, np.abs(lam).max())
+
+
+def nested(inertia: float) -> sf.System:
+    """A light wheel that carries a heavy one on its axle, geared 3 to 1: M is nearly singular, the motion is not."""
+    wheel = sf.Inertia(1e-30, (0, 0, 0), (inertia, inertia, inertia)) if inertia else None
+    bodies = (
+        sf.RigidBody("a", sf.Joint("q1", "revolute", actuated=True), wheel, (), () if inertia else ("massless_tip",)),
+        sf.RigidBody("b", sf.Joint("q2", "revolute", "a", actuated=True), sf.Inertia(1.5, (0, 0, 0), (0.3, 0.4, 0.5))),
+    )
+    return sf.System("s", bodies, constraints=(sf.Nonholonomic("gear", {"dq1": 1.0, "dq2": -3.0}),))
+
+
+@pytest.mark.parametrize("form", ["multipliers", "null_space"])
+@pytest.mark.parametrize("backend", ["c", "interpreter"])
+@pytest.mark.parametrize("inertia", [1e-2, 1e-6, 1e-10, 1e-13, 0.0])
+def test_a_light_body_costs_no_digits(inertia: float, form: str, backend: str) -> None:
+    """Closed form: (9 J + 16 I) v2' = 3 u1 + u2, v1' = 3 v2'; by M alone, six digits are left at 1e-10."""
+    m = sf.compile(nested(inertia), sf.Options(constraints=form, backend=backend))  # type: ignore[arg-type]
+    a = m.forward_dynamics([0.3, -0.4], [1.5, 0.5], [0.7, -0.2])
+    second = (3 * 0.7 - 0.2) / (9 * inertia + 16 * 0.5)
+    assert a == pytest.approx([3 * second, second], rel=1e-12)
+
+
+@pytest.mark.parametrize("backend", ["c", "interpreter"])
+def test_no_acceleration(backend: str) -> None:
+    bars = [
+        sf.RigidBody("a", sf.Joint("q1", "revolute"), SOLID, (sf.Frame("e", (1, 0, 0)),)),
+        sf.RigidBody("b", sf.Joint("q2", "revolute", "a", "e"), None, (), ("massless_tip",)),
+    ]
+    rail = sf.Closure("rail", ("world", None), ("a", "e"), ("y",))
+    stated = sf.System("s", tuple(bars), constraints=(rail,))
+    m = sf.compile(stated, sf.Options(constraints="null_space", backend=backend))  # type: ignore[arg-type]
+    a, _, rank = m.constrained_dynamics([0.0, 0.3], [0.0, 0.0], [])
+    assert np.all(np.isnan(a)) and rank == -1
+
+
+@pytest.mark.parametrize("form", ["multipliers", "null_space"])
+def test_nothing_is_left_free(form: str) -> None:
+    """A body that the constraints hold in every direction: the forces alone are to be found."""
+    slide = sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(0, 0, 1)), sf.Inertia(2.0))
+    rest = sf.Closure("rest", ("world", None), ("b", None), ("z",))
+    m = sf.compile(sf.System("s", [slide], constraints=[rest]), sf.Options(constraints=form))  # type: ignore[arg-type]
+    a, lam = m.forward_dynamics([0.0], [0.0], [], multipliers=True)
+    assert a == pytest.approx([0.0], abs=1e-15) and lam == pytest.approx([2 * 9.81])

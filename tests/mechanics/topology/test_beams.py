@@ -1,0 +1,108 @@
+"""Beams that can't be: each is refused in words; and those that can."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import symofros as sf
+
+CLAMPED = sf.Joint("root", "fixed")
+
+
+def beam(**changed: Any) -> sf.Beam:
+    plain: dict[str, Any] = {"length": 2.0, "rhoA": 0.5, "EI_z": 3.0, "bend_y": 2}
+    return sf.Beam("b", CLAMPED, **(plain | changed))
+
+
+def problems(one: sf.Beam, **system: Any) -> str:
+    with pytest.raises(sf.DescriptionError) as caught:
+        sf.compile(sf.System("s", [one], **system))
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"length": 0.0}, ["length 0", "positive"]),
+        ({"length": -1.0}, ["length -1", "positive"]),
+        ({"EI_z": -3.0}, ["EI_z = -3", "positive", "bending along y"]),
+        ({"EI_z": 0.0}, ["EI_z = 0", "positive"]),
+        ({"EI_z": "3 - 2*x"}, ["EI_z = -1 at x = 2"]),
+        ({"rhoA": 0.0}, ["rhoA = 0", "mass"]),
+        ({"damping": -0.1}, ["damping -0.1"]),
+        ({"twist": 1, "GJ": 1.0}, ["rhoJ", "twist"]),
+        ({"twist": 1, "rhoJ": 1.0}, ["GJ = 0", "twist"]),
+        ({"family": "hermite", "bend_y": 3}, ["3 functions", "hermite", "2 functions"]),
+        ({"bend_y": 41}, ["41 functions", "40"]),
+        ({"family": "polynomial", "bend_y": 10}, ["ill-conditioned", "10 functions", "condition", "legendre"]),
+        ({"family": "user", "bend_y": 1}, ["1 functions asked for, 0 given"]),
+        ({"family": "user", "bend_y": 1, "shapes": {"bend_y": ["xi"]}}, ["at the root", "phi'(0) = 0"]),
+        ({"family": "user", "bend_y": 1, "shapes": {"bend_y": ["q^2"]}}, ["unknown symbol 'q'"]),
+        ({"frames": [sf.Frame("tip"), sf.Frame("middle")]}, ["more than one extremity frame", "'middle'"]),
+        ({"frames": [sf.Frame("tip", (1.0, 0, 0))]}, ["'tip'", "placement", "tip"]),
+        ({"EI_z": "3/(x - 1)^2"}, ["EI_z"]),
+        ({"rhoA": "1 + 1000*max(x - 1.03, 0)^0.5"}, ["rhoA", "abruptly", "split the beam"]),
+        ({"rhoA": "x*q"}, ["unknown symbol 'q'"]),
+        ({"length": "x"}, ["length", "x"]),
+        ({"loads": [sf.Load((1.0, 0, 0))]}, ["Load on a Beam"]),
+    ],
+)
+def test_refused(changed: dict[str, Any], said: list[str]) -> None:
+    text = problems(beam(**changed))
+    assert all(part in text for part in said), text
+
+
+def test_a_parameter_called_like_the_station() -> None:
+    assert "'x'" in problems(beam(), parameters=[sf.Parameter("x", 1.0)])
+
+
+def test_a_load_of_the_other_kind() -> None:
+    box = sf.RigidBody("box", sf.Joint("q", "revolute"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)), loads=[sf.BeamLoad()])  # type: ignore[list-item]
+    with pytest.raises(sf.DescriptionError, match="a BeamLoad on a RigidBody"):
+        sf.compile(sf.System("s", [box]))
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"family": "splines"}, "did you mean 'spline'"),
+        ({"retain": "second"}, "zeroth_order, first_order, all"),
+        ({"bend_y": -1}, "whole number"),
+        ({"shapes": {"bend_x": ["xi^2"]}}, "bend_y, bend_z, twist"),
+    ],
+)
+def test_refused_at_once(changed: dict[str, Any], said: str) -> None:
+    with pytest.raises(sf.DescriptionError, match=said):
+        beam(**changed)
+
+
+def test_stations_of_samples() -> None:
+    with pytest.raises(sf.DescriptionError, match="rise from 0 to 1"):
+        sf.Samples((0, 0.5, 0.4, 1), (0, 1, 2, 3))
+
+
+def test_softening_without_stiffening_is_warned_of() -> None:
+    with pytest.warns(sf.InconsistentModelWarning, match="'b'.*diverges"):
+        sf.compile(sf.System("s", [beam(foreshortening=False)]), sf.Options(functions=("mass_matrix",)))
+
+
+def test_a_clamped_beam_alone_is_a_mechanism() -> None:
+    model = sf.compile(sf.System("s", [beam()]), sf.Options(functions=("mass_matrix",)))
+    assert model.names.q == ("b.bend_y[0]", "b.bend_y[1]") and "tip" in model.names.frames
+
+
+@pytest.mark.parametrize(
+    ("changed", "remedy"),
+    [
+        ({"rhoA": "1 + q^2"}, "use parameters and x"),
+        ({"family": "user", "bend_y": 1, "shapes": {"bend_y": ["q*xi^2"]}}, "use xi alone"),
+    ],
+)
+def test_sections_and_shapes_do_not_move(changed: dict[str, Any], remedy: str) -> None:
+    carrier = sf.RigidBody("hub", sf.Joint("q", "revolute"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+    plain: dict[str, Any] = {"length": 2.0, "rhoA": 0.5, "EI_z": 3.0, "bend_y": 2}
+    with pytest.raises(sf.DescriptionError, match="'q' may not be used here") as caught:
+        sf.compile(sf.System("s", [carrier, sf.Beam("b", sf.Joint("root", "fixed", "hub"), **(plain | changed))]))
+    assert remedy in str(caught.value)

@@ -1,0 +1,221 @@
+"""sf.advise: what it leaves out, what it refuses to, and that the tolerance is met, simulated without its help."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.generator.passes.count import count_program
+
+SCENES = Path(__file__).parents[3] / "reference_models" / "flexible" / "scenes"
+
+
+def advised(name: str) -> sf.Advice:
+    return sf.advise(MODELS[name], sf.load_scene(SCENES / f"{name}.yaml"))
+
+
+@pytest.fixture(scope="module")
+def spin_up() -> sf.Advice:
+    return advised("spinning_beam")
+
+
+@pytest.fixture(scope="module")
+def robot() -> sf.Advice:
+    return advised("planar_robot")
+
+
+def independent(advice: sf.Advice, system: sf.System, method: str, **settings: float) -> np.ndarray:
+    """The scene's one position over time, by nothing of the advice but its scene."""
+    (output,) = advice.scene.outputs
+    run = sf.simulate(
+        sf.compile(system),
+        t_end=advice.scene.t_end,
+        u=dict(advice.scene.inputs),
+        method=method,
+        output=advice.scene.times,
+        **settings,
+    )  # type: ignore[arg-type]
+    assert run.outcome.ok, run.outcome
+    return run.frames[output.of][0]
+
+
+def operations(system: sf.System) -> int:
+    return count_program(sf.program_of(system, ["forward_dynamics"]))["forward_dynamics", ""].total
+
+
+def check(advice: sf.Advice, beams: dict[str, int]) -> None:
+    """Tolerance met against a model of two more functions; at least three times cheaper, counted again here."""
+    many = [replace(advice.full.body(name), bend_y=n) for name, n in beams.items()]
+    right = independent(advice, advice.full.with_bodies(*many), "dop853", rtol=1e-9, atol=1e-12)
+    found = independent(advice, advice.system, advice.stepping.method, **advice.stepping.settings)
+    (allowed,) = advice.bounds.values()
+    assert np.linalg.norm(found - right, axis=1).max() <= allowed
+    assert advice.ok and advice.gain >= 3.0
+    # What is counted: each evaluation of the reduced model is cheaper, and so is the run.
+    assert 3 * operations(advice.system) <= operations(advice.full)
+    assert advice.cost.total * 3 <= advice.full_cost.total
+    assert advice.cost.evaluations <= 1.2 * advice.full_cost.evaluations
+
+
+def test_spin_up(spin_up: sf.Advice) -> None:
+    check(spin_up, {"beam": 5})
+    assert spin_up.system.body("beam").bend_y == 1 and spin_up.full.body("beam").bend_y == 3
+
+
+def test_the_spin_up_keeps_foreshortening(spin_up: sf.Advice) -> None:
+    """Estimator and simulation both say so, and the model that softens without stiffening runs away."""
+    choice = spin_up.choice("foreshortening", "beam")
+    assert choice.verdict == "refused" and choice.error is not None and choice.error > 5.0 and choice.estimate > 5.0
+    assert choice.numbers["critical_ratio"] == pytest.approx(6.0 / 2.910758394396504, rel=1e-3)
+    assert not choice.numbers["softened_error"] < 1e6
+    assert "of the critical speed" in choice.why
+    beam = spin_up.system.body("beam")
+    assert beam.foreshortening and beam.retain == "first_order"
+
+
+def test_planar_robot(robot: sf.Advice) -> None:
+    check(robot, {"link1": 5, "link2": 5})
+    # A slow motion needs no stiffening, and 50:1 gears no gyroscopic moments; the beams must bend.
+    assert all(robot.choice("foreshortening", link).verdict == "taken" for link in ("link1", "link2"))
+    assert robot.choice("rotor", "q3").verdict == "taken" and not robot.system.body("motor3").joint.rotors
+    assert all(robot.choice("rigid", link).verdict == "refused" for link in ("link1", "link2"))
+    assert [p.name for p in robot.system.parameters if not p.constant] == ["m_load"]
+
+
+def test_the_functions_to_generate_are_enough(robot: sf.Advice) -> None:
+    """Compiled with them and nothing else, the reduced model does what the scene asks."""
+    model = sf.compile(robot.system, robot.options)
+    run = sf.simulate(
+        model, t_end=0.1, u=dict(robot.scene.inputs), method=robot.stepping.method, **robot.stepping.settings
+    )  # type: ignore[arg-type]
+    assert run.outcome.ok and run.frames["tool"][0].shape == (len(run), 3)
+    assert "inverse_dynamics" not in robot.options.functions
+
+
+def test_the_reduced_file_reads_back(spin_up: sf.Advice, robot: sf.Advice, tmp_path: Path) -> None:
+    for advice in (spin_up, robot):
+        path = tmp_path / f"{advice.system.name}.yaml"
+        advice.write(path)
+        assert sf.load(path) == advice.system
+        assert path.read_text().startswith(f"# Reduced from '{advice.full.name}'")
+    with pytest.raises(sf.DescriptionError, match="unknown format"):
+        robot.write(tmp_path / "robot.urdf")
+
+
+def crane(**changed: object) -> tuple[sf.System, sf.Scene]:
+    """A stout boom with a spring in its joint, swung slowly: nothing bends that could be seen."""
+    boom = sf.Beam(
+        "boom",
+        sf.Joint("swing", "revolute", actuated=True, axis=(0, 0, 1)),
+        1.0,
+        2.0,
+        EI_z=2e5,
+        EI_y=2e5,
+        GJ=1e5,
+        rhoJ=1e-3,
+        rhoI_y=5e-4,
+        rhoI_z=5e-4,
+        bend_y=2,
+        bend_z=1,
+        twist=1,
+        **changed,
+    )  # type: ignore[arg-type]
+    wrist = sf.Joint("wrist", "revolute", "boom", "tip", axis=(0, 0, 1), elements=(sf.Spring(8e3), sf.Damper(5.0)))
+    hook = sf.RigidBody(
+        "hook", wrist, sf.Inertia("m", (0.1, 0, 0), (0.02, 0.02, 0.02)), (sf.Frame("eye", (0.2, 0, 0)),)
+    )
+    system = sf.System("crane", (boom, hook), (sf.Parameter("m", 1.5),), gravity=(0, 0, 0))
+    law = "200*(0.2*(1 - cos(2*pi*t)) - swing) - 60*dswing"
+    return system, sf.Scene(0.5, (sf.Output("eye", "position", "eye", absolute=2e-3),), {"swing": law})
+
+
+def test_a_beam_that_may_be_rigid_is_said_to() -> None:
+    system, scene = crane()
+    advice = sf.advise(system, scene)
+    choice = advice.choice("rigid", "boom")
+    assert choice.verdict == "taken" and choice.estimate <= 1.0 and choice.error is not None and choice.error <= 0.8
+    assert "static" in choice.why and choice.numbers["bend_y.static"] > 0.0
+    assert advice.system.body("boom").modes == 0
+    lock = advice.choice("elastic joint", "wrist")
+    assert lock.verdict == "taken" and advice.system.body("hook").joint.kind == "fixed"
+    assert sf.compile(advice.system).names.v == ("swing",)
+
+
+@pytest.mark.parametrize("estimated", ["rigid", "foreshortening", "elastic joint"])
+def test_tighter_tolerances_keep_more(estimated: str) -> None:
+    """Estimates are in units of what is allowed: a hundredth of it, a hundred times the estimate."""
+    system, scene = crane()
+    loose, tight = (sf.advise(system, scene, size).choice(estimated) for size in (2e-3, 2e-5))
+    assert tight.estimate == pytest.approx(100 * loose.estimate, rel=0.05)
+
+
+def test_second_order_and_rotary_inertia_go_where_they_do_not_matter() -> None:
+    system, scene = crane(retain="all", rotary_inertia=True)
+    # Beyond rigid's error, so that the boom bends and the smaller terms are judged by themselves.
+    advice = sf.advise(system, scene, 4e-5)
+    assert advice.choice("rotary inertia", "boom").verdict == "taken"
+    assert advice.choice("order", "boom").verdict == "taken"
+    assert advice.system.body("boom").retain != "all" and not advice.system.body("boom").rotary_inertia
+
+
+def test_what_a_law_reads_is_not_removed() -> None:
+    """The wrist's own coordinate drives an effort: locking it would take away what the law needs."""
+    system, scene = crane()
+    law = f"{scene.inputs['swing']} + 1e-6*wrist"
+    advice = sf.advise(system, replace(scene, inputs={"swing": law}))
+    choice = advice.choice("elastic joint", "wrist")
+    assert choice.verdict == "refused" and choice.error is not None and math.isinf(choice.error)
+    assert advice.to_json()["choices"][0]["kind"]
+
+
+def test_fixed_steps_only() -> None:
+    system, scene = crane()
+    advice = sf.advise(system, replace(scene, fixed_step=True))
+    assert advice.stepping.dt is not None and advice.stepping.rtol is None
+    assert advice.full_stepping.dt is not None
+
+
+def test_a_model_without_speeds_is_not_integrated() -> None:
+    scene = sf.load_scene(SCENES / "spinning_beam.yaml")
+    advice = sf.advise(MODELS["spinning_beam"], replace(scene, t_end=4.0), 1.0)
+    assert advice.choice("rigid").verdict == "taken" and advice.cost.total == 0 and advice.stepping.dt is not None
+
+
+def test_a_coarse_description_is_refined_first() -> None:
+    beam = replace(MODELS["spinning_beam"].body("beam"), bend_y=1)
+    advice = sf.advise(MODELS["spinning_beam"].with_bodies(beam), sf.load_scene(SCENES / "spinning_beam.yaml"))
+    assert advice.truncation > 1.0 and any("refined" in note for note in advice.notes) and advice.ok
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"outputs": (sf.Output("eye", "position", "eyes", absolute=1.0),)}, "did you mean 'eye'"),
+        ({"outputs": (sf.Output("a", "coordinate", "swin", absolute=1.0),)}, "no coordinate 'swin'"),
+        ({"inputs": {"swnig": 1.0}}, "no input 'swnig'"),
+        ({"start": {"swnig": 1.0}}, "no coordinate or speed 'swnig'"),
+        ({"keep": ("M",)}, "keep: no parameter 'M'"),
+        ({"inputs": {"swing": "1e9*exp(swing^2*1e6)"}}, "can't be computed to its tolerance"),
+    ],
+)
+def test_scenes_that_do_not_fit(changed: dict[str, object], words: str) -> None:
+    system, scene = crane()
+    with pytest.raises(sf.SymofrosError) as raised:
+        sf.advise(system, replace(scene, **changed))  # type: ignore[arg-type]
+    assert words in str(raised.value)
+
+
+@pytest.mark.slow
+def test_the_station() -> None:
+    """Fifty-seven coordinates; one boom may be rigid in a slow motion, most elastic joints may be locked."""
+    advice = advised("flexible_mss")
+    # By articulated bodies an evaluation costs what its coordinates do, 57 or 25; the rest is fewer evaluations.
+    assert advice.ok and advice.gain >= 3.0 and 2 * operations(advice.system) <= operations(advice.full)
+    assert advice.choice("rigid", "ssrms_link4").verdict == "taken"
+    assert advice.choice("elastic joint", "ssrms_q3").verdict == "refused"

@@ -1,0 +1,128 @@
+"""A server on a folder of its own, and a page on it in Chromium."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from PIL import Image
+from playwright.sync_api import Browser, Page
+
+import symofros.studio.editor
+
+TOKEN = "token-of-the-tests"
+# The oldest that builds the page.
+NODE = (20, 19)
+# Where pictures for docs/editor.md go, when they are wanted.
+PICTURES = os.environ.get("SYMOFROS_PICTURES")
+
+
+class Server:
+    """`symofros edit FILE` in a process of its own."""
+
+    def __init__(self, file: Path, port: int = 0, token: str = TOKEN) -> None:
+        self.file = file
+        command = [sys.executable, "-m", "symofros", "edit", str(file), "--no-browser", "--port", str(port)]
+        self.process = subprocess.Popen(
+            [*command, "--token", token], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+        assert self.process.stdout is not None
+        self.url = self.process.stdout.readline().strip()
+        assert self.url.startswith("http://127.0.0.1:"), self.url + self.process.stdout.read()
+
+    @property
+    def port(self) -> int:
+        return int(self.url.split(":")[2].split("/")[0])
+
+    def kill(self) -> None:
+        """End it as a crash would."""
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+
+    def stop(self) -> None:
+        self.process.terminate()
+        try:
+            self.process.wait(10)
+        except subprocess.TimeoutExpired:
+            self.kill()
+
+
+@pytest.fixture
+def serve(tmp_path: Path) -> Iterator[Callable[..., Server]]:
+    """Starts servers: `serve("double.yaml")` in the test's folder, of a copy of `source` if one is given."""
+    servers: list[Server] = []
+
+    def start(name: str, source: Path | None = None, **more: object) -> Server:
+        if source is not None:
+            shutil.copy(source, tmp_path / name)
+        servers.append(Server(tmp_path / name, **more))  # type: ignore[arg-type]
+        return servers[-1]
+
+    yield start
+    for server in servers:
+        server.stop()
+
+
+@pytest.fixture
+def page(chromium: Browser) -> Iterator[Page]:
+    """A page whose own errors fail the test."""
+    context = chromium.new_context(
+        viewport={"width": 1280, "height": 760}, color_scheme="light", reduced_motion="reduce"
+    )
+    context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page = context.new_page()
+    page.set_default_timeout(15_000)
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("console", lambda message: errors.append(message.text) if _is_ours(message.type, message.text) else None)
+    yield page
+    context.close()
+    assert not errors
+
+
+def _is_ours(kind: str, text: str) -> bool:
+    """Whether a message of the console is a fault of the page; refusals and a dead server are part of some tests."""
+    return kind == "error" and "Failed to load resource" not in text and "ERR_" not in text
+
+
+def _node_version() -> tuple[int, ...]:
+    """Of Node, if it and its package manager are there."""
+    if shutil.which("node") is None or shutil.which("npm") is None:
+        return ()
+    text = subprocess.run(["node", "--version"], capture_output=True, text=True, check=True).stdout
+    return tuple(int(part) for part in text.strip().removeprefix("v").split(".")[:2])
+
+
+@pytest.fixture(scope="session")
+def node_modules() -> Path:
+    """The page's packages, installed as its lock file says if they are not there."""
+    version = _node_version()
+    if version < NODE:
+        pytest.skip(f"needs Node {'.'.join(map(str, NODE))} or newer, found {version or 'none'}")
+    folder = Path(symofros.studio.editor.__file__).parent / "page"
+    if not (folder / "node_modules").is_dir():
+        subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=folder, check=True)
+    return folder / "node_modules"
+
+
+@pytest.fixture
+def picture(page: Page) -> Callable[[str], None]:
+    """Keeps what the page shows as a picture of the documentation, when SYMOFROS_PICTURES names a folder."""
+
+    def shoot(name: str) -> None:
+        if PICTURES:
+            page.wait_for_timeout(300)  # Movements of the diagram come to rest.
+            file = Path(PICTURES) / f"editor-{name}.png"
+            page.screenshot(path=file)
+            # Few colours are enough for it, and make it small.
+            Image.open(file).convert("RGB").quantize(255, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+                file, optimize=True
+            )
+
+    return shoot

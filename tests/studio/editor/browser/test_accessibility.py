@@ -1,0 +1,97 @@
+"""What axe finds wrong with the page, in each of its states: nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+
+pytestmark = pytest.mark.browser
+
+MODELS = Path(__file__).parents[4] / "reference_models"
+
+
+@pytest.fixture
+def faults(page: Page, node_modules: Path) -> Callable[[], list[str]]:
+    """Runs axe on what the page shows now."""
+    source = (node_modules / "axe-core" / "axe.min.js").read_text()
+
+    def look() -> list[str]:
+        page.evaluate(source)
+        # The frame of the 3-D pane holds viser's page.
+        run = "axe.run(document, {iframes: false}).then(result => result.violations)"
+        found: list[dict[str, Any]] = page.evaluate(run)
+        return [f"{fault['id']}: {fault['help']}: {node['target']}" for fault in found for node in fault["nodes"]]
+
+    return look
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_page_and_its_windows(
+    serve: Callable[..., Server],
+    page: Page,
+    faults: Callable[[], list[str]],
+    picture: Callable[[str], None],
+    theme: str,
+) -> None:
+    page.emulate_media(color_scheme=theme)
+    server = serve("robot.yaml", source=MODELS / "flexible" / "planar_robot.yaml")
+    steps.open_editor(page, server.url)
+    assert faults() == []
+    steps.open_window(page, "bodies/link1")
+    assert faults() == []
+    for name in ("Joint", "Frames", "Forces"):
+        steps.tab(page, name)
+        assert faults() == []
+    page.keyboard.press("Escape")
+    page.keyboard.press("Control+k")
+    page.keyboard.type("link")
+    assert faults() == []
+    page.keyboard.press("Escape")
+    page.get_by_role("tab", name="YAML").click()
+    page.get_by_label("Text of the file").wait_for()
+    assert faults() == []
+    page.get_by_role("tab", name="3-D").click()
+    page.get_by_role("group", name="Pose").get_by_text("Elastic coordinates").click()
+    page.get_by_role("group", name="Pose").get_by_text("Parameters").click()
+    assert faults() == []
+    steps.run(page, "Simulate")
+    steps.fill(page, "Duration", "0.3")
+    steps.fill(page, "Speed of q1", "2")
+    assert faults() == []
+    steps.window(page).get_by_role("button", name="Simulate").click()
+    expect(steps.results(page).get_by_role("img").first).to_be_visible(timeout=60_000)
+    assert faults() == []
+    if theme == "dark":
+        picture("dark")
+
+
+def test_a_window_holds_the_focus_and_gives_it_back(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("robot.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
+    steps.open_editor(page, server.url)
+    steps.open_window(page, "bodies/upper")
+    for _ in range(40):
+        page.keyboard.press("Tab")
+        # Beyond the last field the browser's own controls have the focus: then it is on the body, never on the page.
+        assert page.evaluate("document.activeElement === document.body || !!document.activeElement.closest('dialog')")
+    page.keyboard.press("Escape")
+    expect(steps.window(page)).to_have_count(0)
+    assert page.evaluate("document.activeElement.getAttribute('data-id')") == "bodies/upper"
+
+
+def test_a_body_is_added_and_opened_by_the_keyboard_alone(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("new.yaml")
+    steps.open_editor(page, server.url)
+    page.get_by_role("button", name="Rigid body", exact=True).focus()
+    page.keyboard.press("Enter")
+    expect(steps.block(page, "bodies/body")).to_be_visible()
+    steps.open_window(page, "bodies/body")
+    page.keyboard.type("arm")
+    page.keyboard.press("Enter")
+    expect(steps.block(page, "bodies/arm")).to_be_visible()

@@ -1,0 +1,87 @@
+"""Files that come in and go out: import, export, pictures, parts of the user's library."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+
+pytestmark = pytest.mark.browser
+
+PENDULUM = Path(__file__).parents[4] / "reference_models" / "rigid" / "double_pendulum.yaml"
+URDF = """<robot name="arm">
+  <link name="base"/>
+  <link name="boom">
+    <inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
+  <joint name="slew" type="continuous"><parent link="base"/><child link="boom"/><axis xyz="0 0 1"/></joint>
+</robot>
+"""
+JOB = 60_000
+
+
+def menu(page: Page, title: str, command: str) -> None:
+    page.get_by_role("banner").get_by_role("button", name=title, exact=True).click()
+    page.get_by_role("menuitem", name=command).click()
+
+
+def test_a_urdf_is_imported(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    (tmp_path / "robot.urdf").write_text(URDF)
+    steps.open_editor(page, server.url)
+    with page.expect_file_chooser() as chooser:
+        menu(page, "File", "Import")
+    chooser.value.set_files(tmp_path / "robot.urdf")
+    expect(steps.block(page, "bodies/boom")).to_contain_text("slew")
+    expect(page.get_by_role("heading", level=1)).to_contain_text("unsaved")
+
+
+def test_a_model_is_exported(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    steps.run(page, "Export")
+    steps.window(page).get_by_role("radio", name="urdf").check()
+    steps.fill(page, "Folder", "out")
+    steps.window(page).get_by_role("button", name="Export").click()
+    expect(steps.results(page)).to_contain_text("out/", timeout=JOB)
+    assert list((tmp_path / "out").rglob("*.urdf"))
+
+
+@pytest.mark.parametrize("kind", ["SVG", "PNG"])
+def test_a_picture_of_the_diagram(serve: Callable[..., Server], page: Page, kind: str) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    with page.expect_download() as download:
+        menu(page, "File", f"Picture of the diagram, {kind}")
+    data = Path(download.value.path()).read_bytes()
+    if kind == "SVG":
+        texts = [node.text for node in ElementTree.fromstring(data).iter("{http://www.w3.org/2000/svg}text")]
+        assert {"world", "upper", "lower", "elbow", "q1", "q2"} <= set(texts)
+    else:
+        assert data.startswith(b"\x89PNG") and len(data) > 5000
+
+
+def test_a_part_is_kept_and_used_in_another_model(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    steps.block(page, "bodies/lower").click()
+    page.get_by_role("button", name="Save selection").click()
+    steps.fill(page, "Name", "forearm")
+    steps.window(page).get_by_role("button", name="Save", exact=True).click()
+    part = page.get_by_role("button", name="forearm")
+    expect(part).to_be_visible()
+
+    menu(page, "File", "New")
+    steps.fill(page, "File", "other")
+    steps.window(page).get_by_role("button", name="Create").click()
+    expect(steps.block(page, "bodies/upper")).to_have_count(0)
+    part.click()
+    expect(steps.block(page, "bodies/lower")).to_contain_text("q2")
+    steps.problems(page, 0)
+    expect(page.get_by_label("Value of m2", exact=True)).to_have_value("0.7")

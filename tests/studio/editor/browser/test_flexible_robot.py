@@ -1,0 +1,60 @@
+"""The paper's planar flexible robot: made rigid in its windows, compiled anew, cross-checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+
+pytestmark = pytest.mark.browser
+
+ROBOT = Path(__file__).parents[4] / "reference_models" / "flexible" / "planar_robot.yaml"
+JOB = 120_000
+
+
+def test_beams_become_rigid_and_the_engines_agree(
+    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+) -> None:
+    server = serve("robot.yaml", source=ROBOT)
+    steps.open_editor(page, server.url)
+    picture("robot")
+    steps.run(page, "Compile")
+    expect(steps.results(page)).to_contain_text("nq 10", timeout=JOB)
+
+    for beam in ("link1", "link2"):
+        steps.open_window(page, f"bodies/{beam}")
+        curves = steps.window(page).get_by_role("img", name="3 shape functions")
+        expect(curves.locator("path.series")).to_have_count(3)
+        if beam == "link1":
+            picture("beam")
+        steps.fill(page, "Modes along y", "0")
+        expect(steps.window(page)).to_contain_text("the beam is rigid")
+        steps.accept(page)
+        expect(steps.block(page, f"bodies/{beam}")).to_contain_text("rigid")
+
+    steps.run(page, "Compile")
+    expect(steps.results(page)).to_contain_text("nq 4", timeout=JOB)
+    steps.run(page, "Cross-check")
+    expect(steps.results(page)).to_contain_text("All engines agree", timeout=JOB)
+    expect(steps.results(page).get_by_text("pinocchio").first).to_be_visible()
+    picture("cross-check")
+
+    steps.saved(page)
+    before, after = ROBOT.read_text().splitlines(), server.file.read_text().splitlines()
+    changed = [(old, new) for old, new in zip(before, after, strict=True) if old != new]
+    assert [new for _, new in changed] == [old.replace("bend_y: 3", "bend_y: 0") for old, _ in changed]
+    assert len(changed) == 2
+
+
+def test_a_job_is_cancelled(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("robot.yaml", source=ROBOT)
+    steps.open_editor(page, server.url)
+    steps.run(page, "Cross-check")
+    steps.results(page).get_by_role("button", name="Cancel").click()
+    expect(steps.results(page)).to_contain_text("Cancelled")
+    expect(page.get_by_role("button", name="Cross-check")).to_be_enabled()

@@ -1,0 +1,85 @@
+"""Links drawn by hand: a four-bar whose loop is closed from frame to frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+import symofros as sf
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+
+pytestmark = pytest.mark.browser
+
+JOB = 60_000
+
+
+def port(page: Page, node: str, name: str) -> Locator:
+    """A port of a block, such as `frame tip of crank`."""
+    return steps.block(page, node).get_by_label(name, exact=True)
+
+
+def draw(page: Page, start: Locator, end: Locator) -> None:
+    """Draw a link from one port to another."""
+    a, b = start.bounding_box(), end.bounding_box()
+    assert a is not None and b is not None
+    page.mouse.move(a["x"] + a["width"] / 2, a["y"] + a["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(b["x"] + b["width"] / 2, b["y"] + b["height"] / 2, steps=8)
+    page.mouse.up()
+
+
+def add(page: Page, name: str, on: str) -> None:
+    """Add a rigid body that the block `on` carries, and name it."""
+    page.get_by_role("button", name="Show the whole diagram").click()
+    page.wait_for_timeout(300)  # The diagram moves.
+    steps.block(page, on).click()
+    page.get_by_role("button", name="Rigid body", exact=True).click()
+    steps.open_window(page, "bodies/body")
+    steps.fill(page, "Name", name)
+    steps.accept(page)
+
+
+def test_a_loop_is_closed_by_a_link(serve: Callable[..., Server], page: Page, picture: Callable[[str], None]) -> None:
+    server = serve("four_bar.yaml")
+    steps.open_editor(page, server.url)
+    add(page, "crank", "world")
+    add(page, "coupler", "bodies/crank")
+    add(page, "rocker", "world")
+    page.get_by_role("button", name="Show the whole diagram").click()
+    page.wait_for_timeout(400)
+
+    # A joint's link is taken away, and drawn again.
+    steps.wire(page, "bodies/coupler/joint").focus()
+    page.keyboard.press("Enter")
+    page.keyboard.press("Escape")
+    steps.wire(page, "bodies/coupler/joint").click(force=True)
+    page.keyboard.press("Delete")
+    expect(page.get_by_role("button", name="Undo: remove coupler")).to_be_enabled()
+    draw(page, port(page, "bodies/crank", "frame tip of crank"), port(page, "bodies/coupler", "joint of coupler"))
+    expect(page.get_by_role("button", name="Undo: mount coupler")).to_be_enabled()
+    steps.open_window(page, "bodies/coupler")
+    expect(steps.window(page).get_by_label("Parent", exact=True)).to_have_value("crank")
+    steps.accept(page)
+
+    steps.open_window(page, "bodies/rocker")
+    steps.fill(page, "Position x", "1")
+    steps.accept(page)
+    draw(page, port(page, "bodies/coupler", "frame tip of coupler"), port(page, "bodies/rocker", "frame tip of rocker"))
+    expect(steps.window(page)).to_contain_text("Join coupler.tip and rocker.tip")
+    picture("join")
+    steps.window(page).get_by_role("button", name="Closure").click()
+    steps.window(page).get_by_label("z", exact=True).first.uncheck()
+    picture("closure")
+    steps.accept(page)
+    expect(steps.wire(page, "closures/loop")).to_have_count(1)
+    steps.problems(page, 0)
+    picture("four-bar")
+
+    steps.run(page, "Compile")
+    expect(steps.results(page)).to_contain_text("constraints 2", timeout=JOB)
+    steps.saved(page)
+    model = sf.compile(sf.load(server.file))
+    assert (model.nq, model.nc) == (3, 2)

@@ -1,0 +1,180 @@
+"""The 3-D pane: the mechanism is drawn, moves by its sliders, keeps its loops, follows the document."""
+
+from __future__ import annotations
+
+import io
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import Page, Response, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+
+pytestmark = pytest.mark.browser
+
+MODELS = Path(__file__).parents[4] / "reference_models"
+ROBOT = MODELS / "flexible" / "planar_robot.yaml"
+PATIENCE = 60.0  # Software rendering on a busy machine.
+# Of 255: what antialiasing does stays below it.
+SEEN = 40
+# Of a picture of some 500 x 300.
+FEW, MANY = 20, 300
+LINE = 40
+
+
+def shot(page: Page) -> np.ndarray:
+    """What the frame shows, without what floats over the picture (height, width, 3)."""
+    frame = page.frame_locator("iframe.view")
+    return np.asarray(Image.open(io.BytesIO(frame.locator("canvas").first.screenshot())).convert("RGB")).astype(int)
+
+
+def differing(a: np.ndarray, b: np.ndarray) -> int:
+    """How many pixels do."""
+    assert a.shape == b.shape
+    return int((np.abs(a - b).max(axis=2) > SEEN).sum())
+
+
+def settled(page: Page) -> np.ndarray:
+    """The picture once two looks at it agree."""
+    end, before = time.monotonic() + PATIENCE, shot(page)
+    while time.monotonic() < end:
+        page.wait_for_timeout(250)
+        after = shot(page)
+        if before.shape == after.shape and differing(before, after) < FEW:
+            return after
+        before = after
+    raise AssertionError("the picture does not come to rest")
+
+
+def changed(page: Page, before: np.ndarray, least: int = MANY) -> np.ndarray:
+    """The picture once it differs from the one before, and has come to rest."""
+    end = time.monotonic() + PATIENCE
+    while differing(shot(page), before) < least:
+        assert time.monotonic() < end, "the picture stays as it was"
+        page.wait_for_timeout(100)
+    return settled(page)
+
+
+def open_view(page: Page) -> np.ndarray:
+    """Open the pane, and wait until the mechanism is drawn."""
+    steps.run(page, "3-D")
+    page.frame_locator("iframe.view").locator("canvas").first.wait_for(timeout=1000 * PATIENCE)
+    end = time.monotonic() + PATIENCE
+    while (shot(page) < 200).any(axis=2).sum() < MANY:
+        assert time.monotonic() < end, "nothing is drawn"
+        page.wait_for_timeout(250)
+    return settled(page)
+
+
+def slide(page: Page, label: str, value: float) -> dict[str, float]:
+    """Put a slider somewhere; where the coordinates are then."""
+
+    def is_last(answer: Response) -> bool:
+        return answer.url.endswith("/api/pose")
+
+    with page.expect_response(is_last) as answered:
+        page.get_by_role("slider", name=label, exact=True).fill(str(value))
+    found: dict[str, float] = answered.value.json()["q"]
+    return found
+
+
+def test_a_flexible_robot_is_drawn_bends_and_follows_its_file(
+    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+) -> None:
+    server = serve("robot.yaml", source=ROBOT)
+    steps.open_editor(page, server.url)
+    open_view(page)
+    # A word on machines without a graphics card floats over the picture.
+    page.frame_locator("iframe.view").locator("body").evaluate(
+        "body => body.insertAdjacentHTML('beforeend', '<style>.mantine-Notification-root {display: none}</style>')"
+    )
+    for fold in ("Elastic coordinates", "Parameters"):
+        page.get_by_role("group", name="Pose").get_by_text(fold, exact=True).click()
+    straight = settled(page)
+
+    assert slide(page, "q2 [rad]", 0.9)["q2"] == pytest.approx(0.9, abs=0.01)
+    turned = changed(page, straight)
+    expect(page.get_by_role("group", name="Pose")).to_contain_text("0.9")
+
+    # A bending of millimetres is seen once it is exaggerated.
+    slide(page, "link1.bend_y[0] [m]", 0.008)
+    page.wait_for_timeout(1000)
+    bent = settled(page)
+    assert differing(bent, turned) < MANY * 10
+    slide(page, "exaggeration", 20)
+    exaggerated = changed(page, bent)
+    assert differing(exaggerated, turned) > differing(bent, turned)
+    page.get_by_role("button", name="Show the whole diagram").click()
+    page.get_by_role("button", name="Reset", exact=True).scroll_into_view_if_needed()
+    picture("3d")
+
+    page.get_by_role("button", name="Reset", exact=True).click()
+    slide(page, "exaggeration", 1)
+    back = changed(page, exaggerated)
+    # What is seen through something else depends on the order it is drawn in.
+    assert differing(back, straight) < differing(exaggerated, straight) / 4
+
+    # A parameter moves the picture while its slider is dragged, and is changed in the document when that is let go.
+    slide(page, "L1, slider", 1.2)
+    expect(page.get_by_role("button", name="Undo", exact=True)).to_be_disabled()
+    longer = changed(page, back)
+    page.get_by_role("slider", name="L1, slider").press("ArrowRight")
+    expect(page.get_by_role("button", name="Undo: change L1")).to_be_enabled()
+    longer = settled(page)
+    page.get_by_role("button", name="Undo: change L1").click()
+    assert differing(changed(page, longer), straight) < differing(longer, straight) / 4
+
+
+def test_a_loop_stays_closed(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("four_bar.yaml", source=MODELS / "closed" / "four_bar.yaml")
+    steps.open_editor(page, server.url)
+    before = open_view(page)
+    pose = page.get_by_role("group", name="Pose")
+    expect(pose).to_contain_text("Loops closed within")
+    sliders = pose.get_by_role("slider").all()
+    label = sliders[0].get_attribute("aria-label") or ""
+    with page.expect_response("**/api/pose") as answered:
+        sliders[0].fill("1.2")
+    stand = answered.value.json()
+    assert stand["q"][label.split(" ")[0]] == pytest.approx(1.2, abs=0.01)
+    assert stand["why"] == "" and stand["gap"] < 1e-9
+    # The others have followed, and their sliders say so.
+    for slider in sliders[1:]:
+        name = (slider.get_attribute("aria-label") or "").split(" ")[0]
+        assert float(slider.input_value()) == pytest.approx(stand["q"][name], abs=0.02)
+    changed(page, before)
+
+
+def test_it_follows_edits_and_keeps_the_last_that_was_sound(serve: Callable[..., Server], page: Page) -> None:
+    server = serve("arm.yaml")
+    steps.open_editor(page, server.url)
+    for _ in range(2):
+        page.get_by_role("button", name="Rigid body", exact=True).click()
+    steps.problems(page, 0)
+    before = open_view(page)
+    slide(page, "q2 [rad]", 0.7)
+    bent = changed(page, before)
+
+    steps.open_window(page, "bodies/body")
+    steps.tab(page, "Frames")
+    steps.fill(page, "Position x", "2")
+    steps.accept(page)
+    longer = changed(page, bent)
+    # Coordinates stay where they were.
+    assert float(page.get_by_role("slider", name="q2 [rad]").input_value()) == pytest.approx(0.7, abs=0.02)
+
+    steps.open_window(page, "bodies/body")
+    steps.tab(page, "Inertia")
+    steps.fill(page, "Mass", "mm")
+    steps.accept(page)
+    steps.problems(page, 1)
+    expect(page.get_by_text("The last model without problems is shown")).to_be_visible()
+    # Below the line that says so, everything is as it was.
+    assert differing(settled(page)[LINE:], longer[LINE:]) < FEW
+    page.get_by_role("button", name="Undo: ").first.click()
+    expect(page.get_by_text("The last model without problems is shown")).to_have_count(0)

@@ -1,0 +1,40 @@
+"""Windows say what the file says: to open one and accept it changes nothing, whatever is in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Server
+
+pytestmark = pytest.mark.browser
+
+MODELS = Path(__file__).parents[4] / "reference_models"
+# All kinds of joints; rotors and friction; closures and springs; both conditions; beams; nested forms of inertia.
+FILES = (
+    "rigid/joint_zoo.yaml",
+    "rigid/friction_arm.yaml",
+    "closed/andrews_squeezer.yaml",
+    "closed/sleigh.yaml",
+    "closed/rolling_disc.yaml",
+    "flexible/spinning_beam.yaml",
+)
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_a_window_that_is_only_looked_at_changes_nothing(serve: Callable[..., Server], page: Page, file: str) -> None:
+    server = serve("model.yaml", source=MODELS / file)
+    steps.open_editor(page, server.url)
+    seen = page.locator(".react-flow__node, .react-flow__edge.closure, .react-flow__edge.connection")
+    for index in range(seen.count()):
+        steps.open_window(page, str(seen.nth(index).get_attribute("data-id")))
+        tabs = steps.window(page).get_by_role("tab")
+        for number in range(tabs.count()):
+            tabs.nth(number).click()
+            expect(steps.window(page).get_by_role("alert")).to_have_count(0)
+        steps.accept(page)
+    expect(page.get_by_role("button", name="Undo", exact=True)).to_be_disabled()

@@ -1,0 +1,178 @@
+"""`symofros edit` as a process of its own: started, talked to, killed, started again."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx2 as httpx
+import pytest
+from typer.testing import CliRunner
+
+from symofros.__main__ import app
+from symofros.studio.editor.workspace import autosave_of
+from tests.studio.editor.texts import FILES, TEXTS
+
+ROOT = Path(__file__).parents[3]
+
+
+@contextmanager
+def served(*arguments: str) -> Iterator[tuple[subprocess.Popen[str], httpx.Client]]:
+    """A server, and a client that knows its address and token as it printed them."""
+    path = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "symofros", "edit", *arguments, "--no-browser"],
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": path},
+        cwd=ROOT,
+    )
+    try:
+        assert process.stdout is not None
+        address = re.fullmatch(r"(http://127\.0\.0\.1:\d+)/\?token=(\S+)\n", process.stdout.readline())
+        assert address
+        headers = {"Authorization": f"Bearer {address[2]}"}
+        with httpx.Client(base_url=address[1], headers=headers, timeout=60) as client:
+            yield process, client
+    finally:
+        process.kill()
+        process.wait()
+        assert process.stdout is not None
+        process.stdout.close()
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return Path(shutil.copy(FILES["four_bar"], tmp_path))
+
+
+def edit(client: httpx.Client, value: float) -> dict[str, Any]:
+    revision = client.get("/api/document").json()["revision"]
+    change = {"op": "set", "path": ["parameters", "m", "value"], "value": value}
+    answer = client.post("/api/edit", json={"revision": revision, "edits": [change]})
+    assert answer.status_code == 200
+    found: dict[str, Any] = answer.json()
+    return found
+
+
+def test_work_survives_a_server_that_is_killed(file: Path) -> None:
+    with served(str(file)) as (process, client):
+        edit(client, 2.5)
+        process.send_signal(signal.SIGKILL)
+    assert file.read_text() == TEXTS["four_bar"]
+    with served(str(file)) as (_, client):
+        found = client.get("/api/document").json()
+        assert found["recovered"] and "m: {value: 2.5" in found["text"]
+        saved = client.post("/api/save", json={"revision": found["revision"]}).json()
+        assert not saved["recovered"]
+    assert file.read_text() == TEXTS["four_bar"].replace("m: {value: 1.0", "m: {value: 2.5")
+    assert not autosave_of(file).exists()
+
+
+def test_a_worker_ends_with_a_server_that_is_killed(file: Path) -> None:
+    with served(str(file)) as (process, client):
+        client.post("/api/jobs", json={"kind": "simulate", "options": {"t_end": 1e7}})
+        while client.get("/api/jobs/1").json()["progress"]["text"] in ("starting", "reading"):
+            time.sleep(0.05)
+        workers = children(process.pid)
+        assert workers
+        process.send_signal(signal.SIGKILL)
+    end = time.monotonic() + 20
+    while any(alive(pid) for pid in workers) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not any(alive(pid) for pid in workers)
+
+
+def children(pid: int) -> list[int]:
+    found = Path(f"/proc/{pid}/task").glob("*/children")
+    return [int(child) for line in found for child in line.read_text().split()]
+
+
+def alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().split()[2] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def test_pages_are_told_of_each_other_s_edits_of_jobs_and_of_the_disk(file: Path) -> None:
+    with served(str(file)) as (_, client):
+        token = client.headers["Authorization"].removeprefix("Bearer ")
+        with httpx.stream("GET", f"{client.base_url}/api/events?token={token}", timeout=60) as stream:
+            assert stream.headers["content-type"].startswith("text/event-stream")
+            lines = stream.iter_lines()
+            assert next(lines) == ": listening"
+            client.headers["X-Client"] = "tab 2"
+            edit(client, 3.0)
+            assert event(lines, "document") == '{"revision": 2, "name": "four_bar.yaml", "client": "tab 2"}'
+            client.post("/api/jobs", json={"kind": "compile"})
+            assert '"state": "running"' in event(lines, "job")
+            file.write_text("# theirs\n")
+            assert event(lines, "disk") == '{"name": "four_bar.yaml"}'
+
+
+def event(lines: Iterator[str], kind: str) -> str:
+    for line in lines:
+        if line == f"event: {kind}":
+            return next(lines).removeprefix("data: ")
+    raise AssertionError("the stream ended")
+
+
+def test_an_interrupt_ends_it_in_order(file: Path) -> None:
+    with served(str(file)) as (process, client):
+        token = client.headers["Authorization"].removeprefix("Bearer ")
+        with httpx.stream("GET", f"{client.base_url}/api/events?token={token}", timeout=60) as stream:
+            next(stream.iter_lines())  # A page that listens does not hold it up.
+            process.send_signal(signal.SIGINT)
+            assert process.wait(20) in (0, 130, -signal.SIGINT)
+
+
+def test_every_run_has_a_token_of_its_own(file: Path) -> None:
+    with served(str(file)) as (_, first), served(str(file)) as (_, second):
+        tokens = {client.headers["Authorization"] for client in (first, second)}
+        assert len(tokens) == 2 and all(len(token) > 40 for token in tokens)
+        assert first.get("/api/document", headers=second.headers).status_code == 401
+
+
+def test_a_port_that_is_taken_and_a_file_that_is_none_are_told(file: Path, tmp_path: Path) -> None:
+    with served(str(file)) as (_, client):
+        taken = CliRunner().invoke(app, ["edit", str(file), "--port", str(client.base_url.port), "--no-browser"])
+        assert taken.exit_code == 2 and "in use" in taken.output
+    (tmp_path / "odd.yaml").write_bytes(b"\xff\xff")
+    odd = CliRunner().invoke(app, ["edit", str(tmp_path / "odd.yaml"), "--no-browser"])
+    assert odd.exit_code == 2 and "is not UTF-8" in odd.output
+
+
+def test_a_robot_of_another_format_becomes_a_new_document(tmp_path: Path) -> None:
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    joint = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'
+    (tmp_path / "arm.urdf").write_text(
+        f'<robot name="r"><link name="a"/><link name="b">{inertial}</link>{joint}</robot>'
+    )
+    with served(str(tmp_path / "arm.urdf")) as (_, client):
+        found = client.get("/api/document").json()
+        assert found["path"] == "arm.yaml" and found["dirty"] and found["problems"] == []
+    for wrong, says in (
+        ("none.urdf", "does not exist"),
+        ("none/arm.yaml", "no such folder"),
+        ("arm.exe", "unknown format"),
+    ):
+        told = CliRunner().invoke(app, ["edit", str(tmp_path / wrong), "--no-browser"])
+        assert told.exit_code == 2 and says in told.output
+
+
+def test_without_its_packages_it_says_which_extra_has_them(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.startswith("symofros.studio.editor")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "uvicorn", None)
+    found = CliRunner().invoke(app, ["edit", str(file)])
+    assert found.exit_code == 2 and "pip install 'symofros[gui]'" in found.output
