@@ -1,8 +1,8 @@
 """A description as numbers: the moving bodies, where they sit, what is fixed to them.
 
 What the adapters build their engines' models from. It is written apart from `symofros.mechanics.topology` on purpose;
-the rules it follows are those of the description: depth first in the order of description, a body without a joint (or the
-implicit "world") is the base, whatever is fixed to the base neither moves nor has energy.
+the rules it follows are those of the description: depth first in the order of description, a body without a joint
+(or the implicit "world") is the base, whatever is fixed to the base neither moves nor has energy.
 """
 
 from __future__ import annotations

@@ -80,7 +80,6 @@ def strided(c_name: str, program: Program, function: Function, work: int) -> str
     inputs = [len(program.init), *(program.sizes[name] for name in function.inputs)]
     outputs = [prod(shape) for _, shape in function.returns]
     zeros = [(k, *run) for k, output in enumerate(function.outputs) for run in _runs(output.edges)]
-    zero_runs = "".join(f"{k}, {first}, {count}, " for k, first, count in zeros)
     most = vectors_at_once(program, function, work)
     n = len(inputs) + len(outputs)
     return "\n".join(
