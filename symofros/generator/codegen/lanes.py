@@ -80,6 +80,7 @@ def strided(c_name: str, program: Program, function: Function, work: int) -> str
     inputs = [len(program.init), *(program.sizes[name] for name in function.inputs)]
     outputs = [prod(shape) for _, shape in function.returns]
     zeros = [(k, *run) for k, output in enumerate(function.outputs) for run in _runs(output.edges)]
+    zero_runs = "".join(f"{k}, {first}, {count}, " for k, first, count in zeros)
     most = vectors_at_once(program, function, work)
     n = len(inputs) + len(outputs)
     return "\n".join(
@@ -128,7 +129,6 @@ def scratch(program: Program, function: Function, work: int) -> int:
         function: Whose inputs and outputs are kept in lanes.
         work: Scratch of one vector.
     """
-    zero_runs = "".join(f"{k}, {first}, {count}, " for k, first, count in zeros)
     most = vectors_at_once(program, function, work)
     return _WIDEST * (
         1 + most * work + sum(most * size + max(0, _MOST_LANES - size) for size in _sizes(program, function))
