@@ -59,7 +59,7 @@ from symofros.runtime.kernel import Lanes, Precision, Unit
 from symofros.runtime.library import CompiledKernel, CompiledUnit
 from symofros.runtime.model import Key, Model
 from symofros.runtime.record import ClosureRecord, ModelRecord, Segment, SegmentKind
-from symofros.runtime.toolchain import Toolchain, find_toolchain
+from symofros.runtime.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.tuning import Build, builds, fastest
 
 GENERATOR = "symofros 0.1.0"
@@ -119,7 +119,7 @@ def compile_library(
     options = options or Options()
     toolchain = find_toolchain(options.compiler)
     if toolchain is None:
-        raise CompileError("no C compiler was found\n  remedy: install gcc or clang, or `pip install ziglang`")
+        raise CompileError(NO_COMPILER)
     tree = plan(system)
     record = describe(tree, options)
     program, _ = generate(tree, requested(tree, options), record, options.constraints, options.forward_dynamics)
@@ -330,12 +330,12 @@ def requested(tree: SpanningTree, options: Options) -> list[Request]:
     known = MODEL_FUNCTIONS + FRAME_FUNCTIONS
     for name in options.functions:
         if name not in known:
-            raise UnknownNameError(f"no function '{name}' to generate\n  remedy: {did_you_mean(name, known)}")
+            raise UnknownNameError(Problem(f"no function '{name}' to generate", remedy=did_you_mean(name, known)))
     frames = [frame.name for frame in tree.frames]
     for name in options.frames or ():
         if not any(name in (frame.name, frame.qualified) for frame in tree.frames):
             raise UnknownNameError(
-                f"system '{tree.system.name}': no frame '{name}'\n  remedy: {did_you_mean(name, frames)}"
+                Problem(f"system '{tree.system.name}': no frame '{name}'", remedy=did_you_mean(name, frames))
             )
     wanted = [tree.frame(name).name for name in options.frames] if options.frames is not None else frames
     requests = [Request(name) for name in options.functions if name in MODEL_FUNCTIONS]

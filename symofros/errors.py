@@ -58,19 +58,29 @@ def first_of(problems: Iterable[Problem]) -> list[Problem]:
 
 
 class SymofrosError(Exception):
-    """The base of everything this package raises on purpose."""
+    """The base of everything this package raises on purpose; the message is the text of the problems it carries.
+
+    Args:
+        problems: One problem, or several; a text that has no parts stands for a problem that only names the object.
+    """
+
+    def __init__(self, problems: Sequence[Problem] | Problem | str) -> None:
+        stated = Problem(problems) if isinstance(problems, str) else problems
+        self.problems: tuple[Problem, ...] = (stated,) if isinstance(stated, Problem) else tuple(stated)
+        super().__init__("\n".join(map(str, self.problems)))
+
+    @property
+    def problem(self) -> Problem:
+        """The first problem, the only one of most errors."""
+        return self.problems[0]
+
+    def __reduce__(self) -> tuple[type[SymofrosError], tuple[tuple[Problem, ...]]]:
+        """Pickle by the problems, so that the error crosses process borders whole."""
+        return type(self), (self.problems,)
 
 
 class DescriptionError(SymofrosError):
     """A description can't be a mechanism; carries every problem found, not only the first."""
-
-    def __init__(self, problems: Sequence[Problem] | Problem) -> None:
-        self.problems: tuple[Problem, ...] = (problems,) if isinstance(problems, Problem) else tuple(problems)
-        super().__init__("\n".join(map(str, self.problems)))
-
-    def __reduce__(self) -> tuple[type[DescriptionError], tuple[tuple[Problem, ...]]]:
-        """Pickle by the problems, so that the error crosses process borders whole."""
-        return type(self), (self.problems,)
 
 
 class ShapeError(SymofrosError, ValueError):

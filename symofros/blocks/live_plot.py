@@ -127,13 +127,11 @@ class _Page:
         line = self.process.stdout.readline()
         if not line:
             raise SymofrosError(
-                str(
-                    Problem(
-                        f"block '{name}': the page does not start",
-                        "its program ended",
-                        "python -m symofros.blocks.live_page serves it",
-                        "see what it wrote to standard error",
-                    )
+                Problem(
+                    f"block '{name}': the page does not start",
+                    "its program ended",
+                    "python -m symofros.blocks.live_page serves it",
+                    "see what it wrote to standard error",
                 )
             )
         told = json.loads(line)

@@ -159,13 +159,11 @@ def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
         zenoh = import_module("zenoh")
     except ImportError:
         raise SymofrosError(
-            str(
-                Problem(
-                    f"block '{name}': Zenoh is not installed",
-                    "no module zenoh",
-                    "network blocks of middleware are an extra",
-                    "pip install 'symofros[network]'",
-                )
+            Problem(
+                f"block '{name}': Zenoh is not installed",
+                "no module zenoh",
+                "network blocks of middleware are an extra",
+                "pip install 'symofros[network]'",
             )
         ) from None
     config = zenoh.Config()
@@ -182,13 +180,11 @@ def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
         session = zenoh.open(config)
     except zenoh.ZError as error:
         raise SymofrosError(
-            str(
-                Problem(
-                    f"block '{name}': can't open {address}",
-                    f"{error}".split(" at /")[0][:200],
-                    "one program listens at an address of this machine",
-                    "choose another port, or let one side listen and the other connect",
-                )
+            Problem(
+                f"block '{name}': can't open {address}",
+                f"{error}".split(" at /")[0][:200],
+                "one program listens at an address of this machine",
+                "choose another port, or let one side listen and the other connect",
             )
         ) from None
     try:
@@ -196,12 +192,10 @@ def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
     except zenoh.ZError as error:
         session.close()
         raise SymofrosError(
-            str(
-                Problem(
-                    f"block '{name}': no key '{block.key:.60}'",
-                    f"{error}".split(" at /")[0][:200],
-                    "a key as Zenoh has them",
-                    "for example arm/state",
-                )
+            Problem(
+                f"block '{name}': no key '{block.key:.60}'",
+                f"{error}".split(" at /")[0][:200],
+                "a key as Zenoh has them",
+                "for example arm/state",
             )
         ) from None

@@ -110,13 +110,11 @@ class UdpReceiver(_ByUdp, Receiver):
         except OSError as error:
             listener.close()
             raise SymofrosError(
-                str(
-                    Problem(
-                        f"block '{self.name}': can't listen at {self.host}:{self.port}",
-                        error.strerror or str(error),
-                        "one program, and one run of it at a time, listens at a port of this machine",
-                        "choose another port, or end the other program or run",
-                    )
+                Problem(
+                    f"block '{self.name}': can't listen at {self.host}:{self.port}",
+                    error.strerror or str(error),
+                    "one program, and one run of it at a time, listens at a port of this machine",
+                    "choose another port, or end the other program or run",
                 )
             ) from None
         return _Listening(self, listener)

@@ -21,13 +21,11 @@ class Turn:
         """
         if not self._taken.acquire(blocking=False):
             raise SymofrosError(
-                str(
-                    Problem(
-                        f"block '{block}': its page shows another run",
-                        "two runs at once",
-                        "a page shows one run at a time",
-                        "let the other end first, or give this diagram a block of its own",
-                    )
+                Problem(
+                    f"block '{block}': its page shows another run",
+                    "two runs at once",
+                    "a page shows one run at a time",
+                    "let the other end first, or give this diagram a block of its own",
                 )
             )
 

@@ -89,7 +89,7 @@ def simulate(
     try:
         if diagrams.is_diagram(model):
             if inputs:
-                raise sf.SymofrosError(f"--input: a diagram's inputs are blocks\n  found:  {inputs[0]}")
+                raise sf.SymofrosError(sf.Problem("--input: a diagram's inputs are blocks", inputs[0]))
             stated |= {"record": every} if every is not None else {}
             stated |= {"parameters": {name: numbers(name, text) for name, text in assignments(given, "--set").items()}}
             names = tuple(names_of(signals) or ())
@@ -103,7 +103,9 @@ def simulate(
             ok = found.outcome.ok
         else:
             if picture == diagrams.WINDOW:
-                raise sf.SymofrosError("--plot window: of diagrams only\n  remedy: write a picture: --plot run.png")
+                raise sf.SymofrosError(
+                    sf.Problem("--plot window: of diagrams only", remedy="write a picture: --plot run.png")
+                )
             look.check()
             system = load(model, floating_base)
             run = _simulated(system, t_end, given, inputs, every, pace, stated, wanted)

@@ -56,8 +56,8 @@ class ExpressionError(SymofrosError, ValueError):
         cut = self.text[start : start + 60]
         return ("…" if start else "") + cut + ("…" if start + 60 < len(self.text) else "")
 
-    def problem(self, what: str, where: str = "") -> Problem:
-        """The same fault as a Problem of the named object."""
+    def problem_of(self, what: str, where: str = "") -> Problem:
+        """The problem of the named object whose formula this is."""
         return Problem(
             f"{what}: {self.reason}",
             f"'{self.excerpt}' (character {self.position + 1})",

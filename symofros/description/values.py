@@ -35,7 +35,7 @@ def as_value(value: Any, what: str = "value") -> Value:
         try:
             parsed = parse(value)
         except ExpressionError as error:
-            raise DescriptionError(error.problem(what)) from None
+            raise DescriptionError(error.problem_of(what)) from None
         return parsed.number if parsed.kind == "number" else parsed
     if isinstance(value, numbers.Real) and not isinstance(value, bool):
         number = float(value)

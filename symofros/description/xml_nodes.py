@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from symofros.errors import Problem
+from symofros.errors import Problem, SymofrosError
 
 MAX_DEPTH = 100
 
@@ -43,12 +43,8 @@ class Element:
         return next(self.all(tag), None)
 
 
-class XmlFault(Exception):
-    """Reading can't go on."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-        super().__init__(str(problem))
+class XmlFault(SymofrosError):
+    """A problem of an XML document after which reading can't go on."""
 
 
 def parse_xml(data: bytes, file: str) -> Element:

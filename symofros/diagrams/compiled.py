@@ -145,20 +145,20 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
     options = options or Options()
     if options.backend != "c":
         raise CompileError(
-            str(
-                Problem(
-                    f"diagram '{resolved.wired.name}': backend '{options.backend}'",
-                    "a loop of compiled functions",
-                    "a compiled diagram is C",
-                    "interpret it: Simulation.interpret(compiled=False)",
-                )
+            Problem(
+                f"diagram '{resolved.wired.name}': backend '{options.backend}'",
+                "a loop of compiled functions",
+                "a compiled diagram is C",
+                "interpret it: Simulation.interpret(compiled=False)",
             )
         )
     toolchain = find_toolchain(options.compiler)
     if toolchain is None:
         raise CompileError(
-            "a compiled diagram needs a C compiler\n"
-            "  remedy: install gcc or clang, or `pip install ziglang`, or interpret it"
+            Problem(
+                "a compiled diagram needs a C compiler",
+                remedy="install gcc or clang, or `pip install ziglang`, or interpret it",
+            )
         )
     write = fuser(resolved)
     parts, texts = [], []

@@ -54,13 +54,11 @@ def jitter_of(cost: Cost) -> Jitter:
     late = cost.late
     if not late.size:
         raise SymofrosError(
-            str(
-                Problem(
-                    "jitter: no instants were timed",
-                    "0",
-                    "a run in real time times its instants",
-                    "run with realtime=True",
-                )
+            Problem(
+                "jitter: no instants were timed",
+                "0",
+                "a run in real time times its instants",
+                "run with realtime=True",
             )
         )
     missed = int(np.sum(late >= cost.spacing))

@@ -60,13 +60,11 @@ def _output(name: str, found: Mapping[str, object], port: str, shape: tuple[int,
     value = np.asarray(found.get(port, np.nan), dtype=np.float64)
     if port not in found or value.shape != shape:
         raise SymofrosError(
-            str(
-                Problem(
-                    f"block '{name}': output '{port}' does not fit",
-                    f"{value.shape}" if port in found else "nothing",
-                    f"{shape}",
-                    "return it so from call",
-                )
+            Problem(
+                f"block '{name}': output '{port}' does not fit",
+                f"{value.shape}" if port in found else "nothing",
+                f"{shape}",
+                "return it so from call",
             )
         )
     return value

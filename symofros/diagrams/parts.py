@@ -62,13 +62,11 @@ def place_parts(
         settings = settings_of(model)
         if settings.method.kind not in ("explicit", "semi_implicit"):
             raise SymofrosError(
-                str(
-                    Problem(
-                        f"diagram '{name}': method '{settings.method.name}'",
-                        "an implicit method",
-                        "diagrams step by explicit methods",
-                        "use rk4, dopri5 or dop853",
-                    )
+                Problem(
+                    f"diagram '{name}': method '{settings.method.name}'",
+                    "an implicit method",
+                    "diagrams step by explicit methods",
+                    "use rk4, dopri5 or dop853",
                 )
             )
         stepper = Stepper(model, settings.method, InputPlan(u0.copy(), list(layout.signals)), events, par)
@@ -89,13 +87,11 @@ def start(parts: list[Placed], name: str) -> None:
     for part in parts:
         if part.stepper.start(part.q, part.v, 1) < 0:
             raise SymofrosError(
-                str(
-                    Problem(
-                        f"diagram '{name}': the first accelerations are not finite",
-                        ", ".join(part.stepper.model.names.v[:6]),
-                        "the start is one that moves",
-                        "look for a mass of zero or a first state that is not a number",
-                    )
+                Problem(
+                    f"diagram '{name}': the first accelerations are not finite",
+                    ", ".join(part.stepper.model.names.v[:6]),
+                    "the start is one that moves",
+                    "look for a mass of zero or a first state that is not a number",
                 )
             )
 
@@ -112,13 +108,11 @@ def _close(model: Model, name: str, t0: float, placed: Placed, u: Array, par: Ar
     q_on, v_on, residual, _ = kernel.run(1, kernel.prepare(par.reshape(1, -1)), inputs)
     if not residual[0] <= CLOSED:
         raise AssemblyError(
-            str(
-                Problem(
-                    f"diagram '{name}': the first state does not close the loops",
-                    f"|phi| = {residual[0]:.3g}",
-                    f"at most {CLOSED:g} after projection",
-                    "start nearer: see sf.assemble",
-                )
+            Problem(
+                f"diagram '{name}': the first state does not close the loops",
+                f"|phi| = {residual[0]:.3g}",
+                f"at most {CLOSED:g} after projection",
+                "start nearer: see sf.assemble",
             )
         )
     return q_on[0], v_on[0]

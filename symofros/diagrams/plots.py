@@ -45,13 +45,11 @@ def draw(run: DiagramRun, plots: Sequence[Plot], figure: Any = None) -> Any:
     """
     if not plots:
         raise SymofrosError(
-            str(
-                Problem(
-                    "plot: there is nothing to draw",
-                    "no signals",
-                    "a plot shows outputs of blocks",
-                    "add a block with an output",
-                )
+            Problem(
+                "plot: there is nothing to draw",
+                "no signals",
+                "a plot shows outputs of blocks",
+                "add a block with an output",
             )
         )
     if figure is None:
@@ -84,13 +82,11 @@ def show_window(run: DiagramRun, *signals: str) -> None:
     backend = pyplot.get_backend()
     if backend.lower() in _PAPER:
         raise SymofrosError(
-            str(
-                Problem(
-                    "plot: no window can be opened",
-                    f"Matplotlib draws by '{backend}'",
-                    "a window needs a screen",
-                    "write a picture: --plot run.png",
-                )
+            Problem(
+                "plot: no window can be opened",
+                f"Matplotlib draws by '{backend}'",
+                "a window needs a screen",
+                "write a picture: --plot run.png",
             )
         )
     run.plot(*signals, figure=pyplot.figure(layout="constrained"))

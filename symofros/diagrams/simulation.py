@@ -90,24 +90,20 @@ class Simulation:
         resolved = self.resolved
         if METHODS[method].kind != "explicit" or METHODS[method].adaptive:
             raise SymofrosError(
-                str(
-                    Problem(
-                        f"diagram: method '{method}' interpreted",
-                        "not of fixed explicit steps",
-                        "an interpreted run steps by rk4 or euler",
-                        "use run",
-                    )
+                Problem(
+                    f"diagram: method '{method}' interpreted",
+                    "not of fixed explicit steps",
+                    "an interpreted run steps by rk4 or euler",
+                    "use run",
                 )
             )
         if any(piece.crossings for piece in resolved.pieces.values()):
             raise SymofrosError(
-                str(
-                    Problem(
-                        f"diagram '{resolved.wired.name}': crossings",
-                        "an interpreted run",
-                        "it does not locate crossings",
-                        "use run",
-                    )
+                Problem(
+                    f"diagram '{resolved.wired.name}': crossings",
+                    "an interpreted run",
+                    "it does not locate crossings",
+                    "use run",
                 )
             )
         par = parameter_values(resolved, parameters or {})
@@ -124,13 +120,11 @@ def _end(diagram: Diagram, t_end: float | None) -> float:
     end = t_end if t_end is not None else diagram.simulation.t_end
     if end is None:
         raise SymofrosError(
-            str(
-                Problem(
-                    f"diagram '{diagram.name}': no end of time",
-                    "t_end is not stated",
-                    "a run ends somewhere",
-                    "give t_end, or state it under simulation",
-                )
+            Problem(
+                f"diagram '{diagram.name}': no end of time",
+                "t_end is not stated",
+                "a run ends somewhere",
+                "give t_end, or state it under simulation",
             )
         )
     return end

@@ -216,13 +216,11 @@ class Models:
             if name not in given or given[name].size != size:
                 shape = given[name].shape if name in given else "nothing"
                 raise ShapeError(
-                    str(
-                        Problem(
-                            f"model '{model}': {name} of {program.functions[0].name}",
-                            f"{shape}",
-                            f"({size})",
-                            "give it that shape",
-                        )
+                    Problem(
+                        f"model '{model}': {name} of {program.functions[0].name}",
+                        f"{shape}",
+                        f"({size})",
+                        "give it that shape",
                     )
                 )
             replacement |= {program.graph.input(name, i): edge for i, edge in enumerate(given[name].flat)}

@@ -36,24 +36,20 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
         else:
             known = [*fields, *layout.par_names]
             raise UnknownNameError(
-                str(
-                    Problem(
-                        f"diagram: no run-time parameter '{name}'",
-                        f"'{name}'",
-                        f"known: {', '.join(known[:12])}",
-                        did_you_mean(name, known),
-                    )
+                Problem(
+                    f"diagram: no run-time parameter '{name}'",
+                    f"'{name}'",
+                    f"known: {', '.join(known[:12])}",
+                    did_you_mean(name, known),
                 )
             )
         if array.shape not in (place.shape, ()) or not np.all(np.isfinite(array)):
             raise SymofrosError(
-                str(
-                    Problem(
-                        f"diagram: parameter '{name}' does not fit",
-                        f"{array.shape}",
-                        f"finite, of shape {place.shape}",
-                        "give it that shape",
-                    )
+                Problem(
+                    f"diagram: parameter '{name}' does not fit",
+                    f"{array.shape}",
+                    f"finite, of shape {place.shape}",
+                    "give it that shape",
                 )
             )
         par[place.slice] = np.broadcast_to(array, place.shape).reshape(-1)
@@ -67,14 +63,10 @@ def record_interval(record: float | None, t0: float, t_end: float, dt: float | N
         SymofrosError: It is not positive, or there is no span of time.
     """
     if not (math.isfinite(t0) and math.isfinite(t_end) and t_end > t0):
-        raise SymofrosError(
-            str(Problem("diagram: no span of time", f"from {t0} to {t_end}", "t_end after t0", "set t_end"))
-        )
+        raise SymofrosError(Problem("diagram: no span of time", f"from {t0} to {t_end}", "t_end after t0", "set t_end"))
     if record is None:
         step = dt or 1e-3
         return step * max(1, math.ceil((t_end - t0) / step / _RECORDS))
     if not (math.isfinite(record) and record > 0.0):
-        raise SymofrosError(
-            str(Problem("diagram: no interval of recording", f"{record}", "above zero [s]", "leave it out"))
-        )
+        raise SymofrosError(Problem("diagram: no interval of recording", f"{record}", "above zero [s]", "leave it out"))
     return float(record)

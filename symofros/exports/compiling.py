@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from symofros.errors import CompileError
-from symofros.runtime.toolchain import call_compiler, find_toolchain
+from symofros.runtime.toolchain import NO_COMPILER, call_compiler, find_toolchain
 
 # No -march=native: what is exported runs on other machines of the kind.
 FLAGS = ("-O2", "-fno-math-errno", "-std=c99", "-fPIC", "-shared", "-fvisibility=hidden")
@@ -26,7 +26,7 @@ def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path])
     """
     toolchain = find_toolchain(None)
     if toolchain is None:
-        raise CompileError("no C compiler was found\n  remedy: install gcc or clang, or `pip install ziglang`")
+        raise CompileError(NO_COMPILER)
     with tempfile.TemporaryDirectory(prefix="symofros-export-") as private:
         for name, text in files.items():
             (Path(private) / name).write_text(text, encoding="utf-8")

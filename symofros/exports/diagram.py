@@ -68,24 +68,20 @@ def write_diagram(
     opaque = [name for name, block in wired.blocks.items() if isinstance(block, OpaqueBlock)]
     if opaque:
         raise ExportError(
-            str(
-                Problem(
-                    f"diagram '{wired.name}': no C program",
-                    f"block '{opaque[0]}' calls Python",
-                    "a program of its own has no Python in it",
-                    "leave the block out",
-                )
+            Problem(
+                f"diagram '{wired.name}': no C program",
+                f"block '{opaque[0]}' calls Python",
+                "a program of its own has no Python in it",
+                "leave the block out",
             )
         )
     if METHODS[method].kind not in ("explicit", "semi_implicit"):
         raise ExportError(
-            str(
-                Problem(
-                    f"diagram '{wired.name}': method '{method}'",
-                    "an implicit method",
-                    "diagrams step by explicit methods",
-                    "use rk4 or dopri5",
-                )
+            Problem(
+                f"diagram '{wired.name}': method '{method}'",
+                "an implicit method",
+                "diagrams step by explicit methods",
+                "use rk4 or dopri5",
             )
         )
     name = identifier(wired.name)

@@ -112,10 +112,8 @@ def export(
     system = model if isinstance(model, System) else load(model)
     if target not in TARGETS:
         raise UnknownNameError(
-            str(
-                Problem(
-                    f"export: no target '{target}'", str(target), ", ".join(TARGETS), did_you_mean(str(target), TARGETS)
-                )
+            Problem(
+                f"export: no target '{target}'", str(target), ", ".join(TARGETS), did_you_mean(str(target), TARGETS)
             )
         )
     place = Path(folder)
@@ -134,13 +132,11 @@ def _export_diagram(
     """A diagram as a C program."""
     if target != "c":
         raise ExportError(
-            str(
-                Problem(
-                    f"diagram '{diagram.name}': no target '{target}'",
-                    target,
-                    "a diagram becomes a C program",
-                    "use target 'c'",
-                )
+            Problem(
+                f"diagram '{diagram.name}': no target '{target}'",
+                target,
+                "a diagram becomes a C program",
+                "use target 'c'",
             )
         )
     check_folder(folder)
@@ -159,13 +155,11 @@ def _stepping(method: str, dt: float, rtol: float, atol: float) -> Stepping:
     known = [item.name for item in METHODS.values() if item.kind != "cvode"]
     if method not in known:
         raise UnknownNameError(
-            str(Problem(f"export: no method '{method}'", method, ", ".join(known), did_you_mean(method, known)))
+            Problem(f"export: no method '{method}'", method, ", ".join(known), did_you_mean(method, known))
         )
     for label, value in (("dt", dt), ("rtol", rtol), ("atol", atol)):
         if not (np.isfinite(value) and value > 0):
-            raise ExportError(
-                str(Problem(f"export: {label} is not positive", str(value), f"{label} > 0", "leave it out"))
-            )
+            raise ExportError(Problem(f"export: {label} is not positive", str(value), f"{label} > 0", "leave it out"))
     return Stepping(METHODS[method], float(dt), float(rtol), float(atol))
 
 
@@ -216,13 +210,11 @@ def _material(
 def _refuse_variational(system: System, stepping: Stepping) -> None:
     if stepping.method.kind == "variational" and system.constraints:
         raise ExportError(
-            str(
-                Problem(
-                    "export: 'variational' steps trees only",
-                    f"'{system.name}' has constraints",
-                    "its principle is written for free coordinates",
-                    "use rk4",
-                )
+            Problem(
+                "export: 'variational' steps trees only",
+                f"'{system.name}' has constraints",
+                "its principle is written for free coordinates",
+                "use rk4",
             )
         )
 
@@ -234,13 +226,11 @@ def _outputs(known: Sequence[str], generated: Sequence[str], wanted: Sequence[st
     for frame in wanted:
         if frame not in made:
             raise UnknownNameError(
-                str(
-                    Problem(
-                        f"export: no frame '{frame}' among those generated",
-                        ", ".join(made[:12]),
-                        "outputs are frames of the model",
-                        did_you_mean(frame, made or list(known)),
-                    )
+                Problem(
+                    f"export: no frame '{frame}' among those generated",
+                    ", ".join(made[:12]),
+                    "outputs are frames of the model",
+                    did_you_mean(frame, made or list(known)),
                 )
             )
     return tuple(wanted)
@@ -257,13 +247,11 @@ def _start(model: Model, given: Mapping[str, float]) -> tuple[Array, Array]:
             v[speeds.index(label)] = value
         else:
             raise UnknownNameError(
-                str(
-                    Problem(
-                        f"export: no coordinate or speed '{label}'",
-                        label,
-                        "start gives coordinates by name, speeds by d + name",
-                        did_you_mean(label, [*model.names.q, *speeds]),
-                    )
+                Problem(
+                    f"export: no coordinate or speed '{label}'",
+                    label,
+                    "start gives coordinates by name, speeds by d + name",
+                    did_you_mean(label, [*model.names.q, *speeds]),
                 )
             )
     if not model.nc:

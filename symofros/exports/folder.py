@@ -62,13 +62,11 @@ def check_folder(folder: Path) -> dict[str, str]:
 
 def _not_ours(folder: Path, found: str) -> ExportError:
     return ExportError(
-        str(
-            Problem(
-                f"'{folder}' is not overwritten",
-                found,
-                "an export goes to a new folder, an empty one, or one of an earlier export",
-                "choose another folder, or empty this one yourself",
-            )
+        Problem(
+            f"'{folder}' is not overwritten",
+            found,
+            "an export goes to a new folder, an empty one, or one of an earlier export",
+            "choose another folder, or empty this one yourself",
         )
     )
 
@@ -94,13 +92,11 @@ def write_folder(
         path = folder / old
         if path.is_file() and _digest(path.read_bytes()) != digest:
             raise ExportError(
-                str(
-                    Problem(
-                        f"'{path}' is not overwritten",
-                        "it was changed since it was exported",
-                        "an export replaces only files that are as it wrote them",
-                        "move your changes elsewhere, or export to another folder",
-                    )
+                Problem(
+                    f"'{path}' is not overwritten",
+                    "it was changed since it was exported",
+                    "an export replaces only files that are as it wrote them",
+                    "move your changes elsewhere, or export to another folder",
                 )
             )
     contents = {name: text.encode() if isinstance(text, str) else text for name, text in files.items()}
@@ -120,13 +116,11 @@ def write_folder(
         _write_manifest(folder, target, name, generator, digests)
     except OSError as error:
         raise ExportError(
-            str(
-                Problem(
-                    f"'{folder}' can't be written",
-                    str(error),
-                    "a folder that can be written",
-                    "check its rights and the space left",
-                )
+            Problem(
+                f"'{folder}' can't be written",
+                str(error),
+                "a folder that can be written",
+                "check its rights and the space left",
             )
         ) from error
     return Exported(folder, target, name, tuple(folder / name for name in contents), notes)

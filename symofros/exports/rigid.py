@@ -83,13 +83,11 @@ def rigid_links(system: System, kinds: tuple[str, ...], form: str) -> tuple[list
     if beyond:
         listed = ", ".join(f"'{joint.name}' ({'prescribed' if joint.prescribed else joint.kind})" for joint in beyond)
         raise ExportError(
-            str(
-                Problem(
-                    f"system '{system.name}': joints that {form} can't hold",
-                    listed,
-                    "a file without formulas holds turns and slides, and joints made of them",
-                    "export the model as an FMU, or replace these joints",
-                )
+            Problem(
+                f"system '{system.name}': joints that {form} can't hold",
+                listed,
+                "a file without formulas holds turns and slides, and joints made of them",
+                "export the model as an FMU, or replace these joints",
             )
         )
     names = {body.name for body in system.bodies}

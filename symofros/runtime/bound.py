@@ -150,13 +150,11 @@ def _shapes(signature: Signature, given: Mapping[str, Array]) -> dict[str, tuple
         if name not in shapes:
             what = f"{signature.name}: neither input nor output '{name}'"
             raise UnknownNameError(
-                str(
-                    Problem(
-                        what,
-                        ", ".join(shapes),
-                        "arrays are bound by these names",
-                        did_you_mean(name, shapes) or "leave it out",
-                    )
+                Problem(
+                    what,
+                    ", ".join(shapes),
+                    "arrays are bound by these names",
+                    did_you_mean(name, shapes) or "leave it out",
                 )
             )
     return shapes
@@ -222,4 +220,4 @@ def _seen(array: object) -> str:
 def _misfit(signature: Signature, name: str, found: str, rule: str, remedy: str = "") -> ShapeError:
     what = f"{signature.name}: '{name}' can't be bound"
     remedy = remedy or "bind np.zeros(shape), or leave it out, and write into it"
-    return ShapeError(str(Problem(what, found, rule, remedy)))
+    return ShapeError(Problem(what, found, rule, remedy))

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from symofros.atomic import write_atomically
-from symofros.errors import CompileError
+from symofros.errors import CompileError, Problem
 from symofros.runtime.identity import CODE_IDENTITY
 from symofros.runtime.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, call_compiler, cpu_identity, kinds
 
@@ -125,9 +125,12 @@ def build_library(
             os.replace(Path(private) / f"model{_SUFFIX}", library)
     except OSError as error:
         raise CompileError(
-            f"the cache folder can't be used: {error}\n  found:  {folder}\n"
-            "  rule:   compiled models are kept in a folder that can be written\n"
-            "  remedy: set SYMOFROS_CACHE to such a folder"
+            Problem(
+                f"the cache folder can't be used: {error}",
+                str(folder),
+                "compiled models are kept in a folder that can be written",
+                "set SYMOFROS_CACHE to such a folder",
+            )
         ) from error
     return library
 

@@ -152,13 +152,11 @@ class Functions:
         """
         if not isinstance(threads, int) or threads < 1:
             raise ValueError(
-                str(
-                    Problem(
-                        f"model '{self.record.name}': not a number of threads",
-                        repr(threads)[:80],
-                        "threads is a whole number, 1 or more",
-                        "os.cpu_count() at most pays",
-                    )
+                Problem(
+                    f"model '{self.record.name}': not a number of threads",
+                    repr(threads)[:80],
+                    "threads is a whole number, 1 or more",
+                    "os.cpu_count() at most pays",
                 )
             )
         return self._like(threads=threads)
@@ -184,13 +182,11 @@ class Functions:
         """
         if precision not in ("double", "single"):
             raise ValueError(
-                str(
-                    Problem(
-                        f"model '{self.record.name}': no such precision",
-                        repr(precision)[:80],
-                        "precision is 'double' or 'single'",
-                        "numpy.float32 is 'single'",
-                    )
+                Problem(
+                    f"model '{self.record.name}': no such precision",
+                    repr(precision)[:80],
+                    "precision is 'double' or 'single'",
+                    "numpy.float32 is 'single'",
                 )
             )
         return self if precision == self._precision else self._like(precision=precision)
@@ -256,7 +252,7 @@ class Functions:
     def _unknown(self, kind: str, name: str, known: tuple[str, ...], rule: str) -> UnknownNameError:
         found = f"{len(known)} {kind}s" + (": " + ", ".join(known[:12]) if known else "")
         what = f"model '{self.record.name}': no {kind} '{name}'"
-        return UnknownNameError(str(Problem(what, found, rule, did_you_mean(name, known) or "use another model")))
+        return UnknownNameError(Problem(what, found, rule, did_you_mean(name, known) or "use another model"))
 
     def _finite(self, name: str, value: float) -> float:
         try:
@@ -266,13 +262,11 @@ class Functions:
         if not np.isfinite(number):
             what = f"model '{self.record.name}': parameter '{name}' is not a finite number"
             raise ValueError(
-                str(
-                    Problem(
-                        what,
-                        repr(value)[:80],
-                        "a parameter is one finite number",
-                        "pass par=… to a function for values that vary by state",
-                    )
+                Problem(
+                    what,
+                    repr(value)[:80],
+                    "a parameter is one finite number",
+                    "pass par=… to a function for values that vary by state",
                 )
             )
         return number
@@ -316,19 +310,24 @@ class Functions:
         except ValueError:
             shown = ", ".join(f"{group} {np.shape(x)}" for group, x in given.items() if x is not None)
             raise ShapeError(
-                f"{name}: batch dimensions do not broadcast\n  found:  {shown}\n"
-                "  rule:   all but the last dimension of each array broadcast together\n"
-                "  remedy: give each array the same leading dimensions, or none"
+                Problem(
+                    f"{name}: batch dimensions do not broadcast",
+                    shown,
+                    "all but the last dimension of each array broadcast together",
+                    "give each array the same leading dimensions, or none",
+                )
             ) from None
 
     def _make(self, name: str, frame: str) -> Kernel:
         if self._build is None:
             what = f"{name} of frame '{frame}'" if frame else name
             raise SymofrosError(
-                f"model '{self.record.name}': {what} was not generated\n"
-                f"  found:  {', '.join(sorted({key[0] for key in self._kernels}))}\n"
-                "  rule:   Options(functions=…, frames=…) generates what it names, and nothing else\n"
-                "  remedy: add it to the options, or leave functions out to have each made when first called"
+                Problem(
+                    f"model '{self.record.name}': {what} was not generated",
+                    ", ".join(sorted({key[0] for key in self._kernels})),
+                    "Options(functions=…, frames=…) generates what it names, and nothing else",
+                    "add it to the options, or leave functions out to have each made when first called",
+                )
             )
         self._kernels.update(self._build(((name, frame),)).kernels)
         return self._kernels[name, frame]
@@ -338,15 +337,23 @@ class Functions:
             array = np.asarray(values, dtype=dtype)
         except (TypeError, ValueError):
             raise ShapeError(
-                f"model '{self.record.name}': {group} is not an array of numbers\n  found:  {type(values).__name__}\n"
-                f"  rule:   {group} is an array of numbers of shape (..., {size})" + self._hint(group)
+                Problem(
+                    f"model '{self.record.name}': {group} is not an array of numbers",
+                    type(values).__name__,
+                    f"{group} is an array of numbers of shape (..., {size})",
+                    self._hint(group),
+                )
             ) from None
         if group == "t":
             return array[..., np.newaxis]
         if array.ndim == 0 or array.shape[-1] != size:
             raise ShapeError(
-                f"model '{self.record.name}': {group} has the wrong shape\n  found:  {array.shape}\n"
-                f"  rule:   {group} has shape (..., {size})" + self._hint(group)
+                Problem(
+                    f"model '{self.record.name}': {group} has the wrong shape",
+                    str(array.shape),
+                    f"{group} has shape (..., {size})",
+                    self._hint(group),
+                )
             )
         return array
 
@@ -354,4 +361,4 @@ class Functions:
         names: dict[str, Any] = {"q": self.names.q, "v": self.names.v, "a": self.names.v, "u": self.names.u}
         shown = names.get(group, ())
         listed = ", ".join(shown[:8]) + (", …" if len(shown) > 8 else "")
-        return f"\n  remedy: its last dimension runs over {listed}" if shown else ""
+        return f"its last dimension runs over {listed}" if shown else ""

@@ -14,7 +14,7 @@ from typing import Any
 import cffi
 import numpy as np
 
-from symofros.errors import CompileError
+from symofros.errors import CompileError, Problem
 from symofros.runtime.kernel import PLAIN, SHARED, Array, Kernel, Lanes, Manner, Numbers, Precision, Signature
 from symofros.runtime.layout import Strided
 from symofros.runtime.sharing import parts, share, together
@@ -69,13 +69,19 @@ class CompiledUnit:
             self.model = self.ffi.cast("const sym_model *(*)(void)", address)()
         except (OSError, AttributeError) as error:
             raise CompileError(
-                f"the compiled model does not load: {error}\n  remedy: delete {path.name} from the cache folder"
+                Problem(
+                    f"the compiled model does not load: {error}", remedy=f"delete {path.name} from the cache folder"
+                )
             ) from error
         found = self.ffi.string(self.model.hash).decode()
         if self.model.abi != _ABI or found != expected_hash:
             raise CompileError(
-                f"the compiled model is another one\n  found:  abi {self.model.abi}, hash {found}\n"
-                f"  rule:   abi {_ABI}, hash {expected_hash}\n  remedy: delete {path.name} from the cache folder"
+                Problem(
+                    "the compiled model is another one",
+                    f"abi {self.model.abi}, hash {found}",
+                    f"abi {_ABI}, hash {expected_hash}",
+                    f"delete {path.name} from the cache folder",
+                )
             )
         self.compiled: dict[tuple[str, str], CompiledKernel] = {}
         lanes = self.model.lanes if self.model.size >= self.ffi.sizeof("sym_model") else self.ffi.NULL

@@ -80,13 +80,11 @@ def linearize(
 def _unknown(output: Output) -> UnknownNameError:
     known = (*_PLAIN, *_OF_FRAMES)
     return UnknownNameError(
-        str(
-            Problem(
-                "linearize: no such output",
-                repr(output)[:80],
-                "an output is q, v, a, lam, or (frame_pose, frame_velocity or frame_acceleration, frame)",
-                did_you_mean(str(output if isinstance(output, str) else output[0]), known) or "name one of these",
-            )
+        Problem(
+            "linearize: no such output",
+            repr(output)[:80],
+            "an output is q, v, a, lam, or (frame_pose, frame_velocity or frame_acceleration, frame)",
+            did_you_mean(str(output if isinstance(output, str) else output[0]), known) or "name one of these",
         )
     )
 

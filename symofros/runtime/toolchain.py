@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from symofros.errors import CompileError
+from symofros.errors import CompileError, Problem
 
 # -fno-math-errno lets sqrt and sincos be instructions and single calls; -ffast-math was measured and gains nothing.
 # Packs (generator/codegen/packs.py) share vectors already: the compiler's own search for more costs up to a quarter.
@@ -37,6 +37,9 @@ KINDS: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
 )
 SHARED_FLAGS = ("-shared", "-fPIC", "-fvisibility=hidden", "-std=gnu99")
 _SHOWN_LINES = 12
+
+# What is said where C is needed and nothing can compile it.
+NO_COMPILER = Problem("no C compiler was found", remedy="install gcc or clang, or `pip install ziglang`")
 
 
 @dataclass(frozen=True)
@@ -73,8 +76,11 @@ def find_toolchain(compiler: str | None = None) -> Toolchain | None:
         if shutil.which(command[0]) is None:
             source = "Options(compiler=…)" if compiler else "$CC"
             raise CompileError(
-                f"compiler '{wanted}' ({source}) was not found\n  rule:   it is a program on the path\n"
-                "  remedy: install it, or leave the choice to us"
+                Problem(
+                    f"compiler '{wanted}' ({source}) was not found",
+                    rule="it is a program on the path",
+                    remedy="install it, or leave the choice to us",
+                )
             )
         return Toolchain(command, _version(command))
     for name in ("cc", "gcc", "clang"):
@@ -100,11 +106,9 @@ def call_compiler(command: Sequence[str], folder: Path, remedy: str) -> None:
     """
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        words = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
-        raise CompileError(
-            f"the C compiler failed with status {done.returncode}\n  command: {' '.join(command)}\n{words}\n"
-            f"  remedy: {remedy}"
-        )
+        said = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
+        what = f"the C compiler failed with status {done.returncode}\n  command: {' '.join(command)}\n{said}"
+        raise CompileError(Problem(what, remedy=remedy))
 
 
 def _version(command: tuple[str, ...]) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from symofros.errors import AssemblyError, UnknownNameError, did_you_mean
+from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.constrained import RANK
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Given, Model
@@ -101,9 +101,12 @@ def assemble(
     if np.abs(left).max(initial=0.0) > 1e3 * tolerance * scale:
         worst = int(np.argmax(np.abs(left)))
         raise AssemblyError(
-            f"model '{model.record.name}': no speeds keep it closed\n"
-            f"  found:  G v - b = {left[worst]:.3g} at '{model.names.constraints[worst]}'\n"
-            "  rule:   the speeds that are held must allow G v = b\n  remedy: hold fewer speeds"
+            Problem(
+                f"model '{model.record.name}': no speeds keep it closed",
+                f"G v - b = {left[worst]:.3g} at '{model.names.constraints[worst]}'",
+                "the speeds that are held must allow G v = b",
+                "hold fewer speeds",
+            )
         )
     rank = int(np.linalg.matrix_rank(G, tol=RANK * max(float(np.linalg.norm(G, 2)), 1e-300))) if G.size else 0
     return Assembled(q, speeds, float(np.abs(phi).max(initial=0.0)), count, rank)
@@ -114,10 +117,12 @@ def _inverse(model: Model, G: Array) -> Array:
     if not np.all(np.isfinite(G)):
         worst = model.names.constraints[int(np.argmin(np.isfinite(G).all(axis=1)))]
         raise AssemblyError(
-            f"model '{model.record.name}': can't be assembled from this guess\n"
-            f"  found:  '{worst}' has no finite derivative there\n"
-            "  rule:   constraints are smooth near the guess; a disc that lies flat has no contact, for example\n"
-            "  remedy: start from another guess"
+            Problem(
+                f"model '{model.record.name}': can't be assembled from this guess",
+                f"'{worst}' has no finite derivative there",
+                "constraints are smooth near the guess; a disc that lies flat has no contact, for example",
+                "start from another guess",
+            )
         )
     return np.asarray(np.linalg.pinv(G, rcond=RANK), dtype=np.float64)
 
@@ -131,7 +136,9 @@ def free_speeds(model: Model, held: Collection[str]) -> Indices:
     for name in held:
         if name not in model.names.v:
             raise UnknownNameError(
-                f"held: no speed '{name}'\n  remedy: {did_you_mean(name, model.names.v) or 'see model.names.v'}"
+                Problem(
+                    f"held: no speed '{name}'", remedy=f"{did_you_mean(name, model.names.v) or 'see model.names.v'}"
+                )
             )
     return np.array([i for i, name in enumerate(model.names.v) if name not in held], dtype=np.intp)
 
@@ -144,10 +151,12 @@ def _accept(model: Model, q: Array, phi: Array, tolerance: float, count: int, he
     worst = int(np.argmax(np.abs(phi)))
     also = f"; held: {', '.join(held)}" if held else ""
     raise AssemblyError(
-        f"model '{model.record.name}': can't be assembled from this guess\n"
-        f"  found:  after {count} steps phi = {phi[worst]:.3g} at '{model.names.constraints[worst]}'{also}\n"
-        f"  rule:   |phi| <= {tolerance:g}; either no configuration closes it, or the guess leads to none\n"
-        "  remedy: start nearer, hold fewer coordinates, or check lengths"
+        Problem(
+            f"model '{model.record.name}': can't be assembled from this guess",
+            f"after {count} steps phi = {phi[worst]:.3g} at '{model.names.constraints[worst]}'{also}",
+            f"|phi| <= {tolerance:g}; either no configuration closes it, or the guess leads to none",
+            "start nearer, hold fewer coordinates, or check lengths",
+        )
     )
 
 
@@ -167,8 +176,10 @@ def _check_rotations(model: Model, q: Array, u: Given | None, par: Given | None)
         if worst < 0.0:
             angle = np.degrees(np.arccos(max(worst, -1.0)))
             raise AssemblyError(
-                f"model '{model.record.name}': closure '{closure.name}' is closed the wrong way round\n"
-                f"  found:  axes that are to be parallel are {angle:.0f} degrees apart\n"
-                "  rule:   conditions on rotations hold up to a right angle from the closed posture\n"
-                "  remedy: start from a guess on the right side"
+                Problem(
+                    f"model '{model.record.name}': closure '{closure.name}' is closed the wrong way round",
+                    f"axes that are to be parallel are {angle:.0f} degrees apart",
+                    "conditions on rotations hold up to a right angle from the closed posture",
+                    "start from a guess on the right side",
+                )
             )

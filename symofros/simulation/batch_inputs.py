@@ -90,13 +90,11 @@ def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
         return _by_name(model, u)
     if callable(u):
         raise SymofrosError(
-            str(
-                Problem(
-                    "simulate_batch: inputs by a Python function",
-                    repr(u)[:80],
-                    "a batch steps in C alone",
-                    "give formulas or Signals, or run sf.simulate for each",
-                )
+            Problem(
+                "simulate_batch: inputs by a Python function",
+                repr(u)[:80],
+                "a batch steps in C alone",
+                "give formulas or Signals, or run sf.simulate for each",
             )
         )
     if u is None:
@@ -104,13 +102,11 @@ def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
     values = np.asarray(u, dtype=np.float64)
     if values.ndim == 0 or values.shape[-1] != model.nu:
         raise ShapeError(
-            str(
-                Problem(
-                    f"model '{model.record.name}': u has the wrong shape",
-                    str(values.shape),
-                    f"constant inputs have shape (..., {model.nu})",
-                    "one row a trajectory, or one for all",
-                )
+            Problem(
+                f"model '{model.record.name}': u has the wrong shape",
+                str(values.shape),
+                f"constant inputs have shape (..., {model.nu})",
+                "one row a trajectory, or one for all",
             )
         )
     return GivenInputs(values.reshape(-1, model.nu)[0] if values.size else None, {-1: values}, {})

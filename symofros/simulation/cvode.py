@@ -35,13 +35,11 @@ def _sundials() -> Any:
         return {name: import_module(f"fmpy.sundials.{name}") for name in names}
     except (ImportError, OSError, AttributeError) as error:
         raise SymofrosError(
-            str(
-                Problem(
-                    "simulation: CVODE is not at hand",
-                    str(error),
-                    "it comes with FMPy's wheel",
-                    "pip install 'symofros[cvode]', or use rodas4 or dop853",
-                )
+            Problem(
+                "simulation: CVODE is not at hand",
+                str(error),
+                "it comes with FMPy's wheel",
+                "pip install 'symofros[cvode]', or use rodas4 or dop853",
             )
         ) from None
 

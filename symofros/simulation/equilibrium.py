@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.errors import EquilibriumError
+from symofros.errors import EquilibriumError, Problem
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Given, Model
 from symofros.simulation.assembly import free_speeds
@@ -110,10 +110,12 @@ def equilibrium(
         worst = int(rows[np.argmax(np.abs(R[rows]))])
         names = (*model.names.v, *model.names.constraints)
         raise EquilibriumError(
-            f"model '{model.record.name}': no equilibrium was found from this guess\n"
-            f"  found:  after {count} steps an imbalance of {R[worst]:.3g} at '{names[worst]}'\n"
-            f"  rule:   the imbalance is below {tolerance:g} of the largest force\n"
-            "  remedy: start nearer, give the inputs that hold it, or hold coordinates that have no place of rest"
+            Problem(
+                f"model '{model.record.name}': no equilibrium was found from this guess",
+                f"after {count} steps an imbalance of {R[worst]:.3g} at '{names[worst]}'",
+                f"the imbalance is below {tolerance:g} of the largest force",
+                "start nearer, give the inputs that hold it, or hold coordinates that have no place of rest",
+            )
         )
     effort = np.zeros(nv)
     held_rows = np.setdiff1d(np.arange(nv), free)

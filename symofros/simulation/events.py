@@ -31,7 +31,7 @@ class Event:
         """The direction must be known."""
         if self.direction not in _SIGNS:
             raise ValueError(
-                str(Problem("event: unknown direction", repr(self.direction), ", ".join(_SIGNS), "use one of them"))
+                Problem("event: unknown direction", repr(self.direction), ", ".join(_SIGNS), "use one of them")
             )
 
     @property

@@ -37,17 +37,15 @@ class Signal:
         good = t.ndim == 1 and len(t) > 0 and times == len(t)
         if not good or not np.all(np.isfinite(t)) or not np.all(np.diff(t) > 0) or not np.all(np.isfinite(values)):
             raise ShapeError(
-                str(
-                    Problem(
-                        "signal: not samples over time",
-                        f"t {t.shape}, values {values.shape}",
-                        "t (n) increases, values are (n), (n, nu) or (..., n, nu), all finite",
-                        "sort the samples, drop repeated times",
-                    )
+                Problem(
+                    "signal: not samples over time",
+                    f"t {t.shape}, values {values.shape}",
+                    "t (n) increases, values are (n), (n, nu) or (..., n, nu), all finite",
+                    "sort the samples, drop repeated times",
                 )
             )
         if self.kind not in ("linear", "hold"):
-            raise ValueError(str(Problem("signal: unknown kind", repr(self.kind), "'linear' or 'hold'", "use one")))
+            raise ValueError(Problem("signal: unknown kind", repr(self.kind), "'linear' or 'hold'", "use one"))
 
 
 Callback = Callable[[float, Array, Array], Any]
@@ -96,13 +94,11 @@ def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
     array = np.asarray(u, dtype=np.float64)
     if array.shape != (len(names),):
         raise ShapeError(
-            str(
-                Problem(
-                    f"model '{model.record.name}': u has the wrong shape",
-                    str(array.shape),
-                    f"constant inputs have shape ({len(names)},)",
-                    "give a Signal or a function for inputs that vary: " + (", ".join(names[:8]) or "there are none"),
-                )
+            Problem(
+                f"model '{model.record.name}': u has the wrong shape",
+                str(array.shape),
+                f"constant inputs have shape ({len(names)},)",
+                "give a Signal or a function for inputs that vary: " + (", ".join(names[:8]) or "there are none"),
             )
         )
     return InputPlan(array)
@@ -112,13 +108,11 @@ def _signal_of_all(model: Model, signal: Signal, constant: Array) -> InputPlan:
     values = signal.values if signal.values.ndim > 1 else signal.values[:, np.newaxis]
     if values.shape[1:] != constant.shape:
         raise ShapeError(
-            str(
-                Problem(
-                    f"model '{model.record.name}': a signal of all inputs has the wrong shape",
-                    str(signal.values.shape),
-                    f"values are (n, {len(constant)})",
-                    "give u={'name': Signal(...)} for single inputs",
-                )
+            Problem(
+                f"model '{model.record.name}': a signal of all inputs has the wrong shape",
+                str(signal.values.shape),
+                f"values are (n, {len(constant)})",
+                "give u={'name': Signal(...)} for single inputs",
             )
         )
     columns = [np.ascontiguousarray(values[:, i]) for i in range(values.shape[1])]
@@ -132,26 +126,22 @@ def _by_name(model: Model, given: Mapping[str, Any], constant: Array) -> InputPl
     for name, value in given.items():
         if name not in names:
             raise UnknownNameError(
-                str(
-                    Problem(
-                        f"model '{model.record.name}': no input '{name}'",
-                        ", ".join(names[:12]) or "none",
-                        "inputs are listed in model.names.u",
-                        did_you_mean(name, names) or "declare it in the description",
-                    )
+                Problem(
+                    f"model '{model.record.name}': no input '{name}'",
+                    ", ".join(names[:12]) or "none",
+                    "inputs are listed in model.names.u",
+                    did_you_mean(name, names) or "declare it in the description",
                 )
             )
         i = names.index(name)
         if isinstance(value, Signal):
             if value.values.ndim != 1:
                 raise ShapeError(
-                    str(
-                        Problem(
-                            f"input '{name}': a signal of several inputs",
-                            str(value.values.shape),
-                            "one input takes values (n)",
-                            "pick a column",
-                        )
+                    Problem(
+                        f"input '{name}': a signal of several inputs",
+                        str(value.values.shape),
+                        "one input takes values (n)",
+                        "pick a column",
                     )
                 )
             plan.signals.append((i, value.t, value.values, value.kind == "linear"))
@@ -178,13 +168,11 @@ def _complete_motions(model: Model, given: Mapping[str, Any], plan: InputPlan) -
             continue
         if isinstance(value, Signal):
             raise UnknownNameError(
-                str(
-                    Problem(
-                        f"model '{model.record.name}': input '{name}' prescribes a motion without its speeds",
-                        "a Signal",
-                        f"samples of '{name}' say nothing of 'd{name}' between them",
-                        f"give 'd{name}' as well, or a formula",
-                    )
+                Problem(
+                    f"model '{model.record.name}': input '{name}' prescribes a motion without its speeds",
+                    "a Signal",
+                    f"samples of '{name}' say nothing of 'd{name}' between them",
+                    f"give 'd{name}' as well, or a formula",
                 )
             )
         plan.formulas[names.index(f"d{name}")] = Rate(value, 1)

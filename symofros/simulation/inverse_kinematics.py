@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.errors import AssemblyError
+from symofros.errors import AssemblyError, Problem
 from symofros.runtime.constrained import RANK
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Given, Model
@@ -148,9 +148,12 @@ def joint_motion(
         )
         if not at.converged:
             raise AssemblyError(
-                f"model '{model.record.name}': frame '{frame}' can't follow\n"
-                f"  found:  an error of {at.error:.3g} at sample {i}\n  rule:   every sample is within reach\n"
-                "  remedy: move the path, or start from another configuration"
+                Problem(
+                    f"model '{model.record.name}': frame '{frame}' can't follow",
+                    f"an error of {at.error:.3g} at sample {i}",
+                    "every sample is within reach",
+                    "move the path, or start from another configuration",
+                )
             )
         q = at.q
         J = model.frame_jacobian(frame, q, par=par)[:rows]

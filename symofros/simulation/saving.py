@@ -26,13 +26,11 @@ def refuse_suffix(path: Path, what: str) -> None:
     """
     if path.suffix not in SUFFIXES:
         raise SymofrosError(
-            str(
-                Problem(
-                    f"{what}: can't save as '{path.name}'",
-                    path.suffix or "no suffix",
-                    ".npz, .csv or .parquet",
-                    "choose one of them",
-                )
+            Problem(
+                f"{what}: can't save as '{path.name}'",
+                path.suffix or "no suffix",
+                ".npz, .csv or .parquet",
+                "choose one of them",
             )
         )
 
@@ -72,13 +70,11 @@ def _parquet(columns: Mapping[str, Array], what: str, units: Mapping[str, str]) 
         parquet = import_module("pyarrow.parquet")
     except ImportError:
         raise SymofrosError(
-            str(
-                Problem(
-                    f"{what}: Parquet needs pyarrow",
-                    "it is not installed",
-                    "pyarrow writes Parquet",
-                    "pip install pyarrow, or save as .npz",
-                )
+            Problem(
+                f"{what}: Parquet needs pyarrow",
+                "it is not installed",
+                "pyarrow writes Parquet",
+                "pip install pyarrow, or save as .npz",
             )
         ) from None
     fields = [

@@ -32,20 +32,18 @@ def vector(model: Model, name: str, values: Given, size: int) -> Array:
     if array.shape != (size,) or not np.all(np.isfinite(array)):
         found = str(array.shape) if array.shape != (size,) else "a number that is not finite"
         raise ShapeError(
-            str(
-                Problem(
-                    f"model '{model.record.name}': {name} does not fit",
-                    found,
-                    f"{name} is a finite array of shape ({size},)",
-                    "one state a run: see model.nq, model.nv",
-                )
+            Problem(
+                f"model '{model.record.name}': {name} does not fit",
+                found,
+                f"{name} is a finite array of shape ({size},)",
+                "one state a run: see model.nq, model.nv",
             )
         )
     return array
 
 
 def _wrong(what: str, found: object, rule: str, remedy: str) -> SymofrosError:
-    return SymofrosError(str(Problem(f"simulation: {what}", str(found), rule, remedy)))
+    return SymofrosError(Problem(f"simulation: {what}", str(found), rule, remedy))
 
 
 @dataclass(frozen=True)
@@ -102,13 +100,11 @@ class Settings:
         """
         if method not in METHODS:
             raise UnknownNameError(
-                str(
-                    Problem(
-                        f"simulation: no method '{method}'",
-                        ", ".join(METHODS),
-                        "a method has one of these names",
-                        did_you_mean(method, METHODS),
-                    )
+                Problem(
+                    f"simulation: no method '{method}'",
+                    ", ".join(METHODS),
+                    "a method has one of these names",
+                    did_you_mean(method, METHODS),
                 )
             )
         chosen = METHODS[method]
@@ -230,13 +226,11 @@ def check_start(model: Model, settings: Settings, t: float, q: Array, v: Array, 
         condition = model.names.constraints[worst]
         if not abs(values[worst]) <= CLOSED:
             raise AssemblyError(
-                str(
-                    Problem(
-                        f"model '{model.record.name}': the first state does not keep '{condition}'",
-                        f"{what} = {values[worst]:.3g}",
-                        f"|{what}| <= {CLOSED:g} at the start",
-                        "start from sf.assemble(model, q0, v0), or pull it in by stabilisation='baumgarte'",
-                    )
+                Problem(
+                    f"model '{model.record.name}': the first state does not keep '{condition}'",
+                    f"{what} = {values[worst]:.3g}",
+                    f"|{what}| <= {CLOSED:g} at the start",
+                    "start from sf.assemble(model, q0, v0), or pull it in by stabilisation='baumgarte'",
                 )
             )
 
@@ -253,13 +247,11 @@ def _grid(output: float | Given | None, t0: float, t_end: float) -> Array:
         return np.asarray(t0 + interval * np.arange(count + 1), dtype=np.float64)
     if times.ndim != 1 or not np.all(np.diff(times) > 0) or times.size == 0 or times[0] < t0 or times[-1] > t_end:
         raise ShapeError(
-            str(
-                Problem(
-                    "simulation: output times do not fit",
-                    f"shape {times.shape}",
-                    f"times (n) increase from {t0} to {t_end} at most",
-                    "sort them",
-                )
+            Problem(
+                "simulation: output times do not fit",
+                f"shape {times.shape}",
+                f"times (n) increase from {t0} to {t_end} at most",
+                "sort them",
             )
         )
     return times
@@ -274,13 +266,11 @@ def _gains(model: Model, stabilisation: str, gains: Given | None, step: float) -
     given = np.repeat(given, model.nc) if given.shape == (2,) else given
     if given.shape != (2 * model.nc,) or not np.all(given >= 0):
         raise ShapeError(
-            str(
-                Problem(
-                    "simulation: gains do not fit",
-                    str(given.shape),
-                    f"(alpha, beta), or ({2 * model.nc},): alphas, then betas, none negative",
-                    "give two numbers",
-                )
+            Problem(
+                "simulation: gains do not fit",
+                str(given.shape),
+                f"(alpha, beta), or ({2 * model.nc},): alphas, then betas, none negative",
+                "give two numbers",
             )
         )
     return given

@@ -100,19 +100,17 @@ def simulate_batch(
     if settings.method.kind not in _KINDS:
         explicit = [name for name, one in METHODS.items() if one.kind in _KINDS]
         raise SymofrosError(
-            str(
-                Problem(
-                    f"simulate_batch: '{method}' solves equations in each step",
-                    method,
-                    "batches take explicit methods: " + ", ".join(explicit),
-                    "run sf.simulate for each state",
-                )
+            Problem(
+                f"simulate_batch: '{method}' solves equations in each step",
+                method,
+                "batches take explicit methods: " + ", ".join(explicit),
+                "run sf.simulate for each state",
             )
         )
     count = model.threads if threads is None else threads
     if count < 1:
         raise SymofrosError(
-            str(Problem("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1", "leave it out"))
+            Problem("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1", "leave it out")
         )
     given = sort_inputs(model, u)
     rows = {
@@ -157,13 +155,11 @@ def _rows(model: Model, name: str, values: Given, size: int) -> Array:
     array = np.asarray(values, dtype=np.float64)
     if array.ndim == 0 or array.shape[-1] != size:
         raise ShapeError(
-            str(
-                Problem(
-                    f"model '{model.record.name}': {name} has the wrong shape",
-                    str(array.shape),
-                    f"{name} has shape (..., {size})",
-                    "one row a trajectory, or one for all",
-                )
+            Problem(
+                f"model '{model.record.name}': {name} has the wrong shape",
+                str(array.shape),
+                f"{name} has shape (..., {size})",
+                "one row a trajectory, or one for all",
             )
         )
     return array
@@ -175,13 +171,11 @@ def _batch_shape(rows: dict[str, Array], inputs: list[Shape]) -> Shape:
     except ValueError:
         found = [f"{name} {array.shape}" for name, array in rows.items()] + [f"inputs {shape}" for shape in inputs]
         raise ShapeError(
-            str(
-                Problem(
-                    "simulate_batch: batch dimensions do not broadcast",
-                    ", ".join(found),
-                    "all but the last dimension of each array broadcast together",
-                    "give each array the same leading dimensions, or none",
-                )
+            Problem(
+                "simulate_batch: batch dimensions do not broadcast",
+                ", ".join(found),
+                "all but the last dimension of each array broadcast together",
+                "give each array the same leading dimensions, or none",
             )
         ) from None
 

@@ -83,8 +83,10 @@ def bound(source: str, headers: Mapping[str, str], *flags: str) -> tuple[Any, An
     toolchain = find_toolchain(None)
     if toolchain is None:
         raise CompileError(
-            "simulation steps in C, and no C compiler was found\n"
-            "  remedy: install gcc or clang, or `pip install ziglang`"
+            Problem(
+                "simulation steps in C, and no C compiler was found",
+                remedy="install gcc or clang, or `pip install ziglang`",
+            )
         )
     header, ffi = native_text("model/symofros_model.h"), cffi.FFI()
     for text in (header, *headers.values()):
@@ -190,13 +192,11 @@ class Stepper:
         """Make a model's function callable from the loop; outputs that are not placed get arrays of their own."""
         if not isinstance(kernel, CompiledKernel):
             raise SymofrosError(
-                str(
-                    Problem(
-                        f"model '{self.model.record.name}': simulation steps in C",
-                        "an interpreted model",
-                        "the loop calls compiled functions",
-                        "compile with backend='c'",
-                    )
+                Problem(
+                    f"model '{self.model.record.name}': simulation steps in C",
+                    "an interpreted model",
+                    "the loop calls compiled functions",
+                    "compile with backend='c'",
                 )
             )
         call = getattr(self.scene, slot)

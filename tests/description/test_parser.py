@@ -126,7 +126,7 @@ def test_text_round_trips(expression: Expression) -> None:
 def test_anything_else_is_refused(text: str) -> None:
     with pytest.raises(ExpressionError) as caught:
         parse(text)
-    assert caught.value.reason and caught.value.problem("mass").rule
+    assert caught.value.reason and caught.value.problem_of("mass").rule
 
 
 def test_the_reason_and_the_place_are_told() -> None:
@@ -181,7 +181,7 @@ def test_every_refusal_has_a_remedy() -> None:
     for text in ("__import__('os')", "a b", "1 +", "", "sin", "foo(1)", "a @ b", "1e999", "sin(1, 2)"):
         with pytest.raises(ExpressionError) as caught:
             parse(text)
-        problem = caught.value.problem("mass")
+        problem = caught.value.problem_of("mass")
         assert problem.found and "nothing in it is run" in problem.rule and problem.remedy
 
 

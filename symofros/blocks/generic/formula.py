@@ -84,7 +84,7 @@ class Formula(Block):
         try:
             return parse(str(text))
         except ExpressionError as error:
-            raise DescriptionError(error.problem(f"block '{self.name}': formula of '{name:.40}'")) from None
+            raise DescriptionError(error.problem_of(f"block '{self.name}': formula of '{name:.40}'")) from None
 
     def _expressions(self) -> list[Expression]:
         return [item for value in self._parsed.values() for item in (value if isinstance(value, list) else [value])]

@@ -105,7 +105,7 @@ class _Merger:
             root, problems = compose(self.bytes_of(path), shown)
             file, faults, broken = _validate(root, shown)
         except (YamlFault, DescriptionError) as error:
-            self.problems += [error.problem] if isinstance(error, YamlFault) else error.problems
+            self.problems += error.problems
             self.incomplete = True
             return
         self.problems += in_order([*problems, *faults])

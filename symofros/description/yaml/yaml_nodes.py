@@ -24,7 +24,7 @@ from ruamel.yaml.events import (
     SequenceStartEvent,
 )
 
-from symofros.errors import MAX_PROBLEMS, Problem
+from symofros.errors import MAX_PROBLEMS, Problem, SymofrosError
 
 MAX_DEPTH = 50
 # Ten thousand bodies of thirty values each have fewer.
@@ -87,12 +87,8 @@ class Node:
         return node
 
 
-class YamlFault(Exception):
-    """Reading can't go on."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-        super().__init__(str(problem))
+class YamlFault(SymofrosError):
+    """A problem of a YAML document after which reading can't go on."""
 
 
 def compose(data: bytes, file: str) -> tuple[Node, list[Problem]]:

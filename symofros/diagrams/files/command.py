@@ -71,13 +71,11 @@ def run_diagram(diagram: Diagram, wishes: Wishes, progress: bool) -> DiagramRun:
         stated["realtime"] = wishes.speed
     if wishes.jitter and not stated.get("realtime"):
         raise SymofrosError(
-            str(
-                Problem(
-                    "--jitter: the run keeps no pace",
-                    "no --realtime",
-                    "jitter is measured in real time",
-                    "add --realtime",
-                )
+            Problem(
+                "--jitter: the run keeps no pace",
+                "no --realtime",
+                "jitter is measured in real time",
+                "add --realtime",
             )
         )
     for name in wishes.signals:

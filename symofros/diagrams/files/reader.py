@@ -77,7 +77,7 @@ class _Shared:
             self.bytes_left -= len(data)
             root, repeated = compose(data, shown)
         except (YamlFault, DescriptionError) as error:
-            self.problems += [error.problem] if isinstance(error, YamlFault) else error.problems
+            self.problems += error.problems
             return None
         self.problems += repeated
         reader = _Reader(self, path, shown, (*including, path.resolve()))

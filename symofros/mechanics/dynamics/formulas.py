@@ -31,13 +31,11 @@ def formula_program(tree: SpanningTree, values: Sequence[tuple[Value, int]], der
     for value, _ in values:
         for name in sorted(symbols(value) - known):
             raise UnknownNameError(
-                str(
-                    Problem(
-                        f"system '{tree.system.name}': unknown symbol '{name}'",
-                        f"'{value}'",
-                        "a formula uses coordinates, speeds (d and the coordinate's name), inputs, parameters and t",
-                        did_you_mean(name, known) or "see model.names",
-                    )
+                Problem(
+                    f"system '{tree.system.name}': unknown symbol '{name}'",
+                    f"'{value}'",
+                    "a formula uses coordinates, speeds (d and the coordinate's name), inputs, parameters and t",
+                    did_you_mean(name, known) or "see model.names",
                 )
             )
     motion = set_in_motion(Graph(), tree)

@@ -139,13 +139,11 @@ class Bench:
             else:
                 known = (*names.q, *(f"d{speed}" for speed in names.v))
                 raise UnknownNameError(
-                    str(
-                        Problem(
-                            f"scene: start: no coordinate or speed '{name}'",
-                            ", ".join(known[:12]),
-                            "a start is of coordinates, and of speeds with a d before",
-                            near(name, known),
-                        )
+                    Problem(
+                        f"scene: start: no coordinate or speed '{name}'",
+                        ", ".join(known[:12]),
+                        "a start is of coordinates, and of speeds with a d before",
+                        near(name, known),
                     )
                 )
         if not model.nc:
@@ -203,13 +201,11 @@ class Bench:
                     return found, stepping
                 before = found
         raise SymofrosError(
-            str(
-                Problem(
-                    f"advise: the motion of '{system.name}' can't be computed to its tolerance",
-                    failure or "runs differ however tight their tolerance",
-                    "two runs of different tolerance agree",
-                    "look at the scene by sf.simulate first; loosen the tolerance; a chaotic motion has no exact one",
-                )
+            Problem(
+                f"advise: the motion of '{system.name}' can't be computed to its tolerance",
+                failure or "runs differ however tight their tolerance",
+                "two runs of different tolerance agree",
+                "look at the scene by sf.simulate first; loosen the tolerance; a chaotic motion has no exact one",
             )
         )
 

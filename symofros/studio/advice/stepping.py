@@ -52,13 +52,11 @@ def cheapest(bench: Bench, system: System, truth: Trial, share: float) -> tuple[
             best = found
     if best is None:
         raise SymofrosError(
-            str(
-                Problem(
-                    f"advise: no way to step '{system.name}' through the scene",
-                    "; ".join(lines),
-                    "one method is within its share of the tolerance",
-                    "allow adaptive steps, or a larger tolerance",
-                )
+            Problem(
+                f"advise: no way to step '{system.name}' through the scene",
+                "; ".join(lines),
+                "one method is within its share of the tolerance",
+                "allow adaptive steps, or a larger tolerance",
             )
         )
     return (*best, lines)

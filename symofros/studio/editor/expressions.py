@@ -36,7 +36,7 @@ def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any) ->
     try:
         formula = parse(typed)
     except ExpressionError as error:
-        return {"ok": False, "names": [], "error": _error(error.problem("formula"), error.position + 1)}
+        return {"ok": False, "names": [], "error": _error(error.problem_of("formula"), error.position + 1)}
     value = as_value(formula)
     names = sorted(symbols(value))
     answer: Json = {"ok": True, "names": names}

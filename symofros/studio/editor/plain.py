@@ -29,11 +29,7 @@ SECTIONS = (
 
 
 class EditError(SymofrosError):
-    """An edit that can't be applied; carries the problem."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-        super().__init__(str(problem))
+    """An edit that can't be applied."""
 
 
 @dataclass(frozen=True)

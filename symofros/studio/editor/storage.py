@@ -36,8 +36,8 @@ class ConflictError(SymofrosError):
     """
 
     def __init__(self, problem: Problem, disk: str, over: str) -> None:
-        self.problem, self.disk, self.over = problem, disk, over
-        super().__init__(str(problem))
+        super().__init__(problem)
+        self.disk, self.over = disk, over
 
 
 class Storage:

@@ -13,14 +13,16 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from symofros.description.reading import in_order
 from symofros.description.system import System
 from symofros.description.yaml.files import read_yaml
-from symofros.errors import DescriptionError, SymofrosError
+from symofros.errors import DescriptionError, Problem, SymofrosError
 from symofros.mechanics.topology.graph import find_problems
+from symofros.studio.editor.plain import four_parts
 
 Json = dict[str, Any]
 Tell = Callable[[int, int, str], None]
@@ -40,20 +42,12 @@ def system_of(request: Json) -> System:
 
 
 def error_of(error: Exception) -> Json:
-    """An exception in the four parts."""
-    if isinstance(error, DescriptionError) and error.problems:
-        first, rest = error.problems[0], len(error.problems) - 1
-        more = f" (and {rest} more)" if rest else ""
-        return {"object": first.what + more, "found": first.found, "rule": first.rule, "remedy": first.remedy}
-    parts = {"object": "", "found": "", "rule": "", "remedy": ""}
-    head: list[str] = []
-    for line in str(error).splitlines():
-        label, _, text = line.strip().partition(":")
-        if line.startswith("  ") and label in parts:
-            parts[label] = text.strip()
-        else:
-            head.append(line)
-    return {**parts, "object": "\n".join(head) or type(error).__name__}
+    """An exception as the four parts that the page shows: its first problem, and how many more there are."""
+    if not isinstance(error, SymofrosError):
+        return {**four_parts(Problem(str(error) or type(error).__name__))}
+    first, rest = error.problem, len(error.problems) - 1
+    more = f" (and {rest} more)" if rest else ""
+    return four_parts(replace(first, what=first.what + more))
 
 
 def main() -> None:

@@ -114,7 +114,7 @@ class View:
                 why = viewer.move(q, par) if q or par else ""
             except SymofrosError as error:
                 raise EditError(_problem(error_of(error))) from None
-            return {**_stand(viewer), "why": why and error_of(SymofrosError(why))["object"]}
+            return {**_stand(viewer), "why": why and why.partition("\n")[0]}
 
     def _as_json(self, viewer: Viewer) -> Json:
         units = coordinate_units(viewer.mechanism.tree)

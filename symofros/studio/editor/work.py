@@ -87,13 +87,11 @@ def cross_check(request: Json, tell: Tell) -> Json:
     system = system_of(request)
     if find_spec("validation") is None:
         raise SymofrosError(
-            str(
-                Problem(
-                    "cross-check: the harness is not installed",
-                    "no package 'validation'",
-                    "independent engines come with the extra 'validation'",
-                    "pip install 'symofros[validation]'",
-                )
+            Problem(
+                "cross-check: the harness is not installed",
+                "no package 'validation'",
+                "independent engines come with the extra 'validation'",
+                "pip install 'symofros[validation]'",
             )
         )
     options = request.get("options", {})
@@ -109,13 +107,11 @@ def cross_check(request: Json, tell: Tell) -> Json:
         verdict = json.loads(run.stdout.strip().splitlines()[-1])
     except (ValueError, IndexError):
         raise SymofrosError(
-            str(
-                Problem(
-                    "cross-check: the harness gave no verdict",
-                    run.stderr.strip()[-1000:],
-                    "it prints its comparisons as JSON",
-                    "run `python -m validation check` on the saved file",
-                )
+            Problem(
+                "cross-check: the harness gave no verdict",
+                run.stderr.strip()[-1000:],
+                "it prints its comparisons as JSON",
+                "run `python -m validation check` on the saved file",
             )
         ) from None
     rows = [
@@ -242,7 +238,7 @@ def _number(given: Any, what: str) -> float:
     except (TypeError, ValueError):
         number = math.nan
     if not math.isfinite(number):
-        raise SymofrosError(str(Problem(f"{what} is not a number", f"{given!r:.100}", "a finite number", "mend it")))
+        raise SymofrosError(Problem(f"{what} is not a number", f"{given!r:.100}", "a finite number", "mend it"))
     return number
 
 
@@ -261,13 +257,11 @@ def _vector(names: tuple[str, ...], given: Any, default: Any, what: str) -> Any:
         plain = name if name in names else name.removeprefix("d")
         if plain not in names:
             raise UnknownNameError(
-                str(
-                    Problem(
-                        f"no {what} '{name}'",
-                        ", ".join(names[:12]),
-                        f"a {what} of the model",
-                        did_you_mean(name, names),
-                    )
+                Problem(
+                    f"no {what} '{name}'",
+                    ", ".join(names[:12]),
+                    f"a {what} of the model",
+                    did_you_mean(name, names),
                 )
             )
         values[names.index(plain)] = _number(number, name)

@@ -18,11 +18,7 @@ READABLE = (*SUFFIXES, ".urdf", ".xml")
 
 
 class FileError(SymofrosError):
-    """A file that can't be read or written; carries the problem."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-        super().__init__(str(problem))
+    """A file that can't be read or written."""
 
 
 class Workspace:

@@ -61,13 +61,11 @@ def _record(system: sf.System, trajectory: Path | None, output: Path, exaggerati
         return sf.record(system, motion, output, exaggeration=exaggeration, speed=speed)
     if output.suffix in (".html", ".mp4", ".gif"):
         raise sf.SymofrosError(
-            str(
-                Problem(
-                    "record: nothing moves",
-                    "no --trajectory",
-                    "a recording is of a motion",
-                    "simulate one: symofros simulate MODEL T -o FILE.npz; or record a .png",
-                )
+            Problem(
+                "record: nothing moves",
+                "no --trajectory",
+                "a recording is of a motion",
+                "simulate one: symofros simulate MODEL T -o FILE.npz; or record a .png",
             )
         )
     state = mechanism.closed(mechanism.state())[0]

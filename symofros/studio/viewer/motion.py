@@ -112,24 +112,20 @@ def read_motion(path: str | Path, model: Model) -> Motion:
     file = Path(path)
     if file.suffix not in SUFFIXES:
         raise SymofrosError(
-            str(
-                Problem(
-                    f"trajectory: can't read '{file.name}'",
-                    file.suffix or "no suffix",
-                    f"one of {', '.join(SUFFIXES)}",
-                    "save it with Trajectory.save",
-                )
+            Problem(
+                f"trajectory: can't read '{file.name}'",
+                file.suffix or "no suffix",
+                f"one of {', '.join(SUFFIXES)}",
+                "save it with Trajectory.save",
             )
         )
     if not file.is_file():
         raise SymofrosError(
-            str(
-                Problem(
-                    f"trajectory: '{file}' does not exist",
-                    "no such file",
-                    "a trajectory is an existing file",
-                    "check the path; `symofros simulate MODEL T -o FILE` writes one",
-                )
+            Problem(
+                f"trajectory: '{file}' does not exist",
+                "no such file",
+                "a trajectory is an existing file",
+                "check the path; `symofros simulate MODEL T -o FILE` writes one",
             )
         )
     readers = {".npz": _read_arrays, ".csv": _read_csv, ".parquet": _read_parquet}
@@ -177,13 +173,11 @@ def _read_parquet(file: Path, model: Model) -> Motion:
         parquet = import_module("pyarrow.parquet")
     except ImportError:
         raise SymofrosError(
-            str(
-                Problem(
-                    "trajectory: Parquet needs pyarrow",
-                    "it is not installed",
-                    "pyarrow reads Parquet",
-                    "pip install 'symofros[parquet]', or use .npz",
-                )
+            Problem(
+                "trajectory: Parquet needs pyarrow",
+                "it is not installed",
+                "pyarrow reads Parquet",
+                "pip install 'symofros[parquet]', or use .npz",
             )
         ) from None
     table = parquet.read_table(file)
@@ -249,9 +243,7 @@ def finite(name: str, value: float) -> float:
         SymofrosError: It is none.
     """
     if not np.isfinite(value):
-        raise SymofrosError(
-            str(Problem(f"view: no such {name}", repr(value), f"{name} is a finite number", "give another"))
-        )
+        raise SymofrosError(Problem(f"view: no such {name}", repr(value), f"{name} is a finite number", "give another"))
     return float(value)
 
 
@@ -263,7 +255,7 @@ def positive(name: str, value: float) -> float:
     """
     if not (np.isfinite(value) and value > 0.0):
         raise SymofrosError(
-            str(Problem(f"view: no such {name}", repr(value), f"{name} is a finite number above 0", "give another"))
+            Problem(f"view: no such {name}", repr(value), f"{name} is a finite number above 0", "give another")
         )
     return float(value)
 
@@ -273,4 +265,4 @@ def _some(names: Sequence[str]) -> str:
 
 
 def _refuse(what: str, found: str, rule: str, remedy: str) -> NoReturn:
-    raise ShapeError(str(Problem(f"{what}: does not fit the model", found, rule, remedy)))
+    raise ShapeError(Problem(f"{what}: does not fit the model", found, rule, remedy))

@@ -28,16 +28,14 @@ def chosen_block(name: str, blocks: Mapping[str, Block], block: str = "") -> str
     if not block and len(moving) == 1:
         return moving[0]
     raise UnknownNameError(
-        str(
-            Problem(
-                f"view of diagram '{name}': no mechanism '{block}'"
-                if block
-                else f"view of diagram '{name}': which mechanism?",
-                f"'{block}'" if block else f"{len(moving)} mechanisms",
-                f"blocks that move one: {', '.join(moving) or 'none'}",
-                (did_you_mean(block, moving) if block else "")
-                or ("name one of them" if moving else "add forward dynamics"),
-            )
+        Problem(
+            f"view of diagram '{name}': no mechanism '{block}'"
+            if block
+            else f"view of diagram '{name}': which mechanism?",
+            f"'{block}'" if block else f"{len(moving)} mechanisms",
+            f"blocks that move one: {', '.join(moving) or 'none'}",
+            (did_you_mean(block, moving) if block else "")
+            or ("name one of them" if moving else "add forward dynamics"),
         )
     )
 

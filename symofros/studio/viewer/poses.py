@@ -118,13 +118,11 @@ class Mechanism:
         array = np.array(given, dtype=np.float64)
         if array.shape != (size,):
             raise ShapeError(
-                str(
-                    Problem(
-                        f"view of '{self.system.name}': {what} has the wrong shape",
-                        str(array.shape),
-                        f"{what} has shape ({size},)",
-                        "one state is shown at a time; motions are played",
-                    )
+                Problem(
+                    f"view of '{self.system.name}': {what} has the wrong shape",
+                    str(array.shape),
+                    f"{what} has shape ({size},)",
+                    "one state is shown at a time; motions are played",
                 )
             )
         return array

@@ -39,13 +39,11 @@ class _Recording:
         count = int(np.ceil((motion.end - motion.start) / (speed * period) - 1e-9)) + 1
         if count > MOST_FRAMES:
             raise SymofrosError(
-                str(
-                    Problem(
-                        "record: too long",
-                        f"{count} pictures",
-                        f"{MOST_FRAMES} at most",
-                        "raise the speed, or lower the pictures a second",
-                    )
+                Problem(
+                    "record: too long",
+                    f"{count} pictures",
+                    f"{MOST_FRAMES} at most",
+                    "raise the speed, or lower the pictures a second",
                 )
             )
         q, u = motion.at(np.minimum(motion.start + speed * period * np.arange(count), motion.end))
@@ -103,7 +101,7 @@ def record(
     speed, rate, exaggeration = positive("speed", speed), positive("rate", rate), finite("exaggeration", exaggeration)
     if any(side < 2 or side % 2 or side > 4096 for side in size):
         raise SymofrosError(
-            str(Problem("record: no such size", str(size), "even numbers of pixels, 2 to 4096", "such as (960, 720)"))
+            Problem("record: no such size", str(size), "even numbers of pixels, 2 to 4096", "such as (960, 720)")
         )
     mechanism = Mechanism(system, tracks_of(paths))
     motion = motion_of(mechanism.model, run)
@@ -129,13 +127,11 @@ def check_suffix(file: Path) -> None:
     """
     if file.suffix not in _SUFFIXES:
         raise SymofrosError(
-            str(
-                Problem(
-                    f"record: can't write '{file.name}'",
-                    file.suffix or "no suffix",
-                    f"one of {', '.join(_SUFFIXES)}",
-                    did_you_mean(file.suffix, _SUFFIXES),
-                )
+            Problem(
+                f"record: can't write '{file.name}'",
+                file.suffix or "no suffix",
+                f"one of {', '.join(_SUFFIXES)}",
+                did_you_mean(file.suffix, _SUFFIXES),
             )
         )
 
@@ -148,13 +144,11 @@ def _asked(
         return *shown_of(system, block), Path(run)
     if isinstance(system, DiagramRun) or isinstance(run, (str, Path)) or path is None:
         raise SymofrosError(
-            str(
-                Problem(
-                    "record: what is to be written?",
-                    "other arguments",
-                    "a system, its motion and a path; or a diagram's run and a path",
-                    'for example sf.record(system, run, "run.html")',
-                )
+            Problem(
+                "record: what is to be written?",
+                "other arguments",
+                "a system, its motion and a path; or a diagram's run and a path",
+                'for example sf.record(system, run, "run.html")',
             )
         )
     return system, run, Path(path)
@@ -218,5 +212,5 @@ def _extra(module: str, why: str, install: str) -> Any:
         return import_module(module)
     except ImportError:
         raise SymofrosError(
-            str(Problem(f"record: {why}", f"no module {module}", "recording is an extra", f"pip install '{install}'"))
+            Problem(f"record: {why}", f"no module {module}", "recording is an extra", f"pip install '{install}'")
         ) from None

@@ -104,13 +104,11 @@ class Scene:
         """
         if layer not in LAYERS:
             raise UnknownNameError(
-                str(
-                    Problem(
-                        f"view: no layer '{layer}'",
-                        f"'{layer}'",
-                        f"one of {', '.join(LAYERS)}",
-                        did_you_mean(layer, LAYERS),
-                    )
+                Problem(
+                    f"view: no layer '{layer}'",
+                    f"'{layer}'",
+                    f"one of {', '.join(LAYERS)}",
+                    did_you_mean(layer, LAYERS),
                 )
             )
         self._shown = self._shown | {layer} if visible else self._shown - {layer}

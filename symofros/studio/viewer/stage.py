@@ -103,13 +103,11 @@ class Stage:
 def _index(what: str, names: Sequence[str], name: str) -> int:
     if name not in names:
         raise UnknownNameError(
-            str(
-                Problem(
-                    f"view: no {what} '{name}'",
-                    ", ".join(names[:12]),
-                    f"a {what} of the model",
-                    did_you_mean(name, names),
-                )
+            Problem(
+                f"view: no {what} '{name}'",
+                ", ".join(names[:12]),
+                f"a {what} of the model",
+                did_you_mean(name, names),
             )
         )
     return names.index(name)

@@ -92,4 +92,4 @@ def _mesh(points: Array, radius: float) -> Mesh:
 
 
 def _refuse(what: str, found: str, rule: str) -> None:
-    raise ShapeError(str(Problem(f"view: {what} can't be drawn", found, rule, "for example ('desired', points)")))
+    raise ShapeError(Problem(f"view: {what} can't be drawn", found, rule, "for example ('desired', points)"))

@@ -170,7 +170,7 @@ def test_a_job_is_cancelled_with_all_that_it_started(client: TestClient) -> None
     [
         (DescriptionError(Problem("a", "b", "c", "d", "x:1")), ("a", "b", "c", "d")),
         (DescriptionError([Problem("a"), Problem("b"), Problem("c")]), ("a (and 2 more)", "", "", "")),
-        (SymofrosError(str(Problem("a", "b: b", "", "d"))), ("a", "b: b", "", "d")),
+        (SymofrosError(Problem("a", "b: b", "", "d")), ("a", "b: b", "", "d")),
         (ValueError("plain: words\n  and more"), ("plain: words\n  and more", "", "", "")),
         (ValueError(), ("ValueError", "", "", "")),
     ],
