@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from validation.pareto import andrews, arm, four_bar, pendulum, robot, spin_up
 from validation.pareto.scene import Scene
+from validation.pareto.scenes import andrews, arm, four_bar, pendulum, robot, spin_up
 
 SCENES: dict[str, Scene] = {
     "spin_up": spin_up.SCENE,

@@ -19,9 +19,9 @@ import symofros as sf
 from symofros.generator.passes.count import count_program
 from validation.mechanics.geometry import Array
 from validation.passes.switches import PASSES, Without
-from validation.timing.arrays import Arrays, loops
 from validation.timing.models import SCENES
 from validation.timing.race import error, race
+from validation.timing.sides.arrays import Arrays, loops
 from validation.timing.task import Loop
 
 STATES = 256

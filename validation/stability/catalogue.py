@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from validation.stability import (
+from validation.stability.scene import Scene
+from validation.stability.scenes import (
     baumgarte,
     beams,
     deflection,
@@ -18,7 +19,6 @@ from validation.stability import (
     spin,
     stick_slip,
 )
-from validation.stability.scene import Scene
 
 SCENES: dict[str, Scene] = {
     "baumgarte": baumgarte.SCENE,

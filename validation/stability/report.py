@@ -11,7 +11,7 @@ from typing import Any
 from markupsafe import Markup, escape
 
 from validation.reporting.page import check_data, compact, render, rounded, run_data, versions, write_pages
-from validation.stability import heat
+from validation.stability import heatmap
 from validation.stability.scene import FINISHED, Map, Maps, Scene, Verdict
 
 ENGINES = ("mujoco", "exudyn", "pin")
@@ -147,7 +147,7 @@ def _render(template: str, atlas: Atlas) -> str:
 
 
 def _map(found: Map, scene: Scene) -> Markup:
-    return Markup(heat.svg(found, scene.x, scene.y, scene.quantity))
+    return Markup(heatmap.svg(found, scene.x, scene.y, scene.quantity))
 
 
 def _prose(text: str) -> Markup:

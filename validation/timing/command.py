@@ -14,13 +14,13 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from validation.timing.flexible import LABEL, run_flexible
+from validation.timing.flexible.race import LABEL, run_flexible
 from validation.timing.models import FUNCTIONS, SCENES
-from validation.timing.programs import BuildError
 from validation.timing.record import Record, as_data, read
 from validation.timing.report import write_report
 from validation.timing.run import facts, jobs, load, prepare, run_job
 from validation.timing.sections import headline
+from validation.timing.sides.programs import BuildError
 from validation.timing.targets import verdicts
 from validation.timing.task import STATES
 from validation.timing.worker import PEERS, Job

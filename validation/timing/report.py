@@ -13,7 +13,7 @@ from symofros.atomic import write_atomically
 from validation.evidence.charts import svg
 from validation.evidence.findings import Chart
 from validation.reporting.page import render
-from validation.timing.flexible_report import flexible_section
+from validation.timing.flexible.report import flexible_section
 from validation.timing.record import Record, as_data
 from validation.timing.sections import headline, sections
 

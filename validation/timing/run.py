@@ -16,13 +16,13 @@ from typing import Any
 
 from symofros.runtime.toolchain import DEFAULT_FLAGS
 from validation.reporting.record import machine
-from validation.timing.arrays import first_compiler
-from validation.timing.engines import CLOSED, PINOCCHIO_FLAGS, pinocchio_builds
-from validation.timing.generated import BUILDS
 from validation.timing.models import SCENES
-from validation.timing.programs import BuildError, Skipped, compilers, source
 from validation.timing.race import pin_to_one_cpu
 from validation.timing.record import Record, entry, made
+from validation.timing.sides.arrays import first_compiler
+from validation.timing.sides.engines import CLOSED, PINOCCHIO_FLAGS, pinocchio_builds
+from validation.timing.sides.generated import BUILDS
+from validation.timing.sides.programs import BuildError, Skipped, compilers, source
 from validation.timing.worker import Job
 
 Done = Callable[[str, str], None]

@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.timing.arrays import first_compiler
-from validation.timing.engines import mujoco_loops, pinocchio_loops
-from validation.timing.generated import casadi_loops, sympy_loops
-from validation.timing.ours import BATCH, COLUMNS, NAME, SINGLE, our_loops
-from validation.timing.programs import BuildError, Skipped
 from validation.timing.race import OF_FLOATS, DisagreementError, checked, race
 from validation.timing.record import Entry, Made
+from validation.timing.sides.arrays import first_compiler
+from validation.timing.sides.engines import mujoco_loops, pinocchio_loops
+from validation.timing.sides.generated import casadi_loops, sympy_loops
+from validation.timing.sides.ours import BATCH, COLUMNS, NAME, SINGLE, our_loops
+from validation.timing.sides.programs import BuildError, Skipped
 from validation.timing.task import Loop, Task, task
 
 Say = Callable[[str, Any], None]

@@ -15,11 +15,11 @@ from typer.testing import CliRunner
 from validation.__main__ import app
 from validation.adapters.exudyn.scenes import Rod, pendulum
 from validation.adapters.exudyn.steps import Solver
-from validation.pareto import andrews, arm, closed_forms, four_bar, rod, spin_up
-from validation.pareto import pendulum as swing
 from validation.pareto.catalogue import SCENES
 from validation.pareto.front import usable
 from validation.pareto.race import race
+from validation.pareto.scenes import andrews, arm, closed_forms, four_bar, rod, spin_up
+from validation.pareto.scenes import pendulum as swing
 
 
 @pytest.mark.parametrize("name", ["arm", "four_bar", "andrews"])

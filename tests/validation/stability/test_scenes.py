@@ -17,11 +17,12 @@ from typer.testing import CliRunner
 import symofros as sf
 from validation.__main__ import app
 from validation.evidence.findings import Check
-from validation.stability import baumgarte, beams, four_bars, heat, light_bodies, spin, stick_slip
+from validation.stability import heatmap
 from validation.stability.catalogue import SCENES
 from validation.stability.command import draw, drawn
 from validation.stability.report import Page
 from validation.stability.scene import Cell, Grid, Limit, Map, Scene, Subject, Verdict, cell, decades, survey
+from validation.stability.scenes import baumgarte, beams, four_bars, light_bodies, spin, stick_slip
 
 
 @pytest.fixture(scope="module")
@@ -182,7 +183,7 @@ class TestMaps:
             [[0.1, 0.1, 0.1], [0.1, 0.1, 5.0], [0.1, math.nan, 7.0]],
             limits=(Limit("one", np.array([1.0, 100.0]), np.array([10.0, 10.0])),),
         )
-        svg = heat.svg(found, grid, grid, "a < b [m]")
+        svg = heatmap.svg(found, grid, grid, "a < b [m]")
         cells: Counter[str] = Counter()
         for kind, boxes in re.findall(r'<path class="([a-z-]+)"[^>]* d="([^"]*)"', svg):
             cells[kind] += boxes.count("M")
@@ -193,7 +194,7 @@ class TestMaps:
         heights = {float(pair.split(",")[1]) for pair in points.split()}
         # The closed form at 10 runs through the middle row.
         (middle,) = {round(h, 1) for h in heights}
-        assert middle == pytest.approx((heat.HEIGHT - 50 + 66) / 2, abs=0.2)
+        assert middle == pytest.approx((heatmap.HEIGHT - 50 + 66) / 2, abs=0.2)
 
 
 def test_decades() -> None:

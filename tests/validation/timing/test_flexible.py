@@ -10,8 +10,8 @@ import pytest
 import reference_models
 import symofros as sf
 from validation.adapters.exudyn.planar import Cable, planar_tree, smallest
-from validation.timing import equal_accuracy
-from validation.timing.equal_accuracy import (
+from validation.timing.flexible import equal_accuracy
+from validation.timing.flexible.equal_accuracy import (
     EA,
     POSTURE,
     NotTheSameError,
@@ -21,9 +21,9 @@ from validation.timing.equal_accuracy import (
     robot,
     their_frequencies,
 )
-from validation.timing.flexible_loop import GeneratedLoop
-from validation.timing.flexible_report import flexible_section
-from validation.timing.flexible_worker import JOBS, measure
+from validation.timing.flexible.loop import GeneratedLoop
+from validation.timing.flexible.report import flexible_section
+from validation.timing.flexible.worker import JOBS, measure
 
 # Of the two lowest frequencies, those of the elastic drive and of the first bending: three functions and two elements
 # both have them to 1.3e-5.

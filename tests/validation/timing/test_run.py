@@ -11,13 +11,14 @@ from typer.testing import CliRunner
 
 from tests.validation.timing.records import cubic, entry, made
 from validation.__main__ import app
-from validation.timing import command, engines, worker
+from validation.timing import command, worker
 from validation.timing.models import FUNCTIONS, SCENES
-from validation.timing.programs import BuildError, Built, Compiler, Skipped, build, compilers
 from validation.timing.record import Record
 from validation.timing.report import write_report
 from validation.timing.run import jobs, peaks, take
 from validation.timing.sections import sections
+from validation.timing.sides import engines
+from validation.timing.sides.programs import BuildError, Built, Compiler, Skipped, build, compilers
 from validation.timing.worker import Job
 
 JOB = Job("panda", ("pinocchio", "sympy"), ("dynamics",), 3, 100)
@@ -105,7 +106,8 @@ def test_a_compiler_that_fails_is_told_and_the_other_goes_on(monkeypatch: pytest
 def test_one_compiler_of_each_family_and_the_newest_clang(monkeypatch: pytest.MonkeyPatch) -> None:
     there = {"gcc": "gcc 12.2.0", "clang": "clang 14.0.6", "clang-19": "clang 19.1.7", "clang-16": "clang 16.0.0"}
     monkeypatch.setattr(
-        "validation.timing.programs._compiler", lambda name: Compiler(name, there[name], "") if name in there else None
+        "validation.timing.sides.programs._compiler",
+        lambda name: Compiler(name, there[name], "") if name in there else None,
     )
     assert [found.name for found in compilers()] == ["gcc 12.2.0", "clang 19.1.7"]
 

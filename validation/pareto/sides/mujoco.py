@@ -11,8 +11,8 @@ import numpy as np
 
 from validation.adapters.mujoco.steps import stepped
 from validation.mechanics.geometry import Array
-from validation.pareto.ours import milliseconds
 from validation.pareto.scene import Contestant, Measured
+from validation.pareto.sides.ours import milliseconds
 
 
 @dataclass(frozen=True)

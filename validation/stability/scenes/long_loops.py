@@ -10,8 +10,8 @@ import numpy as np
 import symofros as sf
 from validation.evidence.findings import Check, exponent
 from validation.mechanics.geometry import Array
-from validation.stability import four_bars
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
+from validation.stability.scenes import four_bars
 
 # Parallelograms would not drift: errors of all cranks are the same. Pivots are a little nearer than bars are long.
 SPACING = 0.95

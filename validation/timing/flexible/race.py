@@ -1,6 +1,6 @@
 """Generated C of the planar flexible robot against Exudyn's mass matrix and right-hand side, at equal accuracy.
 
-Measured in a process of its own, `validation.timing.flexible_worker`: Exudyn's module without range checks has to be
+Measured in a process of its own, `validation.timing.flexible.worker`: Exudyn's module without range checks has to be
 chosen before anything else imports Exudyn.
 """
 
@@ -14,13 +14,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
-from validation.timing.programs import BuildError
+from validation.timing.sides.programs import BuildError
 
 LABEL = "planar_robot"
 # Shape functions a strip: as the model states it, and finer.
 COUNTS = (3, 4, 6)
 CALLS = 1000
-_WORKER = "validation.timing.flexible_worker"
+_WORKER = "validation.timing.flexible.worker"
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.adapters.exudyn.steps import ADAPTIVE, Recorded, Solver, Timed
-from validation.pareto.ours import milliseconds
 from validation.pareto.scene import Contestant, Measured
+from validation.pareto.sides.ours import milliseconds
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import cffi
 import numpy as np
 
 from validation.mechanics.geometry import Array
-from validation.timing.programs import BuildError, Compiler, build, compilers, declared, source
+from validation.timing.sides.programs import BuildError, Compiler, build, compilers, declared, source
 
 _FLAGS = ("-O3", "-march=native", "-std=gnu99", "-Wall", "-Wextra")
 _PROTOTYPES = """

@@ -1,4 +1,4 @@
-"""Times the planar flexible robot, ours and Exudyn's in turn: `python -m validation.timing.flexible_worker`.
+"""Times the planar flexible robot, ours and Exudyn's in turn: `python -m validation.timing.flexible.worker`.
 
 Arguments: repeats, evaluations a repeat, shape functions a strip (one or more). Prints `FlexibleTiming`s as JSON.
 """
@@ -19,9 +19,9 @@ import numpy as np
 from validation.adapters.exudyn.planar import smallest
 from validation.adapters.exudyn.system import Part
 from validation.mechanics.assembly import assemble
-from validation.timing.equal_accuracy import NotTheSameError, Pair, pairs, robot
-from validation.timing.flexible import FlexibleTiming
-from validation.timing.flexible_loop import GeneratedLoop
+from validation.timing.flexible.equal_accuracy import NotTheSameError, Pair, pairs, robot
+from validation.timing.flexible.loop import GeneratedLoop
+from validation.timing.flexible.race import FlexibleTiming
 
 # Elastic coordinates of the states: the strips bend by some 3 % of their lengths [m].
 _DEFLECTION = 0.01

@@ -12,10 +12,10 @@ import symofros as sf
 from validation.adapters.exudyn.scenes import Rod, spinning
 from validation.adapters.exudyn.steps import Recorded, Solver
 from validation.mechanics.geometry import Array
-from validation.pareto import rod
-from validation.pareto.ours import Ours
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
-from validation.pareto.theirs_exudyn import Theirs
+from validation.pareto.scenes import rod
+from validation.pareto.sides.exudyn import Theirs
+from validation.pareto.sides.ours import Ours
 
 ROD = Rod(length=10.0, EI=1.4e4, EA=2.8e7, rhoA=1.2, duration=15.0, rate=6.0)
 RHO_I = 6e-4  # Moment of inertia of sections per length [kg m].

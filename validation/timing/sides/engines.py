@@ -19,7 +19,17 @@ from validation.contract.conventions import Chart
 from validation.contract.interface import Subject, Unsupported
 from validation.mechanics.assembly import Assembly
 from validation.mechanics.geometry import Array, matrix_quaternion, quaternion_product
-from validation.timing.programs import BuildError, Built, Compiler, Skipped, build, compilers, copies, declared, source
+from validation.timing.sides.programs import (
+    BuildError,
+    Built,
+    Compiler,
+    Skipped,
+    build,
+    compilers,
+    copies,
+    declared,
+    source,
+)
 from validation.timing.task import START, STEP, Loop, Task, flat
 
 PINOCCHIO_FLAGS = (

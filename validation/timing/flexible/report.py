@@ -8,7 +8,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from validation.timing.flexible import CALLS, FlexibleTiming
+from validation.timing.flexible.race import CALLS, FlexibleTiming
 from validation.timing.sections import Section
 
 _LIMITS = (

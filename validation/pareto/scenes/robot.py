@@ -14,10 +14,10 @@ from validation.adapters.exudyn.planar import Cable
 from validation.adapters.exudyn.scenes import planar
 from validation.adapters.exudyn.steps import Solver
 from validation.mechanics.geometry import Array
-from validation.pareto.ours import Ours
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
-from validation.pareto.theirs_exudyn import Theirs
-from validation.timing.equal_accuracy import EA
+from validation.pareto.sides.exudyn import Theirs
+from validation.pareto.sides.ours import Ours
+from validation.timing.flexible.equal_accuracy import EA
 
 END, OUTPUT = 2.0, 0.02
 TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT

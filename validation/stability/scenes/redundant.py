@@ -10,10 +10,10 @@ import numpy as np
 import symofros as sf
 from reference_models import MODELS
 from validation.evidence.findings import Check
-from validation.stability import four_bars
-from validation.stability.four_bars import AXIS, BAR, END_OF_BAR
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, refused, simulate
+from validation.stability.scenes import four_bars
+from validation.stability.scenes.four_bars import AXIS, BAR, END_OF_BAR
 
 END = 0.5
 BOUND = 1e-6

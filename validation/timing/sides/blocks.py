@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.runtime.layout import Numbers, Strided, columns
 from validation.mechanics.geometry import Array
-from validation.timing.arrays import loops, room
+from validation.timing.sides.arrays import loops, room
 
 
 class Blocks:

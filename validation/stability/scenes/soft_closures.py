@@ -9,10 +9,10 @@ import numpy as np
 
 from validation.adapters.mujoco import motion as mujoco_motion
 from validation.evidence.findings import Check
-from validation.stability import four_bars
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, decades, simulate
-from validation.stability.singular import ends_of_crank
+from validation.stability.scenes import four_bars
+from validation.stability.scenes.singular import ends_of_crank
 
 END = 10.0
 BOUND = 1e-2

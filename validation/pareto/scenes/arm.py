@@ -18,10 +18,10 @@ from validation.adapters.pinocchio import steps as pinocchio_steps
 from validation.adapters.pinocchio import tree as pinocchio
 from validation.contract.interface import Subject, Unsupported
 from validation.mechanics.geometry import Array
-from validation.pareto.ours import Ours, milliseconds
 from validation.pareto.scene import Contestant, Measured, Prepared, Scene, Target
-from validation.pareto.theirs_exudyn import Theirs
-from validation.pareto.theirs_mujoco import InMujoco
+from validation.pareto.sides.exudyn import Theirs
+from validation.pareto.sides.mujoco import InMujoco
+from validation.pareto.sides.ours import Ours, milliseconds
 from validation.studies.simulation import DAMPING, STIFFNESS, TARGET
 from validation.timing.models import panda7
 

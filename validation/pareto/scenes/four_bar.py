@@ -12,13 +12,13 @@ from validation.adapters.exudyn.scenes import bars
 from validation.adapters.exudyn.steps import Solver
 from validation.adapters.mujoco.steps import loaded
 from validation.mechanics.geometry import Array
-from validation.pareto.closed_forms import turning
-from validation.pareto.ours import Ours
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
-from validation.pareto.theirs_exudyn import Theirs
-from validation.pareto.theirs_mujoco import InMujoco
-from validation.stability import four_bars
-from validation.stability.soft_closures import DEFAULT, SOLIMP
+from validation.pareto.scenes.closed_forms import turning
+from validation.pareto.sides.exudyn import Theirs
+from validation.pareto.sides.mujoco import InMujoco
+from validation.pareto.sides.ours import Ours
+from validation.stability.scenes import four_bars
+from validation.stability.scenes.soft_closures import DEFAULT, SOLIMP
 
 END, OUTPUT = 10.0, 0.1
 TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT

@@ -9,12 +9,12 @@ from validation.adapters.exudyn.scenes import pendulum as exudyn_pendulum
 from validation.adapters.exudyn.steps import Solver
 from validation.adapters.mujoco.steps import loaded
 from validation.mechanics.geometry import Array
-from validation.pareto.closed_forms import swinging
-from validation.pareto.ours import Ours
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
-from validation.pareto.theirs_exudyn import Theirs
-from validation.pareto.theirs_mujoco import InMujoco
-from validation.stability import energy
+from validation.pareto.scenes.closed_forms import swinging
+from validation.pareto.sides.exudyn import Theirs
+from validation.pareto.sides.mujoco import InMujoco
+from validation.pareto.sides.ours import Ours
+from validation.stability.scenes import energy
 
 END, OUTPUT, GRAVITY = 1000.0, 1.0, 9.81
 TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT

@@ -19,9 +19,9 @@ from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepper import Stepper
 from validation.mechanics.geometry import Array
-from validation.timing.arrays import Arrays, Turns, loops
-from validation.timing.blocks import Blocks
-from validation.timing.programs import BuildError, Compiler, build, copies, source
+from validation.timing.sides.arrays import Arrays, Turns, loops
+from validation.timing.sides.blocks import Blocks
+from validation.timing.sides.programs import BuildError, Compiler, build, copies, source
 from validation.timing.task import START, STEP, Cost, Loop, Task
 
 NAME = "symofros"

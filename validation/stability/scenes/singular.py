@@ -12,9 +12,9 @@ from validation.adapters.exudyn import motion as exudyn_motion
 from validation.adapters.mujoco import motion as mujoco_motion
 from validation.evidence.findings import Check
 from validation.mechanics.geometry import Array
-from validation.stability import four_bars
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
+from validation.stability.scenes import four_bars
 
 END = 10.0
 BOUND = 1e-2

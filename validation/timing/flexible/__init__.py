@@ -1,0 +1,1 @@
+"""The planar flexible robot against Exudyn at equal accuracy."""

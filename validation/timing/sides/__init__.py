@@ -1,0 +1,1 @@
+"""The sides of a race as loops in C: ours, engines, other generators."""
