@@ -98,10 +98,14 @@ def test_a_faulty_document_is_told_not_compiled(client: TestClient) -> None:
 
 
 def test_export_stays_in_the_workspace(client: TestClient, folder: Path) -> None:
-    job = finished(client, "export", target="c", folder="out/c", name="bar")
-    assert job["state"] == "failed" or "out/c/bar.c" in job["result"]["files"]
-    job = finished(client, "export", target="urdf", folder="out2")
-    assert job["state"] == "failed" or (folder / "out2").is_dir()
+    beside = set(folder.parent.iterdir())
+    for target, sub, main in (("c", "out/c", "bar.c"), ("urdf", "out2", "bar.urdf")):
+        job = finished(client, "export", target=target, folder=sub, name="bar")
+        assert job["state"] == "done", job["error"]
+        files = job["result"]["files"]
+        assert f"{sub}/{main}" in files and all(file.startswith(f"{sub}/") for file in files)
+        assert all((folder / file).stat().st_size for file in files)
+    assert set(folder.parent.iterdir()) == beside
     for outside in ("../out", "/tmp/out", ".git", ""):
         answer = client.post("/api/jobs", json={"kind": "export", "options": {"target": "c", "folder": outside}})
         assert answer.status_code == 422
