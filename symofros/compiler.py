@@ -330,12 +330,24 @@ def requested(tree: SpanningTree, options: Options) -> list[Request]:
     known = MODEL_FUNCTIONS + FRAME_FUNCTIONS
     for name in options.functions:
         if name not in known:
-            raise UnknownNameError(Problem(f"no function '{name}' to generate", remedy=did_you_mean(name, known)))
+            raise UnknownNameError(
+                Problem(
+                    f"options: no function '{name}'",
+                    name,
+                    "a function of the model",
+                    did_you_mean(name, known),
+                )
+            )
     frames = [frame.name for frame in tree.frames]
     for name in options.frames or ():
         if not any(name in (frame.name, frame.qualified) for frame in tree.frames):
             raise UnknownNameError(
-                Problem(f"system '{tree.system.name}': no frame '{name}'", remedy=did_you_mean(name, frames))
+                Problem(
+                    f"system '{tree.system.name}': no frame '{name}'",
+                    name,
+                    "frames are those of its bodies",
+                    did_you_mean(name, frames),
+                )
             )
     wanted = [tree.frame(name).name for name in options.frames] if options.frames is not None else frames
     requests = [Request(name) for name in options.functions if name in MODEL_FUNCTIONS]

@@ -89,7 +89,14 @@ def simulate(
     try:
         if diagrams.is_diagram(model):
             if inputs:
-                raise sf.SymofrosError(sf.Problem("--input: a diagram's inputs are blocks", inputs[0]))
+                raise sf.SymofrosError(
+                    sf.Problem(
+                        "--input: the file is a diagram",
+                        inputs[0],
+                        "--input gives formulas to the inputs of a model; those of a diagram are blocks",
+                        "--set BLOCK.FIELD=NUMBER changes a block",
+                    )
+                )
             stated |= {"record": every} if every is not None else {}
             stated |= {"parameters": {name: numbers(name, text) for name, text in assignments(given, "--set").items()}}
             names = tuple(names_of(signals) or ())
@@ -104,7 +111,12 @@ def simulate(
         else:
             if picture == diagrams.WINDOW:
                 raise sf.SymofrosError(
-                    sf.Problem("--plot window: of diagrams only", remedy="write a picture: --plot run.png")
+                    sf.Problem(
+                        "--plot window: the file is a model",
+                        str(model),
+                        "a window shows the plots that a diagram states",
+                        "write a picture: --plot run.png",
+                    )
                 )
             look.check()
             system = load(model, floating_base)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from symofros.runtime.kernel import Kernel, Unit
 from symofros.runtime.library import CompiledUnit
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
-from symofros.runtime.toolchain import Toolchain, find_toolchain
+from symofros.runtime.toolchain import NO_COMPILER, Toolchain, find_toolchain
 
 GENERATOR = "symofros diagram"
 
@@ -154,12 +154,7 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
         )
     toolchain = find_toolchain(options.compiler)
     if toolchain is None:
-        raise CompileError(
-            Problem(
-                "a compiled diagram needs a C compiler",
-                remedy="install gcc or clang, or `pip install ziglang`, or interpret it",
-            )
-        )
+        raise CompileError(replace(NO_COMPILER, remedy=f"{NO_COMPILER.remedy}, or interpret the diagram"))
     write = fuser(resolved)
     parts, texts = [], []
     for part in resolved.layout.parts:

@@ -70,7 +70,10 @@ class CompiledUnit:
         except (OSError, AttributeError) as error:
             raise CompileError(
                 Problem(
-                    f"the compiled model does not load: {error}", remedy=f"delete {path.name} from the cache folder"
+                    "the compiled model does not load",
+                    str(error),
+                    "a library in the cache folder is whole and of this machine",
+                    f"delete {path.name} from the cache folder",
                 )
             ) from error
         found = self.ffi.string(self.model.hash).decode()

@@ -39,7 +39,12 @@ SHARED_FLAGS = ("-shared", "-fPIC", "-fvisibility=hidden", "-std=gnu99")
 _SHOWN_LINES = 12
 
 # What is said where C is needed and nothing can compile it.
-NO_COMPILER = Problem("no C compiler was found", remedy="install gcc or clang, or `pip install ziglang`")
+NO_COMPILER = Problem(
+    "no C compiler was found",
+    "none of $CC, cc, gcc, clang, nor the package ziglang",
+    "generated C is compiled on this machine",
+    "install gcc or clang, or `pip install ziglang`",
+)
 
 
 @dataclass(frozen=True)
@@ -78,8 +83,9 @@ def find_toolchain(compiler: str | None = None) -> Toolchain | None:
             raise CompileError(
                 Problem(
                     f"compiler '{wanted}' ({source}) was not found",
-                    rule="it is a program on the path",
-                    remedy="install it, or leave the choice to us",
+                    command[0],
+                    "it is a program on the path",
+                    "install it, or leave the choice to us",
                 )
             )
         return Toolchain(command, _version(command))
@@ -107,8 +113,9 @@ def call_compiler(command: Sequence[str], folder: Path, remedy: str) -> None:
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         said = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
-        what = f"the C compiler failed with status {done.returncode}\n  command: {' '.join(command)}\n{said}"
-        raise CompileError(Problem(what, remedy=remedy))
+        what = f"the C compiler failed with status {done.returncode}"
+        rule = "the command ends with status 0"
+        raise CompileError(Problem(what, f"{' '.join(command)}\n{said}", rule, remedy))
 
 
 def _version(command: tuple[str, ...]) -> str:

@@ -137,7 +137,10 @@ def free_speeds(model: Model, held: Collection[str]) -> Indices:
         if name not in model.names.v:
             raise UnknownNameError(
                 Problem(
-                    f"held: no speed '{name}'", remedy=f"{did_you_mean(name, model.names.v) or 'see model.names.v'}"
+                    f"held: no speed '{name}'",
+                    name,
+                    "held names speeds of the model",
+                    did_you_mean(name, model.names.v) or "see model.names.v",
                 )
             )
     return np.array([i for i, name in enumerate(model.names.v) if name not in held], dtype=np.intp)

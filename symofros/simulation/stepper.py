@@ -16,7 +16,7 @@ from symofros.runtime.build import build_library
 from symofros.runtime.kernel import Array, Kernel
 from symofros.runtime.library import CompiledKernel
 from symofros.runtime.model import Model
-from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
+from symofros.runtime.toolchain import DEFAULT_FLAGS, NO_COMPILER, find_toolchain
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.methods import KIND_CODES, NEEDS, Method
@@ -82,12 +82,7 @@ def bound(source: str, headers: Mapping[str, str], *flags: str) -> tuple[Any, An
     """
     toolchain = find_toolchain(None)
     if toolchain is None:
-        raise CompileError(
-            Problem(
-                "simulation steps in C, and no C compiler was found",
-                remedy="install gcc or clang, or `pip install ziglang`",
-            )
-        )
+        raise CompileError(NO_COMPILER)
     header, ffi = native_text("model/symofros_model.h"), cffi.FFI()
     for text in (header, *headers.values()):
         match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", text, re.DOTALL)

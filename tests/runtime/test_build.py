@@ -90,7 +90,7 @@ def test_a_damaged_library_is_named(cache: Path) -> None:
 def test_a_compile_error_shows_command_and_words(cache: Path) -> None:
     chain = find_toolchain()
     assert chain is not None
-    with pytest.raises(sf.CompileError, match="command: .*model.c") as caught:
+    with pytest.raises(sf.CompileError, match="found:  .*model.c") as caught:
         build_library("int broken(", "", chain)
     assert "error" in str(caught.value)
     assert not libraries(cache) and not list(cache.glob(".*"))
