@@ -58,7 +58,7 @@ from symofros.runtime.functions import Rate
 from symofros.runtime.kernel import Lanes, Precision, Unit
 from symofros.runtime.library import CompiledKernel, CompiledUnit
 from symofros.runtime.model import Key, Model
-from symofros.runtime.record import ClosureRecord, ModelRecord, Segment, SegmentKind
+from symofros.runtime.record import ClosureRecord, ModelRecord, Segment
 from symofros.runtime.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.tuning import Build, builds, fastest
 
@@ -419,12 +419,11 @@ def _closure(tree: SpanningTree, closure: Closure) -> ClosureRecord:
 
 
 def _segments(tree: SpanningTree) -> tuple[Segment, ...]:
-    kinds: dict[str, SegmentKind] = {"ball": "quaternion", "free": "pose"}
     segments: list[Segment] = []
     for link in tree.links:
         if link.joint.prescribed:
             continue
-        kind = kinds.get(link.joint.kind, "linear")
+        kind = link.joint.traits.manifold
         if kind == "linear" and segments and segments[-1].kind == "linear":
             segments[-1] = segments[-1]._replace(size=segments[-1].size + link.q[1])
         else:

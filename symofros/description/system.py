@@ -9,30 +9,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 from symofros.description.beam import Beam
 from symofros.description.constraints import Closure, Constraint, Rod
 from symofros.description.forces import Connection, JointElement, Load, Potential, Rotor, VirtualPower
 from symofros.description.frames import Frame
+from symofros.description.joint_kinds import JOINT_KINDS, KINDS, JointKind, JointKindName
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
 from symofros.description.visual import Visual
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
-JointKind = Literal[
-    "fixed",
-    "revolute",
-    "continuous",
-    "prismatic",
-    "screw",
-    "cylindrical",
-    "universal",
-    "planar",
-    "ball",
-    "free",
-    "general",
-]
-JOINT_KINDS: tuple[JointKind, ...] = get_args(JointKind)
 WORLD = "world"
 
 # The checks a body may waive, each with what it lets pass.
@@ -138,16 +125,12 @@ class Joint:
 
     Attributes:
         name: Unique; the coordinate and speed of a one-coordinate joint bear it.
-        kind: "fixed", "revolute", "continuous" (revolute without limits), "prismatic", "screw" (angle; slides by pitch
-            times it), "cylindrical" (angle, then length, along one axis), "universal" (a turn about axis, then one
-            about axis2), "planar" (x, y in P, then the angle about z), "ball" (quaternion x, y, z, w; angular velocity
-            in D), "free" (position in P, quaternion; linear and angular velocity in D) or "general" (the user's own
-            R_PD, p_PD). All but ball and free have v = q'.
+        kind: Name of a row of the table of joint kinds (joint_kinds.py). All but ball and free have v = q'.
         parent: The parent body; "world" for the ground.
         frame: The parent's extremity frame that P is placed in; None for its body frame.
         position: From that frame's origin to Po, in that frame [m].
         rotation: From that frame to P.
-        axis: Of a revolute or prismatic joint, in P (= in D); normalised by us.
+        axis: Main axis of a kind that has one, in P, of any length.
         actuated: Adds one input a speed, named like the speed: an effort on the joint [N m or N].
         effort: Formulas, one a speed, of inputs, parameters, coordinates, speeds (d + coordinate name) and t.
         limits: Bounds of the coordinate, if any.
@@ -155,7 +138,7 @@ class Joint:
         pitch: Of a screw joint [m/rad].
         coordinates: Names of the coordinates of a general joint, one to six.
         moving_position: p_PD of a general joint: formulas of its coordinates and of parameters.
-        moving_rotation: R_PD of a general joint, likewise.
+        moving_rotation: R_PD of a general joint, by formulas of the same.
         prescribed: The motion is given: coordinates, speeds and their rates are inputs (q1, dq1, ddq1).
         elements: Springs, dampers, stops and friction on its coordinates.
         armature: Inertia added to each speed, of a rotor whose gyroscopic effect is neglected.
@@ -163,7 +146,7 @@ class Joint:
     """
 
     name: str
-    kind: JointKind = "fixed"
+    kind: JointKindName = "fixed"
     parent: str = WORLD
     frame: str | None = None
     position: Vector = ORIGIN
@@ -204,6 +187,11 @@ class Joint:
         object.__setattr__(self, "moving_position", as_vector(self.moving_position, f"{what}: moving_position"))
         effort = self.effort if isinstance(self.effort, (tuple, list)) else (self.effort,)
         object.__setattr__(self, "effort", tuple(as_value(e, f"{what}: effort[{i}]") for i, e in enumerate(effort)))
+
+    @property
+    def traits(self) -> JointKind:
+        """Row of the table of joint kinds."""
+        return KINDS[self.kind]
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,11 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from symofros.description.system import Joint
 from symofros.exports.material import Material
+from symofros.mechanics.topology.coordinates import coordinate_names
 
 _PLAIN = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
 _UNQUOTED = re.compile(r"[^A-Za-z0-9_!#$%&()*+,\-./:;<>=@\[\]^{}|~ ]")
-_ANGLES = ("revolute", "continuous")
 
 
 @dataclass(frozen=True)
@@ -170,10 +169,13 @@ def _distinct(found: list[Variable]) -> list[Variable]:
 
 
 def _units(material: Material) -> dict[str, str]:
-    """Coordinate -> rad or m, of joints with one coordinate."""
-    joints: list[Joint] = [body.joint for body in material.system.bodies if body.joint is not None]
-    units = {joint.name: "rad" for joint in joints if joint.kind in _ANGLES}
-    return units | {joint.name: "m" for joint in joints if joint.kind == "prismatic"}
+    """Coordinate -> its unit, where the joint's kind states it."""
+    return {
+        name: coordinate.unit
+        for body in material.system.bodies
+        if body.joint is not None and not body.joint.traits.user_defined
+        for name, coordinate in zip(coordinate_names(body.joint), body.joint.traits.coordinates, strict=True)
+    }
 
 
 def _per(unit: str, time: str) -> str:

@@ -25,7 +25,7 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
     Raises:
         ExportError: A joint can't be stated, or the folder is not ours.
     """
-    links, lost = rigid_links(system, ("ball", "free"), "MJCF")
+    links, lost = rigid_links(system, "MJCF")
     numbers = Numbers(system)
     root = Tree.Element("mujoco", {"model": system.name})
     Tree.SubElement(root, "compiler", {"angle": "radian", "inertiafromgeom": "false", "autolimits": "false"})
@@ -116,8 +116,8 @@ def _body(into: Tree.Element, link: RigidLink, numbers: Numbers) -> Tree.Element
             "inertial",
             {"pos": numbers_text(link.center), "mass": numbers_text(link.mass), "fullinertia": numbers_text(moments)},
         )
-    if link.joint.kind in ("free", "ball"):
-        Tree.SubElement(body, "joint", {"name": link.joint.name, "type": link.joint.kind})
+    if not link.axes and link.joint.traits.mjcf is not None:
+        Tree.SubElement(body, "joint", {"name": link.joint.name, "type": link.joint.traits.mjcf})
     for i, axis in enumerate(link.axes):
         stated = {"name": axis.name, "type": "hinge" if axis.turns else "slide", "axis": numbers_text(axis.direction)}
         Tree.SubElement(body, "joint", stated | _dynamics(link, link.joint, i, numbers))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -67,19 +68,18 @@ class RigidLink:
     damping: tuple[float, ...] = ()
 
 
-def rigid_links(system: System, kinds: tuple[str, ...], form: str) -> tuple[list[RigidLink], list[str]]:
+def rigid_links(system: System, form: Literal["URDF", "MJCF"]) -> tuple[list[RigidLink], list[str]]:
     """The bodies, parents first, and what was left out of them.
 
     Args:
         system: Checked.
-        kinds: Joints without axes that the format holds, of "ball" and "free".
-        form: What to call the format.
+        form: The format.
 
     Raises:
         ExportError: Joints that the format can't hold; all are named.
     """
     numbers = Numbers(system)
-    beyond = [body.joint for body in system.bodies if body.joint is not None and _beyond(body.joint, kinds)]
+    beyond = [body.joint for body in system.bodies if body.joint is not None and not _representable(body.joint, form)]
     if beyond:
         listed = ", ".join(f"'{joint.name}' ({'prescribed' if joint.prescribed else joint.kind})" for joint in beyond)
         raise ExportError(
@@ -102,9 +102,10 @@ def rigid_links(system: System, kinds: tuple[str, ...], form: str) -> tuple[list
     return found, list(_lost(system))
 
 
-def _beyond(joint: Joint, kinds: tuple[str, ...]) -> bool:
-    plain = ("fixed", "revolute", "continuous", "prismatic", "cylindrical", "universal", "planar", *kinds)
-    return joint.prescribed or joint.kind not in plain
+def _representable(joint: Joint, form: Literal["URDF", "MJCF"]) -> bool:
+    """Whether a format holds a joint, as one of its own or as a series of turns and slides."""
+    own = {"URDF": joint.traits.urdf, "MJCF": joint.traits.mjcf}[form]
+    return not joint.prescribed and (joint.traits.series or own is not None)
 
 
 def _link(body: Body, parent: str | None, system: System, numbers: Numbers, names: set[str]) -> RigidLink:
@@ -146,18 +147,15 @@ def _axes(joint: Joint, numbers: Numbers) -> tuple[Axis, ...]:
         x, y, z = (direction / np.linalg.norm(direction)).tolist()
         return Axis(name, turns, (x, y, z))
 
-    first, second, e = numbers.values(joint.axis), numbers.values(joint.axis2), np.eye(3)
-    stated = {
-        "revolute": [(True, first)],
-        "continuous": [(True, first)],
-        "prismatic": [(False, first)],
-        "cylindrical": [(True, first), (False, first)],
-        "universal": [(True, first), (True, second)],
-        "planar": [(False, e[0]), (False, e[1]), (True, e[2])],
-    }.get(joint.kind, [])
-    if len(stated) == 1:
-        return (axis(joint.name, *stated[0]),)
-    return tuple(axis(name, *item) for name, item in zip(coordinate_names(joint), stated, strict=False))
+    if not joint.traits.series:
+        return ()
+    directions = dict(zip("xyz", np.eye(3), strict=True))
+    directions |= {"axis": numbers.values(joint.axis), "axis2": numbers.values(joint.axis2)}
+    return tuple(
+        axis(name, coordinate.measure == "angle", directions[coordinate.axis])
+        for name, coordinate in zip(coordinate_names(joint), joint.traits.coordinates, strict=True)
+        if coordinate.axis is not None
+    )
 
 
 def _damping(joint: Joint, count: int, numbers: Numbers) -> tuple[float, ...]:

@@ -24,7 +24,7 @@ def write_urdf(system: System, name: str | None, folder: Path, generator: str) -
     Raises:
         ExportError: A joint can't be stated, or the folder is not ours.
     """
-    links, lost = rigid_links(system, ("free",), "URDF")
+    links, lost = rigid_links(system, "URDF")
     root = Tree.Element("robot", {"name": system.name})
     for link in links:
         _link(root, link)
@@ -97,7 +97,8 @@ def _joint(
 def _joints(root: Tree.Element, link: RigidLink) -> None:
     assert link.joint is not None and link.parent is not None
     if not link.axes:
-        kind = {"free": "floating"}.get(link.joint.kind, "fixed")
+        kind = link.joint.traits.urdf
+        assert kind is not None
         _joint(root, link.joint.name, kind, link.parent, link.name, link.position, link.rotation)
         return
     parent, position, rotation = link.parent, link.position, link.rotation

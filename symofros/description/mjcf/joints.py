@@ -19,10 +19,11 @@ from typing import Any
 import numpy as np
 
 from symofros.description.forces import Damper, JointElement, Spring
+from symofros.description.joint_kinds import JointKindName
 from symofros.description.mjcf.geometry import Array, Exact, about
 from symofros.description.mjcf.names import Names
 from symofros.description.remarks import Remarks
-from symofros.description.system import WORLD, Joint, JointKind, Limits
+from symofros.description.system import WORLD, Joint, Limits
 
 # mjtJoint and mjtDisableBit of mujoco/mjmodel.h, which never change: compiled models are stored by them.
 FREE, BALL, SLIDE, HINGE = range(4)
@@ -93,7 +94,8 @@ class JointReader:
             R = R @ about(axis, -ref)
         position, rotation = self.exact.placement(p, R)
         limits = self._limits(j)
-        kinds: dict[int, JointKind] = {BALL: "ball", SLIDE: "prismatic", HINGE: "revolute" if limits else "continuous"}
+        hinge: JointKindName = "revolute" if limits else "continuous"
+        kinds: dict[int, JointKindName] = {BALL: "ball", SLIDE: "prismatic", HINGE: hinge}
         self._remark(j)
         chain.p, chain.R = -anchor, np.eye(3)
         return Joint(

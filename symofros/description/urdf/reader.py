@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from symofros.description.joint_kinds import KINDS
 from symofros.description.reading import Reading, in_order, read_bytes
-from symofros.description.system import WORLD, Inertia, Joint, JointKind, RigidBody, System
+from symofros.description.system import WORLD, Inertia, Joint, RigidBody, System
 from symofros.description.urdf.values import Values
 from symofros.description.urdf.visuals import Visuals
 from symofros.description.visual import Visual
@@ -25,13 +26,7 @@ SNAP_TOL = 1e-14
 MAX_LINKS = 10_000
 ROOT_JOINT = "root_joint"
 
-_KINDS: dict[str, JointKind] = {
-    "fixed": "fixed",
-    "revolute": "revolute",
-    "continuous": "continuous",
-    "prismatic": "prismatic",
-    "floating": "free",
-}
+_KINDS = {row.urdf: row for row in KINDS.values() if row.urdf is not None}
 _USED = frozenset({"link", "joint", "material"})
 
 
@@ -221,11 +216,11 @@ class _Importer:
                     remedy,
                 )
             return None
-        if kind in ("fixed", "free"):
-            return Joint(name, kind, parent, position=position, rotation=rotation)
-        limits = self.values.limits(element, kind != "continuous", owner)
+        if "axis" not in kind.entries:
+            return Joint(name, kind.name, parent, position=position, rotation=rotation)
+        limits = self.values.limits(element, "limits" in kind.entries, owner)
         axis = self.values.axis(element, owner)
-        return Joint(name, kind, parent, None, position, rotation, axis, actuated=True, limits=limits)
+        return Joint(name, kind.name, parent, None, position, rotation, axis, actuated=True, limits=limits)
 
     def remark_ignored(self, element: Element, name: str) -> None:
         dynamics = element.first("dynamics")

@@ -14,7 +14,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from symofros.description.frames import Frame
-from symofros.description.system import WORLD, Body, Inertia, Input, Joint, JointKind, Limits, Parameter, RigidBody
+from symofros.description.joint_kinds import JointKindName
+from symofros.description.system import WORLD, Body, Inertia, Input, Joint, Limits, Parameter, RigidBody
 from symofros.description.values import IDENTITY, Rotation, RotationKind
 from symofros.description.yaml.fields import (
     MOMENTS,
@@ -139,7 +140,7 @@ class JointEntry(Entry):
 
     name: Name | None = None
     """Also the name of the coordinate; `q_` and the body's name if not given."""
-    kind: JointKind
+    kind: JointKindName
     parent: Name = WORLD
     """The body that carries this one; `world` is the ground."""
     frame: Name | None = None

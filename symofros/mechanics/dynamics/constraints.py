@@ -212,7 +212,7 @@ def moved(motion: Motion) -> list[Edge]:
         for coordinate, rate in rates.items():
             found[coordinate] = g.add(found[coordinate], g.mul(rate, g.input("step", k)))
     for link in tree.links:
-        if link.joint.kind in ("ball", "free") and not link.joint.prescribed:
+        if link.joint.traits.quasi_velocities and not link.joint.prescribed:
             parts = q[link.q[0] + link.q[1] - 4 : link.q[0] + link.q[1]]
             size = g.sqrt(g.sum(g.mul(found[part], found[part]) for part in parts))
             found |= {part: g.div(found[part], size) for part in parts}

@@ -21,7 +21,7 @@ def coadjoint(motion: Motion, momentum: Sequence[Edge]) -> list[Edge]:
     g = motion.g
     found = [ZERO] * motion.nv
     for link in motion.tree.links:
-        if link.joint.prescribed or link.joint.kind not in ("ball", "free"):
+        if link.joint.prescribed or not link.joint.traits.quasi_velocities:
             continue
         start, size = link.v
         w = _three(motion, [g.input("v", k) for k in range(start + size - 3, start + size)])

@@ -6,9 +6,10 @@ turns by composition, those of formulas by differentiating the graph; no joint n
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from symofros.description.joint_kinds import JointKindName
 from symofros.description.system import Joint
 from symofros.expr.derivative import directional
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
@@ -80,13 +81,13 @@ def across_joint(
     """
     g = lowering.g
     zero = Vec3(g)
-    if joint.kind in ("ball", "free"):
+    if joint.traits.quasi_velocities:
         R = Turn(g, (MatrixTurn(quaternion_matrix(g, *q[-4:])),))
         units = [Vec3.unit(g, i) for i in range(3)]
         turning = [Column(unit, zero, zero, zero) for unit in units]
-        moving = [Column(zero, unit, zero, zero) for unit in units] if joint.kind == "free" else []
+        moving = [Column(zero, unit, zero, zero) for unit in units] if joint.traits.manifold == "pose" else []
         return AcrossJoint(R, Vec3(g, *q[:-4]), tuple(moving + turning))
-    return moved(g, q, speeds, *_stated(lowering, joint, q, axis))
+    return moved(g, q, speeds, *_DISPLACEMENTS[joint.kind](lowering, joint, q, axis))
 
 
 def moved(g: Graph, q: tuple[Edge, ...], speeds: Sequence[Edge], p_PD: Vec3, turns: list[AngleTurn]) -> AcrossJoint:
@@ -134,26 +135,57 @@ def _about_stated(n: Vec3, angle: Edge) -> AngleTurn:
     return about(n, angle, along[0], tuple(n)[along[0]] < 0) if along else about(n, angle, None, False)
 
 
-def _stated(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> tuple[Vec3, list[AngleTurn]]:
-    """p_PD and the turns of a joint that is not a quaternion's."""
-    g, zero, kind = lowering.g, Vec3(lowering.g), joint.kind
-    main = axis.n
-    if kind in ("revolute", "continuous"):
-        return zero, [about(main, q[0], axis.k, axis.negative)]
-    if kind == "prismatic":
-        return main.scaled(q[0]), []
-    if kind == "screw":
-        return main.scaled(g.mul(lowering.value(joint.pitch), q[0])), [about(main, q[0], axis.k, axis.negative)]
-    if kind == "cylindrical":
-        return main.scaled(q[1]), [about(main, q[0], axis.k, axis.negative)]
-    if kind == "universal":
-        second = unit_vector(lowering.vector(joint.axis2))
-        return zero, [_about_stated(main, q[0]), _about_stated(second, q[1])]
-    if kind == "fixed":
-        return zero, []
-    if kind == "planar":
-        return Vec3(g, q[0], q[1]), [about(Vec3.unit(g, 2), q[2], 2, False)]
+# Displacement p_PD and the turns that follow it.
+_Displacement = tuple[Vec3, list["AngleTurn"]]
+
+
+def _fixed(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
+    return Vec3(lowering.g), []
+
+
+def _revolute(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
+    return Vec3(lowering.g), [about(axis.n, q[0], axis.k, axis.negative)]
+
+
+def _prismatic(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
+    return axis.n.scaled(q[0]), []
+
+
+def _screw(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
+    shift = lowering.g.mul(lowering.value(joint.pitch), q[0])
+    return axis.n.scaled(shift), [about(axis.n, q[0], axis.k, axis.negative)]
+
+
+def _cylindrical(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
+    return axis.n.scaled(q[1]), [about(axis.n, q[0], axis.k, axis.negative)]
+
+
+def _universal(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
+    second = unit_vector(lowering.vector(joint.axis2))
+    return Vec3(lowering.g), [_about_stated(axis.n, q[0]), _about_stated(second, q[1])]
+
+
+def _planar(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
+    g = lowering.g
+    return Vec3(g, q[0], q[1]), [about(Vec3.unit(g, 2), q[2], 2, False)]
+
+
+def _general(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
     return lowering.vector(joint.moving_position), _stated_turns(lowering, joint)
+
+
+# Kinds whose speeds are the rates of their coordinates.
+_DISPLACEMENTS: dict[JointKindName, Callable[[Lowering, Joint, tuple[Edge, ...], Axis], _Displacement]] = {
+    "fixed": _fixed,
+    "revolute": _revolute,
+    "continuous": _revolute,
+    "prismatic": _prismatic,
+    "screw": _screw,
+    "cylindrical": _cylindrical,
+    "universal": _universal,
+    "planar": _planar,
+    "general": _general,
+}
 
 
 def _stated_turns(lowering: Lowering, joint: Joint) -> list[AngleTurn]:
@@ -205,4 +237,4 @@ def _with_rates(g: Graph, q: tuple[Edge, ...], speeds: Sequence[Edge], w: Vec3, 
 
 def neutral_coordinates(joint: Joint, nq: int) -> tuple[float, ...]:
     """A configuration on the manifold: zeros, and quaternions of no rotation."""
-    return (*(0.0,) * (nq - 1), 1.0) if joint.kind in ("ball", "free") else (0.0,) * nq
+    return (*(0.0,) * (nq - 1), 1.0) if joint.traits.quasi_velocities else (0.0,) * nq

@@ -166,28 +166,20 @@ def set_in_motion(g: Graph, tree: SpanningTree, as_seen: bool = False) -> Motion
                 v=link.v[0],
                 R_LB=A.T,
                 fixed_origin=across.p_PD.is_zero,
-                axis=axis.k if link.joint.kind in _TURN_ABOUT_AXIS else None,
+                axis=axis.k if link.joint.traits.turns_about else None,
             )
         )
     return Motion(g, lowering, tree, tuple(links), len(tree.coordinates.v), tuple(beams))
 
 
-# Joints with a main axis that any constant direction is turned into a coordinate axis for.
-_ALIGNED = ("revolute", "continuous", "prismatic", "screw", "cylindrical")
-# Joints whose only turn is about their main axis.
-_TURN_ABOUT_AXIS = ("revolute", "continuous", "screw", "cylindrical", "planar")
-
-
 def _aligned(lowering: Lowering, link: Link) -> tuple[Mat3, Axis]:
     """The rotation A of a link's frame, and the joint's axis seen in the turned frames."""
     g, joint = lowering.g, link.joint
-    if joint.kind == "universal":
-        return Mat3.identity(g), Axis(unit_vector(lowering.vector(joint.axis)), None, False)
-    if joint.kind not in _ALIGNED:
+    if "axis" not in joint.traits.entries:
         return Mat3.identity(g), Axis(Vec3.unit(g, 2), 2, False)
     n = unit_vector(lowering.vector(joint.axis))
-    found = frame_with_axis(n)
-    if found is None:
+    aligned = frame_with_axis(n) if joint.traits.aligned else None
+    if aligned is None:
         return Mat3.identity(g), Axis(n, None, False)
-    A, k, negative = found
+    A, k, negative = aligned
     return A, Axis(-Vec3.unit(g, k) if negative else Vec3.unit(g, k), k, negative)

@@ -8,77 +8,44 @@ from dataclasses import dataclass
 from symofros.description.system import Joint, System
 from symofros.expr.graph import Slot
 
-# Joint kind -> (nq, nv); a general joint has as many as it names.
-_SIZES: dict[str, tuple[int, int]] = {
-    "fixed": (0, 0),
-    "revolute": (1, 1),
-    "continuous": (1, 1),
-    "prismatic": (1, 1),
-    "screw": (1, 1),
-    "cylindrical": (2, 2),
-    "universal": (2, 2),
-    "planar": (3, 3),
-    "ball": (4, 3),
-    "free": (7, 6),
-}
-
-_QUATERNION = ("qx", "qy", "qz", "qw")
-_SUFFIXES_Q: dict[str, tuple[str, ...]] = {
-    "ball": _QUATERNION,
-    "free": ("px", "py", "pz", *_QUATERNION),
-    "cylindrical": ("angle", "length"),
-    "universal": ("angle1", "angle2"),
-    "planar": ("x", "y", "angle"),
-}
-_SUFFIXES_V: dict[str, tuple[str, ...]] = _SUFFIXES_Q | {
-    "ball": ("wx", "wy", "wz"),
-    "free": ("vx", "vy", "vz", "wx", "wy", "wz"),
-}
-# Joints whose speeds are not the rates of their coordinates.
-QUASI_VELOCITIES = ("ball", "free")
-
 
 def joint_sizes(joint: Joint) -> tuple[int, int]:
     """Number of coordinates and of speeds of a joint."""
-    if joint.kind == "general":
-        return len(joint.coordinates), len(joint.coordinates)
-    return _SIZES[joint.kind]
+    return len(coordinate_names(joint)), len(speed_names(joint))
 
 
-def angles(joint: Joint) -> list[bool]:
-    """Which coordinates of a joint come around after one turn."""
-    stated = {"cylindrical": [True, False], "universal": [True, True], "planar": [False, False, True]}
-    return stated.get(joint.kind) or [joint.kind in ("revolute", "continuous", "screw")] * joint_sizes(joint)[0]
-
-
-def rate_symbols(joint: Joint) -> tuple[str, ...]:
-    """What formulas and inputs call the rates of a prescribed joint's speeds."""
-    return tuple(f"d{name}" for name in speed_symbols(joint))
+def angles(joint: Joint) -> tuple[bool, ...]:
+    """Which coordinates of a joint are periodic; those that a user defines are taken for none."""
+    return (False,) * len(joint.coordinates) if joint.traits.user_defined else joint.traits.angles
 
 
 def coordinate_names(joint: Joint) -> tuple[str, ...]:
-    """Names of a joint's coordinates: its own name if there is one, its own names, or name.qx and so on."""
-    return _names(joint, _SUFFIXES_Q)
+    """Names of a joint's coordinates: the user's own, or the joint's name with the suffixes of its kind."""
+    return _names(joint, joint.traits.coordinate_suffixes)
 
 
 def speed_names(joint: Joint) -> tuple[str, ...]:
-    """Names of a joint's speeds, alike."""
-    return _names(joint, _SUFFIXES_V)
+    """Names of a joint's speeds: those of its coordinates, but for quasi-velocities."""
+    suffixes = joint.traits.speed_suffixes
+    return _names(joint, joint.traits.coordinate_suffixes if suffixes is None else suffixes)
 
 
-def _names(joint: Joint, suffixes: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
-    if joint.kind == "general":
+def _names(joint: Joint, suffixes: tuple[str, ...]) -> tuple[str, ...]:
+    if joint.traits.user_defined:
         return joint.coordinates
-    if joint.kind in suffixes:
-        return tuple(f"{joint.name}.{suffix}" for suffix in suffixes[joint.kind])
-    return (joint.name,) if joint_sizes(joint)[0] else ()
+    return tuple(f"{joint.name}.{suffix}" if suffix else joint.name for suffix in suffixes)
 
 
 def speed_symbols(joint: Joint) -> tuple[str, ...]:
-    """What formulas call a joint's speeds: d + coordinate where the speed is its rate, otherwise the speed's name."""
-    if joint.kind in QUASI_VELOCITIES:
+    """Names of a joint's speeds in formulas: d + coordinate where the speed is its rate, otherwise the speed's name."""
+    if joint.traits.quasi_velocities:
         return speed_names(joint)
     return tuple(f"d{name}" for name in coordinate_names(joint))
+
+
+def rate_symbols(joint: Joint) -> tuple[str, ...]:
+    """Names in formulas and inputs of the rates of a prescribed joint's speeds."""
+    return tuple(f"d{name}" for name in speed_symbols(joint))
 
 
 @dataclass(frozen=True)

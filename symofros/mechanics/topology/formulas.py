@@ -11,7 +11,7 @@ from symofros.description.constraints import Constraint, Nonholonomic
 from symofros.description.system import Joint, RigidBody, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean
-from symofros.mechanics.topology.coordinates import QUASI_VELOCITIES, coordinate_names, rate_symbols, speed_symbols
+from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
 
 TIME = "t"
 # What a formula may use: parameters alone; also the configuration and t; also speeds and inputs; a general joint's
@@ -236,7 +236,7 @@ def element_problems(joint: Joint, where: str) -> Iterator[Problem]:
                 f"use 0 to {speeds - 1}",
                 where,
             )
-        elif label in ("spring", "stop") and joint.kind in QUASI_VELOCITIES:
+        elif label in ("spring", "stop") and joint.traits.quasi_velocities:
             yield Problem(
                 f"joint '{joint.name}': a {label} on a {joint.kind} joint",
                 "quaternion coordinates",

@@ -14,8 +14,6 @@ from symofros.mechanics.topology.formulas import element_problems
 from symofros.mechanics.topology.numbers import ROTATION_TOLERANCE, Numbers
 
 IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
-# Kinds whose axis matters.
-_WITH_AXIS = ("revolute", "continuous", "prismatic", "screw", "cylindrical", "universal")
 _MAX_GENERAL = 6
 _SAMPLES = 20
 
@@ -65,7 +63,7 @@ def joint_problems(joint: Joint, bodies: Collection[str], where: str) -> Iterato
         )
     yield from element_problems(joint, where)
     yield from _rotor_problems(joint, bodies, where)
-    if joint.kind == "general":
+    if joint.traits.user_defined:
         yield from _general_problems(joint, where)
 
 
@@ -79,8 +77,7 @@ def _rotor_problems(joint: Joint, bodies: Collection[str], where: str) -> Iterat
                 did_you_mean(rotor.carrier, bodies),
                 where,
             )
-        turns = joint.kind in ("revolute", "continuous", "screw", "cylindrical")
-        if rotor.axis is None and (rotor.carrier is not None or not turns):
+        if rotor.axis is None and (rotor.carrier is not None or joint.traits.turns_about != "axis"):
             yield Problem(
                 f"joint '{joint.name}': rotor without an axis",
                 f"a {joint.kind} joint",
@@ -117,19 +114,19 @@ def joint_number_problems(system: System, numbers: Numbers) -> Iterator[Problem]
         if joint is None:
             continue
         where = system.origin.get(("joint", joint.name), "")
-        if joint.kind in _WITH_AXIS:
+        if "axis" in joint.traits.entries:
             yield from numbers.axis_problems(joint, where)
-        if joint.kind == "universal":
+        if "axis2" in joint.traits.entries:
             one, two = numbers.values(joint.axis), numbers.values(joint.axis2)
             if np.linalg.norm(np.cross(one, two)) <= 1e-9 * max(1.0, float(np.linalg.norm(one) * np.linalg.norm(two))):
                 yield Problem(
-                    f"joint '{joint.name}': the axes of a universal joint coincide",
+                    f"joint '{joint.name}': the axes of a {joint.kind} joint coincide",
                     f"{one} and {two}",
                     "axis and axis2 are not parallel",
                     "use a revolute joint, or another axis2",
                     where,
                 )
-        if joint.kind == "general":
+        if joint.traits.user_defined:
             yield from _sampled_rotation(joint, numbers, where)
 
 

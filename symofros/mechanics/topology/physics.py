@@ -89,8 +89,8 @@ def massless_tip_problems(system: System, numbers: Numbers) -> Iterator[Problem]
         joint = body.joint
         if joint is None or joint.kind == "fixed" or "massless_tip" in body.waive:
             continue
-        moved = mass if joint.kind in ("prismatic", "free") else turning
-        if moved[body.name] == 0.0:
+        inertia = mass if joint.traits.translates else turning
+        if inertia[body.name] == 0.0:
             yield Problem(
                 f"body '{body.name}': joint '{joint.name}' moves no mass",
                 "no inertia on this body or on anything it carries",

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, get_args
+from typing import Any
 
 from symofros.description.beam import STATION
-from symofros.description.system import WORLD, Joint, JointKind
+from symofros.description.joint_kinds import KINDS
+from symofros.description.system import WORLD, Joint
 from symofros.description.yaml.schema import default_joint_name
 from symofros.errors import DescriptionError
 from symofros.expr.expression import CONSTANTS
@@ -127,7 +128,7 @@ def _joint(data: Any, path: Path, new: str) -> list[Edit]:
 def symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
     """What formulas call the coordinates, speeds and rates of a joint of that name."""
     kind: Any = joint.get("kind")
-    if kind not in get_args(JointKind) or kind == "general":
+    if kind not in KINDS or KINDS[kind].user_defined:
         return ()
     try:
         stated = Joint(name, kind=kind)

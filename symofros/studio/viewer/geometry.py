@@ -55,7 +55,6 @@ _OF_LINK, _LEAST = 0.12, 0.25
 _MOST_BOX = 1.2  # Longest box, over the mechanism's size, that is not taken for a placeholder.
 _SLENDER = 60.0  # Length over half the thickness of a beam whose section is not known.
 _FLATTEST = 6.0  # Ratio of the sides of its section.
-_SLIDING = ("prismatic", "cylindrical", "planar", "screw")
 
 
 def landmarks(tree: SpanningTree, numbers: Numbers) -> Iterator[Place]:
@@ -183,16 +182,16 @@ class _Draughtsman:
     def _joint(self, link: Link, i: int) -> Mesh | None:
         """The sign of a joint, in its distal frame; none of a clamped or a free body."""
         radius, length = self._scaled(_JOINT_RADIUS, i), self._scaled(_JOINT_LENGTH, i)
-        kind = link.joint.kind
-        if kind in ("fixed", "free"):
+        symbol = link.joint.traits.symbol
+        if symbol is None:
             return None
-        if kind in ("ball", "universal", "general"):
+        if symbol == "sphere":
             return sphere(1.3 * radius)
-        if kind == "planar":
+        if symbol == "disc":
             return disc(length / 2, radius / 2)
         axis = self.numbers.values(link.joint.axis)
         axis = axis / np.linalg.norm(axis)
-        if kind == "prismatic":
+        if symbol == "box":
             return box(np.array([length, 1.6 * radius, 1.6 * radius])).moved(np.zeros(3), axes_along(axis))
         return cylinder(-length / 2 * axis, length / 2 * axis, radius)
 
@@ -244,7 +243,7 @@ class _Draughtsman:
 
     def _slides(self) -> Iterator[Strut]:
         for i, link in enumerate(self.tree.links):
-            if link.joint.kind in _SLIDING:
+            if link.joint.traits.slides:
                 start = Place(link.parent, placed(link.placement, self.numbers)[0])
                 radius = self._scaled(_ROD_RADIUS, i) / 2
                 yield Strut(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from symofros.description.joint_kinds import ManifoldKind
 from symofros.expr.derivative import along
 from symofros.expr.graph import ONE, ZERO, Edge
 from symofros.mechanics.dynamics.acceleration import no_wrench
@@ -113,7 +114,7 @@ def _gradient(motion: Motion, energy: Edge) -> list[Edge]:
 def rates_per_speed(motion: Motion) -> list[dict[Edge, Edge]]:
     """For each speed, the rates of coordinates per unit of it: the columns of N in q' = N v."""
     return [
-        _RATES.get(link.joint.kind, _own_rate)(motion.lowering, coordinate_names(link.joint), k)
+        _RATES[link.joint.traits.manifold](motion.lowering, coordinate_names(link.joint), k)
         for link in motion.tree.links
         for k in range(link.v[1])
     ]
@@ -126,7 +127,7 @@ def coordinate_rates(motion: Motion) -> dict[Edge, Edge]:
     for link in motion.tree.links:
         names, speeds = coordinate_names(link.joint), speed_symbols(link.joint)
         for k, speed in enumerate(speeds):
-            for coordinate, slope in _RATES.get(link.joint.kind, _own_rate)(lowering, names, k).items():
+            for coordinate, slope in _RATES[link.joint.traits.manifold](lowering, names, k).items():
                 part = g.mul(slope, lowering.symbol(speed))
                 rates[coordinate] = g.add(rates.get(coordinate, ZERO), part)
     return rates
@@ -154,7 +155,8 @@ def _free_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge,
     return {lowering.symbol(name): edge for name, edge in zip(names[:3], from_quaternion.column(k), strict=True)}
 
 
-_RATES: dict[str, Callable[[Lowering, tuple[str, ...], int], dict[Edge, Edge]]] = {
-    "ball": _ball_rate,
-    "free": _free_rate,
+_RATES: dict[ManifoldKind, Callable[[Lowering, tuple[str, ...], int], dict[Edge, Edge]]] = {
+    "linear": _own_rate,
+    "quaternion": _ball_rate,
+    "pose": _free_rate,
 }

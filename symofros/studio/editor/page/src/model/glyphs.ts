@@ -1,17 +1,9 @@
 /** Small line drawings, as path data in a square of 16: for blocks, the palette and the picture. */
 
+import { JOINT_KINDS } from "./joints";
+
 export const GLYPHS: Record<string, string> = {
-  fixed: "M3 3v10M3 4l3-2M3 8l3-2M3 12l3-2M3 8h10",
-  revolute: "M12.5 9.5A5 5 0 1 1 11.6 4.5M11.8 1.6v3.2H8.6M8 8h.01",
-  continuous: "M13 8A5 5 0 1 1 8 3M8 .9 10.3 3 8 5.1M8 8h.01",
-  prismatic: "M1.5 8h13M4 5.5 1.5 8 4 10.5M12 5.5 14.5 8 12 10.5M5.5 5h5v6h-5z",
-  screw: "M8 1.5v13M5 4.5l6-2M5 8l6-2M5 11.5l6-2",
-  cylindrical: "M4 4.5v7c0 1.2 8 1.2 8 0v-7M4 4.5c0 1.2 8 1.2 8 0s-8-1.2-8 0M8 1v1.5",
-  universal: "M8 1.5v4M8 10.5v4M1.5 8h4M10.5 8h4M5.5 8a2.5 2.5 0 1 0 5 0 2.5 2.5 0 1 0-5 0",
-  planar: "M1.5 11.5 5 5h9.5L11 11.5zM8 8h.01",
-  ball: "M4.5 9.5a4 4 0 1 0 7 0M8 8.5V14M3 14h10",
-  free: "M8 8V2M8 8l5 3.5M8 8l-5 3.5M6.5 3.5 8 2l1.5 1.5M11 11.7l2-.2-.4-2M5 11.7l-2-.2.4-2",
-  general: "M3 11c2-8 3-8 5-3s3 5 5-3M3 13.5h10",
+  ...Object.fromEntries(Object.entries(JOINT_KINDS).map(([kind, { glyph }]) => [kind, glyph])),
   rigid_body: "M3 4.5h10v7H3z",
   massless_body: "M3 4.5h2M7 4.5h2M11 4.5h2v2M13 9.5v2h-2M9 11.5H7M5 11.5H3v-2M3 7.5v-3",
   beam: "M2 3v10M2 8c4 0 8-.5 12-4M2 10.5c4 0 9-.5 12.5-4",

@@ -1,42 +1,30 @@
 /** Kinds of joints: how many speeds, and which entries of the file say something about them. */
 
 import type { JsonMap } from "../api/types";
+import table from "./joint_kinds.json";
 
-const SPEEDS: Record<string, number> = {
-  fixed: 0,
-  revolute: 1,
-  continuous: 1,
-  prismatic: 1,
-  screw: 1,
-  cylindrical: 2,
-  universal: 2,
-  planar: 3,
-  ball: 3,
-  free: 6,
-};
+interface JointKind {
+  speeds: number;
+  entries: string[];
+  glyph: string;
+}
+
+/** The table of joint kinds, written by symofros/studio/editor/joint_table.py. */
+export const JOINT_KINDS: Record<string, JointKind> = table;
 
 export function speeds(joint: JsonMap): number {
   if (joint["kind"] === "general") return Array.isArray(joint["coordinates"]) ? joint["coordinates"].length : 0;
-  return SPEEDS[String(joint["kind"])] ?? 0;
+  return JOINT_KINDS[String(joint["kind"])]?.speeds ?? 0;
 }
 
-const OWN: Record<string, readonly string[]> = {
-  revolute: ["axis", "limits"],
-  continuous: ["axis"],
-  prismatic: ["axis", "limits"],
-  screw: ["axis", "pitch", "limits"],
-  cylindrical: ["axis"],
-  universal: ["axis", "axis2"],
-  general: ["coordinates", "moving_position", "moving_rotation"],
-};
+const ENTRIES = [...new Set(Object.values(JOINT_KINDS).flatMap((kind) => kind.entries)), "prescribed"];
 
 /** Entries about how a joint of this kind moves; those that the file gives are never hidden. */
 export function motionEntries(joint: JsonMap): string[] {
   const kind = String(joint["kind"]);
-  const all = ["name", "kind", "parent", "frame", "position", "rotation", ...(OWN[kind] ?? [])];
+  const all = ["name", "kind", "parent", "frame", "position", "rotation", ...(JOINT_KINDS[kind]?.entries ?? [])];
   if (kind !== "fixed") all.push("prescribed");
-  const rest = ["axis", "axis2", "pitch", "limits", "coordinates", "moving_position", "moving_rotation", "prescribed"];
-  return [...all, ...rest.filter((key) => key in joint && !all.includes(key))];
+  return [...all, ...ENTRIES.filter((key) => key in joint && !all.includes(key))];
 }
 
 export const forceEntries: readonly string[] = ["actuated", "effort", "elements", "armature", "rotors"];

@@ -1,0 +1,27 @@
+"""What the editor's page knows of joint kinds: a JSON file made of the table of joint kinds.
+
+After a change of the table: `python -m symofros.studio.editor.joint_table`, then build the page (docs/editor.md).
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from symofros.description.joint_kinds import KINDS
+
+PAGE_FILE = Path(__file__).with_name("page") / "src" / "model" / "joint_kinds.json"
+
+
+def joint_table() -> str:
+    """The file's text: kind -> number of speeds, entries of the description, glyph."""
+    rows = []
+    for name, kind in KINDS.items():
+        facts = {"speeds": kind.nv, "entries": kind.entries, "glyph": kind.glyph}
+        lines = ",\n".join(f'    "{key}": {json.dumps(fact)}' for key, fact in facts.items())
+        rows.append(f'  "{name}": {{\n{lines}\n  }}')
+    return "{\n" + ",\n".join(rows) + "\n}\n"
+
+
+if __name__ == "__main__":
+    PAGE_FILE.write_text(joint_table(), encoding="utf-8")
