@@ -153,9 +153,9 @@ HARNESS: dict[str, set[str]] = {
     "adapters": {"contract", "mechanics"},
     "comparison": {"adapters", "contract", "mechanics"},
     "check": {"comparison", "adapters", "inputs", "contract", "mechanics"},
-    "crew": {"check", "adapters", "inputs"},
+    "worker_pool": {"check", "adapters", "inputs"},
     "evidence": {"mechanics"},
-    "reporting": {"evidence", "crew", "check", "comparison", "adapters", "contract"},
+    "reporting": {"evidence", "worker_pool", "check", "comparison", "adapters", "contract"},
 }
 # ... and what builds on it: any of the above, and these others.
 STUDIES: dict[str, set[str]] = {

@@ -17,7 +17,6 @@ from validation.accuracy.catalogue import TOPIC as ACCURACY
 from validation.adapters import ROUTES
 from validation.campaigns import command as campaign
 from validation.check import ModelResult, Settings
-from validation.crew import run
 from validation.dashboard import command as dashboard
 from validation.diagrams.catalogue import TOPIC as DIAGRAMS
 from validation.inputs.cases import Case, named, standard_set
@@ -41,6 +40,7 @@ from validation.studies import (
     simulation_report,
 )
 from validation.timing import command as timing
+from validation.worker_pool import run
 
 
 class Exit(IntEnum):

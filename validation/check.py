@@ -5,39 +5,42 @@ from __future__ import annotations
 import hashlib
 import math
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, fields, replace
-from functools import cached_property, partial
-from typing import cast
-
-import numpy as np
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 
 import symofros as sf
-from validation.adapters import ROUTES, Missing, available, rotors
-from validation.adapters import compiled as our_c
-from validation.adapters.closed import ConstrainedEngine, condition, joined_frames, of_clear_rank
-from validation.adapters.compiled import SymofrosEngine
+from validation.adapters import ROUTES, compiled, has_beams
 from validation.comparison.errors import Comparison, Scales, compute, judge, scaled_errors, typical_scales
 from validation.comparison.loops import of_unique_multipliers
-from validation.comparison.motion import MOTIONS, Motion, fall, judge_drift
-from validation.comparison.retained import judge_order, left_out
-from validation.comparison.sides import Sides
-from validation.contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
+from validation.comparison.motion import MOTIONS, Motion, fall, judge_drift, smoothness_obstacle
+from validation.comparison.participants import (
+    Factories,
+    Participant,
+    participants,
+    sum_of_energies,
+    worst_condition,
+)
+from validation.comparison.regular import (
+    JACOBIAN,
+    RegularStates,
+    judge_omissions,
+    judge_undefined,
+    regular_states,
+)
+from validation.comparison.retained import judge_order, omitted_orders
+from validation.comparison.variants import ModelVariants
+from validation.contract.interface import States, Subject
 from validation.contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_ENERGY, QUANTITIES, Quantity
 from validation.inputs.frames import chosen_frames
-from validation.inputs.sampling import DEFAULT_STATES, sample
+from validation.inputs.sampling import DEFAULT_STATES, sample, special_states
 from validation.mechanics.assembly import Assembly, assemble
 from validation.mechanics.geometry import Array
 
 FORWARD = "forward_dynamics"
+# Quantities that come from solving a linear system, so that its condition limits their agreement.
 SOLVED = (FORWARD, "multipliers", "constraint_force", "frame_response")
 
 EPS = 2.0**-52
-
-Factories = dict[str, EngineFactory | Missing]
-
-# A motor, friction or contact model with a corner in it makes any integrator lose its order, and says nothing of us.
-_CORNERS = frozenset({"sign", "abs", "min", "max"})
 
 
 @dataclass(frozen=True)
@@ -45,8 +48,8 @@ class Settings:
     """What a check is asked to do.
 
     Attributes:
-        states: Random states a model.
-        seed: Of the states.
+        states: Number of random states a model.
+        seed: Seed of the states.
         engines: Names of the engines to compare with; None: all.
         first: Number of the first state, where this is a part of a campaign. What does not depend on the number of
             states, free motions and orders of truncation, belongs to part 0.
@@ -64,17 +67,17 @@ class Settings:
 
 @dataclass(frozen=True)
 class ModelResult:
-    """Everything found about one model.
+    """Outcome of the check of one model.
 
     Attributes:
-        label: What the model is called in tables.
-        comparisons: One a quantity and engine.
-        hash: Of the description; empty if it could not be read.
+        label: Name of the model in tables.
+        comparisons: Comparisons, one a quantity and engine.
+        hash: Hash of the description; empty if it could not be read.
         sizes: nq, nv, nu, bodies.
-        frames: Where frame quantities were compared.
+        frames: Frames at which frame quantities were compared.
         notes: What reading the model dropped or changed.
         versions: Engine -> version.
-        seconds: Stage or engine -> time it took.
+        seconds: Stage or engine -> time it took [s].
     """
 
     label: str
@@ -92,6 +95,43 @@ class ModelResult:
         return all(comparison.ok for comparison in self.comparisons)
 
 
+@dataclass(frozen=True)
+class _Bench:
+    """What all comparisons of one model share.
+
+    Attributes:
+        subject: The subject, its frames chosen.
+        assembly: The same as numbers.
+        settings: States, seed, engines.
+        regular: The random states, sorted by what constraints can be compared at them.
+        variants: Our models of the subject.
+        engines: The engines that take part.
+        scales: Typical sizes of M and T.
+        condition: Factor by which solving for v' amplifies rounding; infinite where M is not positive definite.
+        seconds: Stage -> time it took [s].
+    """
+
+    subject: Subject
+    assembly: Assembly
+    settings: Settings
+    regular: RegularStates
+    variants: ModelVariants
+    engines: tuple[Participant, ...]
+    scales: Scales
+    condition: float
+    seconds: dict[str, float]
+
+    @property
+    def label(self) -> str:
+        """Name of the model in tables."""
+        return self.subject.label
+
+    @property
+    def solvable(self) -> bool:
+        """Whether M has an inverse in all states; a file's impossible inertias may leave it none."""
+        return math.isfinite(self.condition)
+
+
 def failed(label: str, stage: str, reason: str) -> ModelResult:
     """The result of a model that could not be compared."""
     return ModelResult(label, (Comparison(label, "symofros", stage, "failed", note=reason),))
@@ -103,259 +143,169 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
     Args:
         subject: The model.
         settings: States, seed, engines.
-        factories: The engines to choose from; those that import here if not given.
+        factories: Factories that take the place of the adapters' own, by engine.
 
     Raises:
         SymofrosError: Our own model can't be made.
     """
-    return _Check(subject, settings, available() if factories is None else factories).run()
+    assembly = assemble(subject.system)
+    subject = replace(subject, frames=subject.frames or chosen_frames(assembly))
+    obstacle = _unsampled_motion(subject.system, assembly)
+    if obstacle:
+        return failed(subject.label, "compile", obstacle)
+    start = time.perf_counter()
+    model = compiled.build(subject)
+    seconds = {"symofros": time.perf_counter() - start}
+    sampled = sample(assembly, model.model.nu, settings.states, settings.seed, settings.first)
+    if subject.system.constraints:
+        regular = regular_states(model, sampled, special_states(settings.states, settings.first))
+    else:
+        regular = RegularStates(sampled, sampled[:0])
+    omissions = judge_omissions(subject.label, regular)
+    if not len(regular.states) and omissions is not None:
+        return ModelResult(subject.label, (omissions,), description_hash(subject.system), seconds=seconds)
+    variants = ModelVariants(subject, assembly, model, regular.states)
+    answers = list(participants(assembly, variants, settings.routes(), factories or {}))
+    engines = tuple(answer for answer in answers if isinstance(answer, Participant))
+    scales, condition = typical_scales(model, variants.states), worst_condition(model, variants.states)
+    bench = _Bench(subject, assembly, settings, regular, variants, engines, scales, condition, seconds)
+    rows = [answer for answer in answers if isinstance(answer, Comparison)]
+    rows += [omissions] if omissions is not None else []
+    rows += _comparisons(bench)
+    rows += _unconfirmed(bench, rows)
+    return _result(bench, rows)
 
 
-class _Check:
-    def __init__(self, subject: Subject, settings: Settings, factories: Factories) -> None:
-        self.settings = settings
-        self.factories = factories
-        self.assembly: Assembly = assemble(subject.system)
-        self.subject = replace(subject, frames=subject.frames or chosen_frames(self.assembly))
-        self.seconds: dict[str, float] = {}
-        self.rows: list[Comparison] = []
+def _comparisons(bench: _Bench) -> Iterator[Comparison]:
+    """All rows of one model's table but those of engines that can't represent it."""
+    if not bench.solvable:
+        reason = "M is not positive definite in some state, so v' is not determined; are the inertias physical?"
+        for name in (FORWARD, MOTION_ENERGY.name):
+            yield Comparison(bench.label, "symofros", name, "unsupported", note=reason)
+    for quantity in _quantities(bench):
+        yield from _compared(bench, quantity)
+    if bench.settings.first == 0:
+        if bench.solvable and not bench.subject.system.constraints:
+            yield from _free_motion(bench)
+        for order in omitted_orders(bench.subject.system)[:1]:
+            models = bench.variants.as_described, bench.variants.untruncated
+            yield judge_order(bench.label, order, bench.assembly, *models, bench.variants.states)
 
-    def run(self) -> ModelResult:
-        obstacle = self._unsampled_motion()
-        if obstacle:
-            return failed(self.subject.label, "compile", obstacle)
-        start = time.perf_counter()
-        self.ours = our_c.build(self.subject)
-        self.seconds["symofros"] = time.perf_counter() - start
-        asked = self.settings
-        sampled = sample(self.assembly, self.ours.model.nu, asked.states, asked.seed, asked.first)
-        if self.subject.system.constraints:
-            sampled = regular(self.ours, sampled)
-        self.sides = Sides(self.subject, self.assembly, self.ours, sampled)
-        self.states = self.sides.states
-        self.scales = typical_scales(self.ours, self.states)
-        self.condition = worst_condition(self.ours, self.states)
-        engines = list(self._engines())
-        if not self._can_be_solved():
-            reason = "M is not positive definite in some state, so v' is not determined; are the inertias physical?"
-            for name in (FORWARD, MOTION_ENERGY.name):
-                self.rows.append(Comparison(self.subject.label, "symofros", name, "unsupported", note=reason))
-        for quantity in self._quantities():
-            self._compare(quantity, engines)
-        if asked.first == 0:
-            if self._can_be_solved() and not self.subject.system.constraints:
-                self._fall(engines)
-            self._retained()
-        self._second_opinion()
-        return self._result(engines)
 
-    def _has_beams(self) -> bool:
-        return any(isinstance(body, sf.Beam) for body in self.subject.system.bodies)
+def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:
+    """What keeps a system with a prescribed motion from being compared; that is not agreement."""
+    driven = assembly.driven_joints
+    if driven and not has_beams(system):
+        return f"joint '{driven[0].name}': a prescribed motion, which no engine for rigid bodies can represent"
+    for joint in driven:
+        if joint.kind in ("ball", "free"):
+            return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
+    if driven and any(isinstance(item, sf.Nonholonomic) for item in system.constraints):
+        return f"joint '{driven[0].name}': a prescribed motion beside a condition on speeds by formula"
+    return ""
 
-    def _unsampled_motion(self) -> str:
-        """What keeps a system with a prescribed motion from being compared; that is not agreement."""
-        driven = self.assembly.driven_joints
-        if driven and not self._has_beams():
-            return f"joint '{driven[0].name}': a prescribed motion, which no engine for rigid bodies can represent"
-        for joint in driven:
-            if joint.kind in ("ball", "free"):
-                return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
-        formulas = [item for item in self.subject.system.constraints if isinstance(item, sf.Nonholonomic)]
-        if driven and formulas:
-            return f"joint '{driven[0].name}': a prescribed motion beside a condition on speeds by formula"
-        return ""
 
-    def _engines(self) -> Iterator[Engine]:
-        for name in self.settings.routes():
-            route = ROUTES[name]
-            if (route.reads and route.reads != self.subject.format) or (route.beams and not self._has_beams()):
+def _quantities(bench: _Bench) -> list[Quantity]:
+    absent = frozenset() if bench.subject.frames else FRAME_QUANTITIES
+    if not bench.solvable:
+        absent |= {FORWARD}
+    if not bench.subject.system.constraints:
+        absent |= CONSTRAINED | LOOPS
+    return [quantity for quantity in QUANTITIES.values() if quantity.name not in absent]
+
+
+def _compared(bench: _Bench, quantity: Quantity) -> Iterator[Comparison]:
+    """One quantity by every engine that offers it."""
+    our_values: dict[tuple[int, bool, int], Array] = {}
+    for one in bench.engines:
+        if quantity.name not in one.engine.capabilities:
+            continue
+        states = one.states
+        if one.route.loops and quantity.name == "multipliers":
+            states = of_unique_multipliers(one.model, states)
+            if not len(states):
+                reason = "conditions repeat each other, so multipliers are not unique; compared: Gᵀ lam"
+                yield Comparison(bench.label, one.name, quantity.name, "unsupported", note=reason)
                 continue
-            if route.loops and not self.subject.system.constraints:
-                continue
-            factory = self.factories[name]
-            engine = Unsupported(factory.reason) if isinstance(factory, Missing) else self._build(name, factory)
-            if isinstance(engine, Unsupported):
-                self.rows.append(Comparison(self.subject.label, name, "all", "unsupported", note=engine.reason))
-            else:
-                self.seconds[name] = 0.0
-                yield engine
-
-    def _build(self, name: str, factory: EngineFactory) -> Engine | Unsupported:
-        """The engine; one that knows trees gets rotors from a second model of its own, and constraints in NumPy."""
-        independent = ROUTES[name].independent
-        if ROUTES[name].loops:
-            return self._closing(factory(self.subject))
-        if independent and rotors.has_rotors(self.subject.system):
-            factory = partial(rotors.build, factory)
-        engine = factory(self.subject)
-        if isinstance(engine, Unsupported) or not self.subject.system.constraints or not independent:
-            return engine
-        joined = joined_frames(self.assembly, self.subject.system)
-        anchored = factory(replace(self.subject, frames=joined))
-        # Every independent engine knows trees; the protocol of engines does not say so.
-        return ConstrainedEngine(cast(TreeEngine, engine), cast(TreeEngine, anchored), self.subject, joined)
-
-    def _closing(self, engine: Engine | Unsupported) -> Engine | Unsupported:
-        """An engine that closes loops needs states where they are closed."""
-        if isinstance(engine, Unsupported) or len(self.sides.assembled):
-            return engine
-        return Unsupported("no random state leads to a posture that keeps the constraints")
-
-    def _quantities(self) -> list[Quantity]:
-        left_out = (frozenset() if self.subject.frames else FRAME_QUANTITIES) | (
-            frozenset() if self._can_be_solved() else {FORWARD}
-        )
-        if not self.subject.system.constraints:
-            left_out |= CONSTRAINED | LOOPS
-        return [q for q in QUANTITIES.values() if q.name not in left_out]
-
-    def _can_be_solved(self) -> bool:
-        """Whether M has an inverse in all states; a file's impossible inertias may leave it none."""
-        return math.isfinite(self.condition)
-
-    def _compare(self, quantity: Quantity, engines: Sequence[Engine]) -> None:
-        sides: dict[tuple[int, bool, int], Array] = {}
-        for engine in engines:
-            if quantity.name not in engine.capabilities:
-                continue
-            side, states, loops = self.sides.of(engine), self.sides.states_of(engine), ROUTES[engine.name].loops
-            if loops and quantity.name == "multipliers":
-                states = of_unique_multipliers(side, states)
-                if not len(states):
-                    reason = "conditions repeat each other, so multipliers are not unique; compared: Gᵀ lam"
-                    row = Comparison(self.subject.label, engine.name, quantity.name, "unsupported", note=reason)
-                    self.rows.append(row)
-                    continue
-            key = (id(side), loops, len(states))
-            if key not in sides:
-                sides[key] = compute(side, quantity, states)
-            row = self._judged(engine, quantity, sides[key], states, self.scales)
-            if len(states) < len(self.states) and not row.note and not loops:
-                row = replace(row, note=f"the first {len(states)} of {len(self.states)} states: each takes long")
-            extra = {"condition": self._condition_of(engine)}
-            self.rows.append(replace(row, extra=extra) if quantity.name == FORWARD else row)
-
-    def _judged(self, engine: Engine, quantity: Quantity, ours: Array, states: States, scales: Scales) -> Comparison:
-        start = time.perf_counter()
-        reference = self._value(engine, quantity, states)
-        self.seconds[engine.name] += time.perf_counter() - start
-        quantity = replace(quantity, tolerance=max(quantity.tolerance, self.sides.tolerance(engine)))
-        errors, sizes = scaled_errors(quantity, ours, reference, scales)
-        row = judge(self.subject.label, engine.name, quantity, errors, sizes=sizes)
-        condition = self._condition_of(engine)
-        if quantity.name in SOLVED and not row.ok and EPS * condition > quantity.tolerance:
-            # No solution in doubles is better than eps cond(M): where that is in the way, no more is asked for.
-            note = f"condition {condition:.1e} allows no better"
-            widened = replace(quantity, tolerance=EPS * condition)
-            row = judge(self.subject.label, engine.name, widened, errors, note, sizes)
-        return row
-
-    def _condition_of(self, engine: Engine) -> float:
-        """Over the states that the engine is asked at."""
-        return self._closed_condition if ROUTES[engine.name].loops else self.condition
-
-    @cached_property
-    def _closed_condition(self) -> float:
-        return worst_condition(self.ours, self.sides.assembled)
-
-    @staticmethod
-    def _value(engine: Engine, quantity: Quantity, states: States) -> Array:
-        if quantity is not MOTION_ENERGY:
-            return compute(engine, quantity, states)
-        return sum_of_energies(engine, states)
-
-    def _fall(self, engines: Sequence[Engine]) -> None:
-        """A free motion from some of the random states: our drift, and the others' energies on the way."""
-        start = time.perf_counter()
-        first = slice(-MOTIONS, None)  # The last states: the first ones are special.
-        weightless = our_c.build_weightless(self.subject)
-        motion = fall(self.ours.model, self.states.q[first], self.states.v[first], weightless)
-        self.seconds["free motion"] = time.perf_counter() - start
-        self.rows.append(self._drift(motion))
-        scales = replace(self.scales, energy=motion.scale)
-        for engine in engines:
-            if {"kinetic_energy", "potential_energy"} <= engine.capabilities:
-                ours = sum_of_energies(self.sides.of(engine), motion.states)
-                self.rows.append(self._judged(engine, MOTION_ENERGY, ours, motion.states, scales))
-
-    def _drift(self, motion: Motion) -> Comparison:
-        for order in left_out(self.subject.system):
-            reason = f"beams of {order.replace('_', ' ')} conserve energy only up to the terms they leave out"
-            return Comparison(self.subject.label, "symofros", "energy_drift", "unsupported", note=reason)
-        joints = [described.joint for described in self.assembly.joints]
-        used = sorted({kind for joint in joints for formula in joint.effort for kind in kinds(formula)} & _CORNERS)
-        bent = sorted({corner for joint in joints for item in joint.elements if (corner := _corner(item))})
-        if used or bent:
-            where = f"an effort uses {', '.join(used)}" if used else f"a joint has {', '.join(bent)}"
-            reason = f"{where}: no integrator keeps its order across a corner"
-            return Comparison(self.subject.label, "symofros", "energy_drift", "unsupported", note=reason)
-        return judge_drift(self.subject.label, motion)
-
-    def _retained(self) -> None:
-        """What ties a model whose beams leave terms out to the one that engines for beams are compared with."""
-        for order in left_out(self.subject.system)[:1]:
-            everything = self.sides.everything
-            row = judge_order(self.subject.label, order, self.assembly, self.ours, everything, self.states)
-            self.rows.append(row)
-
-    def _second_opinion(self) -> None:
-        """Agreement with nobody is no agreement."""
-        independent = {name for name in self.settings.routes() if ROUTES[name].independent}
-        compared = {row.engine for row in self.rows if row.status in ("agree", "disagree")}
-        if independent and not independent & compared:
-            reason = f"none of {', '.join(sorted(independent))} could be asked; see why above"
-            self.rows.append(Comparison(self.subject.label, "any", "all", "failed", note=reason))
-
-    def _result(self, engines: Sequence[Engine]) -> ModelResult:
-        model, system = self.ours.model, self.subject.system
-        return ModelResult(
-            self.subject.label,
-            tuple(self.rows),
-            description_hash(system),
-            {"nq": model.nq, "nv": model.nv, "nu": model.nu, "bodies": len(system.bodies)},
-            self.subject.frames,
-            system.notes,
-            {engine.name: engine.version for engine in engines},
-            self.seconds,
-        )
+        key = (id(one.model), one.route.loops, len(states))
+        if key not in our_values:
+            our_values[key] = compute(one.model, quantity, states)
+        row = _judged(bench, one, quantity, our_values[key], states, bench.scales)
+        if len(states) < len(bench.variants.states) and not row.note and not one.route.loops:
+            asked = len(bench.variants.states)
+            row = replace(row, note=f"the first {len(states)} of {asked} states: each takes long")
+        if quantity.name == JACOBIAN.name:
+            row = judge_undefined(bench.label, one.engine, bench.regular.undefined) or row
+        yield replace(row, extra={"condition": _condition(bench, one)}) if quantity.name == FORWARD else row
 
 
-def _corner(element: object) -> str:
-    """What bends a joint element's force: a corner or, in dry friction, one that is rounded within a step."""
-    if isinstance(element, sf.Damper):
-        return "a quadratic damper" if element.quadratic != 0.0 else ""
-    return {sf.Stop: "a stop", sf.Friction: "dry friction"}.get(type(element), "")
+def _judged(
+    bench: _Bench, one: Participant, quantity: Quantity, ours: Array, states: States, scales: Scales
+) -> Comparison:
+    quantity = replace(quantity, tolerance=max(quantity.tolerance, one.tolerance))
+    errors, sizes = scaled_errors(quantity, ours, one.value(quantity, states), scales)
+    row = judge(bench.label, one.name, quantity, errors, sizes=sizes)
+    condition = _condition(bench, one)
+    if quantity.name in SOLVED and not row.ok and EPS * condition > quantity.tolerance:
+        # No solution in doubles is better than eps cond(M): where that is in the way, no more is asked for.
+        note = f"condition {condition:.1e} allows no better"
+        widened = replace(quantity, tolerance=EPS * condition)
+        row = judge(bench.label, one.name, widened, errors, note, sizes)
+    return row
 
 
-def sum_of_energies(engine: Engine, states: States) -> Array:
-    """T + V (N,) [J]."""
-    return compute(engine, QUANTITIES["kinetic_energy"], states) + compute(
-        engine, QUANTITIES["potential_energy"], states
+def _condition(bench: _Bench, one: Participant) -> float:
+    """The condition over the states that the engine is asked at."""
+    return one.condition if one.route.loops else bench.condition
+
+
+def _free_motion(bench: _Bench) -> Iterator[Comparison]:
+    """A free motion from some of the random states: our drift, and the others' energies on the way."""
+    start = time.perf_counter()
+    last = slice(-MOTIONS, None)  # The first states are special.
+    weightless = compiled.build_weightless(bench.subject)
+    states = bench.variants.states
+    motion = fall(bench.variants.as_described.model, states.q[last], states.v[last], weightless)
+    bench.seconds["free motion"] = time.perf_counter() - start
+    yield _drift(bench, motion)
+    scales = replace(bench.scales, energy=motion.scale)
+    for one in bench.engines:
+        if {"kinetic_energy", "potential_energy"} <= one.engine.capabilities:
+            ours = sum_of_energies(one.model, motion.states)
+            yield _judged(bench, one, MOTION_ENERGY, ours, motion.states, scales)
+
+
+def _drift(bench: _Bench, motion: Motion) -> Comparison:
+    reason = ""
+    for order in omitted_orders(bench.subject.system)[:1]:
+        reason = f"beams of {order.replace('_', ' ')} conserve energy only up to the terms they leave out"
+    reason = reason or smoothness_obstacle([described.joint for described in bench.assembly.joints])
+    if reason:
+        return Comparison(bench.label, "symofros", "energy_drift", "unsupported", note=reason)
+    return judge_drift(bench.label, motion)
+
+
+def _unconfirmed(bench: _Bench, rows: list[Comparison]) -> Iterator[Comparison]:
+    """A failure if no independent engine was compared: agreement with nobody confirms nothing."""
+    independent = {name for name in bench.settings.routes() if ROUTES[name].independent}
+    compared = {row.engine for row in rows if row.status in ("agree", "disagree")}
+    if independent and not independent & compared:
+        reason = f"none of {', '.join(sorted(independent))} could be asked; see why above"
+        yield Comparison(bench.label, "any", "all", "failed", note=reason)
+
+
+def _result(bench: _Bench, rows: list[Comparison]) -> ModelResult:
+    model, system = bench.variants.as_described.model, bench.subject.system
+    return ModelResult(
+        bench.label,
+        tuple(rows),
+        description_hash(system),
+        {"nq": model.nq, "nv": model.nv, "nu": model.nu, "bodies": len(system.bodies)},
+        bench.subject.frames,
+        system.notes,
+        {one.name: one.engine.version for one in bench.engines},
+        bench.seconds | {one.name: one.seconds for one in bench.engines},
     )
-
-
-def regular(engine: SymofrosEngine, states: States) -> States:
-    """The states where constraints have a Jacobian of clear rank: a disc that lies flat has no lowest point."""
-    sound = of_clear_rank(compute(engine, QUANTITIES["mass_matrix"], states), engine.constraint_jacobian(states))
-    return States(*(getattr(states, item.name)[sound] for item in fields(States)))
-
-
-def worst_condition(engine: SymofrosEngine, states: States) -> float:
-    """By how much solving for v' amplifies rounding: the largest condition number of M, and of multipliers."""
-    M = compute(engine, QUANTITIES["mass_matrix"], states)
-    moments = np.linalg.eigvalsh(M)
-    smallest, largest = moments[:, 0], moments[:, -1]
-    worst = float(np.max(np.where(smallest > 0.0, largest / np.where(smallest > 0.0, smallest, 1.0), np.inf)))
-    if engine.model.nc and np.isfinite(worst):
-        worst *= condition(M, engine.constraint_jacobian(states))
-    return worst
-
-
-def kinds(formula: sf.Expression | float) -> frozenset[str]:
-    """The operations a formula uses."""
-    if not isinstance(formula, sf.Expression):
-        return frozenset()
-    return frozenset({formula.kind}).union(*(kinds(arg) for arg in formula.args))
 
 
 def description_hash(system: sf.System) -> str:

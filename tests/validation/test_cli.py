@@ -8,7 +8,6 @@ from typer.testing import CliRunner, Result
 
 from tests.validation.subjects import URDF
 from validation.__main__ import app
-from validation.adapters import available
 from validation.adapters.pinocchio import tree as pinocchio
 from validation.check import failed
 from validation.contract.interface import Subject
@@ -88,13 +87,14 @@ def test_bad_input(run: Any) -> None:
 
 def test_disagreement(run: Any, arm: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A gravity that is one part in a billion off."""
+    right = pinocchio.build
 
     def build(subject: Subject) -> Any:
-        engine = pinocchio.build(subject)
+        engine: Any = right(subject)
         engine.model.gravity.linear = engine.model.gravity.linear * (1 + 1e-9)
         return engine
 
-    monkeypatch.setattr("validation.check.available", lambda: {**available(), "pinocchio": build})
+    monkeypatch.setattr(pinocchio, "build", build)
     result = run(arm)
     assert result.exit_code == 1
     assert "arm, pinocchio: gravity: error 1.0e-09" in result.stdout and "disagree" in result.stdout

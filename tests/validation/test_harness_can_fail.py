@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from tests.validation.subjects import floating_arm
-from validation.adapters import available
+from validation.adapters import compiled
+from validation.adapters.compiled import SymofrosEngine
 from validation.adapters.pinocchio import tree as pinocchio
 from validation.check import ModelResult, Settings, check
 from validation.contract.interface import States, Subject
@@ -33,7 +35,7 @@ class Faulty:
 
 
 def checked(build: Callable[[Subject], Any]) -> ModelResult:
-    return check(SUBJECT, SETTINGS, {**available(), "pinocchio": build})
+    return check(SUBJECT, SETTINGS, {"pinocchio": build})
 
 
 def disagreeing(result: ModelResult) -> set[str]:
@@ -121,7 +123,28 @@ def test_solving_is_asked_for_no_more_than_doubles_allow(light: float, expected:
     def build(subject: Subject) -> Any:
         return Faulty(pinocchio.build(subject), "forward_dynamics", lambda a: a * (1 + 2e-9))
 
-    result = check(subject, SETTINGS, {**available(), "pinocchio": build})
+    result = check(subject, SETTINGS, {"pinocchio": build})
     (row,) = (row for row in result.comparisons if row.quantity == "forward_dynamics")
     assert row.status == expected and row.extra["condition"] == pytest.approx(1 / light, rel=1e-3, abs=2)
     assert ("allows no better" in row.note) == (expected == "agree")
+
+
+@dataclass(frozen=True)
+class NotANumberWhere(SymofrosEngine):
+    """Our model with G not a number where the first coordinate is negative."""
+
+    def constraint_jacobian(self, states: States) -> np.ndarray:
+        right = super().constraint_jacobian(states)
+        return np.where(states.q[:, :1, None] < 0.0, np.nan, right)
+
+
+def test_a_jacobian_of_ours_that_is_not_a_number_disagrees(monkeypatch: pytest.MonkeyPatch) -> None:
+    """States where G has no clear rank are left out; those where ours alone does not exist are no such states."""
+    build = compiled.build
+    monkeypatch.setattr(compiled, "build", lambda subject: NotANumberWhere(**vars(build(subject))))
+    result = check(Subject("four_bar", MODELS["four_bar"]), SETTINGS)
+    assert not result.ok
+    (row,) = (row for row in result.comparisons if (row.engine, row.quantity) == ("pinocchio", "constraint_jacobian"))
+    assert row.status == "disagree" and "our G is not a finite number in" in row.note
+    (row,) = (row for row in result.comparisons if row.status == "failed")
+    assert "of 33 random states left out" in row.note

@@ -3,8 +3,8 @@
 import pytest
 
 from validation.check import Settings
-from validation.crew import run_case
 from validation.inputs.cases import robot_case
+from validation.worker_pool import run_case
 
 
 @pytest.mark.parametrize("label", ["ur5", "kinova", "solo12"])

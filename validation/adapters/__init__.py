@@ -1,46 +1,22 @@
-"""The engines: one room each, and no other room imports the engine's package; here, what needs none."""
+"""The engines: one folder each, the only one that imports the engine's package; here, what needs none.
+
+A new engine is one folder and one row of ROUTES. The folder's `__init__` imports without the engine's package, and its
+DIFFERENCES state where the engine's conventions are not ours; its adapter has `build(subject) -> Engine | Unsupported`.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from importlib import import_module
+from typing import Literal
 
-from validation.contract.interface import EngineFactory, Format
+import symofros as sf
+from validation.contract.conventions import Difference
+from validation.contract.interface import EngineFactory, Format, Subject
 
-
-@dataclass(frozen=True)
-class Route:
-    """One way to a second opinion.
-
-    Attributes:
-        module: The adapter; its `build` is the factory.
-        reads: It reads files of this format by itself, and has nothing to say of other models.
-        independent: It shares no equations with us; agreement with it is evidence.
-        beams: It is asked for systems with beams only, and compared with our model that keeps all their terms.
-        loops: It closes loops by itself; it is asked for systems with constraints only, at states that keep them.
-    """
-
-    module: str
-    reads: Format = ""
-    independent: bool = True
-    beams: bool = False
-    loops: bool = False
-
-
-# In the order of reports. The generated C itself is not among them: it is what they are compared with.
-ROUTES: dict[str, Route] = {
-    "pinocchio": Route("validation.adapters.pinocchio.tree"),
-    "mujoco": Route("validation.adapters.mujoco.tree"),
-    "pinocchio-loops": Route("validation.adapters.pinocchio.loops", loops=True),
-    "exudyn-loops": Route("validation.adapters.exudyn.loops", loops=True),
-    "pinocchio-urdf": Route("validation.adapters.pinocchio.urdf", reads="urdf"),
-    "mujoco-urdf": Route("validation.adapters.mujoco.urdf", reads="urdf"),
-    "mujoco-mjcf": Route("validation.adapters.mujoco.mjcf", reads="mjcf"),
-    "lagrangian": Route("validation.adapters.lagrangian.engine", beams=True),
-    "interpreted": Route("validation.adapters.interpreted", independent=False),
-    "description": Route("validation.adapters.description", independent=False),
-}
+# Which of our models of a description an engine is compared with; see `comparison.variants`.
+Variant = Literal["as_described", "verbatim", "untruncated"]
 
 
 @dataclass(frozen=True)
@@ -48,21 +24,88 @@ class Missing:
     """An engine that does not import here.
 
     Attributes:
-        reason: Why not, and the remedy.
+        reason: The import's error and the remedy.
     """
 
     reason: str
 
 
-@cache
-def available() -> dict[str, EngineFactory | Missing]:
-    """Every engine by name: how to build its models, or why it does not import here."""
-    return {name: _factory(route) for name, route in ROUTES.items()}
+@dataclass(frozen=True)
+class Route:
+    """One way to a second opinion.
+
+    Attributes:
+        module: The adapter; `build` in it is the factory.
+        package: Import name of the engine; "" for one that needs none.
+        reads: Format of the files that the engine reads by itself; it has nothing to say of other models.
+        independent: Whether it shares no equations with us, so that its agreement is evidence.
+        beams: Whether it is asked for systems with beams only, and keeps all of their terms.
+        loops: Whether it closes loops by itself; it is asked for systems with constraints only, at states that satisfy
+            them.
+    """
+
+    module: str
+    package: str = ""
+    reads: Format = ""
+    independent: bool = True
+    beams: bool = False
+    loops: bool = False
+
+    @property
+    def variant(self) -> Variant:
+        """Our model that the engine is compared with."""
+        return "untruncated" if self.beams else "verbatim" if self.reads else "as_described"
+
+    def applies_to(self, subject: Subject) -> bool:
+        """Whether the engine is asked about a subject at all."""
+        system = subject.system
+        return (
+            (not self.reads or self.reads == subject.format)
+            and (not self.beams or has_beams(system))
+            and (not self.loops or bool(system.constraints))
+        )
+
+    def load(self) -> EngineFactory | Missing:
+        """The engine's factory; this imports its package and no other engine's."""
+        try:
+            factory: EngineFactory = import_module(self.module).build
+        except ImportError as error:
+            return Missing(f"{error}; pip install 'symofros[validation]'")
+        return factory
 
 
-def _factory(route: Route) -> EngineFactory | Missing:
-    try:
-        factory: EngineFactory = import_module(route.module).build
-    except ImportError as error:
-        return Missing(f"{error}; pip install 'symofros[validation]'")
-    return factory
+# In the order of reports. The generated C itself is not among them: it is what they are compared with.
+ROUTES: dict[str, Route] = {
+    "pinocchio": Route("validation.adapters.pinocchio.tree", "pinocchio"),
+    "mujoco": Route("validation.adapters.mujoco.tree", "mujoco"),
+    "pinocchio-loops": Route("validation.adapters.pinocchio.loops", "pinocchio", loops=True),
+    "exudyn-loops": Route("validation.adapters.exudyn.loops", "exudyn", loops=True),
+    "pinocchio-urdf": Route("validation.adapters.pinocchio.urdf", "pinocchio", reads="urdf"),
+    "mujoco-urdf": Route("validation.adapters.mujoco.urdf", "mujoco", reads="urdf"),
+    "mujoco-mjcf": Route("validation.adapters.mujoco.mjcf", "mujoco", reads="mjcf"),
+    "lagrangian": Route("validation.adapters.lagrangian.engine", "casadi", beams=True),
+    "interpreted": Route("validation.adapters.interpreted", independent=False),
+    "description": Route("validation.adapters.description", independent=False),
+}
+
+
+def factory_of(name: str, overrides: Mapping[str, EngineFactory | Missing] | None = None) -> EngineFactory | Missing:
+    """How an engine's models are built, or why the engine does not import here.
+
+    Args:
+        name: Key of ROUTES.
+        overrides: Factories that take the place of the adapters' own, by engine.
+    """
+    override = (overrides or {}).get(name)
+    return ROUTES[name].load() if override is None else override
+
+
+def differences() -> tuple[Difference, ...]:
+    """Every difference of conventions, as the engines' folders state them; this imports no engine."""
+    folders = dict.fromkeys(route.module.rpartition(".")[0] for route in ROUTES.values() if route.package)
+    return tuple(row for folder in folders for row in import_module(folder).DIFFERENCES)
+
+
+def has_beams(system: sf.System) -> bool:
+    """Whether any body is elastic."""
+    return any(isinstance(body, sf.Beam) for body in system.bodies)

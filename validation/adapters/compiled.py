@@ -145,8 +145,8 @@ def build_verbatim(subject: Subject) -> SymofrosEngine:
     return SymofrosEngine(NAME, model, frames)
 
 
-def keeping_all(system: sf.System) -> sf.System:
-    """The system with every term of its beams kept; itself if they do already."""
+def untruncated(system: sf.System) -> sf.System:
+    """The system with every term of its beams kept (`retain = "all"`); equal to it if they are kept already."""
     bodies = [replace(body, retain="all") if isinstance(body, sf.Beam) else body for body in system.bodies]
     return replace(system, bodies=tuple(bodies))
 

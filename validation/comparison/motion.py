@@ -9,6 +9,7 @@ of Q's work is counted.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,16 +39,19 @@ RESOLVED = 1e-3
 # does not depend on the length of the steps.
 SHORTENINGS = tuple(10.0**-k for k in range(10))
 
+# A motor, friction or contact model with a corner in it makes any integrator lose its order, and says nothing of us.
+_CORNERS = frozenset({"sign", "abs", "min", "max"})
+
 
 @dataclass(frozen=True)
 class Motion:
-    """What was integrated.
+    """Free motions from several initial states.
 
     Attributes:
-        states: On the way, of all motions (N).
+        states: States on the way, of all motions (N).
         scale: The energy that moves about: largest kinetic energy and largest change of potential energy [J].
         drift: Largest change of T + V less the work done by Q, relative to `scale`, with `step` and with `step` / 2.
-        step: [s].
+        step: Length of the longer steps [s].
     """
 
     states: States
@@ -153,3 +157,27 @@ def judge_drift(label: str, motion: Motion) -> Comparison:
         note=f"steps of {motion.step:g} and {motion.step / 2:g} s drift by {coarse:.1e} and {fine:.1e}",
         extra={"drift_coarse": coarse, "drift_fine": fine},
     )
+
+
+def smoothness_obstacle(joints: Sequence[sf.Joint]) -> str:
+    """Why no integrator keeps its order on joints with such efforts and elements; "" if they are smooth."""
+    used = sorted({kind for joint in joints for formula in joint.effort for kind in operations(formula)} & _CORNERS)
+    bent = sorted({corner for joint in joints for element in joint.elements if (corner := _corner(element))})
+    if not used and not bent:
+        return ""
+    where = f"an effort uses {', '.join(used)}" if used else f"a joint has {', '.join(bent)}"
+    return f"{where}: no integrator keeps its order across a corner"
+
+
+def _corner(element: object) -> str:
+    """What bends a joint element's force: a corner or, in dry friction, one that is rounded within a step."""
+    if isinstance(element, sf.Damper):
+        return "a quadratic damper" if element.quadratic != 0.0 else ""
+    return {sf.Stop: "a stop", sf.Friction: "dry friction"}.get(type(element), "")
+
+
+def operations(formula: sf.Expression | float) -> frozenset[str]:
+    """The operations that a formula uses."""
+    if not isinstance(formula, sf.Expression):
+        return frozenset()
+    return frozenset({formula.kind}).union(*(operations(arg) for arg in formula.args))

@@ -1,7 +1,7 @@
-"""Beams of first and zeroth order against everything kept: by which power of the deflection they differ.
+"""Beams of first and zeroth order against every term kept: by which power of the deflection they differ.
 
 An order keeps its terms up to a degree in elastic coordinates and speeds, so with these scaled by eps the difference
-to everything kept falls with the next power. Agreement of everything kept with an engine, and this power, together
+to every term kept falls with the next power. Agreement of every term kept with an engine, and this power, together
 say that a model of lower order is right.
 """
 
@@ -31,28 +31,30 @@ ROUNDING_DIFFERENCE = 1e-13
 STATES = 50
 
 
-def left_out(system: sf.System) -> list[str]:
+def omitted_orders(system: sf.System) -> list[str]:
     """The orders below "all" of beams that deform, lowest first."""
-    found = {body.retain for body in system.bodies if isinstance(body, sf.Beam) and body.modes}
-    return [order for order in POWERS if order in found]
+    retained = {body.retain for body in system.bodies if isinstance(body, sf.Beam) and body.modes}
+    return [order for order in POWERS if order in retained]
 
 
 def judge_order(
-    label: str, order: str, assembly: Assembly, ours: SymofrosEngine, everything: SymofrosEngine, states: States
+    label: str, order: str, assembly: Assembly, ours: SymofrosEngine, untruncated: SymofrosEngine, states: States
 ) -> Comparison:
-    """Whether M, h and Q differ from those of everything kept by the power that an order states.
+    """Whether M, h and Q differ from those of every term kept by the power that an order states.
 
     Args:
-        label: Of the model.
-        order: The lowest one of its beams.
-        assembly: Whose elastic coordinates and speeds are scaled.
+        label: Label of the model.
+        order: The lowest order among its beams.
+        assembly: The model as numbers; its elastic coordinates and speeds are scaled.
         ours: The model as described.
-        everything: The same with every term kept.
-        states: Some of these are scaled.
+        untruncated: The same with every term kept.
+        states: States, of which some are scaled.
     """
     few = states[:STATES]
-    sizes = _sizes(everything, few)
-    at = {eps: _differences(ours, everything, _scaled(assembly, few, eps), sizes) for eps in (COARSE, FINE)}
+    sizes = _sizes(untruncated, few)
+    at = {eps: _differences(ours, untruncated, _scaled(assembly, few, eps), sizes) for eps in (COARSE, FINE)}
+    if not all(math.isfinite(value) for differences in at.values() for value in differences.values()):
+        return Comparison(label, "symofros", NAME, "disagree", len(few), note="not a finite number in some state")
     powers = {
         name: math.log(at[COARSE][name] / fine) / math.log(COARSE / FINE)
         for name, fine in at[FINE].items()
@@ -72,7 +74,7 @@ def judge_order(
         len(few),
         fine,
         allowed,
-        note=f"{order} differs from everything kept by powers of the deflection: {listed}",
+        note=f"{order} differs from every term kept by powers of the deflection: {listed}",
         extra={"power": power},
     )
 
@@ -88,10 +90,10 @@ def _scaled(assembly: Assembly, states: States, eps: float) -> States:
 
 
 def _differences(
-    ours: SymofrosEngine, everything: SymofrosEngine, states: States, sizes: dict[str, float]
+    ours: SymofrosEngine, untruncated: SymofrosEngine, states: States, sizes: dict[str, float]
 ) -> dict[str, float]:
     """Of M, h and Q, relative to sizes that do not depend on the scale: some forces are elastic ones alone."""
-    one, other = _terms(ours, states), _terms(everything, states)
+    one, other = _terms(ours, states), _terms(untruncated, states)
     return {name: float(np.linalg.norm(one[name] - other[name])) / sizes[name] for name in one}
 
 

@@ -1,7 +1,8 @@
 """Every difference of signs, orders, frames and quaternions between SYMOFROS and the engines, in one place.
 
-`DIFFERENCES` says them in words (reports print it); `Chart` does them. An engine's speeds are linear in ours,
-v_e = T(q) v, with T a permutation of blocks times rotations of the free joints' linear speeds, so T is orthogonal and
+The engines' folders state them in words (`Difference`, which reports print); `Chart` carries them out. An engine's
+speeds are linear in ours, v_e = T(q) v, with T a permutation of blocks times rotations of the free joints' linear
+speeds, so T is orthogonal and
 
     a_e = T a + T' v,   M = T^T M_e T,   h = T^T (h_e + M_e T' v),   Q_e = T Q,   J = J_e T,   J' = J_e' T + J_e T'.
 """
@@ -33,27 +34,6 @@ class Difference(NamedTuple):
     ours: str
     theirs: str
 
-
-DIFFERENCES = (
-    Difference("mujoco", "quaternion", "(x, y, z, w)", "(w, x, y, z)"),
-    Difference("mujoco", "free joint, position", "of the body origin in the proximal frame P", "in the world frame"),
-    Difference("mujoco", "free joint, orientation", "R_PB", "R_WB"),
-    Difference("mujoco", "free joint, linear speed v", "in body axes", "in world axes: v_e = R_WB v"),
-    Difference("mujoco", "free joint, linear acceleration", "dv/dt of the body components", "R_WB (dv/dt + w x v)"),
-    Difference("mujoco", "free joint on a moving parent", "one joint", "three slides along P, then a ball joint"),
-    Difference("mujoco", "frame velocity and acceleration", "(linear; angular)", "(angular; linear)"),
-    Difference("mujoco", "frame acceleration", "d/dt of the frame velocity", "with -gravity added to the linear part"),
-    Difference("pinocchio", "frame acceleration", "d/dt of the frame velocity: classical", "spatial, unless asked"),
-    Difference("pinocchio", "kinetic energy with armatures", "counts them, like M", "depends on the kind of joint"),
-    Difference("pinocchio-loops", "multipliers", "forces on the second frame's body", "on the first one's"),
-    Difference("pinocchio-loops", "a hinge that closes a loop", "three translations, two rotations", "two points"),
-    Difference("pinocchio-urdf", "order of joints", "as in the file", "children sorted by name"),
-    Difference("pinocchio-urdf", "continuous joint", "q = angle", "q = (cos, sin)"),
-    Difference("mujoco-urdf", "angles in the model", "radians", "degrees, unless the compiler is told otherwise"),
-    Difference("mujoco-mjcf", "potential energy", "of what moves", "of everything with mass, moving or not"),
-    Difference("lagrangian", "terms of beams", "up to the order described", "all: compared with our model of all"),
-    Difference("lagrangian", "functions stated by the user's formulas", "interpolated", "differentiated as they are"),
-)
 
 Encoding = Literal["same", "cos_sin", "wxyz", "free_in_world", "free_in_parent"]
 

@@ -46,10 +46,20 @@ def sample(assembly: Assembly, nu: int, count: int = DEFAULT_STATES, seed: int =
     v = rng.uniform(-SPEED, SPEED, (count, assembly.nv))
     a = rng.uniform(-ACCELERATION, ACCELERATION, (count, assembly.nv))
     u = rng.uniform(-INPUT, INPUT, (count, nu))
-    for k, make_special in enumerate(() if first else _SPECIAL[:count]):
+    for k, make_special in enumerate(_SPECIAL[: special_states(count, first)]):
         make_special(assembly, q[k], v[k])
     none = np.zeros((count, assembly.nv))
     return States(q, v, a, u, none, none)
+
+
+def special_states(count: int, first: int = 0) -> int:
+    """How many of the first states are not random.
+
+    Args:
+        count: Number of states.
+        first: Number of the first state, where these are a later part of many.
+    """
+    return 0 if first else min(count, len(_SPECIAL))
 
 
 def neutral(assembly: Assembly) -> Array:

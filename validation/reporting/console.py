@@ -14,9 +14,9 @@ from rich.table import Table
 from rich.text import Text
 
 from validation.check import ModelResult
-from validation.crew import Report
 from validation.reporting.record import Record
 from validation.reporting.tables import BRIEF, Cell, Line, by_engine, by_model, failures, headline, unsupported
+from validation.worker_pool import Report
 
 # Wide enough for every column when the output is not a terminal, which has a width of its own.
 PLAIN_WIDTH = 120

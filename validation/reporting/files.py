@@ -6,9 +6,8 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from validation.adapters import ROUTES
+from validation.adapters import ROUTES, differences
 from validation.comparison.errors import Comparison
-from validation.contract.conventions import DIFFERENCES
 from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, ROUNDING, SMALL, SOLVE
 from validation.reporting.figures import error_against_condition, error_distributions
 from validation.reporting.page import render, write_pages
@@ -42,7 +41,7 @@ def to_html(record: Record) -> str:
         lines_of={name: by_engine(record, engines=(name,)) for name in engines},
         drifts=[row for row in record.comparisons if row.quantity == "energy_drift" and row.error is not None],
         quantities=[*QUANTITIES.values(), MOTION_ENERGY],
-        differences=DIFFERENCES,
+        differences=differences(),
     )
 
 

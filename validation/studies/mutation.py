@@ -20,10 +20,10 @@ import symofros as sf
 from symofros.expr.evaluate import evaluate_edges
 from symofros.expr.precise import evaluate_precisely
 from symofros.expr.program import Function
-from validation.adapters import ROUTES, Missing, available, description
+from validation.adapters import ROUTES, Missing, description
 from validation.adapters.interpreted import build as interpreted
 from validation.comparison.errors import Scales, compute, state_errors, typical_scales
-from validation.comparison.sides import with_forces
+from validation.comparison.variants import with_forces
 from validation.contract.interface import Engine, States, Subject, Unsupported
 from validation.contract.quantities import FORCES_STATED, FRAME_QUANTITIES, QUANTITIES, Quantity
 from validation.inputs.frames import chosen_frames
@@ -193,10 +193,11 @@ def _equal(sound: list[list[mpmath.mpf]], faulty: list[list[mpmath.mpf]]) -> boo
 def _independent(subject: Subject) -> Engine:
     """The first independent engine that can represent a model."""
     reasons = []
-    factories = available()
     for name, route in ROUTES.items():
-        factory = factories[name]
-        if not route.independent or route.reads or isinstance(factory, Missing):
+        if not route.independent or route.reads:
+            continue
+        factory = route.load()
+        if isinstance(factory, Missing):
             continue
         engine = factory(subject)
         if not isinstance(engine, Unsupported):

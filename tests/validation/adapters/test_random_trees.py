@@ -17,7 +17,7 @@ from validation.adapters.compiled import SymofrosEngine
 from validation.adapters.mujoco import tree as mujoco
 from validation.adapters.pinocchio import tree as pinocchio
 from validation.comparison.errors import compute, state_errors, typical_scales
-from validation.comparison.sides import with_forces
+from validation.comparison.variants import with_forces
 from validation.contract.interface import Subject, Unsupported
 from validation.contract.quantities import EVERYTHING, QUANTITIES
 from validation.inputs.sampling import sample

@@ -6,7 +6,7 @@ import pytest
 
 import symofros as sf
 from tests.validation.subjects import UNIT, URDF, pendulum, subject_of
-from validation.adapters import Missing, available
+from validation.adapters import Missing
 from validation.adapters.mujoco import tree as mujoco
 from validation.adapters.mujoco import urdf as mujoco_urdf
 from validation.adapters.pinocchio import urdf as pinocchio_urdf
@@ -50,7 +50,7 @@ def test_what_is_fixed_to_a_massless_body_gives_it_mass() -> None:
 
 
 def test_an_engine_that_is_not_installed_is_a_row_with_the_remedy() -> None:
-    factories = {**available(), "mujoco": Missing("No module named 'mujoco'; pip install")}
+    factories = {"mujoco": Missing("No module named 'mujoco'; pip install")}
     result = check(subject_of(pendulum()), FEW, factories)
     (row,) = (row for row in result.comparisons if row.engine == "mujoco")
     assert row.status == "unsupported" and "pip install" in row.note
@@ -58,7 +58,7 @@ def test_an_engine_that_is_not_installed_is_a_row_with_the_remedy() -> None:
 
 
 def test_agreement_with_nobody_is_no_agreement() -> None:
-    factories = {**available(), "mujoco": Missing("no"), "pinocchio": Missing("no")}
+    factories = {"mujoco": Missing("no"), "pinocchio": Missing("no")}
     result = check(subject_of(pendulum()), FEW, factories)
     assert not result.ok
     assert any(row.status == "failed" and "could be asked" in row.note for row in result.comparisons)

@@ -11,7 +11,7 @@ import mpmath
 import numpy as np
 
 import symofros as sf
-from validation.adapters import available
+from validation.adapters import factory_of
 from validation.contract.interface import EngineFactory, States, TreeEngine, Unsupported
 from validation.contract.interface import Subject as Model
 from validation.evidence.findings import Check
@@ -106,7 +106,7 @@ def theirs(engine: str) -> Callable[[float, float], Cell]:
 
     def run(ratio: float, links: float) -> Cell:
         n = int(links)
-        factory = cast(EngineFactory, available()[engine])
+        factory = cast(EngineFactory, factory_of(engine))
         built = factory(Model("chain", chain(n, ratio)))
         if isinstance(built, Unsupported):
             raise ArithmeticError(f"{engine}: {built.reason}")

@@ -12,14 +12,14 @@ import reference_models
 import symofros as sf
 from tests.mechanics.beams.cases import CASES
 from tests.validation.subjects import UNIT, every_kind, states_of, subject_of
-from validation.adapters import available, compiled
-from validation.adapters.compiled import keeping_all
+from validation.adapters import compiled
+from validation.adapters.compiled import SymofrosEngine, untruncated
 from validation.adapters.lagrangian import engine as lagrangian
 from validation.adapters.pinocchio import tree as pinocchio
 from validation.check import ModelResult, Settings, check
 from validation.comparison.errors import state_errors, typical_scales
 from validation.comparison.retained import judge_order
-from validation.contract.interface import Subject, Unsupported
+from validation.contract.interface import States, Subject, Unsupported
 from validation.contract.quantities import EVERYTHING, QUANTITIES, ROUNDING
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import assemble
@@ -142,11 +142,11 @@ def test_lower_orders_are_tied_to_everything_kept_by_their_power() -> None:
 def test_a_lower_power_is_found() -> None:
     """A zeroth-order model that says it is of first order."""
     system = sf.System("s", [beam("b", sf.Joint("j", "revolute"), retain="zeroth_order")])
-    ours, everything = (compiled.build(subject_of(s)) for s in (system, keeping_all(system)))
+    ours, untruncated_model = (compiled.build(subject_of(s)) for s in (system, untruncated(system)))
     assembly = assemble(system)
     states = sample(assembly, 0, 20)
-    assert judge_order("s", "first_order", assembly, ours, everything, states).status == "disagree"
-    assert judge_order("s", "zeroth_order", assembly, ours, everything, states).status == "agree"
+    assert judge_order("s", "first_order", assembly, ours, untruncated_model, states).status == "disagree"
+    assert judge_order("s", "zeroth_order", assembly, ours, untruncated_model, states).status == "agree"
 
 
 @pytest.mark.parametrize(
@@ -156,7 +156,7 @@ def test_a_lower_power_is_found() -> None:
 def test_another_beam_is_found(change: dict[str, Any], quantity: str) -> None:
     system = sf.System("s", [beam("b", sf.Joint("j", "revolute", axis=(1, 2, 2)))])
     other = replace(system, bodies=[replace(system.body("b"), **change)])
-    factories = {**available(), "lagrangian": lambda subject: lagrangian.build(replace(subject, system=other))}
+    factories = {"lagrangian": lambda subject: lagrangian.build(replace(subject, system=other))}
     result = check(Subject("s", system), SETTINGS, factories)
     assert quantity in {row.quantity for row in result.comparisons if row.status == "disagree"}
 
@@ -198,3 +198,18 @@ def test_few_states_where_each_takes_long(monkeypatch: pytest.MonkeyPatch) -> No
     (row,) = rows(result, "bias")
     assert row.states == 11 and row.note.startswith("the first 11 of 20 states")
     assert np.isfinite(row.error)
+
+
+def test_a_truncated_model_that_is_not_a_number_disagrees() -> None:
+    """Engines are compared with the model of every term, so this comparison alone sees the truncated one."""
+
+    class NotANumber(SymofrosEngine):
+        def mass_matrix(self, states: States) -> Any:
+            return np.full_like(super().mass_matrix(states), np.nan)
+
+    system = sf.System("s", [beam("b", sf.Joint("j", "revolute"), retain="first_order")])
+    model = compiled.build(subject_of(untruncated(system)))
+    row = judge_order(
+        "s", "first_order", assemble(system), NotANumber(**vars(model)), model, sample(assemble(system), 0, 20)
+    )
+    assert row.status == "disagree" and "finite" in row.note

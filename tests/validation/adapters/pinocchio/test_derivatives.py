@@ -23,7 +23,7 @@ from validation.adapters.compiled import SymofrosEngine
 from validation.adapters.pinocchio import loops as pinocchio_loops
 from validation.adapters.pinocchio import tree as trees
 from validation.comparison.loops import assembled_states
-from validation.comparison.sides import with_forces
+from validation.comparison.variants import with_forces
 from validation.contract.interface import States, Subject, Unsupported
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import assemble

@@ -19,8 +19,10 @@ from validation.inputs.cases import Case
 
 Report = Callable[[ModelResult], None]
 
-# Loaded once into the process that the workers are forked from.
-_PRELOAD = ["validation.crew", *(route.module for route in ROUTES.values())]
+
+def _preloaded(settings: Settings) -> list[str]:
+    """Modules loaded once into the process that the workers are forked from: no engine that is not asked for."""
+    return ["validation.worker_pool", *(ROUTES[name].module for name in settings.routes())]
 
 
 def run_case(case: Case, settings: Settings) -> ModelResult:
@@ -39,7 +41,7 @@ def run_case(case: Case, settings: Settings) -> ModelResult:
 
 
 def without_folder(text: str, path: Path | None) -> str:
-    """A message about a file, fit for a report that others read: where the file lay is nobody's business."""
+    """A message about a file, fit for a report that others read: the folder is left out."""
     return text if path is None else text.replace(f"{path.parent}{os.sep}", "")
 
 
@@ -56,13 +58,13 @@ def run(cases: Sequence[Case], settings: Settings, workers: int, done: Report) -
         for case in cases:
             done(run_case(case, settings))
     else:
-        _Workers(settings, workers, done).run(sorted(cases, key=lambda case: -case.weight))
+        _WorkerPool(settings, workers, done).run(sorted(cases, key=lambda case: -case.weight))
 
 
-class _Workers:
+class _WorkerPool:
     def __init__(self, settings: Settings, count: int, done: Report) -> None:
         self.settings, self.count, self.done = settings, count, done
-        self.context = _context()
+        self.context = _context(settings)
         self.active: dict[Any, tuple[Any, Case]] = {}
 
     def run(self, cases: list[Case]) -> None:
@@ -97,15 +99,15 @@ class _Workers:
         self.done(result)
 
 
-def _context() -> BaseContext:
+def _context(settings: Settings) -> BaseContext:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(_PRELOAD)
+    context.set_forkserver_preload(_preloaded(settings))
     return context
 
 
 def _work(connection: Connection, case: Case, settings: Settings) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's business; it ends us.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent handles Ctrl-C and ends its workers.
     connection.send(run_case(case, settings))
     connection.close()

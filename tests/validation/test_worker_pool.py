@@ -7,8 +7,8 @@ import pytest
 from tests.validation.subjects import URDF
 from validation.check import ModelResult, Settings
 from validation.contract.interface import Subject
-from validation.crew import run, run_case
 from validation.inputs.cases import Case
+from validation.worker_pool import run, run_case
 
 FEW = Settings(states=10, engines=("pinocchio",))
 
@@ -41,7 +41,7 @@ def test_a_model_that_does_not_load_is_a_failed_row(tmp_path: Path) -> None:
 def test_a_fault_of_ours_is_a_failed_row_with_its_place() -> None:
     (row,) = run_case(Faulty("bad"), FEW).comparisons
     assert row.status == "failed" and row.quantity == "check"
-    assert row.note.startswith("ZeroDivisionError: a fault of ours (test_crew.py:")
+    assert row.note.startswith("ZeroDivisionError: a fault of ours (test_worker_pool.py:")
 
 
 @pytest.mark.parametrize("workers", [1, 2])

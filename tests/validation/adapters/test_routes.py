@@ -1,0 +1,45 @@
+"""The table of engines: what each row says holds, and a check loads the engines that it asks and no others."""
+
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from validation.adapters import ROUTES, differences
+
+PACKAGES = {route.package for route in ROUTES.values()} - {""}
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.mark.parametrize("name", ["pinocchio", "mujoco"])
+def test_a_check_with_one_engine_imports_no_other(name: str) -> None:
+    """Each takes seconds to load, and need not be installed."""
+    code = f"""
+import sys
+from validation.check import Settings
+from validation.inputs.cases import named
+from validation.worker_pool import run_case
+result = run_case(named(["double_pendulum"], False)[0], Settings(5, engines=({name!r},)))
+assert result.ok, result
+print(*sorted({{module.partition(".")[0] for module in sys.modules}}))
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert PACKAGES & set(run.stdout.split()) == {ROUTES[name].package}, run.stderr
+
+
+def test_the_table_and_the_differences_import_no_engine() -> None:
+    code = "import sys\nfrom validation.adapters import differences\ndifferences()\nprint(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert run.stdout and not PACKAGES & set(run.stdout.split())
+
+
+@pytest.mark.parametrize("name", ROUTES)
+def test_every_row_names_an_adapter_that_exists(name: str) -> None:
+    assert find_spec(ROUTES[name].module) is not None
+
+
+def test_differences_are_stated_by_the_engines_of_the_table() -> None:
+    assert {row.engine for row in differences()} <= set(ROUTES)
+    assert all(row.ours != row.theirs for row in differences())

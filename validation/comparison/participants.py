@@ -1,0 +1,126 @@
+"""The engines that take part in the check of one model, each with the model of ours that it is compared with."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from typing import cast
+
+import numpy as np
+
+from validation.adapters import ROUTES, Missing, Route, factory_of, rotors
+from validation.adapters.closed import ConstrainedEngine, condition, joined_frames
+from validation.adapters.compiled import SymofrosEngine
+from validation.comparison.errors import Comparison, compute
+from validation.comparison.variants import ModelVariants
+from validation.contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
+from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, Quantity
+from validation.mechanics.assembly import Assembly
+from validation.mechanics.geometry import Array
+
+Factories = Mapping[str, EngineFactory | Missing]
+
+
+@dataclass
+class Participant:
+    """One engine in the check of one model.
+
+    Attributes:
+        engine: The engine's model of the subject.
+        route: The way it was reached.
+        model: Our model that it is compared with.
+        states: States that it is asked at, with the forces of that model.
+        tolerance: The closest agreement that can be asked of it, relative.
+        seconds: Time that its answers took [s].
+    """
+
+    engine: Engine
+    route: Route
+    model: SymofrosEngine
+    states: States
+    tolerance: float = 0.0
+    seconds: float = field(default=0.0)
+
+    @property
+    def name(self) -> str:
+        """Name of the engine in tables."""
+        return self.engine.name
+
+    @cached_property
+    def condition(self) -> float:
+        """Factor by which solving for v' amplifies rounding at the engine's states."""
+        return worst_condition(self.model, self.states)
+
+    def value(self, quantity: Quantity, states: States) -> Array:
+        """The engine's results for a quantity (N, ...), timed."""
+        start = time.perf_counter()
+        motion = quantity.name == MOTION_ENERGY.name
+        result = sum_of_energies(self.engine, states) if motion else compute(self.engine, quantity, states)
+        self.seconds += time.perf_counter() - start
+        return result
+
+
+def participants(
+    assembly: Assembly, variants: ModelVariants, names: Sequence[str], factories: Factories
+) -> Iterator[Participant | Comparison]:
+    """Every engine that can represent a subject; a row of the table for each that can't.
+
+    Args:
+        assembly: The subject as numbers.
+        variants: Our models of it.
+        names: The engines asked for.
+        factories: Factories that take the place of the adapters' own, by engine.
+    """
+    subject = variants.subject
+    for name in names:
+        route = ROUTES[name]
+        if not route.applies_to(subject):
+            continue
+        engine = _built(route, factory_of(name, factories), subject, assembly)
+        if route.loops and not isinstance(engine, Unsupported) and not len(variants.assembled):
+            engine = Unsupported("no random state leads to a posture that keeps the constraints")
+        if isinstance(engine, Unsupported):
+            yield Comparison(subject.label, name, "all", "unsupported", note=engine.reason)
+            continue
+        states = variants.states_for(route)
+        affordable = states[: getattr(engine, "most_states", len(states))]
+        yield Participant(engine, route, variants.model_for(route), affordable, variants.tolerance_for(route))
+
+
+def _built(
+    route: Route, factory: EngineFactory | Missing, subject: Subject, assembly: Assembly
+) -> Engine | Unsupported:
+    """The engine; one that knows trees gets rotors from a second model of its own, and constraints in NumPy."""
+    if isinstance(factory, Missing):
+        return Unsupported(factory.reason)
+    if route.loops or not route.independent:
+        return factory(subject)
+    if rotors.has_rotors(subject.system):
+        factory = partial(rotors.build, factory)
+    engine = factory(subject)
+    if isinstance(engine, Unsupported) or not subject.system.constraints:
+        return engine
+    joined = joined_frames(assembly, subject.system)
+    anchored = factory(replace(subject, frames=joined))
+    # Every independent engine knows trees; the protocol of engines does not say so.
+    return ConstrainedEngine(cast(TreeEngine, engine), cast(TreeEngine, anchored), subject, joined)
+
+
+def sum_of_energies(engine: Engine, states: States) -> Array:
+    """T + V (N,) [J]."""
+    return compute(engine, QUANTITIES["kinetic_energy"], states) + compute(
+        engine, QUANTITIES["potential_energy"], states
+    )
+
+
+def worst_condition(model: SymofrosEngine, states: States) -> float:
+    """Factor by which solving for v' amplifies rounding: the largest condition number of M, and of multipliers."""
+    M = compute(model, QUANTITIES["mass_matrix"], states)
+    moments = np.linalg.eigvalsh(M)
+    smallest, largest = moments[:, 0], moments[:, -1]
+    worst = float(np.max(np.where(smallest > 0.0, largest / np.where(smallest > 0.0, smallest, 1.0), np.inf)))
+    if model.model.nc and np.isfinite(worst):
+        worst *= condition(M, model.constraint_jacobian(states))
+    return worst
