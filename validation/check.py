@@ -35,6 +35,7 @@ from validation.inputs.frames import chosen_frames
 from validation.inputs.sampling import DEFAULT_STATES, sample, special_states
 from validation.mechanics.assembly import Assembly, assemble
 from validation.mechanics.geometry import Array
+from validation.mechanics.parts import has_quaternion
 
 FORWARD = "forward_dynamics"
 # Quantities that come from solving a linear system, so that its condition limits their agreement.
@@ -198,7 +199,7 @@ def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:
     if driven and not has_beams(system):
         return f"joint '{driven[0].name}': a prescribed motion, which no engine for rigid bodies can represent"
     for joint in driven:
-        if joint.kind in ("ball", "free"):
+        if has_quaternion(joint):
             return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
     if driven and any(isinstance(item, sf.Nonholonomic) for item in system.constraints):
         return f"joint '{driven[0].name}': a prescribed motion beside a condition on speeds by formula"

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-
 import symofros as sf
 from validation.contract.interface import Unsupported
 from validation.contract.quantities import EVERYTHING
 from validation.mechanics.assembly import Assembly, Mover
+from validation.mechanics.joint_kinds import SIMPLE_JOINTS, EngineName
 
 
-def unrepresented(system: sf.System, assembly: Assembly, joints: Collection[str]) -> Unsupported | None:
+def unrepresented(system: sf.System, assembly: Assembly, engine: EngineName) -> Unsupported | None:
     """The first thing of a description that an engine can't be built for.
 
     Args:
         system: The description.
         assembly: The same as numbers.
-        joints: Kinds of simple joints that the engine has.
+        engine: Name of the engine in the table of joint kinds.
     """
     for mover in assembly.movers:
-        if mover.kind not in joints:
+        if engine not in SIMPLE_JOINTS[mover.kind].engines:
             return Unsupported(
                 f"joint '{mover.joint.name}': no {mover.kind} joint, and no series of simple ones for it"
             )

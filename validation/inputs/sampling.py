@@ -10,6 +10,7 @@ import numpy as np
 from validation.contract.interface import States
 from validation.mechanics.assembly import Assembly, Mover
 from validation.mechanics.geometry import Array
+from validation.mechanics.joint_kinds import SIMPLE_JOINTS
 
 DEFAULT_STATES = 1000
 
@@ -66,22 +67,23 @@ def neutral(assembly: Assembly) -> Array:
     """All coordinates zero, all quaternions no rotation (nq,)."""
     q = np.zeros(assembly.nq)
     for mover in assembly.movers:
-        if mover.kind in ("ball", "free"):
+        if mover.has_quaternion:
             q[mover.q.stop - 1] = 1.0
     return q
 
 
 def _coordinates(mover: Mover, rng: np.random.Generator, count: int) -> Array:
-    if mover.kind in ("revolute", "screw"):
+    sampling = SIMPLE_JOINTS[mover.kind].sampling
+    if sampling == "angle":
         return rng.uniform(-ANGLE, ANGLE, (count, 1))
-    if mover.kind in ("prismatic", "general"):
+    if sampling == "slide":
         return rng.uniform(-SLIDE, SLIDE, (count, mover.part.coordinates))
-    if mover.kind == "elastic":
+    if sampling == "deflection":
         n = mover.part.coordinates
         return rng.uniform(-DEFLECTION, DEFLECTION, (count, n)) / max(n, 1) * min(1.0, mover.length)
     quaternion = rng.standard_normal((count, 4))  # Normal in four directions: uniform on the sphere.
     quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
-    if mover.kind == "ball":
+    if sampling == "quaternion":
         return quaternion
     return np.concatenate([rng.uniform(-SLIDE, SLIDE, (count, 3)), quaternion], axis=1)
 
@@ -107,14 +109,14 @@ def _many_turns(assembly: Assembly, q: Array, v: Array) -> None:
 def _half_turns(assembly: Assembly, q: Array, v: Array) -> None:
     """Quaternions with w = 0, where careless conversions from matrices fail."""
     for mover in assembly.movers:
-        if mover.kind in ("ball", "free"):
+        if mover.has_quaternion:
             q[mover.q.stop - 4 : mover.q.stop] = (0.6, 0.0, 0.8, 0.0)
 
 
 def _negative_quaternions(assembly: Assembly, q: Array, v: Array) -> None:
     """-q is the same rotation as q."""
     for mover in assembly.movers:
-        if mover.kind in ("ball", "free"):
+        if mover.has_quaternion:
             q[mover.q.stop - 4 : mover.q.stop] *= -1.0
 
 

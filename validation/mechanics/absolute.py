@@ -12,9 +12,6 @@ import numpy as np
 from validation.mechanics.assembly import BASE, Assembly, Mover
 from validation.mechanics.geometry import Array, Placement, about_axis, quaternion_matrix
 
-# Joints whose accelerations are found from those of the bodies they join.
-JOINTS = frozenset({"revolute", "prismatic", "ball", "free"})
-
 
 @dataclass(frozen=True)
 class Moving:

@@ -15,7 +15,8 @@ import numpy as np
 
 import symofros as sf
 from validation.mechanics.geometry import Array, Placement, rotation_matrix, skew
-from validation.mechanics.parts import Part, PartKind, coordinate_symbols, series
+from validation.mechanics.joint_kinds import PartKind
+from validation.mechanics.parts import Part, coordinate_symbols, has_quaternion, series
 
 BASE = -1
 WORLD = "world"
@@ -78,6 +79,11 @@ class Mover:
     def kind(self) -> PartKind:
         """What it is to an engine."""
         return self.part.kind
+
+    @property
+    def has_quaternion(self) -> bool:
+        """Whether its coordinates end with a quaternion."""
+        return has_quaternion(self.joint)
 
     def merged(self) -> Mass:
         """Everything it carries as one rigid body (parallel axes)."""

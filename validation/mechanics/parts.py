@@ -6,27 +6,15 @@ A series of joints without mass in between is the joint itself: coordinates and 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import symofros as sf
+from validation.mechanics.joint_kinds import SIMPLE_JOINTS, STATED_JOINTS, PartKind
 
-PartKind = Literal["revolute", "prismatic", "screw", "ball", "free", "general", "elastic"]
 Axis = tuple[float | sf.Expression, float | sf.Expression, float | sf.Expression]
 
 _X: Axis = (1.0, 0.0, 0.0)
 _Y: Axis = (0.0, 1.0, 0.0)
 _Z: Axis = (0.0, 0.0, 1.0)
-
-# Kind -> names of its coordinates and speeds after the joint's name.
-_QUATERNION = ("qx", "qy", "qz", "qw")
-COORDINATES: dict[str, tuple[str, ...]] = {
-    "ball": _QUATERNION,
-    "free": ("px", "py", "pz", *_QUATERNION),
-    "cylindrical": ("angle", "length"),
-    "universal": ("angle1", "angle2"),
-    "planar": ("x", "y", "angle"),
-}
-_SPEEDS: dict[str, tuple[str, ...]] = {"ball": ("wx", "wy", "wz"), "free": ("vx", "vy", "vz", "wx", "wy", "wz")}
 
 
 @dataclass(frozen=True)
@@ -50,19 +38,25 @@ class Part:
 
 
 def coordinate_symbols(joint: sf.Joint) -> tuple[str, ...]:
-    """What formulas call a joint's coordinates."""
-    if joint.kind == "general":
+    """Names of a joint's coordinates in formulas."""
+    if joint.kind not in STATED_JOINTS:
         return joint.coordinates
-    if joint.kind in COORDINATES:
-        return tuple(f"{joint.name}.{suffix}" for suffix in COORDINATES[joint.kind])
-    return (joint.name,)
+    return _named(joint, STATED_JOINTS[joint.kind].coordinates)
 
 
 def speed_symbols(joint: sf.Joint) -> tuple[str, ...]:
-    """What formulas call its speeds."""
-    if joint.kind in _SPEEDS:
-        return tuple(f"{joint.name}.{suffix}" for suffix in _SPEEDS[joint.kind])
-    return tuple(f"d{name}" for name in coordinate_symbols(joint))
+    """Names of a joint's speeds in formulas."""
+    speeds = STATED_JOINTS[joint.kind].speeds if joint.kind in STATED_JOINTS else None
+    return tuple(f"d{name}" for name in coordinate_symbols(joint)) if speeds is None else _named(joint, speeds)
+
+
+def _named(joint: sf.Joint, suffixes: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(f"{joint.name}.{suffix}" if suffix else joint.name for suffix in suffixes)
+
+
+def has_quaternion(joint: sf.Joint) -> bool:
+    """Whether a joint's coordinates end with a quaternion, so that its speeds are no rates of them."""
+    return joint.kind in STATED_JOINTS and STATED_JOINTS[joint.kind].speeds is not None
 
 
 def rate_symbols(joint: sf.Joint) -> tuple[str, ...]:
@@ -72,19 +66,14 @@ def rate_symbols(joint: sf.Joint) -> tuple[str, ...]:
 
 def series(joint: sf.Joint) -> list[Part]:
     """The simple joints that a joint is made of, from the parent outwards."""
-    axis = joint.axis
-    stated: dict[str, list[Part]] = {
-        "revolute": [Part("revolute", axis)],
-        "continuous": [Part("revolute", axis)],
-        "prismatic": [Part("prismatic", axis)],
-        "screw": [Part("screw", axis)],
-        "cylindrical": [Part("revolute", axis), Part("prismatic", axis, 1)],
-        "universal": [Part("revolute", axis), Part("revolute", joint.axis2, 1)],
-        "planar": [Part("prismatic", _X), Part("prismatic", _Y, 1), Part("revolute", _Z, 2)],
-        "ball": [Part("ball", axis, 0, 4, 3)],
-        "free": [Part("free", axis, 0, 7, 6)],
-    }
-    return stated[joint.kind] if joint.kind in stated else _general(joint)
+    if joint.kind not in STATED_JOINTS:
+        return _general(joint)
+    axes = {"axis": joint.axis, "axis2": joint.axis2, "x": _X, "y": _Y, "z": _Z}
+    parts: list[Part] = []
+    for first, (kind, axis) in enumerate(STATED_JOINTS[joint.kind].series):
+        simple = SIMPLE_JOINTS[kind]
+        parts.append(Part(kind, axes[axis], first, simple.coordinates, simple.speeds))
+    return parts
 
 
 def _general(joint: sf.Joint) -> list[Part]:

@@ -12,9 +12,9 @@ import sympy
 from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBody, inertia, outer
 
 import symofros as sf
-from validation.mechanics.parts import coordinate_symbols, series, speed_symbols
+from validation.mechanics.parts import coordinate_symbols, has_quaternion, series, speed_symbols
 from validation.oracle.elements import stated_forces, stored_energy
-from validation.oracle.scope import QUASI, TIME, Derived, Scope, turns
+from validation.oracle.scope import TIME, Derived, Scope, turns
 
 Placed = tuple[Any, Any]
 
@@ -74,7 +74,7 @@ def _rates(scope: Scope, u: dict[str, Any]) -> dict[Any, Any]:
             continue
         q = [scope.function[name] for name in coordinate_symbols(joint)]
         v = [u[name] for name in speed_symbols(joint)]
-        if joint.kind not in QUASI:
+        if not has_quaternion(joint):
             rates |= dict(zip(q, v, strict=True))
             continue
         e, s, w = sympy.Matrix(q[-4:-1]), q[-1], sympy.Matrix(v[-3:])
@@ -145,7 +145,7 @@ class _Model:
         P, Po = proximal
         if joint.kind == "fixed":
             return proximal
-        if joint.kind in QUASI:
+        if has_quaternion(joint):
             return self._by_quaternion(proximal, joint)
         if joint.kind == "general":
             position = self.vector(joint.moving_position, P)

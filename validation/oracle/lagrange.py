@@ -8,9 +8,9 @@ import sympy
 from sympy.physics.mechanics import LagrangesMethod
 
 import symofros as sf
-from validation.mechanics.parts import coordinate_symbols, series, speed_symbols
+from validation.mechanics.parts import coordinate_symbols, has_quaternion, series, speed_symbols
 from validation.oracle.elements import stated_forces, stored_energy
-from validation.oracle.scope import QUASI, TIME, Derived, NotDerivable, Scope, turn
+from validation.oracle.scope import TIME, Derived, NotDerivable, Scope, turn
 
 Pose = tuple[Any, Any]
 _STILL = sympy.zeros(3, 1)
@@ -26,7 +26,7 @@ def derive(system: sf.System) -> Derived:
         NotDerivable: It has quaternions.
     """
     for body in system.bodies:
-        if body.joint is not None and body.joint.kind in QUASI:
+        if body.joint is not None and has_quaternion(body.joint):
             raise NotDerivable(f"joint '{body.joint.name}': quaternions are no generalized coordinates")
     scope = Scope(system)
     bodies = _Bodies(scope)

@@ -10,10 +10,9 @@ import sympy
 from sympy.physics.mechanics import dynamicsymbols
 
 import symofros as sf
-from validation.mechanics.parts import coordinate_symbols, speed_symbols
+from validation.mechanics.parts import coordinate_symbols, has_quaternion, speed_symbols
 
 TIME = dynamicsymbols._t
-QUASI = ("ball", "free")
 # Functions that SymPy spells otherwise.
 _NAMES = {"abs": "Abs", "min": "Min", "max": "Max"}
 
@@ -70,7 +69,7 @@ class Scope:
         joints = [body.joint for body in self.bodies if body.joint is not None and body.joint.kind != "fixed"]
         self.joints = tuple(joints)
         for joint in joints:
-            if joint.prescribed and joint.kind in QUASI:
+            if joint.prescribed and has_quaternion(joint):
                 raise NotDerivable(f"joint '{joint.name}': a prescribed motion with quaternions")
         free = [joint for joint in joints if not joint.prescribed]
         driven = [joint for joint in joints if joint.prescribed]
@@ -112,7 +111,7 @@ class Scope:
             for order in (2, 1, 0):
                 self._plain[q.diff(TIME, order) if order else q] = sympy.Dummy(f"{'d' * order}{name}")
         for k, speed in enumerate(speeds):
-            if joint.kind in QUASI:
+            if has_quaternion(joint):
                 self.rate[speed] = sympy.Function(f"v{len(self.rate)}")(TIME)
                 self._plain[self.rate[speed]] = sympy.Dummy(speed)
             else:
@@ -187,7 +186,7 @@ class Scope:
         quaternions, at = [], 0
         for joint in self.joints:
             at += 0 if joint.prescribed else len(coordinate_symbols(joint))
-            quaternions += [at - 4] if joint.kind in QUASI else []
+            quaternions += [at - 4] if has_quaternion(joint) else []
         meanings: dict[Any, Any] = {}
         for meaning, symbol in self._shorts.items():
             meanings[symbol] = meaning.xreplace(meanings)

@@ -6,5 +6,6 @@ from symofros.studio.editor.joint_table import PAGE_FILE, joint_table
 
 
 def test_the_page_has_the_table_of_joint_kinds() -> None:
+    remedy = "run python -m symofros.studio.editor.joint_table"
     if PAGE_FILE.parent.exists():  # The page's source isn't installed.
-        assert PAGE_FILE.read_text(encoding="utf-8") == joint_table(), "run python -m symofros.studio.editor.joint_table"
+        assert PAGE_FILE.read_text(encoding="utf-8") == joint_table(), remedy

@@ -47,8 +47,6 @@ from validation.adapters.reach import unrepresented
 from validation.contract.interface import Unsupported
 from validation.mechanics.assembly import BASE, assemble
 
-_JOINTS = frozenset({"revolute", "prismatic", "free"})
-
 
 class CasadiTree:
     """Symbolic dynamics of a description.
@@ -65,7 +63,7 @@ class CasadiTree:
 
     def __init__(self, system: sf.System) -> None:
         assembly = assemble(system)
-        obstacle = unrepresented(system, assembly, _JOINTS)
+        obstacle = unrepresented(system, assembly, "casadi")
         if isinstance(obstacle, Unsupported):
             raise ValueError(obstacle.reason)
         self.assembly = assembly

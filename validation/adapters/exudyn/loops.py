@@ -25,7 +25,7 @@ from validation.adapters.exudyn.system import VERSION, ExudynSystem, assembled
 from validation.adapters.reach import armature, unrepresented
 from validation.contract.conventions import xyzw_to_wxyz
 from validation.contract.interface import States, Subject, Unsupported
-from validation.mechanics.absolute import JOINTS, Moving, bodies, joint_accelerations, work_rows
+from validation.mechanics.absolute import Moving, bodies, joint_accelerations, work_rows
 from validation.mechanics.assembly import BASE, Assembly, FrameSite, Mover, assemble
 from validation.mechanics.geometry import Array, Placement, matrix_quaternion
 
@@ -149,7 +149,7 @@ def _carried(at: _Solved, site: FrameSite) -> Array:
 def build(subject: Subject) -> JointedEngine | Unsupported:
     """Exudyn's system of a description with closures and rods."""
     assembly = assemble(subject.system)
-    obstacle = unrepresented(subject.system, assembly, JOINTS) or _obstacle(subject.system, assembly)
+    obstacle = unrepresented(subject.system, assembly, "exudyn") or _obstacle(subject.system, assembly)
     if obstacle is not None:
         return obstacle
     container = exudyn.SystemContainer()

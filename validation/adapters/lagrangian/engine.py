@@ -114,7 +114,7 @@ class LagrangianEngine:
         """The rate of T in v = T e' (N, nv, nv), where speeds are no rates (`motion`)."""
         turning = np.zeros((*states.v.shape, states.v.shape[1]))
         for mover in self.stated.assembly.movers:
-            if mover.kind in ("ball", "free") and not mover.joint.prescribed:
+            if mover.has_quaternion and not mover.joint.prescribed:
                 end = mover.v.stop
                 w = slice(end - 3, end)
                 turning[:, w, w] = -0.5 * skew(states.v[:, w])
@@ -189,7 +189,7 @@ def build(subject: Subject) -> TreeEngine | Unsupported:
 
 def _obstacle(assembly: Assembly) -> Unsupported | None:
     for mover in assembly.movers:
-        if mover.joint.prescribed and mover.kind in ("ball", "free"):
+        if mover.joint.prescribed and mover.has_quaternion:
             return Unsupported(f"joint '{mover.joint.name}': a prescribed motion with a quaternion")
         if mover.continues and any(rotor.axis is None for rotor in mover.joint.rotors):
             return Unsupported(f"joint '{mover.joint.name}': a rotor about the joint's own axis, of several")

@@ -22,7 +22,6 @@ from validation.mechanics.geometry import Array, Placement, matrix_quaternion
 NAME = "mujoco"
 VERSION: str = mujoco.__version__
 
-_JOINTS = frozenset({"revolute", "prismatic", "ball", "free"})
 _SITE = mujoco.mjtObj.mjOBJ_SITE
 _HINGE, _SLIDE = mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE
 _BALL, _FREE = mujoco.mjtJoint.mjJNT_BALL, mujoco.mjtJoint.mjJNT_FREE
@@ -191,7 +190,7 @@ class MujocoEngine:
 def build(subject: Subject) -> TreeEngine | Unsupported:
     """MuJoCo's model of a description, body by body, with everything fixed to a body merged into it."""
     assembly = assemble(subject.system)
-    obstacle = unrepresented(subject.system, assembly, _JOINTS)
+    obstacle = unrepresented(subject.system, assembly, "mujoco")
     if obstacle is not None:
         return obstacle
     for mover in assembly.movers:

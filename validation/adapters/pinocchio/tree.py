@@ -18,7 +18,6 @@ from validation.mechanics.geometry import Array, Placement
 
 NAME = "pinocchio"
 VERSION: str = pin.__version__
-_JOINTS = frozenset({"revolute", "prismatic", "screw", "ball", "free"})
 _WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
 
@@ -135,7 +134,7 @@ class PinocchioEngine:
 def build(subject: Subject) -> PinocchioEngine | Unsupported:
     """Pinocchio's model of a description; it merges what is fixed to a joint's body by itself."""
     assembly = assemble(subject.system)
-    obstacle = unrepresented(subject.system, assembly, _JOINTS)
+    obstacle = unrepresented(subject.system, assembly, "pinocchio")
     if obstacle is not None:
         return obstacle
     model = pin.Model()
