@@ -78,6 +78,7 @@ if TYPE_CHECKING:
     from symofros.simulation.inverse_kinematics import inverse_kinematics as inverse_kinematics
     from symofros.simulation.inverse_kinematics import joint_motion as joint_motion
     from symofros.simulation.modes import modes as modes
+    from symofros.simulation.options import SimulationOptions as SimulationOptions
     from symofros.simulation.outcome import Outcome as Outcome
     from symofros.simulation.simulate import simulate as simulate
     from symofros.simulation.simulate_batch import simulate_batch as simulate_batch
@@ -128,6 +129,7 @@ _LAZY = {
     "modes": ("symofros.simulation.modes", "modes"),
     "Event": ("symofros.simulation.events", "Event"),
     "Signal": ("symofros.simulation.inputs", "Signal"),
+    "SimulationOptions": ("symofros.simulation.options", "SimulationOptions"),
     "Outcome": ("symofros.simulation.outcome", "Outcome"),
     "simulate": ("symofros.simulation.simulate", "simulate"),
     "simulate_batch": ("symofros.simulation.simulate_batch", "simulate_batch"),

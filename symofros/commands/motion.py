@@ -114,7 +114,7 @@ def simulate(
                     sf.Problem(
                         "--plot window: the file is a model",
                         str(model),
-                        "a window shows the plots that a diagram states",
+                        "windows are of diagrams only, whose plots they show",
                         "write a picture: --plot run.png",
                     )
                 )

@@ -34,16 +34,12 @@ class Placed:
     v: Array
 
 
-def place_parts(
-    compiled: CompiledDiagram, settings_of: Callable[[Model], Settings], t0: float, t_end: float, par: Array
-) -> list[Placed]:
+def place_parts(compiled: CompiledDiagram, settings_of: Callable[[Model], Settings], par: Array) -> list[Placed]:
     """A stepper for each part.
 
     Args:
         compiled: The diagram.
         settings_of: How a part steps.
-        t0: Where it begins [s].
-        t_end: Where it ends [s].
         par: Run-time parameters.
 
     Raises:
@@ -60,7 +56,7 @@ def place_parts(
     found = []
     for part, model in zip(layout.parts, compiled.parts, strict=True):
         settings = settings_of(model)
-        if settings.method.kind not in ("explicit", "semi_implicit"):
+        if not settings.method.family.batched:
             raise SymofrosError(
                 Problem(
                     f"diagram '{name}': method '{settings.method.name}'",
@@ -70,11 +66,11 @@ def place_parts(
                 )
             )
         stepper = Stepper(model, settings.method, InputPlan(u0.copy(), list(layout.signals)), events, par)
-        settings.apply(stepper, t0, t_end, 0.0)
+        settings.apply(stepper)
         stepper.run.every = 0  # Instants are recorded by the diagram's own loop.
         found.append(Placed(stepper, *_first(layout.q0, layout.v0, part)))
         if model.nc and settings.stabilisation != "baumgarte":
-            found[-1] = Placed(stepper, *_close(model, name, t0, found[-1], u0, par))
+            found[-1] = Placed(stepper, *_close(model, name, settings.t0, found[-1], u0, par))
     return found
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Mapping
 from contextlib import closing
@@ -23,9 +22,10 @@ from symofros.runtime.kernel import Array
 from symofros.runtime.library import CompiledKernel
 from symofros.runtime.model import Model
 from symofros.simulation import stepper as native
+from symofros.simulation.options import SimulationOptions, Stabilisation
 from symofros.simulation.outcome import Outcome
 from symofros.simulation.progress import bar
-from symofros.simulation.settings import Settings, Stabilisation
+from symofros.simulation.settings import Settings
 
 # Seconds that C may run before Python looks up, for progress and Ctrl-C.
 _SPELL = 0.05
@@ -76,9 +76,10 @@ def run_compiled(
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
 
     def settings_of(model: Model) -> Settings:
-        return Settings.of(model, method, dt, t0, t_end, rtol, atol, None, math.inf, None, 1, stabilisation, gains)
+        options = SimulationOptions(method, dt, t0, rtol, atol, stabilisation=stabilisation, gains=gains)
+        return Settings.of(model, options, t_end)
 
-    parts = place_parts(compiled, settings_of, t0, t_end, par)
+    parts = place_parts(compiled, settings_of, par)
     with begun(resolved.wired) as called:
         opaque = Opaque(resolved, called)
         loop = Loop(

@@ -32,7 +32,7 @@ from symofros.options import FRAME_FUNCTIONS, Options
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.assembly import assemble
-from symofros.simulation.methods import METHODS, NEEDS
+from symofros.simulation.methods import METHODS
 
 Target = Literal["c", "mex", "sfunction", "fmu2", "fmu3", "urdf", "mjcf"]
 TARGETS: tuple[Target, ...] = get_args(Target)
@@ -152,7 +152,7 @@ def _export_diagram(
 
 
 def _stepping(method: str, dt: float, rtol: float, atol: float) -> Stepping:
-    known = [item.name for item in METHODS.values() if item.kind != "cvode"]
+    known = [item.name for item in METHODS.values() if not item.family.multistep]
     if method not in known:
         raise UnknownNameError(
             Problem(f"export: no method '{method}'", method, ", ".join(known), did_you_mean(method, known))
@@ -175,7 +175,7 @@ def _material(
     """What an export is made of; `differentiated`: with the derivatives of outputs by prescribed motions, if any."""
     tree = plan(system)
     _refuse_variational(system, stepping)
-    needs = tuple(NEEDS.get(stepping.method.kind, {}).values())
+    needs = tuple(stepping.method.family.functions.values())
     own = _FUNCTIONS + (_CONSTRAINED if system.constraints else ())
     functions = tuple(dict.fromkeys((*own, *needs, *_KINEMATICS)))
     options = Options(functions, None if frames is None else tuple(frames))
@@ -208,7 +208,7 @@ def _material(
 
 
 def _refuse_variational(system: System, stepping: Stepping) -> None:
-    if stepping.method.kind == "variational" and system.constraints:
+    if stepping.method.family.trees_only and system.constraints:
         raise ExportError(
             Problem(
                 "export: 'variational' steps trees only",

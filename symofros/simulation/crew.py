@@ -94,20 +94,18 @@ class Crew:
         settings: Settings,
         starts: Starts,
         ends: Ends,
-        t_end: float,
-        max_steps: int | None,
         first: int,
         by: int,
     ) -> None:
         self.single = Stepper(model, settings.method, starts.inputs.plan, (), starts.par[0])
-        settings.apply(self.single, starts.t, t_end, 0.0)
+        settings.apply(self.single)
         self._native, self._ffi = self.single.native, self.single.ffi
         self._crew = self._ffi.new("sym_crew *")
         self._slots = min(_SLOTS, max(2, -(-starts.n // by)))
         self._lay_out(model, settings, starts)
         self._place(starts, ends)
         crew = self._crew
-        crew.next, crew.by, crew.n, crew.max_steps = first, by, starts.n, max_steps or 0
+        crew.next, crew.by, crew.n, crew.max_steps = first, by, starts.n, settings.max_steps or 0
         self._native.sym_crew_start(crew)
 
     def _lay_out(self, model: Model, settings: Settings, starts: Starts) -> None:

@@ -49,14 +49,14 @@ class Recorded:
         return [np.concatenate(parts) for parts in zip(*self.states, strict=True)]
 
 
-def run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, max_steps: int | None, show: Show) -> Recorded:
+def run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
     """The loop in C, spell by spell."""
     recorded = Recorded(stepper.start(q, v, max(_PORTION, len(settings.grid))))
     recorded.take(stepper)
     spell = 64
     try:
         while recorded.status in (native.GOING, native.FULL):
-            left = spell if max_steps is None else min(spell, max_steps - int(stepper.run.steps))
+            left = spell if settings.max_steps is None else min(spell, settings.max_steps - int(stepper.run.steps))
             if left <= 0:
                 break
             before = time.perf_counter()
@@ -74,7 +74,7 @@ def run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, max_steps:
     return recorded
 
 
-def run_cvode(stepper: Stepper, q: Array, v: Array, settings: Settings, max_steps: int | None, show: Show) -> Recorded:
+def run_cvode(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
     """CVODE, from one record to the next."""
     run, recorded = stepper.run, Recorded()
     cvode = Cvode(stepper, stiff=settings.method.name == "cvode")
@@ -84,7 +84,7 @@ def run_cvode(stepper: Stepper, q: Array, v: Array, settings: Settings, max_step
         if recorded.status == native.GOING and (grid is None or (grid and grid[0] <= run.t)):
             recorded.states.append(_now(stepper))
         grid = grid[1:] if grid and grid[0] <= run.t else grid
-        while recorded.status == native.GOING and (max_steps is None or cvode.count() < max_steps):
+        while recorded.status == native.GOING and (settings.max_steps is None or cvode.count() < settings.max_steps):
             wanted = grid[0] if grid else (None if grid is None else float(run.t_end))
             recorded.status, met = cvode.advance(wanted)
             run.steps = cvode.count()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 from symofros.simulation.tableaus import (
@@ -15,7 +16,39 @@ from symofros.simulation.tableaus import (
     Tableau,
 )
 
-Kind = Literal["explicit", "semi_implicit", "rosenbrock", "alpha", "variational", "cvode"]
+Kind = Literal["explicit", "semi_implicit", "rosenbrock", "alpha", "variational", "cvode", "ida"]
+
+
+@dataclass(frozen=True)
+class Family:
+    """What methods of one kind have in common.
+
+    Attributes:
+        functions: Model functions called besides forward_dynamics: slot of the C system -> name of the function.
+        implicit: Whether each step solves equations with derivatives of the model and of its inputs.
+        batched: Whether many trajectories can be stepped at once in the lanes of vectors.
+        multistep: Whether past steps are kept, so that a state must not be changed between steps.
+        keeps_constraints: Whether the constraints are among the equations it solves, so that nothing else keeps them.
+        trees_only: Whether constraints and prescribed joints are out of its reach.
+    """
+
+    functions: Mapping[str, str] = field(default_factory=dict)
+    implicit: bool = False
+    batched: bool = False
+    multistep: bool = False
+    keeps_constraints: bool = False
+    trees_only: bool = False
+
+
+FAMILIES: dict[Kind, Family] = {
+    "explicit": Family(batched=True),
+    "semi_implicit": Family(batched=True),
+    "rosenbrock": Family({"terms": "implicit_terms"}, implicit=True),
+    "alpha": Family({"terms": "implicit_terms", "residual": "residual"}, implicit=True),
+    "variational": Family({"terms": "implicit_terms", "momentum": "momentum"}, implicit=True, trees_only=True),
+    "cvode": Family(multistep=True),
+    "ida": Family(multistep=True, keeps_constraints=True),
+}
 
 
 @dataclass(frozen=True)
@@ -23,12 +56,12 @@ class Method:
     """A stepping method.
 
     Attributes:
-        name: As users call it.
-        kind: Which loop of native/ makes its steps.
-        order: Of convergence; the highest where it varies.
+        name: Name by which users call it.
+        kind: Kind of loop that makes its steps.
+        order: Order of convergence; the highest where it varies.
         adaptive: Whether it chooses its steps by an error estimate.
-        tableau: Its coefficients; those of Euler's method where a loop needs none.
-        says: One line for people.
+        tableau: Coefficients; those of Euler's method where a loop needs none.
+        summary: One line for people.
     """
 
     name: str
@@ -36,7 +69,12 @@ class Method:
     order: int
     adaptive: bool
     tableau: Tableau
-    says: str
+    summary: str
+
+    @property
+    def family(self) -> Family:
+        """What it has in common with methods of its kind."""
+        return FAMILIES[self.kind]
 
 
 METHODS: dict[str, Method] = {
@@ -53,6 +91,7 @@ METHODS: dict[str, Method] = {
         Method("variational", "variational", 2, False, EXPLICIT_EULER, "symplectic midpoint rule; long runs"),
         Method("cvode", "cvode", 5, True, EXPLICIT_EULER, "SUNDIALS, BDF of order 1 to 5; stiff"),
         Method("cvode_adams", "cvode", 12, True, EXPLICIT_EULER, "SUNDIALS, Adams of order 1 to 12; smooth"),
+        Method("ida", "ida", 5, True, EXPLICIT_EULER, "SUNDIALS, BDF of order 1 to 5; constraints in its equations"),
     )
 }
 
@@ -64,10 +103,5 @@ KIND_CODES: dict[Kind, int] = {
     "alpha": 3,
     "variational": 4,
     "cvode": 0,
-}
-# Functions that each kind of method calls besides forward_dynamics: the slot of sym_scene, and the function's name.
-NEEDS: dict[str, dict[str, str]] = {
-    "rosenbrock": {"terms": "implicit_terms"},
-    "alpha": {"terms": "implicit_terms", "residual": "residual"},
-    "variational": {"terms": "implicit_terms", "momentum": "momentum"},
+    "ida": 0,
 }

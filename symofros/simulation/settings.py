@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -13,11 +12,9 @@ from symofros.runtime.kernel import Array
 from symofros.runtime.model import Given, Model
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.methods import METHODS, Method
+from symofros.simulation.options import STABILISATIONS, SimulationOptions
 from symofros.simulation.stepper import Stepper
 
-Stabilisation = Literal["projection", "baumgarte", "none"]
-
-_STABILISATIONS = ("projection", "baumgarte", "none")
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5
 
@@ -48,158 +45,142 @@ def _wrong(what: str, found: object, rule: str, remedy: str) -> SymofrosError:
 
 @dataclass(frozen=True)
 class Settings:
-    """What a run is to do besides its model, state and inputs.
+    """The options of a run, checked and with their defaults filled in for a model.
 
     Attributes:
-        method: The stepping method.
+        method: Stepping method.
         adaptive: Whether it chooses its steps.
         stabilisation: How constraints are kept.
+        t0: Start time [s].
+        t_end: End time [s].
         dt: Step [s]; 0: an adaptive method finds its first.
-        rtol: Of adaptive methods, as `atol`.
-        max_step: Longest step [s]; 0: none.
-        every: Record each so many steps; 0: at `grid` only.
+        rtol: Relative bound of the local error.
+        atol: Absolute bound of the local error.
+        max_step: Longest step [s]; 0: no bound.
+        max_steps: Number of steps after which the run ends; None: no bound.
+        every: Number of steps between records; 0: records at `grid` only.
         grid: Times to record at (n) [s].
-        project: Whether constraints are met again after each step.
-        gains: Baumgarte's (2 nc).
+        project: Whether the state is projected onto the constraints after each step.
+        gains: Baumgarte's gains (2 nc).
+        realtime: Seconds of motion a second; 0: as fast as possible.
     """
 
     method: Method
     adaptive: bool
     stabilisation: str
+    t0: float
+    t_end: float
     dt: float
     rtol: float
     atol: float
     max_step: float
+    max_steps: int | None
     every: int
     grid: Array
     project: bool
     gains: Array
+    realtime: float
 
     @classmethod
-    def of(
-        cls,
-        model: Model,
-        method: str,
-        dt: float | None,
-        t0: float,
-        t_end: float,
-        rtol: float,
-        atol: float,
-        adaptive: bool | None,
-        max_step: float,
-        output: float | Given | None,
-        every: int,
-        stabilisation: str,
-        gains: Given | None,
-    ) -> Settings:
-        """Settings from what `simulate` was given.
+    def of(cls, model: Model, options: SimulationOptions, t_end: float) -> Settings:
+        """Settings of a run of a model.
 
         Raises:
             UnknownNameError: No such method.
-            SymofrosError: A number is out of its range, or settings contradict each other.
+            SymofrosError: A number is out of its range, or options contradict each other.
         """
-        if method not in METHODS:
-            raise UnknownNameError(
-                Problem(
-                    f"simulation: no method '{method}'",
-                    ", ".join(METHODS),
-                    "a method has one of these names",
-                    did_you_mean(method, METHODS),
-                )
-            )
-        chosen = METHODS[method]
-        if not (math.isfinite(t0) and math.isfinite(t_end) and t_end >= t0):
-            raise _wrong("no span of time", f"t0 = {t0}, t_end = {t_end}", "t_end is not before t0", "set t_end")
-        if dt is not None and not (math.isfinite(dt) and dt > 0):
-            raise _wrong("the step is not positive", dt, "dt > 0", "1e-3 s suits most arms")
-        for name, value in (("rtol", rtol), ("atol", atol), ("max_step", max_step)):
-            if not value > 0:
-                raise _wrong(f"{name} is not positive", value, f"{name} > 0", "leave it out")
-        if every < 1:
-            raise _wrong("nothing would be recorded", f"every = {every}", "every >= 1", "use output= for times")
-        if stabilisation not in _STABILISATIONS:
-            raise _wrong(
-                f"unknown stabilisation '{stabilisation}'",
-                stabilisation,
-                ", ".join(_STABILISATIONS),
-                did_you_mean(stabilisation, _STABILISATIONS),
-            )
-        if gains is not None and stabilisation != "baumgarte":
-            raise _wrong(
-                "gains without Baumgarte",
-                f"stabilisation '{stabilisation}'",
-                "gains act in Baumgarte's stabilisation only",
-                "stabilisation='baumgarte'",
-            )
-        if adaptive and not chosen.adaptive:
-            raise _wrong(
-                f"'{method}' does not adapt its steps",
-                "adaptive=True",
-                "it estimates no error",
-                "use dopri5, dop853 or rodas4",
-            )
+        _check(options, t_end)
+        method = METHODS[options.method]
         # Where all motion is given there is no error to adapt to.
-        adapts = model.nv > 0 and (chosen.adaptive if adaptive is None else adaptive)
-        step = dt if dt is not None else 0.0 if adapts else 1e-3
-        longest = max_step if math.isfinite(max_step) else 0.0
+        adapts = model.nv > 0 and (method.adaptive if options.adaptive is None else options.adaptive)
+        step = options.dt if options.dt is not None else 0.0 if adapts else 1e-3
         return cls(
-            chosen,
-            adapts,
-            stabilisation,
-            step,
-            rtol,
-            atol,
-            longest,
-            every if output is None else 0,
-            _grid(output, t0, t_end),
-            model.nc > 0 and stabilisation == "projection",
-            _gains(model, stabilisation, gains, step),
+            method=method,
+            adaptive=adapts,
+            stabilisation=options.stabilisation,
+            t0=options.t0,
+            t_end=t_end,
+            dt=step,
+            rtol=options.rtol,
+            atol=options.atol,
+            max_step=options.max_step if math.isfinite(options.max_step) else 0.0,
+            max_steps=options.max_steps,
+            every=options.every if options.output is None else 0,
+            grid=_grid(options.output, options.t0, t_end),
+            project=model.nc > 0 and options.stabilisation == "projection" and not method.family.keeps_constraints,
+            gains=_gains(model, options.stabilisation, options.gains, step),
+            realtime=float(options.realtime),
         )
 
-    def apply(self, stepper: Stepper, t0: float, t_end: float, realtime: float) -> None:
+    def apply(self, stepper: Stepper) -> None:
         """Write the settings into a run."""
         run = stepper.run
-        run.t0 = run.t = t0
+        run.t0 = run.t = self.t0
         run.adaptive = int(self.adaptive)
-        run.t_end, run.h, run.rtol, run.atol = t_end, self.dt, self.rtol, self.atol
+        run.t_end, run.h, run.rtol, run.atol = self.t_end, self.dt, self.rtol, self.atol
         run.h_max, run.every, run.project = self.max_step, self.every, int(self.project)
         run.grid, run.n_grid = stepper.numbers(self.grid), len(self.grid)
-        run.pace = 1.0 / realtime if realtime else 0.0
+        run.pace = 1.0 / self.realtime if self.realtime else 0.0
         stepper.set_gains(self.gains)
+
+
+def _check(options: SimulationOptions, t_end: float) -> None:
+    """Refuse options that mean nothing, or contradict each other, whatever the model."""
+    o = options
+    if o.method not in METHODS:
+        rule, remedy = "a method has one of these names", did_you_mean(o.method, METHODS)
+        raise UnknownNameError(Problem(f"simulation: no method '{o.method}'", ", ".join(METHODS), rule, remedy))
+    if not (math.isfinite(o.t0) and math.isfinite(t_end) and t_end >= o.t0):
+        raise _wrong("no span of time", f"t0 = {o.t0}, t_end = {t_end}", "t_end is not before t0", "set t_end")
+    if o.dt is not None and not (math.isfinite(o.dt) and o.dt > 0):
+        raise _wrong("the step is not positive", o.dt, "dt > 0", "1e-3 s suits most arms")
+    for name, value in (("rtol", o.rtol), ("atol", o.atol), ("max_step", o.max_step)):
+        if not value > 0:
+            raise _wrong(f"{name} is not positive", value, f"{name} > 0", "leave it out")
+    if o.every < 1:
+        raise _wrong("nothing would be recorded", f"every = {o.every}", "every >= 1", "use output= for times")
+    if o.stabilisation not in STABILISATIONS:
+        what, rule = f"unknown stabilisation '{o.stabilisation}'", ", ".join(STABILISATIONS)
+        raise _wrong(what, o.stabilisation, rule, did_you_mean(o.stabilisation, STABILISATIONS))
+    if o.gains is not None and o.stabilisation != "baumgarte":
+        rule = "gains act in Baumgarte's stabilisation only"
+        raise _wrong("gains without Baumgarte", f"stabilisation '{o.stabilisation}'", rule, "stabilisation='baumgarte'")
+    if o.adaptive and not METHODS[o.method].adaptive:
+        what, remedy = f"'{o.method}' does not adapt its steps", "use dopri5, dop853 or rodas4"
+        raise _wrong(what, "adaptive=True", "it estimates no error", remedy)
 
 
 def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
     """Refuse what a method can't do for a model.
 
     Raises:
-        SymofrosError: With what can.
+        SymofrosError: The model, its inputs or how constraints are kept do not suit the method.
     """
-    name = settings.method.name
-    implicit = settings.method.kind in ("rosenbrock", "alpha", "variational")
-    if implicit and inputs.callback is not None:
+    name, family, baumgarte = settings.method.name, settings.method.family, settings.stabilisation == "baumgarte"
+    if family.implicit and inputs.callback is not None:
         raise _wrong(
             f"'{name}' needs the derivatives of the inputs",
             "a Python function",
             "implicit methods differentiate what they step",
             "give formulas or Signals",
         )
-    if implicit and settings.stabilisation == "baumgarte" and model.nc:
+    if (family.implicit or family.keeps_constraints) and baumgarte and model.nc:
         raise _wrong(
             f"'{name}' with Baumgarte's stabilisation",
             "gains",
             "implicit methods keep constraints by projection or by their equations",
             "stabilisation='projection'",
         )
-    if settings.method.kind == "cvode" and (settings.project or not settings.adaptive):
+    if family.multistep and (settings.project or not settings.adaptive):
         raise _wrong(
             f"'{name}' with projection or fixed steps",
             "a history of steps that would be cut",
-            "CVODE chooses its steps, and keeps constraints by Baumgarte's gains",
-            "stabilisation='baumgarte', or rodas4 with projection",
+            "SUNDIALS chooses its steps; CVODE keeps constraints by Baumgarte's gains, IDA by its equations",
+            "method='ida', stabilisation='baumgarte', or rodas4 with projection",
         )
-    if settings.method.kind == "variational" and (model.nc or model.record.driven):
+    if family.trees_only and (model.nc or model.record.driven):
         raise _wrong(
-            "'variational' steps trees of free motion only",
+            f"'{name}' steps trees of free motion only",
             f"model '{model.record.name}' has constraints or prescribed joints",
             "its discrete principle is written for free coordinates",
             "use generalized_alpha, or rk4 with projection",
@@ -210,7 +191,7 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
 CLOSED = 1e-6
 
 
-def check_start(model: Model, settings: Settings, t: float, q: Array, v: Array, u: Array, par: Array) -> None:
+def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, par: Array) -> None:
     """Refuse a first state that does not meet the constraints; Baumgarte's gains may pull one in.
 
     Raises:
@@ -219,8 +200,8 @@ def check_start(model: Model, settings: Settings, t: float, q: Array, v: Array, 
     if not model.nc or settings.stabilisation == "baumgarte":
         return
     for what, values in (
-        ("phi", model.constraint(q, u=u, par=par, t=t)),
-        ("G v - b", model.constraint_rate(q, v, u=u, par=par, t=t)),
+        ("phi", model.constraint(q, u=u, par=par, t=settings.t0)),
+        ("G v - b", model.constraint_rate(q, v, u=u, par=par, t=settings.t0)),
     ):
         worst = int(np.argmax(np.abs(values)))
         condition = model.names.constraints[worst]

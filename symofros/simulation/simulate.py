@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -14,8 +13,9 @@ from symofros.simulation.diagnosis import diagnose
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
 from symofros.simulation.loops import run_cvode, run_own
+from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
-from symofros.simulation.settings import Settings, Stabilisation, check_fit, check_start, vector
+from symofros.simulation.settings import Settings, check_fit, check_start, vector
 from symofros.simulation.stepper import Stepper
 from symofros.simulation.trajectory import Found, Statistics, Trajectory
 
@@ -27,22 +27,11 @@ def simulate(
     t_end: float = 1.0,
     *,
     u: Inputs | None = None,
-    method: str = "rk4",
-    dt: float | None = None,
-    t0: float = 0.0,
     par: Given | None = None,
-    rtol: float = 1e-6,
-    atol: float = 1e-9,
-    adaptive: bool | None = None,
-    max_step: float = math.inf,
-    max_steps: int | None = None,
-    output: float | Given | None = None,
-    every: int = 1,
     events: Mapping[str, Any] | None = None,
-    stabilisation: Stabilisation = "projection",
-    gains: Given | None = None,
-    realtime: float | bool = False,
+    options: SimulationOptions | None = None,
     progress: bool | Callable[[float], None] = False,
+    **changes: Any,
 ) -> Trajectory:
     """Move a model from a state through time; the stepping loop is C.
 
@@ -50,30 +39,15 @@ def simulate(
         model: Compiled with backend "c".
         q0: First configuration (nq), on the constraints (see `assemble`); the neutral one by default.
         v0: First speeds (nv); rest by default.
-        t_end: Where to end [s].
+        t_end: End time [s].
         u: Inputs: an array (nu), a Signal of all, a mapping from input names to numbers, formulas (of coordinates,
             speeds, parameters and t, compiled to C) and Signals, or a function (t, q, v) -> (nu), called from the loop
             and hence slow. Those not given are zero, but for the rates of a prescribed motion that is a formula of t.
-        method: Fixed steps: "rk4", "semi_implicit_euler", "euler"; implicit ones, for stiff beams and joints:
-            "implicit_euler", "generalized_alpha"; for long conservative runs, "variational". Steps chosen by `rtol`
-            and `atol`: "dopri5", "dop853" and, for stiff models, "rodas4"; SUNDIALS' "cvode" (stiff) and
-            "cvode_adams" where FMPy is installed.
-        dt: Step [s], 1e-3 where a fixed step needs one; for adaptive methods the first step.
-        t0: Where to begin [s].
         par: Run-time parameters (npar); the model's own by default.
-        rtol: Bound of the local error of adaptive methods, of the size of each coordinate and speed.
-        atol: Bound alike, absolute.
-        adaptive: False steps an adaptive method by `dt`.
-        max_step: Longest step of adaptive methods [s].
-        max_steps: End the run after so many steps; none by default.
-        output: What to record: None for each `every`-th step, an interval [s], or times (n).
-        every: See output.
         events: Name -> formula or Event.
-        stabilisation: How constraints are kept: "projection" onto them after each step, "baumgarte" by gains, or
-            "none", by accelerations alone, which drifts.
-        gains: Baumgarte's, as `Model.forward_dynamics` takes them; by default both are min(20, 1/(2 dt)) [1/s].
-        realtime: Keep pace with the clock: True, or seconds of motion a second. Overruns are counted.
+        options: How to step, keep constraints and record; the defaults of SimulationOptions by default.
         progress: Show a progress bar; or a function that is told the time reached [s], now and then.
+        changes: Fields of SimulationOptions by name, which replace those of `options`: method="dopri5", dt=1e-4, ...
 
     Returns:
         The Trajectory; its `outcome` says how the run ended. What went wrong in motion is an outcome, not an
@@ -81,13 +55,11 @@ def simulate(
 
     Raises:
         ShapeError: An array does not fit.
-        UnknownNameError: A formula or an input's name is unknown.
+        UnknownNameError: The name of an option, an input or in a formula is unknown.
         AssemblyError: The first state does not meet the constraints.
-        SymofrosError: The settings contradict each other.
+        SymofrosError: The options contradict each other.
     """
-    settings = Settings.of(
-        model, method, dt, t0, t_end, rtol, atol, adaptive, max_step, output, every, stabilisation, gains
-    )
+    settings = Settings.of(model, (options or SimulationOptions()).changed(changes), t_end)
     model = model.with_precision("double")
     values = model.parameter_values if par is None else vector(model, "par", par, model.npar)
     q = model.neutral() if q0 is None else vector(model, "q0", q0, model.nq)
@@ -96,12 +68,12 @@ def simulate(
     inputs = plan_inputs(model, u)
     check_fit(model, settings, inputs)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
-    settings.apply(stepper, t0, t_end, float(realtime))
-    check_start(model, settings, t0, q, v, stepper.inputs_at(t0, q, v), np.asarray(values))
+    settings.apply(stepper)
+    check_start(model, settings, q, v, stepper.inputs_at(settings.t0, q, v), np.asarray(values))
     began, worked = time.perf_counter(), time.thread_time()
-    with bar(progress, t0, t_end) as show:
+    with bar(progress, settings.t0, t_end) as show:
         drive = run_cvode if settings.method.kind == "cvode" else run_own
-        recorded = drive(stepper, q, v, settings, max_steps, show)
+        recorded = drive(stepper, q, v, settings, show)
     seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()
     outcome = diagnose(stepper, recorded, states, settings)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +19,9 @@ from symofros.simulation.batch_inputs import Shape, sort_inputs
 from symofros.simulation.crew import Crew, Ends, Starts, run_crews
 from symofros.simulation.inputs import Inputs
 from symofros.simulation.methods import METHODS
-from symofros.simulation.settings import CLOSED, Settings, Stabilisation
+from symofros.simulation.options import SimulationOptions
+from symofros.simulation.settings import CLOSED, Settings
 from symofros.simulation.trajectories import Trajectories
-
-_KINDS = ("explicit", "semi_implicit")
 
 
 def simulate_batch(
@@ -30,19 +31,10 @@ def simulate_batch(
     t_end: float = 1.0,
     *,
     u: Inputs | None = None,
-    method: str = "rk4",
-    dt: float | None = None,
-    t0: float = 0.0,
     par: Given | None = None,
-    rtol: float = 1e-6,
-    atol: float = 1e-9,
-    adaptive: bool | None = None,
-    max_step: float = math.inf,
-    max_steps: int | None = None,
-    output: float | Given | None = None,
-    stabilisation: Stabilisation = "projection",
-    gains: Given | None = None,
     threads: int | None = None,
+    options: SimulationOptions | None = None,
+    **changes: Any,
 ) -> Trajectories:
     """Move a model from many states through time, in C, several trajectories in the lanes of a vector.
 
@@ -51,62 +43,34 @@ def simulate_batch(
 
     Each trajectory takes the steps that `simulate` would take, of its own length where the method adapts them, and has
     the same states within rounding; it does not depend on the others, nor on the number of threads, to the last bit.
-    One that goes wrong ends with its outcome, and the others go on. Arguments not listed are those of `simulate`.
+    One that goes wrong ends with its outcome, and the others go on.
 
     Args:
         model: Compiled with backend "c".
         q0: First configurations (..., nq), on the constraints; the neutral one by default.
         v0: First speeds (..., nv); rest by default.
-        t_end: Where to end [s].
+        t_end: End time [s].
         u: Inputs: an array (..., nu); a Signal of all, whose values are (n, nu), or (..., n, nu) where they differ; or
             a mapping from names to numbers, arrays (...), formulas, and Signals of values (n) or (..., n, 1).
-        method: An explicit one: "rk4", "semi_implicit_euler", "euler", "dopri5" or "dop853".
-        dt: Step [s], 1e-3 where a fixed step needs one.
-        t0: Where to begin [s].
         par: Run-time parameters (..., npar); the model's own by default.
-        rtol: Bound of the local error of adaptive methods.
-        atol: Bound alike, absolute.
-        adaptive: False steps an adaptive method by `dt`.
-        max_step: Longest step of adaptive methods [s].
-        max_steps: End each run after so many steps.
-        output: What to record of each: an interval [s] or times (m); the end alone by default.
-        stabilisation: How constraints are kept.
-        gains: Baumgarte's.
-        threads: How many share the work; by default those of the model (`Model.with_threads`).
+        threads: Number of threads; by default that of the model (`Model.with_threads`).
+        options: As of `simulate`; methods are explicit: "rk4", "semi_implicit_euler", "euler", "dopri5", "dop853".
+            `output` is the last state alone by default.
+        changes: Fields of SimulationOptions by name, which replace those of `options`.
 
     Returns:
         The Trajectories, whose batch dimensions are those of q0, v0, u and par broadcast together.
 
     Raises:
         ShapeError: An array does not fit, or batch dimensions do not broadcast.
-        UnknownNameError: A formula or an input's name is unknown.
-        SymofrosError: The settings contradict each other, or the method is implicit.
+        UnknownNameError: The name of an option, an input or in a formula is unknown.
+        SymofrosError: The options contradict each other, are those of single runs, or the method is implicit.
     """
-    settings = Settings.of(
-        model,
-        method,
-        dt,
-        t0,
-        t_end,
-        rtol,
-        atol,
-        adaptive,
-        max_step,
-        [t_end] if output is None else output,
-        1,
-        stabilisation,
-        gains,
-    )
-    if settings.method.kind not in _KINDS:
-        explicit = [name for name, one in METHODS.items() if one.kind in _KINDS]
-        raise SymofrosError(
-            Problem(
-                f"simulate_batch: '{method}' solves equations in each step",
-                method,
-                "batches take explicit methods: " + ", ".join(explicit),
-                "run sf.simulate for each state",
-            )
-        )
+    chosen = (options or SimulationOptions()).changed(changes)
+    if chosen.output is None:
+        chosen = replace(chosen, output=[t_end])
+    settings = Settings.of(model, chosen, t_end)
+    _check_batch(settings, chosen)
     count = model.threads if threads is None else threads
     if count < 1:
         raise SymofrosError(
@@ -122,10 +86,10 @@ def simulate_batch(
     n = math.prod(shape)
     inputs = given.spread(model, shape)
     q, v, values = (flat(array, shape) for array in rows.values())
-    starts = Starts(q, v, values, inputs, n, t0)
+    starts = Starts(q, v, values, inputs, n, settings.t0)
     ends = Ends.of(model, n, len(settings.grid))
     began = time.perf_counter(), time.process_time()
-    crews = [Crew(model, settings, starts, ends, t_end, max_steps, i, count) for i in range(min(count, n))]
+    crews = [Crew(model, settings, starts, ends, i, count) for i in range(min(count, n))]
     if crews:
         ends.status[_off(model, settings, starts, crews[0])] = native.OFF
         began = time.perf_counter(), time.process_time()
@@ -146,9 +110,22 @@ def simulate_batch(
         ends.status.reshape(shape),
         ends.steps.reshape(shape),
         ends.rejected.reshape(shape),
-        method,
+        settings.method.name,
         *seconds,
     )
+
+
+def _check_batch(settings: Settings, options: SimulationOptions) -> None:
+    """Refuse what only single runs can do."""
+    name = settings.method.name
+    if not settings.method.family.batched:
+        explicit = ", ".join(name for name, method in METHODS.items() if method.family.batched)
+        what, rule = f"simulate_batch: '{name}' is no explicit method", f"batches take {explicit}"
+        raise SymofrosError(Problem(what, name, rule, "run sf.simulate for each state"))
+    if options.realtime or options.every != 1:
+        found = f"realtime = {options.realtime}, every = {options.every}"
+        rule = "a batch records at `output`, and is not paced"
+        raise SymofrosError(Problem("simulate_batch: an option of single runs", found, rule, "leave them out"))
 
 
 def _rows(model: Model, name: str, values: Given, size: int) -> Array:

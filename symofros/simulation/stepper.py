@@ -19,7 +19,7 @@ from symofros.runtime.model import Model
 from symofros.runtime.toolchain import DEFAULT_FLAGS, NO_COMPILER, find_toolchain
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
-from symofros.simulation.methods import KIND_CODES, NEEDS, Method
+from symofros.simulation.methods import KIND_CODES, Method
 
 _PARTS = (
     "manifold.c",
@@ -157,7 +157,7 @@ class Stepper:
         for index, t, values, linear in inputs.signals:
             signals.append((index, int(linear), len(t), self.shared(t), self.shared(values)))
         scene.n_signals, scene.signals = len(signals), self.own("sym_signal[]", signals)
-        given, implicit = sorted(inputs.formulas), self.method.kind in NEEDS
+        given, implicit = sorted(inputs.formulas), self.method.family.implicit
         scene.n_law, scene.law_inputs = len(given), self.own("int32_t[]", given)
         if given:
             self._bind("law", model.formulas([inputs.formulas[i] for i in given], implicit), {})
@@ -167,7 +167,7 @@ class Stepper:
         if self.events:
             self._bind("events", model.formulas([event.formula for event in self.events], derivatives=False), {})
         self._bind("forward", model.kernel("forward_dynamics"), {"a": scene.a, "lam": scene.lam, "rank": scene.rank})
-        for slot, name in NEEDS.get(self.method.kind, {}).items():
+        for slot, name in self.method.family.functions.items():
             self._bind(slot, model.kernel(name), {})
         if model.nc:
             self._bind("project", model.kernel("project"), {})

@@ -227,7 +227,7 @@ def test_shapes() -> None:
         ({"q0": np.zeros((4, 2)), "v0": np.zeros((3, 2))}, r"do not broadcast\n  found:  q0 \(4, 2\), v0 \(3, 2\)"),
         ({"u": np.zeros((4, 5))}, r"constant inputs have shape \(\.\.\., 1\)"),
         ({"u": lambda t, q, v: [0.0]}, "inputs by a Python function"),
-        ({"method": "rodas4"}, "'rodas4' solves equations in each step"),
+        ({"method": "rodas4"}, "'rodas4' is no explicit method"),
         ({"threads": 0}, "no thread to work"),
         ({"u": {"nothing": np.zeros(3)}}, "no input 'nothing'"),
     ],

@@ -19,7 +19,7 @@ from symofros.options import Options
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.assembly import assemble
-from symofros.simulation.methods import METHODS, NEEDS
+from symofros.simulation.methods import METHODS
 from symofros.simulation.simulate import simulate
 from symofros.simulation.trajectory import Trajectory
 from symofros.studio.advice.scene import Scene
@@ -107,7 +107,7 @@ class Bench:
 
     def functions(self, system: System, method: str) -> tuple[str, ...]:
         """What a run by a method calls of a model; poses of the scene's frames come to it."""
-        needed = ["forward_dynamics", *NEEDS.get(METHODS[method].kind, {}).values()]
+        needed = ["forward_dynamics", *METHODS[method].family.functions.values()]
         if system.constraints:
             needed += ["project", "constraint", "constraint_rate", "constraint_jacobian"]
         return (*needed, "frame_pose") if self.scene.frames else tuple(needed)

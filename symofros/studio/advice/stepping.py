@@ -39,7 +39,7 @@ def cheapest(bench: Bench, system: System, truth: Trial, share: float) -> tuple[
     best: tuple[Stepping, Cost, float] | None = None
     lines = []
     for method in _FIXED if bench.scene.fixed_step else (*_ADAPTIVE, *_FIXED):
-        if METHODS[method].kind in ("rosenbrock", "alpha") and not _small(bench, system):
+        if METHODS[method].family.implicit and not _small(bench, system):
             lines.append(f"{method}: not tried, derivatives of more than {LARGEST} operations")
             continue
         found = _coarsest(bench, system, truth, share, method, None if best is None else best[1].total)

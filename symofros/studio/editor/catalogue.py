@@ -148,7 +148,7 @@ PALETTE: tuple[Json, ...] = (
 def catalogue() -> Json:
     """The format, the palette, and what fields and runs can be chosen from."""
     methods = [
-        {"name": item.name, "adaptive": item.adaptive, "order": item.order, "help": item.says}
+        {"name": item.name, "adaptive": item.adaptive, "order": item.order, "help": item.summary}
         for item in METHODS.values()
     ]
     return {

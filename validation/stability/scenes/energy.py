@@ -19,7 +19,7 @@ SHORT = 5_000
 BOUND = 1e-3
 MUJOCO = {"MuJoCo Euler": "Euler", "MuJoCo implicit": "implicit", "MuJoCo RK4": "RK4"}
 # CVODE chooses its steps.
-OURS = tuple(name for name, method in METHODS.items() if method.kind != "cvode")
+OURS = tuple(name for name, method in METHODS.items() if not method.family.multistep)
 WHO = Grid.of("integrator [-]", (*OURS, *MUJOCO), ("euler", "semi_implicit_euler", "rk4", "variational"))
 H = Grid("step h [s]", decades(1e-3, 0.1, 4), (1e-3, 1e-2))
 MJCF = (

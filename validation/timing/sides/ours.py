@@ -16,6 +16,7 @@ from symofros.generator.passes.count import count_program
 from symofros.runtime.kernel import Precision
 from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
 from symofros.simulation.inputs import plan_inputs
+from symofros.simulation.options import SimulationOptions
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepper import Stepper
 from validation.mechanics.geometry import Array
@@ -150,9 +151,9 @@ def _steps(task: Task) -> Loop:
     """Our loop of RK4 in C, as many steps as there are states; a race goes on from where the last round ended."""
     model = sf.compile(task.system)
     q, v, steps = task.states.q[START], task.states.v[START], len(task.states)
-    settings = Settings.of(model, "rk4", STEP, 0.0, _ENDLESS, 1e-6, 1e-9, None, np.inf, None, steps, "projection", None)
+    settings = Settings.of(model, SimulationOptions("rk4", STEP, every=steps), _ENDLESS)
     stepper = Stepper(model, settings.method, plan_inputs(model, None), [], np.asarray(model.parameter_values))
-    settings.apply(stepper, 0.0, _ENDLESS, 0.0)
+    settings.apply(stepper)
 
     def run(rounds: int) -> None:
         for _ in range(rounds):
