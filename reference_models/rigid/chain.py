@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
+from reference_models.rigid.point_masses import mass_and_center, moments_of_inertia
 
 AXES = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))
 INERTIAL = ("m", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")
@@ -45,7 +46,6 @@ def _link_numbers(i: int) -> dict[str, float]:
     """Inertia of a cloud of points about the joint, so that it is physical, and the offset of the next joint."""
     rng = np.random.default_rng(1000 + i)
     points, masses = rng.uniform(-0.2, 0.2, (8, 3)), rng.uniform(0.05, 0.4, 8)
-    J = sum(m * (p @ p * np.eye(3) - np.outer(p, p)) for m, p in zip(masses, points, strict=True))
-    center = masses @ points / masses.sum()
-    values = [masses.sum(), *center, J[0, 0], J[1, 1], J[2, 2], J[0, 1], J[0, 2], J[1, 2], *rng.uniform(0.1, 0.3, 3)]
+    mass, center = mass_and_center(masses, points)
+    values = [mass, *center, *moments_of_inertia(masses, points), *rng.uniform(0.1, 0.3, 3)]
     return {name: float(value) for name, value in zip(INERTIAL + OFFSETS, values, strict=True)}

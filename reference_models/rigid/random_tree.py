@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
+from reference_models.rigid.point_masses import Triple, mass_and_center, moments_of_inertia
 
 KINDS = ("revolute", "prismatic", "ball", "continuous", "fixed", "free")
 # Joints whose partial velocities depend on q, and those that slide along the axis they turn about.
 SERIES_KINDS = ("screw", "cylindrical", "universal", "planar")
 MORE_KINDS = (*KINDS, *SERIES_KINDS, "general")
-
-Triple = tuple[float, float, float]
 
 
 def random_tree(seed: int, n: int = 6, kinds: Sequence[str] = KINDS) -> sf.System:
@@ -60,15 +59,12 @@ def random_inertia(rng: np.random.Generator) -> sf.Inertia:
     """The inertia of a random cloud of points, so that it is physical."""
     points = rng.uniform(-0.3, 0.3, (6, 3))
     masses = rng.uniform(0.1, 1.0, 6)
-    center = masses @ points / masses.sum()
-    about_body = rng.random() < 0.3
-    r = points if about_body else points - center
-    J = sum(m * (p @ p * np.eye(3) - np.outer(p, p)) for m, p in zip(masses, r, strict=True))
-    moments = tuple(float(J[i, k]) for i, k in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
-    if about_body:
-        return sf.Inertia(float(masses.sum()), _triple(center), moments, about="body")
+    mass, center = mass_and_center(masses, points)
+    if rng.random() < 0.3:
+        return sf.Inertia(mass, center, moments_of_inertia(masses, points), about="body")
     # Along turned axes, the same numbers are another, equally physical, inertia.
-    return sf.Inertia(float(masses.sum()), _triple(center), moments, rotation=random_rotation(rng))
+    moments = moments_of_inertia(masses, points - np.array(center))
+    return sf.Inertia(mass, center, moments, rotation=random_rotation(rng))
 
 
 def _random_axis(rng: np.random.Generator) -> Triple:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from symofros.expr.extended import CONTEXT, Extended, extended_rule
 from symofros.expr.graph import Edge, Graph
 from symofros.expr.ops import FUNCTIONS
 
@@ -113,3 +114,31 @@ def evaluate(expression: Expression | float, values: Mapping[str, float]) -> flo
     number = graph.number(lower(expression, graph, {name: graph.constant(values[name]) for name in used}))
     assert number is not None  # Everything was a number, and numbers fold.
     return number
+
+
+def evaluate_extended(expression: Expression | float, values: Mapping[str, Extended]) -> Extended:
+    """The value of a formula in extended precision.
+
+    Args:
+        expression: The formula, or a number already.
+        values: Extended number of each symbol.
+
+    Raises:
+        KeyError: A symbol has no value.
+        ArithmeticError: Division by zero, or outside a function's domain.
+    """
+    if isinstance(expression, float):
+        return CONTEXT.mpf(expression)
+    kind = expression.kind
+    if kind == "number":
+        return CONTEXT.mpf(expression.number)
+    if kind == "symbol":
+        known = CONSTANTS.get(expression.name)
+        return values[expression.name] if known is None else CONTEXT.mpf(known)
+    args = [evaluate_extended(arg, values) for arg in expression.args]
+    if kind == "neg":
+        return -args[0]
+    value = args[0] - args[1] if kind == "sub" else extended_rule(kind)(*args)
+    if not isinstance(value, CONTEXT.mpf) or not CONTEXT.isfinite(value):  # mpmath has complex roots and logarithms.
+        raise ArithmeticError(f"{expression} is not a finite number")
+    return value

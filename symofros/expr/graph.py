@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symofros.expr.extended import nearest
 from symofros.expr.ops import ADD, DIV, MUL, OPS
 
 if TYPE_CHECKING:
@@ -201,9 +202,9 @@ class Graph:
         if op.parity and args[0] < 0:
             negative = op.parity == "odd"
             args = (-args[0],)
-        numbers = [self.number(arg) for arg in args]
-        if None not in numbers:
-            folded = float(op.rule(*numbers))
+        numbers = [number for arg in args if (number := self.number(arg)) is not None]
+        if len(numbers) == len(args):
+            folded = nearest(name, *numbers)
             if folded != folded:
                 raise ArithmeticError(f"{name}({', '.join(map(repr, numbers))}) is not a number")
             edge = self.constant(folded)

@@ -68,8 +68,14 @@ def _libm(function: Callable[..., float], overflow: float = math.inf) -> Callabl
 
 
 def _polynomial(function: Callable[[float], float], rule: Callable[[Array], Array]) -> Callable[[Any], Any]:
-    """A single number by the C library, which the graph folds; arrays as generated C does it."""
-    return lambda x: function(x) if isinstance(x, float) and math.isfinite(x) else rule(np.asarray(x))
+    """A single number by the C library, arrays as generated C does it."""
+
+    def either(x: Any) -> Any:
+        if not isinstance(x, float):
+            return rule(np.asarray(x))
+        return function(x) if math.isfinite(x) else math.nan
+
+    return either
 
 
 def _log(x: float) -> float:

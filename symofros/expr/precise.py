@@ -2,26 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import mpmath
 
 from symofros.expr.evaluate import needed_nodes
+from symofros.expr.extended import extended_rule
 from symofros.expr.graph import Edge
-from symofros.expr.ops import ADD, DIV, MUL
 from symofros.expr.program import Function, Program
-
-# Names of the op table that mpmath spells otherwise; the rest have the same name there.
-_RULES: dict[str, Callable[..., Any]] = {
-    ADD: lambda x, y: x + y,
-    MUL: lambda x, y: x * y,
-    DIV: lambda x, y: x / y,
-    "pow": mpmath.power,
-    "abs": mpmath.fabs,
-    "min": min,
-    "max": max,
-}
 
 
 def evaluate_precisely(
@@ -62,7 +51,5 @@ def edge_values(program: Program, edges: Sequence[Edge], inputs: Mapping[str, Se
         return values[node] if edge > 0 else -values[node]
 
     for node in needed_nodes(graph, edges):
-        op = graph.op[node]
-        rule = _RULES.get(op) or getattr(mpmath, op)
-        values[node] = rule(*map(at, graph.args[node]))
+        values[node] = extended_rule(graph.op[node], mpmath)(*map(at, graph.args[node]))
     return [at(edge) for edge in edges]

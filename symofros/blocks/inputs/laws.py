@@ -90,13 +90,19 @@ def spline(t: Tensor, times: Array, table: Array) -> Share:
 
 def _slopes(times: Array, table: Array) -> Array:
     """Rates at the knots (k, m) that make the acceleration continuous, zero at both ends."""
-    k, h = len(times), np.diff(times)
-    A, b = np.eye(k), np.zeros_like(table)
+    h = np.diff(times)
     chords = np.diff(table, axis=0) / h[:, np.newaxis]
-    for i in range(1, k - 1):
-        A[i, i - 1 : i + 2] = h[i], 2.0 * (h[i - 1] + h[i]), h[i - 1]
-        b[i] = 3.0 * (h[i] * chords[i - 1] + h[i - 1] * chords[i])
-    return np.asarray(np.linalg.solve(A, b), dtype=np.float64)
+    slopes, diagonal = np.zeros_like(table, dtype=np.float64), 2.0 * (h[:-1] + h[1:])
+    # Elimination without pivots, which a dominant diagonal does not need: LAPACK's digits depend on the processor.
+    for i in range(1, len(h)):
+        slopes[i] = 3.0 * (h[i] * chords[i - 1] + h[i - 1] * chords[i])
+        if i > 1:
+            factor = h[i] / diagonal[i - 2]
+            diagonal[i - 1] -= factor * h[i - 2]
+            slopes[i] -= factor * slopes[i - 1]
+    for i in range(len(h) - 1, 0, -1):
+        slopes[i] = (slopes[i] - h[i - 1] * slopes[i + 1]) / diagonal[i - 1]
+    return slopes
 
 
 def _coefficients(h: Array, change: Array, slopes: Array) -> tuple[Array, Array]:

@@ -9,21 +9,29 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.description.values import IDENTITY, Rotation, Vector
+from symofros.expr.extended import nearest
 
 Array = npt.NDArray[np.float64]
 
 
 def turned(quaternion: Any) -> Array:
     """The rotation matrix (3, 3) of a quaternion (w, x, y, z), normalised."""
-    w, x, y, z = np.asarray(quaternion, dtype=float) / np.linalg.norm(quaternion)
+    components = np.asarray(quaternion, dtype=float)
+    w, x, y, z = components / math.sqrt(math.fsum(components * components))
     K = cross(np.array([x, y, z]))
-    return np.asarray(np.eye(3) + 2.0 * w * K + 2.0 * K @ K)
+    return np.asarray(np.eye(3) + 2.0 * w * K + 2.0 * times(K, K))
 
 
 def about(axis: Array, angle: float) -> Array:
     """The rotation matrix (3, 3) of a turn [rad] about a unit axis (3,)."""
     K = cross(axis)
-    return np.asarray(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * K @ K)
+    return np.asarray(np.eye(3) + nearest("sin", angle) * K + (1.0 - nearest("cos", angle)) * times(K, K))
+
+
+def times(R: Array, x: Array) -> Array:
+    """The product of a matrix (3, 3) with a vector (3,) or a matrix (3, 3), rounded alike on every machine."""
+    columns = R[:, :, np.newaxis] if x.ndim == 2 else R
+    return np.asarray(columns[:, 0] * x[0] + columns[:, 1] * x[1] + columns[:, 2] * x[2])
 
 
 def cross(p: Array) -> Array:

@@ -20,7 +20,7 @@ import numpy as np
 
 from symofros.description.forces import Damper, JointElement, Spring
 from symofros.description.joint_kinds import JointKindName
-from symofros.description.mjcf.geometry import Array, Exact, about
+from symofros.description.mjcf.geometry import Array, Exact, about, times
 from symofros.description.mjcf.names import Names
 from symofros.description.remarks import Remarks
 from symofros.description.system import WORLD, Joint, Limits
@@ -87,11 +87,11 @@ class JointReader:
         # A shift is the same wherever it is anchored.
         anchor = np.zeros(3) if kind == SLIDE else np.array(m.jnt_pos[j])
         ref = 0.0 if kind == BALL else float(m.qpos0[m.jnt_qposadr[j]])
-        p, R = chain.p + chain.R @ anchor, chain.R
+        p, R = chain.p + times(chain.R, anchor), chain.R
         if kind == SLIDE:
-            p = p - ref * R @ axis
+            p = p - ref * times(R, axis)
         elif ref:
-            R = R @ about(axis, -ref)
+            R = times(R, about(axis, -ref))
         position, rotation = self.exact.placement(p, R)
         limits = self._limits(j)
         hinge: JointKindName = "revolute" if limits else "continuous"

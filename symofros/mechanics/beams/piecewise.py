@@ -11,16 +11,21 @@ from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
-from itertools import pairwise
+from functools import cache, lru_cache
+from itertools import pairwise, zip_longest
 
-import numpy as np
+from symofros.expr.extended import CONTEXT, Extended
 
 Number = Fraction | float | int
 Coefficients = tuple[Number, ...]
 
 # Degree of the polynomials that stand for a smooth function on one piece.
 _FIT_DEGREE = 14
+# Share of a piece's largest coefficient below which one counts as zero: its second derivative, times 14^2 and the
+# square of the number of pieces, is still far below a double's rounding.
+_NEGLIGIBLE = 1e-24
+# Newton's method doubles the digits: from two of them, for the quadrature of two points, to a double's.
+_NEWTON_STEPS = 5
 
 
 @dataclass(frozen=True)
@@ -117,32 +122,78 @@ ONE = polynomial(1)
 XI = polynomial(0, 1)
 
 
-def fitted(function: Callable[[np.ndarray], np.ndarray], pieces: int) -> Piecewise:
-    """A smooth function by interpolation at Chebyshev points on equal intervals.
+def fitted(function: Callable[[Extended], Extended], pieces: int) -> Piecewise:
+    """A smooth function by interpolation at Chebyshev points on equal intervals, in extended precision.
 
     Args:
-        function: Of stations in [0, 1], vectorised.
-        pieces: How many intervals.
+        function: Function of the station, of and to extended numbers.
+        pieces: Number of intervals.
+
+    Returns:
+        The interpolant with coefficients rounded to doubles; what is below the interpolation's own rounding is zero,
+        so that a polynomial comes back as one of the same degree.
     """
-    nodes = np.cos((2 * np.arange(_FIT_DEGREE + 1) + 1) * np.pi / (2 * (_FIT_DEGREE + 1)))
+    points, weights = _interpolation()
     found = []
     for k in range(pieces):
-        a, h = k / pieces, 1.0 / pieces
-        series = np.polynomial.chebyshev.Chebyshev.fit(
-            a + h * (nodes + 1) / 2, function(a + h * (nodes + 1) / 2), _FIT_DEGREE, domain=[a, a + h]
-        )
-        # In the interval's own variable the coefficients stay of the size of the function.
-        local = np.polynomial.chebyshev.cheb2poly(series.coef)
-        shifted = np.polynomial.Polynomial(local)(np.polynomial.Polynomial([-1.0, 2.0 / h]))
-        found.append(tuple(float(c) for c in shifted.coef))
+        values = [function((k + t) / pieces) for t in points]
+        coefficients = [CONTEXT.fdot(row, values) for row in weights]
+        negligible = _NEGLIGIBLE * max(map(abs, coefficients))
+        kept = [c * pieces**n if abs(c) > negligible else 0 for n, c in enumerate(coefficients)]
+        while len(kept) > 1 and not kept[-1]:
+            kept.pop()
+        found.append(tuple(map(float, kept)))
     return Piecewise(tuple(k / pieces for k in range(pieces)) + (1.0,), tuple(found))
+
+
+@cache
+def _interpolation() -> tuple[list[Extended], list[list[Extended]]]:
+    """Chebyshev points on [0, 1], and the matrix from values there to coefficients of 1, t, t^2, ..."""
+    n = _FIT_DEGREE + 1
+    angles = [CONTEXT.pi * (2 * j + 1) / (2 * n) for j in range(n)]
+    cosines = [[CONTEXT.cos(m * angle) for angle in angles] for m in range(n)]
+    # Rows of coefficients of the shifted Chebyshev polynomials T_m(2 t - 1), by T_(m+1) = 2 (2 t - 1) T_m - T_(m-1).
+    chebyshev = [[1], [-1, 2]]
+    for _ in range(2, n):
+        last, before = chebyshev[-1], chebyshev[-2]
+        raised = [0, *(4 * c for c in last)]
+        chebyshev.append([r - 2 * c - b for r, c, b in zip_longest(raised, last, before, fillvalue=0)])
+    weights = [
+        [sum(chebyshev[m][k] * cosines[m][j] * (2 if m else 1) for m in range(k, n)) / n for j in range(n)]
+        for k in range(n)
+    ]
+    return [(1 + cosine) / 2 for cosine in cosines[1]], weights
 
 
 @lru_cache(maxsize=16)
 def gauss(points: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Nodes and weights of Gauss-Legendre quadrature on [0, 1]."""
-    x, w = np.polynomial.legendre.leggauss(points)
-    return tuple(((x + 1) / 2).tolist()), tuple((w / 2).tolist())
+    """Nodes, rising, and weights of Gauss-Legendre quadrature on [0, 1]."""
+    upper = [_gauss_node(points, i) for i in range((points + 1) // 2)]
+    lower = [(-x, w) for x, w in upper[: points // 2]]
+    rule = lower + upper[::-1]
+    return tuple(float((1 + x) / 2) for x, _ in rule), tuple(float(w / 2) for _, w in rule)
+
+
+def _gauss_node(n: int, i: int) -> tuple[Extended, Extended]:
+    """Root i of the Legendre polynomial P_n, from the largest, and its weight, by Newton's method."""
+    x: Extended = math.cos(math.pi * (4 * i + 3) / (4 * n + 2))  # Abramowitz & Stegun 22.16.6.
+    for _ in range(_NEWTON_STEPS):
+        value, slope = _legendre(n, x)
+        x -= value / slope
+    # From a double's digits to all that count in two steps more, wherever the first ones ended.
+    x = CONTEXT.mpf(x)
+    for _ in range(2):
+        value, slope = _legendre(n, x)
+        x -= value / slope
+    return x, 2 / ((1 - x * x) * slope * slope)
+
+
+def _legendre(n: int, x: Extended) -> tuple[Extended, Extended]:
+    """P_n(x) and P_n'(x)."""
+    before, value = 1, x
+    for k in range(2, n + 1):
+        before, value = value, ((2 * k - 1) * x * value - (k - 1) * before) / k
+    return value, n * (before - x * value) / (1 - x * x)
 
 
 def stations(knots: Sequence[Number], points: int) -> tuple[list[float], list[float]]:

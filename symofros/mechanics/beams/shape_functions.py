@@ -14,19 +14,26 @@ Bending functions satisfy phi(0) = phi'(0) = 0, twist functions phi(0) = 0. What
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
-import numpy as np
-
 from symofros.description.beam import Direction, UserShape
-from symofros.expr.expression import Expression, evaluate
+from symofros.expr.expression import Expression, evaluate_extended
+from symofros.expr.extended import CONTEXT, Extended
 from symofros.mechanics.beams.piecewise import XI, Number, Piecewise, fitted, polynomial
 
 MAX_MODES = 40
+# Intervals on which a formula is interpolated.
+_FORMULA_PIECES = 16
+# Value and slope at the root, as a share of the function's size, that count as rounding of the formula's numbers.
+_ROOT_TOLERANCE = 1e-8
+# Newton's method doubles the digits, from one for the lowest root to more than extended numbers have.
+_NEWTON_STEPS = 9
+
+ExtendedFunction = Callable[[Extended], Extended]
 
 
 class Shape(NamedTuple):
@@ -150,63 +157,68 @@ def _b_spline(knots: list[Fraction], degree: int, index: int, spans: int) -> Pie
 
 
 def _eigenmodes(bending: bool, count: int) -> list[Piecewise]:
-    if not bending:
-        return [_integrated(_shaft_slope((k + 0.5) * math.pi), 1, 2 + k) for k in range(count)]
-    return [_integrated(_cantilever_curvature(k), 2, 3 + k) for k in range(count)]
+    if bending:
+        return [_integrated(_cantilever_curvature(k), 2, 3 + k) for k in range(count)]
+    return [_integrated(_shaft_slope(k), 1, 2 + k) for k in range(count)]
 
 
-def _shaft_slope(b: float) -> Callable[[np.ndarray], np.ndarray]:
-    return lambda xi: math.sqrt(2.0) * b * np.cos(b * xi)
+def _shaft_slope(k: int) -> ExtendedFunction:
+    """The derivative of shaft mode k (from 0), sqrt(2) sin(b xi) with b = (k + 1/2) pi."""
+    b = (k + CONTEXT.mpf(0.5)) * CONTEXT.pi
+    amplitude = CONTEXT.sqrt(2) * b
+    return lambda xi: amplitude * CONTEXT.cos(b * xi)
 
 
-def cantilever_root(k: int) -> float:
+@cache
+def cantilever_root(k: int) -> Extended:
     """Root number k (from 0) of cos(b) cosh(b) = -1, by Newton's method on cos(b) + 1/cosh(b)."""
-    b = (k + 0.5) * math.pi if k else 1.8751
-    for _ in range(50):
-        step = (math.cos(b) + 1.0 / math.cosh(b)) / (-math.sin(b) - math.tanh(b) / math.cosh(b))
-        b -= step
-        if abs(step) < 1e-15 * b:
-            break
+    cos, sin, sech, tanh = CONTEXT.cos, CONTEXT.sin, CONTEXT.sech, CONTEXT.tanh
+    b = (k + CONTEXT.mpf(0.5)) * CONTEXT.pi
+    for _ in range(_NEWTON_STEPS):
+        b += (cos(b) + sech(b)) / (sin(b) + tanh(b) * sech(b))
     return b
 
 
-def _cantilever_curvature(k: int) -> Callable[[np.ndarray], np.ndarray]:
+def _cantilever_curvature(k: int) -> ExtendedFunction:
     """The second derivative of cantilever mode k with mean square 1, in a form without differences of large numbers."""
     b = cantilever_root(k)
+    c_b, s_b = CONTEXT.cos_sin(b)
     # sigma = (sinh b - sin b)/(cosh b + cos b); 1 - sigma is exponentially small and written without cancellation.
-    e = math.exp(-b)
-    sigma = (1.0 - e * e - 2.0 * e * math.sin(b)) / (1.0 + e * e + 2.0 * e * math.cos(b))
-    rest = 2.0 * (e * math.cos(b) + e * e + e * math.sin(b)) / (1.0 + e * e + 2.0 * e * math.cos(b))
+    e = CONTEXT.exp(-b)
+    scale = 1 + e * e + 2 * e * c_b
+    sigma = (1 - e * e - 2 * e * s_b) / scale
+    half_rest = (e * c_b + e * e + e * s_b) / scale
 
-    def curvature(xi: np.ndarray) -> np.ndarray:
+    def curvature(xi: Extended) -> Extended:
         # cosh - sigma sinh = e^(-b xi) + (1 - sigma) sinh(b xi), and the second term as a difference of exponentials.
-        growing = rest / 2.0 * (np.exp(b * xi) - np.exp(-b * xi))
-        return b * b * (np.exp(-b * xi) + growing + np.cos(b * xi) - sigma * np.sin(b * xi))
+        decaying = CONTEXT.exp(-b * xi)
+        growing = half_rest * (1 / decaying - decaying)
+        c, s = CONTEXT.cos_sin(b * xi)
+        return b * b * (decaying + growing + c - sigma * s)
 
     return curvature
 
 
-def _integrated(derivative: Callable[[np.ndarray], np.ndarray], times: int, pieces: int) -> Piecewise:
+def _integrated(derivative: ExtendedFunction, times: int, pieces: int) -> Piecewise:
     """A function that vanishes at 0 with its first derivatives, from its derivative of that order."""
-    found = fitted(derivative, pieces)
+    phi = fitted(derivative, pieces)
     for _ in range(times):
-        found = found.antiderivative()
-    return found
+        phi = phi.antiderivative()
+    return phi
 
 
 def _user(shape: UserShape, bending: bool) -> Piecewise:
-    order = 2 if bending else 1
     if isinstance(shape, Expression | float):
-        phi = fitted(_formula(shape), 16)
+        phi = fitted(_formula(shape), _FORMULA_PIECES)
     else:
         phi = _through(shape.xi, shape.values, bending)
     slope = phi.derivative()
     scale = max(abs(float(phi(k / 16))) for k in range(17)) or 1.0
-    root = [phi(Fraction(0)), slope(Fraction(0))][:order]
-    if any(abs(float(x)) > 1e-8 * scale for x in root):
+    root = [float(f(Fraction(0))) for f in (phi, slope)[: 2 if bending else 1]]
+    if any(abs(x) > _ROOT_TOLERANCE * scale for x in root):
         rule = "phi(0) = phi'(0) = 0" if bending else "phi(0) = 0"
-        raise FamilyError(f"a function has {', '.join(f'{float(x):.3g}' for x in root)} at the root; {rule}")
-    return phi + _root_correction(phi.knots, [float(x) for x in root])
+        raise FamilyError(f"a function has {', '.join(f'{x:.3g}' for x in root)} at the root; {rule}")
+    return phi + _root_correction(phi.knots, root) if any(root) else phi
 
 
 def _root_correction(knots: tuple[Number, ...], root: list[float]) -> Piecewise:
@@ -224,37 +236,47 @@ def _root_correction(knots: tuple[Number, ...], root: list[float]) -> Piecewise:
     return Piecewise(knots, (cubic, *((0.0,) for _ in knots[2:])))
 
 
-def _formula(formula: Expression | float) -> Callable[[np.ndarray], np.ndarray]:
-    def value(xi: np.ndarray) -> np.ndarray:
-        found = []
-        for x in xi.tolist():
-            try:
-                found.append(evaluate(formula, {"xi": x}))
-            except KeyError as error:
-                raise FamilyError(f"the formula '{formula}' uses {error}; it may use xi only") from None
-            except ArithmeticError:
-                raise FamilyError(f"the formula '{formula}' is not a number at xi = {x:.3g}") from None
-        return np.array(found)
+def _formula(formula: Expression | float) -> ExtendedFunction:
+    def value(xi: Extended) -> Extended:
+        try:
+            return evaluate_extended(formula, {"xi": xi})
+        except KeyError as error:
+            raise FamilyError(f"the formula '{formula}' uses {error}; it may use xi only") from None
+        except ArithmeticError:
+            raise FamilyError(f"the formula '{formula}' is not a number at xi = {float(xi):.3g}") from None
 
     return value
 
 
 def _through(xi: Sequence[float], values: Sequence[float], bending: bool) -> Piecewise:
     """The cubic spline through sampled values: no slope at the root if clamped, no curvature at the free end."""
-    x, y = np.array(xi), np.array(values)
-    n, h = len(x), np.diff(x)
-    A, b = np.zeros((n, n)), np.zeros(n)  # For the second derivatives at the samples.
-    for i in range(1, n - 1):
-        A[i, i - 1 : i + 2] = h[i - 1], 2 * (h[i - 1] + h[i]), h[i]
-        b[i] = 6 * ((y[i + 1] - y[i]) / h[i] - (y[i] - y[i - 1]) / h[i - 1])
-    A[n - 1, n - 1] = A[0, 0] = 1.0
-    if bending:
-        A[0, :2] = 2 * h[0], h[0]
-        b[0] = 6 * (y[1] - y[0]) / h[0]
-    curvature = np.linalg.solve(A, b)
+    x, y = ([CONTEXT.mpf(number) for number in numbers] for numbers in (xi, values))
+    h = [b - a for a, b in pairwise(x)]
+    chords = [(b - a) / step for (a, b), step in zip(pairwise(y), h, strict=True)]
+    curvatures = _spline_curvatures(h, chords, bending)
     pieces: list[tuple[Number, ...]] = []
-    for i in range(n - 1):
-        slope = (y[i + 1] - y[i]) / h[i] - h[i] * (2 * curvature[i] + curvature[i + 1]) / 6
-        cubic = (curvature[i + 1] - curvature[i]) / (6 * h[i])
-        pieces.append((float(y[i]), float(slope), float(curvature[i]) / 2, float(cubic)))
-    return Piecewise(tuple(x.tolist()), tuple(pieces))
+    for value, chord, step, (left, right) in zip(y, chords, h, pairwise(curvatures), strict=False):
+        slope = chord - step * (2 * left + right) / 6
+        pieces.append(tuple(map(float, (value, slope, left / 2, (right - left) / (6 * step)))))
+    return Piecewise(tuple(xi), tuple(pieces))
+
+
+def _spline_curvatures(h: Sequence[Extended], chords: Sequence[Extended], bending: bool) -> list[Extended]:
+    """Second derivatives at the samples that make the spline's slope continuous, by elimination without pivots.
+
+    Args:
+        h: Distances between samples (n - 1).
+        chords: Slopes of the straight lines between them (n - 1).
+        bending: Whether the spline has no slope at the root; else it has no curvature there.
+    """
+    # Row i is h_(i-1) c_(i-1) + diagonal c_i + h_i c_(i+1) = right; that of the tip is c_n = 0.
+    diagonal, right = ([2 * h[0]], [6 * chords[0]]) if bending else ([CONTEXT.one], [CONTEXT.zero])
+    upper = [h[0] if bending else CONTEXT.zero, *h[1:]]
+    for i in range(1, len(h)):
+        factor = h[i - 1] / diagonal[i - 1]
+        diagonal.append(2 * (h[i - 1] + h[i]) - factor * upper[i - 1])
+        right.append(6 * (chords[i] - chords[i - 1]) - factor * right[i - 1])
+    curvatures = [CONTEXT.zero]
+    for i in reversed(range(len(h))):
+        curvatures.append((right[i] - upper[i] * curvatures[-1]) / diagonal[i])
+    return curvatures[::-1]

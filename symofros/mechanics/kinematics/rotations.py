@@ -13,6 +13,7 @@ from itertools import permutations, product
 
 from symofros.description.values import Rotation
 from symofros.expr.expression import Expression, lower
+from symofros.expr.extended import nearest
 from symofros.expr.graph import ONE, Edge, Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
 
@@ -174,9 +175,12 @@ def constant_turn(R: Mat3) -> Turn:
             if permutation != [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]:
                 factors.insert(0, MatrixTurn(_number_matrix(g, permutation)))
             return Turn(g, tuple(factors))
-    a, c = math.atan2(rows[0][2], -rows[1][2]), math.atan2(rows[2][0], rows[2][1])
-    b = math.atan2(math.hypot(rows[0][2], rows[1][2]), rows[2][2])  # An arc cosine would lose small tilts.
-    zxz = tuple(AxisTurn(k, g.constant(math.cos(x)), g.constant(math.sin(x))) for k, x in ((2, a), (0, b), (2, c)))
+    a, c = nearest("atan2", rows[0][2], -rows[1][2]), nearest("atan2", rows[2][0], rows[2][1])
+    tilt = math.sqrt(rows[0][2] * rows[0][2] + rows[1][2] * rows[1][2])
+    b = nearest("atan2", tilt, rows[2][2])  # An arc cosine would lose small tilts.
+    zxz = tuple(
+        AxisTurn(k, g.constant(nearest("cos", x)), g.constant(nearest("sin", x))) for k, x in ((2, a), (0, b), (2, c))
+    )
     return Turn(g, (MatrixTurn(R),), zxz)
 
 

@@ -1,0 +1,69 @@
+"""Extended precision: constants that are the nearest doubles, whatever the C library of the machine makes of them."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+from symofros.description.parser import parse
+from symofros.expr.expression import evaluate_extended
+from symofros.expr.extended import CONTEXT, nearest
+from symofros.expr.graph import Graph
+from symofros.expr.ops import FUNCTIONS
+
+# Where sines, exponentials and powers of glibc 2.36 differ between processors with and without fused multiply-adds.
+OPERANDS = np.random.default_rng(7).uniform(0.05, 0.95, 200).tolist()
+
+
+@pytest.mark.parametrize("name", [name for name, op in FUNCTIONS.items() if op.arity == 1])
+def test_a_constant_is_the_nearest_double(name: str) -> None:
+    """Against 60 digits, from half of which the nearest double to a value between two could be told."""
+    with mpmath.workdps(60):
+        function = getattr(mpmath, {"abs": "fabs"}.get(name, name))
+        for x in OPERANDS:
+            exact = function(mpmath.mpf(x))
+            value = nearest(name, x)
+            assert abs(exact - value) <= min(abs(exact - math.nextafter(value, to)) for to in (-math.inf, math.inf))
+
+
+def test_powers_and_angles_are_the_nearest_doubles() -> None:
+    with mpmath.workdps(60):
+        for x, y in zip(OPERANDS, OPERANDS[1:], strict=False):
+            assert nearest("pow", x, y) == float(mpmath.mpf(x) ** mpmath.mpf(y))
+            assert nearest("atan2", -x, y) == float(mpmath.atan2(-x, y))
+
+
+def test_limits_of_functions_are_those_of_the_c_library() -> None:
+    assert nearest("exp", 1000.0) == math.inf
+    assert nearest("log", 0.0) == -math.inf
+    assert nearest("exp", -1000.0) == 0.0
+    for outside in (("log", -1.0), ("asin", 2.0), ("pow", -1.0, 0.5), ("sin", math.inf)):
+        assert math.isnan(nearest(*outside))  # type: ignore[arg-type]
+
+
+def test_a_zero_has_no_sign() -> None:
+    """Zeros of graphs have none: an angle must not depend on how its zero came about."""
+    assert nearest("atan2", -0.0, -1.0) == nearest("atan2", 0.0, -1.0) == math.pi
+
+
+def test_graphs_fold_to_the_nearest_double() -> None:
+    g = Graph()
+    for x in OPERANDS:
+        assert g.number(g.call("exp", g.constant(x))) == nearest("exp", x)
+
+
+@pytest.mark.parametrize("text", ["xi^2*exp(-xi)", "1 - cos(pi*xi/2)", "max(xi, 0.2) - min(-xi, 1/3)", "atan2(xi, 2)"])
+def test_a_formula_has_the_digits_of_the_context(text: str) -> None:
+    xi = CONTEXT.mpf(0.3)
+    step = CONTEXT.mpf(2) ** -90  # Far below a double's rounding of 0.3, and seen.
+    low, high = (evaluate_extended(parse(text), {"xi": x}) for x in (xi, xi + step))
+    assert low != high and float(low) == float(high)
+
+
+@pytest.mark.parametrize("text", ["sqrt(xi - 1)", "log(xi - 1)", "1/(xi - xi)", "log(xi - xi)", "acos(xi + 1)"])
+def test_a_formula_outside_its_domain_is_no_number(text: str) -> None:
+    with pytest.raises(ArithmeticError):
+        evaluate_extended(parse(text), {"xi": CONTEXT.mpf(0.3)})
