@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import fsum
 
 import numpy as np
@@ -24,7 +23,7 @@ def mass_and_center(masses: npt.NDArray[np.float64], points: npt.NDArray[np.floa
     return mass, (x, y, z)
 
 
-def moments_of_inertia(masses: npt.NDArray[np.float64], points: npt.NDArray[np.float64]) -> Sequence[float]:
+def moments_of_inertia(masses: npt.NDArray[np.float64], points: npt.NDArray[np.float64]) -> tuple[float, ...]:
     """Ixx, Iyy, Izz, Ixy, Ixz, Iyz about the origin [kg m^2] of point masses (n) at points (n, 3)."""
     second = {pair: masses * points[:, pair[0]] * points[:, pair[1]] for pair in _PAIRS}
     squares = [second[i, i] for i in range(3)]
