@@ -5,42 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-# Functions of the whole model, and functions of one frame. The names are the methods of Model.
-MODEL_FUNCTIONS = (
-    "mass_matrix",
-    "bias",
-    "generalized_force",
-    "dynamics",
-    "forward_dynamics",
-    "inverse_dynamics",
-    "kinetic_energy",
-    "potential_energy",
-    "constraint",
-    "constraint_rate",
-    "constraint_rate_derivative",
-    "constraint_jacobian",
-    "constraint_bias",
-    "project",
-    "closure_wrenches",
-    "inverse_dynamics_derivatives",
-    "inverse_dynamics_by_par",
-    "forward_dynamics_derivatives",
-    "forward_dynamics_by_par",
-    "residual_derivatives",
-    "residual",
-    "implicit_terms",
-    "momentum",
-    "regressor",
-)
-FRAME_FUNCTIONS = (
-    "frame_pose",
-    "frame_velocity",
-    "frame_acceleration",
-    "frame_jacobian",
-    "frame_jacobian_rate",
-    "frame_derivatives",
-)
-
 
 @dataclass(frozen=True)
 class Options:
@@ -48,17 +12,18 @@ class Options:
 
     Attributes:
         functions: What to generate, in one C file; a call of anything else is then an error. None (the default):
-            `dynamics` at once, every other function by itself when it is first called.
-        frames: The frames that frame functions in `functions` are generated for; None: all.
+            `dynamics` at once, any other function when it is first called, by itself or with those that go with it
+            (`symofros/functions.py`: names, inputs, outputs, units).
+        frames: Frames that frame functions in `functions` are generated for; None: all.
         backend: "c", or "interpreter" (NumPy; slow, needs no compiler, the reference for the C code).
         flags: Flags of the C compiler, in place of the default.
         compiler: Path or name of the C compiler; None: $CC, cc, gcc, clang, then the ziglang package.
         constraints: How forward dynamics keeps them: "multipliers" solves for the forces first, by M^-1;
             "null_space" for the accelerations that are left free, without M^-1: more accurate where M is nearly
             singular, and usually slower (docs/theory/constraints.md, section 8).
-        forward_dynamics: Of trees: "factors" of the mass matrix; "articulated" bodies, which lose hundreds of times
-            fewer digits where light links carry heavy loads; "auto", the cheaper by count (docs/theory/rigid.md,
-            section 7).
+        forward_dynamics: How trees are solved: by "factors" of the mass matrix; by "articulated" bodies, which lose
+            hundreds of times fewer digits where light links carry heavy loads; "auto", the cheaper by count
+            (docs/theory/rigid.md, section 7).
         batch: How large batches are evaluated: "vector", several states at once, by code that is compiled for each
             function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
         packs: Whether values of one state that are computed alike, such as entries of a row of M, share vectors.

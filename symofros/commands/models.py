@@ -14,13 +14,13 @@ from rich.tree import Tree
 import symofros as sf
 from symofros.atomic import write_atomically
 from symofros.commands.shared import AsJson, FilePath, Floating, ModelPath, Network, load, out, refuse
-from symofros.compiler import compile_system, describe, generate, plan, requested
+from symofros.compiler import Compilation
 from symofros.diagrams.files import command as diagrams
+from symofros.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.generator.codegen.names import identifier
 from symofros.generator.passes.count import Operations, count_program
 from symofros.mechanics.topology.tree import BASE, SpanningTree
 from symofros.native import native_text
-from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 
 
 def info(model: FilePath, floating_base: Floating = False, network: Network = False, as_json: AsJson = False) -> None:
@@ -32,8 +32,10 @@ def info(model: FilePath, floating_base: Floating = False, network: Network = Fa
             raise refuse(error) from None
         return
     system = load(model, floating_base)
-    tree = plan(system)
-    counts = _counts(tree)
+    compilation = Compilation(system, sf.Options(functions=MODEL_FUNCTIONS))
+    tree = compilation.tree
+    compilation.request(FRAME_FUNCTIONS, [tree.frames[-1].name])
+    counts = {" of ".join(filter(None, key)): count for key, count in count_program(compilation.program).items()}
     names = tree.coordinates
     sizes = {"nq": len(names.q), "nv": len(names.v), "nu": len(names.u), "npar": len(names.par)}
     if as_json:
@@ -59,14 +61,6 @@ def info(model: FilePath, floating_base: Floating = False, network: Network = Fa
 def vars_of(count: Operations) -> dict[str, int]:
     """Counts by kind."""
     return {"mul": count.mul, "add": count.add, "div": count.div, "call": count.call}
-
-
-def _counts(tree: SpanningTree) -> dict[str, Operations]:
-    """Operations of each model function, and of each frame function at the last frame."""
-    frame = tree.frames[-1].name
-    keys = [(name, "") for name in MODEL_FUNCTIONS] + [(name, frame) for name in FRAME_FUNCTIONS]
-    program, _ = generate(tree, keys, describe(tree, sf.Options()))
-    return {" of ".join(filter(None, key)): count for key, count in count_program(program).items()}
 
 
 def _draw(tree: SpanningTree) -> Tree:
@@ -99,15 +93,14 @@ def compile_command(
     options = sf.Options(functions=tuple(functions.split(",")), frames=tuple(frames.split(",")) if frames else None)
     start = time.perf_counter()
     try:
-        tree = plan(system)
-        program, source = generate(tree, requested(tree, options), describe(tree, options))
-        text = source()
+        compilation = Compilation(system, options)
+        text = compilation.source()
         generated = time.perf_counter()
-        compile_system(system, options)
+        compilation.model()
     except sf.SymofrosError as error:
         raise refuse(error) from None
     done = time.perf_counter()
-    total = sum(count.total for key, count in count_program(program).items() if key[0] != "init")
+    total = sum(count.total for key, count in count_program(compilation.program).items() if key[0] != "init")
     result: dict[str, Any] = {
         "name": system.name,
         "operations": total,

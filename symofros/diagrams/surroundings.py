@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from symofros.compiler import compile_system, describe, forward_method, plan
+from symofros.compiler import compile_system, plan
 from symofros.description.forces import Friction
 from symofros.description.system import System
 from symofros.diagrams.block import ModelSetup
@@ -17,13 +17,16 @@ from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
 from symofros.expr.graph import Edge, Graph
 from symofros.expr.program import Program
 from symofros.expr.substitute import transplant
+from symofros.functions import FRAME_FUNCTIONS
+from symofros.generator.programs import ProgramBuilder
+from symofros.generator.record import model_record
 from symofros.mechanics.dynamics.constraints import moved
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.forward import Factors
-from symofros.mechanics.dynamics.functions import Request, formed
+from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.kinematics.links import set_in_motion
 from symofros.mechanics.topology.tree import SpanningTree
-from symofros.options import FRAME_FUNCTIONS, Options
+from symofros.options import Options
 from symofros.runtime.kernel import Array
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.assembly import assemble
@@ -48,6 +51,7 @@ class Models:
         self._setups = setups
         self._trees: dict[str, SpanningTree] = {}
         self._records: dict[str, ModelRecord] = {}
+        self._builders: dict[str, ProgramBuilder] = {}
         self._equations: dict[str, Equations] = {}
         self._programs: dict[tuple[str, str, str], Program] = {}
 
@@ -89,7 +93,7 @@ class Models:
     def record(self, name: str) -> ModelRecord:
         """Sizes and names of a model."""
         if name not in self._records:
-            self._records[name] = describe(self.tree(name), Options())
+            self._records[name] = model_record(self.tree(name), Options())
         return self._records[name]
 
     def parameters(self, name: str) -> Array:
@@ -167,10 +171,13 @@ class Models:
         key = model, function, frame
         if key not in self._programs:
             tree = self.tree(model)
-            if model not in self._equations:
-                self._equations[model] = Equations(tree)
-            method = forward_method(tree) if function == "forward_dynamics" else "factors"
-            self._programs[key] = formed(self._equations[model], [Request(function, frame)], method=method)
+            if model not in self._builders:
+                self._builders[model] = ProgramBuilder(tree, Options())
+                self._equations[model] = self._builders[model].equations()
+            method = self._builders[model].forward_method if function == "forward_dynamics" else "factors"
+            self._programs[key] = form_program(
+                self._equations[model], [Request(function, frame)], Methods(trees=method)
+            )
         program = self._programs[key]
         stated = program.functions[0]
         replacement = self._bound(g, model, program, stated.inputs, groups)

@@ -9,7 +9,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from symofros.compiler import GENERATOR, compile_system, describe, generate, plan, requested
+from symofros.compiler import GENERATOR, Compilation, compile_system, plan
 from symofros.description.system import System
 from symofros.diagrams.compiled import resolve
 from symofros.diagrams.diagram import Diagram
@@ -25,10 +25,11 @@ from symofros.exports.mjcf import write_mjcf
 from symofros.exports.reference import POINTS, checks
 from symofros.exports.sfunction import write_sfunction
 from symofros.exports.urdf import write_urdf
+from symofros.functions import FRAME_FUNCTIONS, exported
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.names import identifier
 from symofros.loading import load
-from symofros.options import FRAME_FUNCTIONS, Options
+from symofros.options import Options
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.assembly import assemble
@@ -47,21 +48,6 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
 # Targets that give exact derivatives of their outputs, by inputs too.
 _DIFFERENTIATED = ("fmu2", "fmu3")
 _DESCRIBED: dict[str, Callable[[System, str | None, Path, str], Exported]] = {"urdf": write_urdf, "mjcf": write_mjcf}
-# What wrappers call: the paper's table 1, and what stepping and linearisation need.
-_FUNCTIONS = (
-    "mass_matrix",
-    "bias",
-    "generalized_force",
-    "dynamics",
-    "forward_dynamics",
-    "inverse_dynamics",
-    "kinetic_energy",
-    "potential_energy",
-    "forward_dynamics_derivatives",
-    "implicit_terms",
-)
-_CONSTRAINED = ("constraint", "constraint_rate", "constraint_jacobian", "constraint_bias", "project")
-_KINEMATICS = ("frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian", "frame_jacobian_rate")
 
 
 def export(
@@ -173,28 +159,25 @@ def _material(
     differentiated: bool,
 ) -> Material:
     """What an export is made of; `differentiated`: with the derivatives of outputs by prescribed motions, if any."""
-    tree = plan(system)
     _refuse_variational(system, stepping)
-    needs = tuple(stepping.method.family.functions.values())
-    own = _FUNCTIONS + (_CONSTRAINED if system.constraints else ())
-    functions = tuple(dict.fromkeys((*own, *needs, *_KINEMATICS)))
-    options = Options(functions, None if frames is None else tuple(frames))
-    requests = requested(tree, options)
-    record = describe(tree, options)
+    needs = stepping.method.family.functions.values()
+    functions = tuple(dict.fromkeys((*exported(bool(system.constraints)), *needs)))
+    compilation = Compilation(system, Options(functions, None if frames is None else tuple(frames)))
+    record = compilation.record
     c_name = identifier(name or record.name)
-    shown = _outputs(record.frame_names, [key[1] for key in requests if key[0] in FRAME_FUNCTIONS], outputs)
+    framed = [request.frame for request in compilation.requests if request.name in FRAME_FUNCTIONS]
+    shown = _outputs(record.frame_names, framed, outputs)
     if differentiated and record.driven and shown:
-        requests += requested(tree, Options(("frame_derivatives",), shown))
-    program, source = generate(tree, requests, record, c_name=c_name)
+        compilation.request(("frame_derivatives",), shown)
     interpreted = compile_system(system, Options(backend="interpreter"))
     q, v = _start(interpreted, start)
-    kernels = InterpretedUnit(program).kernels
-    order = tuple((request.name, request.frame) for request in requests)
+    kernels = InterpretedUnit(compilation.program).kernels
+    order = tuple((request.name, request.frame) for request in compilation.requests)
     return Material(
         system,
         record,
         c_name,
-        source(),
+        compilation.source(c_name),
         order,
         checks(record, kernels, order, q),
         POINTS,

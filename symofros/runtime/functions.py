@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
-from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
+from symofros.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS, generated_with
 from symofros.runtime.kernel import Array, Kernel, Manner, Numbers, Precision, Unit
 from symofros.runtime.layout import by_columns, flat, states
 from symofros.runtime.record import ModelRecord
@@ -329,7 +329,8 @@ class Functions:
                     "add it to the options, or leave functions out to have each made when first called",
                 )
             )
-        self._kernels.update(self._build(((name, frame),)).kernels)
+        together = ((name, frame),) if frame else tuple((other, "") for other in generated_with(name, self.nc > 0))
+        self._kernels.update(self._build(together).kernels)
         return self._kernels[name, frame]
 
     def _array(self, group: str, values: Given, size: int, dtype: npt.DTypeLike = np.float64) -> Numbers:

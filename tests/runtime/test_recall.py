@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models.rigid.random_tree import random_tree
-from symofros import compiler
+from symofros.generator import units
 from symofros.runtime import build
 
 
@@ -28,8 +28,8 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         texts.append(original(*arguments, **named))  # type: ignore[arg-type]
         return texts[-1]
 
-    original = compiler.model_source
-    monkeypatch.setattr(compiler, "model_source", model_source)
+    original = units.model_source
+    monkeypatch.setattr(units, "model_source", model_source)
     return texts
 
 

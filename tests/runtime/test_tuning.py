@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.compiler import describe, plan
+from symofros.compiler import Compilation
 from symofros.native import native_text
 from symofros.runtime import tuning
 from symofros.runtime.toolchain import find_toolchain
@@ -91,7 +91,7 @@ def test_slower_builds_lose() -> None:
     for flags in (("-O0",), ("-O2",)):
         options = sf.Options(functions=("dynamics",), batch="loop", flags=flags)
         path, symbol = sf.compile_library(system, options)
-        stated[path] = symbol, describe(plan(system), options).hash
+        stated[path] = symbol, Compilation(system, options).record.hash
 
     def load(path: Path) -> tuning.CompiledUnit:
         symbol, of = stated[path]

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property
 
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.packs import EMPTY
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.applied.forces import generalized_forces, stored_energy
 from symofros.mechanics.dynamics.articulated import articulated_acceleration, is_local
 from symofros.mechanics.dynamics.constraints import Constraints, Row
-from symofros.mechanics.dynamics.derivatives import by_inputs
+from symofros.mechanics.dynamics.derivatives import by_configuration, by_inputs
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
 from symofros.mechanics.dynamics.forward import Factors, SingularMassMatrixError
 from symofros.mechanics.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
@@ -21,6 +23,7 @@ from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.mechanics.dynamics.momentum import coadjoint, momentum_rate
 from symofros.mechanics.dynamics.rotors import MovingRotor, rotors_of
+from symofros.mechanics.dynamics.wrenches import closure_wrenches
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import Motion, set_in_motion
 from symofros.mechanics.topology.tree import SpanningTree
@@ -38,9 +41,16 @@ class Equations:
         self.tree = tree
         self.g = Graph()
         self.nv = len(tree.coordinates.v)
+        self.nu = len(tree.coordinates.u)
         self.efforts = tree.coordinates.efforts
         # Prescribed motions are inputs that every function may depend on.
-        self.always = ("u",) if len(tree.coordinates.u) > self.efforts else ()
+        self.implicit_inputs = ("u",) if self.nu > self.efforts else ()
+
+    def fork(self) -> Equations:
+        """A copy with a graph of its own, in which the kinematics are formed; what else it forms, this one lacks."""
+        assert self.motion.g is self.g  # Formed once, for all copies.
+        kept = (self.tree, self.tree.coordinates, EMPTY)
+        return copy.deepcopy(self, {id(item): item for item in kept})
 
     @cached_property
     def motion(self) -> Motion:
@@ -83,8 +93,8 @@ class Equations:
 
     @cached_property
     def acceleration(self) -> list[Edge]:
-        """V' = M^-1 (Q - h)."""
-        return self.factors.solve(self.net)
+        """Acceleration v' = M^-1 (Q - h) (nv)."""
+        return self.factors.solve(self.force_minus_bias)
 
     @property
     def is_articulated(self) -> bool:
@@ -93,7 +103,7 @@ class Equations:
 
     @cached_property
     def articulated(self) -> list[Edge]:
-        """The same by articulated bodies.
+        """Acceleration v' by articulated bodies (nv).
 
         Raises:
             DescriptionError: As for `factors`; or not `is_articulated`.
@@ -113,7 +123,7 @@ class Equations:
 
     @cached_property
     def factors(self) -> Factors:
-        """Those of M.
+        """Factors of M.
 
         Raises:
             DescriptionError: A speed moves no mass whatever the state, and so has no acceleration.
@@ -153,35 +163,70 @@ class Equations:
                 )
 
     @cached_property
-    def net(self) -> list[Edge]:
+    def force_minus_bias(self) -> list[Edge]:
         """Q - h (nv)."""
         return [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)]
 
     @cached_property
     def constraints(self) -> list[Row]:
-        """One row a condition."""
+        """Constraint equations, one row a condition (nc)."""
         return Constraints(self.frames).rows()
 
+    @property
+    def phi(self) -> list[Edge]:
+        """Residual phi of the position of each condition; zero for conditions on speeds (nc)."""
+        return [row.phi for row in self.constraints]
+
+    @property
+    def constraint_rate(self) -> list[Edge]:
+        """Rate G v - b of each condition (nc)."""
+        return [row.rate for row in self.constraints]
+
+    @property
+    def G(self) -> Matrix:
+        """Constraint Jacobian (nc x nv)."""
+        return [list(row.G) for row in self.constraints]
+
+    @property
+    def gamma(self) -> list[Edge]:
+        """Right-hand side of G v' = gamma (nc)."""
+        return [row.gamma for row in self.constraints]
+
     @cached_property
-    def stabilised(self) -> list[Edge]:
-        """What G v' must equal, with Baumgarte's terms: gamma - 2 alpha (G v - b) - beta^2 phi (nc)."""
+    def gamma_baumgarte(self) -> list[Edge]:
+        """Right-hand side with Baumgarte's terms: gamma - 2 alpha (G v - b) - beta^2 phi (nc)."""
         g, nc = self.g, len(self.constraints)
-        found = []
+        stabilised = []
         for i, row in enumerate(self.constraints):
             alpha, beta = g.input("gains", i), g.input("gains", nc + i)
             damped = g.mul(g.add(alpha, alpha), row.rate)
-            found.append(g.sub(g.sub(row.gamma, damped), g.mul(g.mul(beta, beta), row.phi)))
-        return found
+            stabilised.append(g.sub(g.sub(row.gamma, damped), g.mul(g.mul(beta, beta), row.phi)))
+        return stabilised
 
     @cached_property
-    def required(self) -> list[Edge]:
-        """M a + h - Q(q, v, 0): what the inputs must supply for an acceleration a."""
+    def _wrenches(self) -> tuple[Matrix, Matrix]:
+        on_second, on_first = closure_wrenches(self.frames, self.constraints)
+        return [list(wrench) for wrench in on_second], [list(wrench) for wrench in on_first]
+
+    @property
+    def wrenches_on_second(self) -> Matrix:
+        """Force and moment of each constraint on its second frame (nw x 6)."""
+        return self._wrenches[0]
+
+    @property
+    def wrenches_on_first(self) -> Matrix:
+        """Force and moment of each constraint on its first frame (nw x 6)."""
+        return self._wrenches[1]
+
+    @cached_property
+    def inverse_dynamics(self) -> list[Edge]:
+        """M a + h - Q(q, v, 0): what the inputs must supply for an acceleration a (nv)."""
         total = inertia_forces(self.motion, self._inertias[0], self.rotors, self.v_rate, self.gravity)
         passive = substitute(self.g, self.Q, {self.g.input("u", i): ZERO for i in range(self.efforts)})
         return [self.g.sub(needed, given) for needed, given in zip(total, passive, strict=True)]
 
-    def unbalanced(self, a: Sequence[Edge]) -> list[Edge]:
-        """M a + h - Q (nv)."""
+    def unconstrained_residual(self, a: Sequence[Edge]) -> list[Edge]:
+        """M a + h - Q at an acceleration a (nv)."""
         total = inertia_forces(self.motion, self._inertias[0], self.rotors, a, self.gravity)
         return [self.g.sub(needed, given) for needed, given in zip(total, self.Q, strict=True)]
 
@@ -189,23 +234,86 @@ class Equations:
     def residual(self) -> list[Edge]:
         """M a + h - Q - G^T lam, then G a - gamma: zero for the motion that the inputs produce (nv + nc)."""
         g, a = self.g, self.v_rate
-        found = self.unbalanced(a)
+        forces = self.unconstrained_residual(a)
         for i, row in enumerate(self.constraints):
             lam = g.input("lam", i)
-            found = [g.sub(one, g.mul(lam, entry)) for one, entry in zip(found, row.G, strict=True)]
-        bound = [
+            forces = [g.sub(force, g.mul(lam, entry)) for force, entry in zip(forces, row.G, strict=True)]
+        conditions = [
             g.sub(g.sum(g.mul(x, y) for x, y in zip(row.G, a, strict=True)), row.gamma) for row in self.constraints
         ]
-        return found + bound
+        return forces + conditions
+
+    @property
+    def dynamic_residual(self) -> list[Edge]:
+        """M a + h - Q - G^T lam (nv)."""
+        return self.residual[: self.nv]
+
+    # Derivatives, along the manifold of q where they are by q.
+
+    def by_q(self, edges: Sequence[Edge]) -> Matrix:
+        """Derivatives of some edges by the coordinates, one column a speed."""
+        return by_configuration(self.motion, edges)
+
+    def by_v(self, edges: Sequence[Edge]) -> Matrix:
+        """Derivatives of some edges by the speeds."""
+        return by_inputs(self.motion, edges, "v", self.nv)
+
+    def by_u(self, edges: Sequence[Edge]) -> Matrix:
+        """Derivatives of some edges by the inputs."""
+        return by_inputs(self.motion, edges, "u", self.nu)
+
+    def by_par(self, edges: Sequence[Edge]) -> Matrix:
+        """Derivatives of some edges by the run-time parameters."""
+        return by_inputs(self.motion, edges, "par", len(self.tree.coordinates.par))
+
+    @cached_property
+    def residual_by_q(self) -> Matrix:
+        """Derivative of the residual by q (nv + nc x nv)."""
+        return self.by_q(self.residual)
+
+    @cached_property
+    def residual_by_v(self) -> Matrix:
+        """Derivative of the residual by v (nv + nc x nv)."""
+        return self.by_v(self.residual)
+
+    @cached_property
+    def residual_by_u(self) -> Matrix:
+        """Derivative of the residual by u (nv + nc x nu)."""
+        return self.by_u(self.residual)
+
+    @cached_property
+    def residual_by_par(self) -> Matrix:
+        """Derivative of the residual by the run-time parameters (nv + nc x npar)."""
+        return self.by_par(self.residual)
+
+    @cached_property
+    def constraint_rate_by_q(self) -> Matrix:
+        """Derivative of G v - b by q (nc x nv)."""
+        return self.by_q(self.constraint_rate)
+
+    @cached_property
+    def inverse_dynamics_by_q(self) -> Matrix:
+        """Derivative of the inverse dynamics by q (nv x nv)."""
+        return self.by_q(self.inverse_dynamics)
+
+    @cached_property
+    def inverse_dynamics_by_v(self) -> Matrix:
+        """Derivative of the inverse dynamics by v (nv x nv)."""
+        return self.by_v(self.inverse_dynamics)
+
+    @cached_property
+    def inverse_dynamics_by_par(self) -> Matrix:
+        """Derivative of the inverse dynamics by the run-time parameters (nv x npar)."""
+        return self.by_par(self.inverse_dynamics)
 
     @cached_property
     def momentum(self) -> list[Edge]:
-        """P = M v (nv)."""
+        """Momentum p = M v (nv)."""
         return [self.g.sum(self.g.mul(m, self.g.input("v", k)) for k, m in enumerate(row)) for row in self.M]
 
     @cached_property
     def momentum_force(self) -> list[Edge]:
-        """F with p' = F + ad_v^T p, for which the equations of motion give F = dM/dt v + Q - h - ad_v^T p (nv)."""
+        """Force F with p' = F + ad_v^T p: the equations of motion give F = dM/dt v + Q - h - ad_v^T p (nv)."""
         g = self.g
         rate = momentum_rate(self.motion, self.momentum)
         turning = coadjoint(self.motion, self.momentum)

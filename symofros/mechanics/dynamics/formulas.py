@@ -7,18 +7,17 @@ from collections.abc import Sequence
 from symofros.description.values import Value, symbols
 from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
 from symofros.expr.derivative import directional
-from symofros.expr.graph import ONE, Edge, Graph
+from symofros.expr.graph import ONE, Edge
 from symofros.expr.program import Function, Output, Program
 from symofros.mechanics.dynamics.derivatives import by_configuration, by_inputs
-from symofros.mechanics.kinematics.links import Motion, set_in_motion
-from symofros.mechanics.topology.tree import SpanningTree
+from symofros.mechanics.kinematics.links import Motion
 
 
-def formula_program(tree: SpanningTree, values: Sequence[tuple[Value, int]], derivatives: bool = True) -> Program:
+def formula_program(motion: Motion, values: Sequence[tuple[Value, int]], derivatives: bool = True) -> Program:
     """One function, "formulas", of q, v, u and t: the values, and their derivatives along the manifold of q and by v.
 
     Args:
-        tree: Its names are what formulas may use.
+        motion: Kinematics of the tree, in whose graph the formulas are formed; its names are what they may use.
         values: Numbers and formulas, and how often each is differentiated by t.
         derivatives: Whether to form those by q and v.
 
@@ -26,7 +25,7 @@ def formula_program(tree: SpanningTree, values: Sequence[tuple[Value, int]], der
         UnknownNameError: A formula uses a name that the mechanism lacks.
         DescriptionError: One that is differentiated depends on more than t and parameters.
     """
-    names = tree.coordinates
+    tree, names = motion.tree, motion.tree.coordinates
     known = {*names.symbols, *names.constants}
     for value, _ in values:
         for name in sorted(symbols(value) - known):
@@ -38,7 +37,6 @@ def formula_program(tree: SpanningTree, values: Sequence[tuple[Value, int]], der
                     did_you_mean(name, known) or "see model.names",
                 )
             )
-    motion = set_in_motion(Graph(), tree)
     g, nv, n = motion.g, len(names.v), len(values)
     edges = [_rate(motion, value, order) for value, order in values]
     outputs = [Output("value", (n,), tuple(edges))]

@@ -17,26 +17,15 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from symofros.compiler import compile_system, describe, generate, plan, requested
+from symofros.compiler import Compilation, compile_system, plan
 from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.functions import exported
 from symofros.generator.passes.count import count_program
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.studio.editor.tasks import Json, Tell, system_of
 from symofros.studio.editor.units import coordinate_units
 
-# What the page shows the cost of.
-FUNCTIONS = (
-    "mass_matrix",
-    "bias",
-    "generalized_force",
-    "dynamics",
-    "forward_dynamics",
-    "inverse_dynamics",
-    "kinetic_energy",
-    "potential_energy",
-)
-CONSTRAINED = ("constraint", "constraint_jacobian", "constraint_bias")
 POINTS, MAX_POINTS = 1000, 5000
 
 
@@ -45,15 +34,15 @@ def compile_model(request: Json, tell: Tell) -> Json:
     tell(0, 4, "reading")
     system = system_of(request)
     start = time.perf_counter()
-    tree = plan(system)
-    options = sf.Options(FUNCTIONS + (CONSTRAINED if system.constraints else ()))
+    shown = exported(bool(system.constraints), ("dynamics", "constraints"))
+    compilation = Compilation(system, sf.Options(shown))
     tell(1, 4, "deriving the equations")
-    program, source = generate(tree, requested(tree, options), describe(tree, options))
+    program = compilation.program
     tell(2, 4, "writing C")
-    text = source()
+    text = compilation.source()
     generated = time.perf_counter()
     tell(3, 4, "compiling C")
-    model = compile_system(system, options)
+    model = compilation.model()
     done = time.perf_counter()
     counts = {
         key[0]: {"mul": n.mul, "add": n.add, "div": n.div, "call": n.call, "total": n.total}

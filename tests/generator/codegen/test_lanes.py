@@ -14,10 +14,10 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.compiler import compile_library, describe, generate, plan
+from symofros.compiler import Compilation, compile_library
+from symofros.functions import MODEL_FUNCTIONS
 from symofros.generator.codegen.model import model_source
 from symofros.native import native_text
-from symofros.options import MODEL_FUNCTIONS
 from symofros.runtime import library
 from symofros.runtime.kernel import Array, Kernel, Lanes, Manner
 from symofros.runtime.library import CompiledUnit
@@ -41,7 +41,7 @@ def stated(case: str) -> sf.System:
 
 
 def parameters(case: str) -> tuple[float, ...]:
-    return describe(plan(stated(case)), sf.Options()).par_default
+    return Compilation(stated(case)).record.par_default
 
 
 @cache
@@ -49,7 +49,7 @@ def unit(case: str, batch: str, flags: tuple[str, ...], functions: tuple[str, ..
     system = stated(case)
     options = sf.Options(functions=functions, flags=flags, batch=batch)  # type: ignore[arg-type]
     path, symbol = compile_library(system, options)
-    return CompiledUnit(path, symbol, native_text("model/symofros_model.h"), describe(plan(system), options).hash)
+    return CompiledUnit(path, symbol, native_text("model/symofros_model.h"), Compilation(system, options).record.hash)
 
 
 def given(kernel: Kernel, n: int, shared: tuple[str, ...] = ()) -> list[Array]:
@@ -207,20 +207,17 @@ def test_builds_without_warnings(flags: tuple[str, ...], lanes: Lanes, tmp_path:
     """As strict C99, where batches are loops, and on vectors of every width."""
     if not any(word in platform.machine() for word in ("x86", "AMD64")) and len(flags) > 1:
         pytest.skip("flags of another processor")
-    tree = plan(MODELS["friction_arm"])
-    record = describe(tree, sf.Options())
-    program, _ = generate(tree, [("dynamics", ""), ("forward_dynamics", "")], record)
-    compile_strictly(tmp_path, model_source(program, record, "test", in_lanes=lanes), COMPILERS[0], *flags)
+    stated = Compilation(MODELS["friction_arm"], sf.Options(functions=("dynamics", "forward_dynamics")))
+    source = model_source(stated.program, stated.record, "test", in_lanes=lanes)
+    compile_strictly(tmp_path, source, COMPILERS[0], *flags)
 
 
 @pytest.mark.parametrize(("case", "first"), [("open_chain_5r", True), ("chain22", False)])
 def test_few_sines_come_first(case: str, first: bool) -> None:
     """Those of several vectors follow each other, so that none waits; many angles fill the processor by themselves."""
-    tree = plan(MODELS[case])
-    record = describe(tree, sf.Options())
-    program, _ = generate(tree, [("mass_matrix", "")], record)
-    text = model_source(program, record, "test", Lanes())
-    chunk = text.partition(f"{record.name}_mass_matrix_f0_v_0(")[2].partition("\n}")[0]
+    stated = Compilation(MODELS[case], sf.Options(functions=("mass_matrix",)))
+    text = model_source(stated.program, stated.record, "test", Lanes())
+    chunk = text.partition(f"{stated.record.name}_mass_matrix_f0_v_0(")[2].partition("\n}")[0]
     assert "sym_sincos_v(" in chunk
     assert ("SYM_PUT" not in chunk and "work[" in chunk) is first
 
@@ -234,7 +231,7 @@ def test_sines_of_sines_wait() -> None:
     first, _, others = path.with_suffix(".c").read_text(encoding="utf-8").partition("_v_0(")[2].partition("_v_1(")
     assert "sym_sincos_v(2," in first and "sym_sincos_v(1," not in first and "sym_sincos_v(1," in others
     kernel = CompiledUnit(
-        path, symbol, native_text("model/symofros_model.h"), describe(plan(system), options).hash
+        path, symbol, native_text("model/symofros_model.h"), Compilation(system, options).record.hash
     ).kernels["generalized_force", ""]
     x = np.linspace(-3.0, 3.0, 999)[:, None]
     inputs = [x if name == "q" else np.zeros((1, size)) for name, size in kernel.signature.inputs]

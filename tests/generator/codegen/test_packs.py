@@ -11,7 +11,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.compiler import describe, generate, plan
+from symofros.compiler import Compilation
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import ONE, ZERO, Graph
 from symofros.expr.packs import WIDTH, Pack, combined
@@ -36,11 +36,8 @@ CASES = (
 
 
 def source(system: sf.System, functions: tuple[str, ...], packs: bool = True) -> str:
-    tree = plan(system)
-    options = sf.Options(functions=functions)
-    record = describe(tree, options)
-    program, _ = generate(tree, [(name, "") for name in functions], record, method="factors")
-    return model_source(program, record, "test", packs=packs)
+    stated = Compilation(system, sf.Options(functions=functions, forward_dynamics="factors"))
+    return model_source(stated.program, stated.record, "test", packs=packs)
 
 
 @pytest.mark.parametrize("name", CASES)

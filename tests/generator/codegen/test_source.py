@@ -8,15 +8,16 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Literal
 
 import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.compiler import describe, generate, plan, requested
+from symofros.compiler import Compilation
+from symofros.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.generator.codegen.names import c_string, identifier, local_name
 from symofros.native import native_text
-from symofros.options import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from tests.models import system
 
 COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
@@ -48,10 +49,11 @@ def test_builds_as_strict_c99(case: str, compiler: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("form", ["multipliers", "null_space"])
-def test_derivatives_and_solvers_build_as_strict_c99(form: str, compiler: str, tmp_path: Path) -> None:
-    options = sf.Options(functions=MODEL_FUNCTIONS + FRAME_FUNCTIONS)
-    tree = plan(MODELS["slider_crank"])
-    compile_strictly(tmp_path, generate(tree, requested(tree, options), describe(tree, options), form)[1](), compiler)
+def test_derivatives_and_solvers_build_as_strict_c99(
+    form: Literal["multipliers", "null_space"], compiler: str, tmp_path: Path
+) -> None:
+    options = sf.Options(functions=MODEL_FUNCTIONS + FRAME_FUNCTIONS, constraints=form)
+    compile_strictly(tmp_path, Compilation(MODELS["slider_crank"], options).source(), compiler)
 
 
 @pytest.mark.skipif(shutil.which("nm") is None, reason="needs binutils")
@@ -139,9 +141,7 @@ def test_functions_stay_within_the_chunk_limit() -> None:
 
 
 def source_of_functions(stated: sf.System, functions: tuple[str, ...]) -> str:
-    options = sf.Options(functions=functions)
-    tree = plan(stated)
-    return generate(tree, requested(tree, options), describe(tree, options))[1]()
+    return Compilation(stated, sf.Options(functions=functions)).source()
 
 
 def test_what_no_output_needs_is_not_emitted() -> None:

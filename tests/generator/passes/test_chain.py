@@ -15,7 +15,8 @@ from symofros.expr.program import Function, Output, Program
 from symofros.generator.passes.chain import chain_sums, check_packs
 from symofros.generator.passes.count import count_program
 from symofros.generator.passes.stage import hoist_parameters
-from symofros.mechanics.dynamics.functions import Request, write_program
+from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.dynamics.functions import Request, form_program
 from tests.models import system
 
 SIZE = 6
@@ -118,7 +119,7 @@ def test_values_stay_and_instructions_fall(steps: list[tuple[str, int, int, bool
 
 @pytest.mark.parametrize("name", ["tree0", "parametrised0", "parametrised1"])
 def test_models_take_fewer_instructions(name: str) -> None:
-    staged = hoist_parameters(write_program(plan(system(name)), [Request("dynamics")]))
+    staged = hoist_parameters(form_program(Equations(plan(system(name))), [Request("dynamics")]))
     chained = chain_sums(staged)
     check_packs(chained)
     assert fused(chained) < fused(staged)
@@ -130,7 +131,9 @@ def test_models_take_fewer_instructions(name: str) -> None:
 
 def test_packs_come_along() -> None:
     """Of a chain whose columns of M share vectors, none is lost, and none would wait for itself."""
-    staged = hoist_parameters(write_program(plan(chain(16)), [Request("dynamics"), Request("forward_dynamics")]))
+    staged = hoist_parameters(
+        form_program(Equations(plan(chain(16))), [Request("dynamics"), Request("forward_dynamics")])
+    )
     chained = chain_sums(staged)
     check_packs(chained)
     lanes = [
@@ -146,7 +149,7 @@ def test_what_other_functions_read_does_not_split_sums() -> None:
     tree = plan(system("tree0"))
     names = ("dynamics", "kinetic_energy", "mass_matrix")
     alone, among = (
-        chain_sums(hoist_parameters(write_program(tree, [Request(name) for name in chosen])))
+        chain_sums(hoist_parameters(form_program(Equations(tree), [Request(name) for name in chosen])))
         for chosen in (names[1:2], names)
     )
     rng = np.random.default_rng(0)
@@ -166,7 +169,7 @@ def test_what_other_functions_read_does_not_split_sums() -> None:
 )
 def test_vectors_say_what_scalars_say(name: str, function: str) -> None:
     """Each lane that a function needs is the sum that its pack states, to the bit, of lanes that are there."""
-    staged = hoist_parameters(write_program(plan(MODELS[name]), [Request(function)]))
+    staged = hoist_parameters(form_program(Equations(plan(MODELS[name])), [Request(function)]))
     for program in (staged, chain_sums(staged)):
         g, edges = program.graph, program.functions[0].edges()
         needed = {*needed_nodes(g, edges, program.pre), *program.pre, *g.value, *g.slot}

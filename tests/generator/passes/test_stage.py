@@ -8,12 +8,13 @@ from symofros.expr.evaluate import needed_nodes
 from symofros.generator.passes import run_passes
 from symofros.generator.passes.count import count_operations, count_program
 from symofros.generator.passes.stage import hoist_parameters
-from symofros.mechanics.dynamics.functions import Request, write_program
+from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.dynamics.functions import Request, form_program
 from tests.models import system
 
 
 def test_parameter_work_moves_to_init() -> None:
-    raw = write_program(plan(system("parametrised0")), [Request("mass_matrix")])
+    raw = form_program(Equations(plan(system("parametrised0"))), [Request("mass_matrix")])
     staged = hoist_parameters(raw)
     before = count_operations(raw.graph, raw.functions[0].edges())
     counts = count_program(staged)
@@ -29,7 +30,7 @@ def test_parameter_work_moves_to_init() -> None:
 
 
 def test_constants_leave_nothing_to_init() -> None:
-    staged = run_passes(write_program(plan(system("tree0")), [Request("dynamics")]))
+    staged = run_passes(form_program(Equations(plan(system("tree0"))), [Request("dynamics")]))
     assert staged.init == ()
 
 

@@ -23,7 +23,8 @@ from symofros.expr.program import Program
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.passes import run_passes
 from symofros.generator.passes.count import Operations, count_program
-from symofros.mechanics.dynamics.functions import Request, methods, write_program
+from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.dynamics.functions import Methods, Request, form_program, forward_methods
 from tests.mechanics.beams.cases import CASES
 
 Way = Literal["articulated", "factors"]
@@ -108,14 +109,14 @@ def geared(carrier: str | None) -> sf.System:
 
 @pytest.mark.parametrize("carrier", ["b1", "world"])
 def test_rotors_on_the_parent_or_at_rest(carrier: str) -> None:
-    assert methods(plan(geared(carrier))) == WAYS
+    assert forward_methods(Equations(plan(geared(carrier)))) == WAYS
     assert difference(geared(carrier)) < TOLERANCE
 
 
 @pytest.mark.parametrize("carrier", ["b0", "b2"])
 def test_rotors_on_a_third_body_need_the_factors(carrier: str) -> None:
     """Its own link counts as one: the rotor turns with what it drives."""
-    assert methods(plan(geared(carrier))) == ("factors",)
+    assert forward_methods(Equations(plan(geared(carrier)))) == ("factors",)
     with pytest.raises(sf.DescriptionError, match=r"rotor.*\n.*\n.*remedy.*'factors'"):
         interpreted(geared(carrier), "articulated")
 
@@ -140,7 +141,7 @@ def test_the_same_refusals() -> None:
 @cache
 def program(links: int, way: Way) -> Program:
     """Forward dynamics of a chain whose inertias are run-time parameters."""
-    return run_passes(write_program(plan(chain(links)), [Request(NAME)], method=way))
+    return run_passes(form_program(Equations(plan(chain(links))), [Request(NAME)], Methods(trees=way)))
 
 
 def counted(links: int, way: Way) -> Operations:
@@ -212,7 +213,9 @@ def test_auto_is_what_was_measured_to_be_faster(make: Callable[[], sf.System], w
     """docs/theory/code.md, section 2, states the times."""
     system = make()
     ours = count_program(sf.program_of(system, [NAME]))[NAME, ""]
-    alone = run_passes(write_program(plan(system), [Request(NAME)], method=way))
+    alone = run_passes(form_program(Equations(plan(system)), [Request(NAME)], Methods(trees=way)))
     assert ours == count_program(alone)[NAME, ""]
-    other = run_passes(write_program(plan(system), [Request(NAME)], method=WAYS[way == "articulated"]))
+    other = run_passes(
+        form_program(Equations(plan(system)), [Request(NAME)], Methods(trees=WAYS[way == "articulated"]))
+    )
     assert ours != count_program(other)[NAME, ""]

@@ -1,0 +1,141 @@
+"""SpanningTree, requests -> optimised Program: kinematics formed once, forward dynamics by the cheaper method."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from functools import cached_property
+
+from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
+from symofros.expr.program import Program
+from symofros.functions import FUNCTIONS
+from symofros.generator.codegen.effort import cheapest
+from symofros.generator.passes import run_passes
+from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.dynamics.functions import Methods, Request, form_program, forward_methods
+from symofros.mechanics.topology.tree import SpanningTree
+from symofros.options import Options
+
+# What is generated at once where the options name no functions.
+_EAGER = (Request("dynamics"),)
+_FORWARD = Request("forward_dynamics")
+
+
+class ProgramBuilder:
+    """Optimised programs of one tree under one set of options.
+
+    Each program is formed on a copy of the tree's kinematics: its text, and so the last bits of its results, depend on
+    what it is asked for, and not on what was asked before.
+
+    Args:
+        tree: The mechanism, checked and numbered.
+        options: `constraints` and `forward_dynamics` say how forward dynamics is formed.
+    """
+
+    def __init__(self, tree: SpanningTree, options: Options) -> None:
+        self.tree, self._options = tree, options
+        self._equations = Equations(tree)
+        self._lock = threading.RLock()  # Functions of a model may be called, and so formed, from several threads.
+        self._latest: tuple[tuple[Request, ...], Program] | None = None
+
+    def equations(self) -> Equations:
+        """Equations to form further functions on; only the kinematics are there."""
+        with self._lock:
+            return self._equations.fork()
+
+    def program(self, requests: Sequence[Request]) -> Program:
+        """The optimised program of some functions; the latest one is kept.
+
+        Args:
+            requests: Functions in order.
+
+        Raises:
+            DescriptionError: A function can't be formed, such as forward dynamics without inertia.
+        """
+        wanted = tuple(requests)
+        with self._lock:
+            if self._latest is None or self._latest[0] != wanted:
+                self._latest = wanted, self._formed(wanted)
+            return self._latest[1]
+
+    @property
+    def forward_method(self) -> str:
+        """The cheaper way to the forward dynamics, by count of operations: "articulated" or "factors"."""
+        with self._lock:
+            return self._cheapest[0]
+
+    def _formed(self, requests: tuple[Request, ...]) -> Program:
+        method: str = self._options.forward_dynamics
+        if method == "auto":
+            if _FORWARD not in requests:
+                return self._optimised(requests, "factors")
+            method, alone = self._cheapest
+            if alone is not None and requests == (_FORWARD,):
+                return alone
+        return self._optimised(requests, method)
+
+    @cached_property
+    def _cheapest(self) -> tuple[str, Program | None]:
+        """The cheaper way to the forward dynamics, and their program where there were several to be counted."""
+        methods = forward_methods(self.equations())
+        if len(methods) == 1:
+            return methods[0], None
+        programs = {method: self._optimised((_FORWARD,), method) for method in methods}
+        method = cheapest(programs)
+        return method, programs[method]
+
+    def _optimised(self, requests: Sequence[Request], method: str) -> Program:
+        return run_passes(form_program(self.equations(), requests, Methods(self._options.constraints, method)))
+
+
+def requested(tree: SpanningTree, options: Options) -> tuple[Request, ...]:
+    """The functions that options ask for at once.
+
+    Raises:
+        UnknownNameError: No such function or frame.
+        DescriptionError: The options ask for nothing.
+    """
+    if options.functions is None:
+        return _EAGER
+    for name in options.functions:
+        if name not in FUNCTIONS:
+            raise UnknownNameError(
+                Problem(
+                    f"options: no function '{name}'",
+                    name,
+                    "a function of the model",
+                    did_you_mean(name, FUNCTIONS),
+                )
+            )
+    frames = _frames(tree, options)
+    rows = [FUNCTIONS[name] for name in options.functions]
+    requests = [Request(row.name) for row in rows if not row.of_frame]
+    requests += [Request(row.name, frame) for row in rows if row.of_frame for frame in frames]
+    if not requests:
+        raise DescriptionError(
+            Problem(
+                "options: nothing to generate",
+                "no functions",
+                "functions name at least one, and frames of it",
+                "name some, or leave functions out",
+            )
+        )
+    return tuple(requests)
+
+
+def _frames(tree: SpanningTree, options: Options) -> list[str]:
+    """Public names of the frames that options name; all by default."""
+    names = [frame.name for frame in tree.frames]
+    if options.frames is None:
+        return names
+    for name in options.frames:
+        if not any(name in (frame.name, frame.qualified) for frame in tree.frames):
+            raise UnknownNameError(
+                Problem(
+                    f"system '{tree.system.name}': no frame '{name}'",
+                    name,
+                    "frames are those of its bodies",
+                    did_you_mean(name, names),
+                )
+            )
+    return [tree.frame(name).name for name in options.frames]

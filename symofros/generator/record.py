@@ -1,0 +1,90 @@
+"""SpanningTree -> ModelRecord: what a model is besides its functions."""
+
+from __future__ import annotations
+
+import hashlib
+
+from symofros.description.constraints import AXES, Closure
+from symofros.description.system import System
+from symofros.expr.expression import evaluate
+from symofros.mechanics.beams.deformation import small_coordinates
+from symofros.mechanics.dynamics.wrenches import acts_on_bodies
+from symofros.mechanics.kinematics.joint import neutral_coordinates
+from symofros.mechanics.topology.coordinates import angles, joint_sizes
+from symofros.mechanics.topology.tree import SpanningTree, frame_of
+from symofros.options import Options
+from symofros.runtime.record import ClosureRecord, ModelRecord, Segment
+
+GENERATOR = "symofros 0.1.0"
+
+
+def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
+    """Sizes, names, defaults and limits of the model of a tree."""
+    names = tree.coordinates
+    lower: list[float] = []
+    upper: list[float] = []
+    neutral: list[float] = []
+    periodic: list[bool] = []
+    driven: list[float] = []
+    for link in tree.links:
+        limits, n = link.joint.limits, link.q[1]
+        if link.joint.prescribed:
+            nq, nv = joint_sizes(link.joint)
+            driven += (*neutral_coordinates(link.joint, nq), *(0.0,) * (2 * nv))
+            continue
+        if link.tip_of is not None:
+            sizes = small_coordinates(link.tip_of, evaluate(link.tip_of.length, tree.system.parameter_values()))
+            lower += [-size for size in sizes]
+            upper += sizes
+            neutral += (0.0,) * n
+            periodic += (False,) * n
+            continue
+        lower += [-float("inf") if limits is None or limits.lower is None else limits.lower] * n
+        upper += [float("inf") if limits is None or limits.upper is None else limits.upper] * n
+        neutral += neutral_coordinates(link.joint, n)
+        periodic += angles(link.joint)
+    return ModelRecord(
+        name=tree.system.name,
+        hash=_hash(tree.system, options),
+        q_names=names.q,
+        v_names=names.v,
+        u_names=names.u,
+        par_names=names.par,
+        frame_names=tuple(frame.name for frame in tree.frames),
+        frame_aliases={frame.qualified: frame.name for frame in tree.frames},
+        u_default=(0.0,) * names.efforts + tuple(driven),
+        par_default=names.par_default,
+        q_neutral=tuple(neutral),
+        q_lower=tuple(lower),
+        q_upper=tuple(upper),
+        segments=_segments(tree),
+        periodic=tuple(periodic),
+        constraint_names=tuple(name for item in tree.system.constraints for name in item.conditions),
+        speed_conditions=tuple(name for item in tree.system.constraints for name in item.on_speeds),
+        wrench_names=tuple(acts_on_bodies(tree.system.constraints)),
+        closures=tuple(_closure(tree, item) for item in tree.system.constraints if isinstance(item, Closure)),
+        driven=len(driven),
+    )
+
+
+def _closure(tree: SpanningTree, closure: Closure) -> ClosureRecord:
+    first, second = (frame_of(tree, *anchor).name for anchor in (closure.first, closure.second))
+    return ClosureRecord(closure.name, first, second, tuple(AXES.index(axis) for axis in closure.rotations))
+
+
+def _segments(tree: SpanningTree) -> tuple[Segment, ...]:
+    segments: list[Segment] = []
+    for link in tree.links:
+        if link.joint.prescribed:
+            continue
+        kind = link.joint.traits.manifold
+        if kind == "linear" and segments and segments[-1].kind == "linear":
+            segments[-1] = segments[-1]._replace(size=segments[-1].size + link.q[1])
+        else:
+            segments.append(Segment(kind, link.q[0], link.v[0], link.q[1]))
+    return tuple(segments)
+
+
+def _hash(system: System, options: Options) -> str:
+    """Identity of a description under these options: dataclasses print every field, in order."""
+    return hashlib.sha256(repr((system, options, GENERATOR)).encode()).hexdigest()[:16]

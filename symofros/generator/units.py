@@ -1,0 +1,151 @@
+"""Requests and formulas -> units of callable functions: recalled from the cache, or written and compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from symofros.description.values import as_value
+from symofros.errors import CompileError
+from symofros.expr.program import Program
+from symofros.generator.codegen.dispatch import dispatch_source
+from symofros.generator.codegen.interpreted import InterpretedUnit
+from symofros.generator.codegen.model import model_source
+from symofros.generator.codegen.names import identifier
+from symofros.generator.passes import run_passes
+from symofros.generator.programs import ProgramBuilder
+from symofros.generator.record import GENERATOR
+from symofros.mechanics.dynamics.formulas import formula_program
+from symofros.mechanics.dynamics.functions import Request
+from symofros.native import native_text
+from symofros.options import Options
+from symofros.runtime.build import build_library, recall_library
+from symofros.runtime.functions import Key, Rate
+from symofros.runtime.kernel import Lanes, Unit
+from symofros.runtime.library import CompiledKernel, CompiledUnit
+from symofros.runtime.record import ModelRecord
+from symofros.runtime.toolchain import Toolchain
+from symofros.runtime.tuning import Build, builds, fastest
+
+
+class UnitCompiler:
+    """Units of one model.
+
+    Args:
+        programs: Forms the programs.
+        record: Names, sizes and hash of the model.
+        options: How to compile.
+        toolchain: The C compiler; None: units are interpreted.
+    """
+
+    def __init__(
+        self, programs: ProgramBuilder, record: ModelRecord, options: Options, toolchain: Toolchain | None
+    ) -> None:
+        self._programs, self._record, self._options, self._toolchain = programs, record, options, toolchain
+        # Dataclasses print every field, so that this states all that a text depends on besides the request.
+        self._recipe = repr((programs.tree.system, options))
+
+    def functions(self, keys: Sequence[Key]) -> Unit:
+        """A unit of the model's functions."""
+        requests = tuple(Request(*key) for key in keys)
+        return self._unit(requests, lambda: self._programs.program(requests))
+
+    def formulas(self, formulas: Sequence[Any], derivatives: bool) -> Unit:
+        """A unit of one function, "formulas": numbers, texts or SymPy expressions over the model's names."""
+        rates = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
+        what = f"system '{self._programs.tree.system.name}': formula"
+        values = [(as_value(rate.formula, what), rate.order) for rate in rates]
+
+        def program() -> Program:
+            return run_passes(formula_program(self._programs.equations().motion, values, derivatives))
+
+        return self._unit((values, derivatives), program)
+
+    def library(self, requests: Sequence[Request], lanes: Lanes | None) -> Path:
+        """The shared library of some functions, each with code by vectors beside it if there are lanes.
+
+        Raises:
+            CompileError: The C compiler failed.
+        """
+        assert self._toolchain is not None, "an interpreted model has no library"
+        program = self._programs.program(requests)
+
+        def build_one(build: Build) -> Path:
+            source = model_source(program, self._record, GENERATOR, lanes, packs=build.packs)
+            return build_library(source, _header(), build.toolchain, build.flags, self._dispatch, self.symbol)
+
+        return self._build(build_one, self._toolchain, lanes)
+
+    @property
+    def symbol(self) -> str:
+        """Name of the exported function of the model's libraries."""
+        return f"{identifier(self._record.name)}_model"
+
+    @property
+    def _dispatch(self) -> str:
+        """C that chooses among kinds of processors, where a library is for several."""
+        return dispatch_source(self.symbol) if self._options.processors == "any" else ""
+
+    def _unit(self, request: object, form: Callable[[], Program]) -> Unit:
+        """The unit of a request; its program is formed only where no library of it is known."""
+        program = cache(form)
+        if self._toolchain is None:
+            return InterpretedUnit(program())
+        in_lanes = self._in_lanes(request, program) if self._options.batch == "vector" else None
+        return self._compile((request, "one by one"), program, self._toolchain, None, in_lanes)
+
+    def _compile(
+        self,
+        request: object,
+        program: Callable[[], Program],
+        toolchain: Toolchain,
+        lanes: Lanes | None,
+        in_lanes: Callable[[Key, Lanes], CompiledKernel | None] | None = None,
+    ) -> CompiledUnit:
+        def recall_one(build: Build) -> Path:
+            return recall_library(
+                f"{self._recipe}{request!r}{build.packs}",
+                lambda: model_source(program(), self._record, GENERATOR, lanes, packs=build.packs),
+                _header(),
+                build.toolchain,
+                build.flags,
+                self._dispatch,
+                self.symbol,
+            )
+
+        path = self._build(recall_one, toolchain, lanes)
+        return CompiledUnit(path, self.symbol, _header(), self._record.hash, in_lanes)
+
+    def _in_lanes(
+        self, request: object, program: Callable[[], Program]
+    ) -> Callable[[Key, Lanes], CompiledKernel | None]:
+        """Compiles one function of a unit by vectors when asked for; None for a function that a solver finishes."""
+
+        def compile_in_lanes(key: Key, lanes: Lanes) -> CompiledKernel | None:
+            function = next(f for f in program().functions if (f.name, f.frame) == key)
+            if function.solver is not None or self._toolchain is None:
+                return None
+            alone = replace(program(), functions=(function,))
+            return self._compile((request, lanes, key), lambda: alone, self._toolchain, lanes).compiled[key]
+
+        return compile_in_lanes
+
+    def _build(self, build_one: Callable[[Build], Path], toolchain: Toolchain, lanes: Lanes | None) -> Path:
+        """One build as the options have it; or, to tune, the fastest of several."""
+        options = self._options
+        if not options.tune:
+            return build_one(Build(toolchain, options.flags, options.packs))
+        first, *others = builds(options, toolchain, lanes is not None)
+        libraries = [build_one(first)]
+        for build in others:
+            with suppress(CompileError):  # It was only worth a try.
+                libraries.append(build_one(build))
+        return fastest(libraries, lambda path: CompiledUnit(path, self.symbol, _header(), self._record.hash))
+
+
+def _header() -> str:
+    return native_text("model/symofros_model.h")
