@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from string import Template
+from textwrap import wrap
 
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen import lanes, trigonometry
@@ -17,6 +18,8 @@ from symofros.runtime.kernel import Lanes
 from symofros.runtime.record import ModelRecord
 
 _INIT = "init_par"
+# Columns of a comment; stands for a space where a line of it may not break.
+_WIDTH, _SPACE = 112, "\x00"
 
 
 def model_source(
@@ -42,10 +45,11 @@ def model_source(
     name = c_name or identifier(record.name)
     vectors = in_lanes if any(function.solver is None for function in program.functions) else None
     packs = packs and vectors is None
-    texts = [_init_function(program, name)]
+    texts = ["\n".join([*_legend(record, "parameters", ["par"]), _init_function(program, name)])]
     rows = []
     for i, function in enumerate(program.functions):
-        text, row = _one_function(program, function, f"{name}_{identifier(function.name)}_f{i}", vectors, packs)
+        c_function = f"{name}_{identifier(function.name)}_f{i}"
+        text, row = _one_function(program, record, function, c_function, vectors, packs)
         texts.append(text)
         rows.append(row)
     counts = count_program(program)
@@ -126,8 +130,26 @@ class _Row:
     lanes: str
 
 
+def _legend(record: ModelRecord, title: str, inputs: Iterable[str]) -> list[str]:
+    """A comment that tells which of the user's names stands behind each entry of a function's inputs."""
+    names = {
+        "q": record.q_names,
+        "v": record.v_names,
+        "a": record.v_names,  # The rate of the speed of that name.
+        "u": record.u_names,
+        "par": record.par_names,
+    }
+    lines = ["/* " + _comment(title)]
+    for group in inputs:
+        # A line may break between entries, not within one.
+        entries = [_comment(f"{group}[{i}] {name}").replace(" ", _SPACE) for i, name in enumerate(names.get(group, ()))]
+        text = wrap(", ".join(entries), _WIDTH, break_long_words=False, break_on_hyphens=False)
+        lines += [f" *   {line.replace(_SPACE, ' ')}" for line in text]
+    return [*lines, " */"] if len(lines) > 1 else []
+
+
 def _one_function(
-    program: Program, function: Function, c_name: str, in_lanes: Lanes | None, packs: bool
+    program: Program, record: ModelRecord, function: Function, c_name: str, in_lanes: Lanes | None, packs: bool
 ) -> tuple[str, _Row]:
     """Code, and what tables say of it."""
     inputs = ["pre", *function.inputs]
@@ -139,7 +161,9 @@ def _one_function(
     if text.lanes:
         vectors = ["#if SYM_LANES > 1", text.lanes, lanes.strided(c_name, program, function, text.lanes_work), "#endif"]
         work = max(work, lanes.scratch(program, function, text.lanes_work))
-    code = "\n".join([text.code, *vectors, lanes.batch(c_name, function, in_lanes if text.lanes else None)])
+    legend = _legend(record, f"{function.name} {function.frame}".rstrip(), function.inputs)
+    batch = lanes.batch(c_name, function, in_lanes if text.lanes else None)
+    code = "\n".join([*legend, text.code, *vectors, batch])
     arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)
     arrays_out = ", ".join(f'{{"{name}", {len(s)}, {_rows(s)}, {_columns(s)}}}' for name, s in function.returns)
     tables = (

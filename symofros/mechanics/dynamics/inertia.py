@@ -109,8 +109,8 @@ def link_inertias(motion: Motion, regrouped: bool = True) -> tuple[list[LinkIner
         if give is not None:
             own[link.parent] = own[link.parent] + _given(link, give)
     for i, link in enumerate(motion.links):
-        own[i].S.named(f"mp_LC[{link.name}]")
-        own[i].J.named(f"I_LLo[{link.name}]")
+        own[i].S.named(f"mp_LLcm[{link.name}]")
+        own[i].J.named(f"I_LLo_L[{link.name}]")
     base = own.pop(BASE)
     return list(own.values()), base
 

@@ -98,7 +98,7 @@ def virtual_power(motion: Motion, wrenches: Sequence[Wrench]) -> list[Edge]:
     beyond = list(wrenches)
     total: list[Edge] = [ZERO] * motion.nv
     for i, link in reversed(list(enumerate(motion.links))):
-        f, n = beyond[i].f.named(f"f[{link.name}]"), beyond[i].n.named(f"n[{link.name}]")
+        f, n = beyond[i].f.named(f"f_Lo_L[{link.name}]"), beyond[i].n.named(f"n_Lo_L[{link.name}]")
         for k, column in enumerate(link.free_columns):
             total[link.v + k] = g.add(column.w.dot(n), column.v.dot(f))
         if link.parent != BASE:

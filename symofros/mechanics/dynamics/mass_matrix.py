@@ -71,8 +71,8 @@ def _own_blocks(motion: Motion, M: Matrix, inertias: list[LinkInertia]) -> dict[
         composite[beam.root] = composite[beam.root] + deformed(motion, beam)
     for i, link in reversed(list(enumerate(motion.links))):
         whole = composite[i]
-        whole.S.named(f"composite_mp_LC[{link.name}]")
-        whole.J.named(f"composite_I_LLo[{link.name}]")
+        whole.S.named(f"mp_LKcm[{link.name}]")
+        whole.J.named(f"I_KLo_L[{link.name}]")
         for k, column in enumerate(link.free_columns):
             f, n = _momentum(whole, column)
             for j in range(k + 1):

@@ -216,3 +216,18 @@ def test_one_description_gives_one_text() -> None:
         for seed in ("1", "2", "3", "4")
     }
     assert len(said) == 1
+
+
+def test_each_function_begins_with_the_users_names_of_its_inputs() -> None:
+    solid = sf.Inertia("m", (0.1, 0, 0), (1, 1, 1))
+    boom = sf.RigidBody("boom", sf.Joint("shoulder", "revolute", effort=("pump*m",)), solid)
+    crane = sf.System("crane", [boom], [sf.Parameter("m", 3.0)], inputs=[sf.Input("pump")])
+    text = source_of_functions(crane, ("dynamics",))
+    assert "/* parameters\n *   par[0] m\n */\nstatic void crane_init_0(" in text
+    assert "/* dynamics\n *   q[0] shoulder\n *   v[0] shoulder\n *   u[0] pump\n */\nstatic void crane_dynamics" in text
+
+
+def test_a_name_does_not_end_the_comment_that_states_it() -> None:
+    solid = sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1))
+    text = source_of_functions(sf.System("s", [sf.RigidBody("b", sf.Joint("a */ b", "revolute"), solid)]), ("bias",))
+    assert " *   q[0] a * / b\n" in text
