@@ -224,7 +224,8 @@ def test_each_function_begins_with_the_users_names_of_its_inputs() -> None:
     crane = sf.System("crane", [boom], [sf.Parameter("m", 3.0)], inputs=[sf.Input("pump")])
     text = source_of_functions(crane, ("dynamics",))
     assert "/* parameters\n *   par[0] m\n */\nstatic void crane_init_0(" in text
-    assert "/* dynamics\n *   q[0] shoulder\n *   v[0] shoulder\n *   u[0] pump\n */\nstatic void crane_dynamics" in text
+    legend = "/* dynamics\n *   q[0] shoulder\n *   v[0] shoulder\n *   u[0] pump\n */\n"
+    assert f"{legend}static void crane_dynamics" in text
 
 
 def test_a_name_does_not_end_the_comment_that_states_it() -> None:
