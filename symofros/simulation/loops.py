@@ -1,4 +1,4 @@
-"""Driving a run to its end: our own steps, or CVODE's; in spells, so that Ctrl-C and progress come through."""
+"""Drive a run to its end, by our own steps or by SUNDIALS, in time slices: Ctrl-C and progress come through."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from symofros.runtime.kernel import Array
 from symofros.simulation import stepper as native
-from symofros.simulation.cvode import Cvode
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepper import Stepper
+from symofros.simulation.sundials import Cvode, Ida
 
 # Records are taken from C in portions of this many states.
 _PORTION = 4096
@@ -74,20 +74,20 @@ def run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show
     return recorded
 
 
-def run_cvode(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
-    """CVODE, from one record to the next."""
+def run_sundials(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
+    """CVODE or IDA, from one record to the next."""
     run, recorded = stepper.run, Recorded()
-    cvode = Cvode(stepper, stiff=settings.method.name == "cvode")
+    solver = Ida(stepper) if settings.method.kind == "ida" else Cvode(stepper)
     grid = list(settings.grid) if not settings.every else None
     try:
-        recorded.status = cvode.start(q, v)
+        recorded.status = solver.start(q, v)
         if recorded.status == native.GOING and (grid is None or (grid and grid[0] <= run.t)):
             recorded.states.append(_now(stepper))
         grid = grid[1:] if grid and grid[0] <= run.t else grid
-        while recorded.status == native.GOING and (settings.max_steps is None or cvode.count() < settings.max_steps):
+        while recorded.status == native.GOING and (settings.max_steps is None or solver.steps < settings.max_steps):
             wanted = grid[0] if grid else (None if grid is None else float(run.t_end))
-            recorded.status, met = cvode.advance(wanted)
-            run.steps = cvode.count()
+            recorded.status, met = solver.advance(wanted)
+            run.steps = solver.steps
             if recorded.status < 0:
                 break
             t, q_now, v_now = stepper.state
@@ -95,6 +95,8 @@ def run_cvode(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Sh
             final = [which for which in met if stepper.events[which].terminal]
             if final:
                 recorded.status, run.stopped_by = native.EVENT, final[0]
+            elif t >= float(run.t_end):
+                recorded.status = native.DONE
             if grid is None:
                 if run.steps % settings.every == 0 or recorded.status != native.GOING:
                     recorded.states.append(_now(stepper))
@@ -104,8 +106,6 @@ def run_cvode(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Sh
             show(t)
     except KeyboardInterrupt:
         recorded.interrupted = True
-    finally:
-        cvode.close()
     recorded.states = recorded.states or [_now(stepper)]
     return recorded
 

@@ -12,7 +12,7 @@ from symofros.runtime.model import Given, Model
 from symofros.simulation.diagnosis import diagnose
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
-from symofros.simulation.loops import run_cvode, run_own
+from symofros.simulation.loops import run_own, run_sundials
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
 from symofros.simulation.settings import Settings, check_fit, check_start, vector
@@ -72,7 +72,7 @@ def simulate(
     check_start(model, settings, q, v, stepper.inputs_at(settings.t0, q, v), np.asarray(values))
     began, worked = time.perf_counter(), time.thread_time()
     with bar(progress, settings.t0, t_end) as show:
-        drive = run_cvode if settings.method.kind == "cvode" else run_own
+        drive = run_sundials if settings.method.family.multistep else run_own
         recorded = drive(stepper, q, v, settings, show)
     seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()

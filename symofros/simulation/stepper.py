@@ -289,10 +289,31 @@ class Stepper:
 
     def inputs_at(self, t: float, q: Array, v: Array) -> Array:
         """The inputs of a state (nu); what they were before where a function of the caller's fails."""
-        y = np.concatenate([q, v])
         self.run.q, self.run.v = self.numbers(q), self.numbers(v)
-        self.native.sym_flat_place(self.run, t, self.ffi.cast("double *", self.ffi.from_buffer(y)))
+        self.place(t, np.concatenate([q, v]))
         return self.inputs_now
+
+    def place(self, t: float, y: Array) -> int:
+        """Make y = (q, v) the run's state, with quaternions of unit length, and evaluate its inputs; a status."""
+        return int(self.native.sym_flat_place(self.run, t, self._pointer(y)))
+
+    def slope(self, t: float, y: Array, rate: Array) -> int:
+        """The rate y' = (N v, v') of a state y = (q, v), into `rate`; returns a status."""
+        return int(self.native.sym_flat_slope(self.run, t, self._pointer(y), self._pointer(rate)))
+
+    def configuration_rate(self, q: Array, w: Array) -> Array:
+        """The rate N w (nq) for speeds w (nv) at the configuration that was placed last; q: its numbers."""
+        rate = np.zeros(self.model.nq)
+        self.native.sym_flat_rate(self.run, self._pointer(q), self._pointer(w), self._pointer(rate))
+        return rate
+
+    def event_values(self, t: float, y: Array, values: Array) -> int:
+        """The values of the events at a state y = (q, v), into `values`; returns a status."""
+        return int(self.native.sym_flat_events(self.run, t, self._pointer(y), self._pointer(values)))
+
+    def _pointer(self, array: Array) -> Any:
+        """C's view of an array of doubles."""
+        return self.ffi.cast("double *", array.ctypes.data)
 
     @property
     def inputs_now(self) -> Array:

@@ -1,14 +1,6 @@
 /* y = (q, v) as plain numbers, for integrators of others that keep a history of y. Quaternions are made of unit length
  * before they are used, and not in y, so that the history stays smooth. */
 
-typedef struct sym_vector { /* SUNDIALS' serial vector, as far as it matters here */
-    struct {
-        int64_t length;
-        int32_t own;
-        double *data;
-    } *content;
-} sym_vector;
-
 /* The scene's quaternions of unit length. */
 static void sym_unit_quaternions(sym_scene *s) {
     int32_t k, i;
@@ -38,13 +30,13 @@ static void sym_quaternion_rate(const double *p, const double *w, double *rate) 
     rate[3] = -0.5 * (p[0] * w[0] + p[1] * w[1] + p[2] * w[2]);
 }
 
-/* q' = N v at the scene's point; q: the same configuration, its quaternions of any length. */
-static void sym_configuration_rate(const sym_scene *s, const double *q, double *rate) {
+/* Rate N w at the scene's configuration; q: the same configuration, its quaternions of any length. */
+static void sym_configuration_rate(const sym_scene *s, const double *q, const double *w, double *rate) {
     int32_t k;
     for (k = 0; k < s->n_segments; ++k) {
         const sym_segment *seg = &s->segments[k];
         const int32_t at = seg->kind == 2 ? 3 : 0;
-        const double *v = s->v + seg->v;
+        const double *v = w + seg->v;
         if (seg->kind == 0) {
             memcpy(rate + seg->q, v, (size_t)seg->size * sizeof *v);
             continue;
@@ -54,25 +46,27 @@ static void sym_configuration_rate(const sym_scene *s, const double *q, double *
     }
 }
 
-/* y' = (N v, v'): CVRhsFn of SUNDIALS. 1: the step may be tried again, -1: the run is over. */
-SYM_EXPORT int32_t sym_flat_slope(double t, void *y_vector, void *rate_vector, void *run) {
-    sym_run *r = run;
-    sym_scene *s = r->scene;
-    const double *y = ((sym_vector *)y_vector)->content->data;
-    double *rate = ((sym_vector *)rate_vector)->content->data;
-    int32_t status;
-    sym_unflatten(s, t, y);
-    sym_configuration_rate(s, y, rate);
-    status = sym_accelerate(r);
-    memcpy(rate + s->nq, s->a, (size_t)s->nv * sizeof *rate);
-    return status == SYM_CALLBACK ? -1 : status != 0;
+/* Rate N w of a configuration whose quaternions may have any length; the scene stands at the same configuration. */
+SYM_EXPORT void sym_flat_rate(const sym_run *r, const double *q, const double *w, double *rate) {
+    sym_configuration_rate(r->scene, q, w, rate);
 }
 
-/* Values of the events: CVRootFn of SUNDIALS. */
-SYM_EXPORT int32_t sym_flat_events(double t, void *y_vector, double *values, void *run) {
-    sym_scene *s = ((sym_run *)run)->scene;
-    sym_unflatten(s, t, ((sym_vector *)y_vector)->content->data);
-    if (sym_inputs(s) != 0) return -1;
+/* Rate y' = (N v, v') of a state; the status of the accelerations. */
+SYM_EXPORT int32_t sym_flat_slope(sym_run *r, double t, const double *y, double *rate) {
+    sym_scene *s = r->scene;
+    int32_t status;
+    sym_unflatten(s, t, y);
+    sym_configuration_rate(s, y, s->v, rate);
+    status = sym_accelerate(r);
+    memcpy(rate + s->nq, s->a, (size_t)s->nv * sizeof *rate);
+    return status;
+}
+
+/* Values of the events at a state. */
+SYM_EXPORT int32_t sym_flat_events(sym_run *r, double t, const double *y, double *values) {
+    sym_scene *s = r->scene;
+    sym_unflatten(s, t, y);
+    if (sym_inputs(s) != 0) return SYM_CALLBACK;
     sym_evaluate(&s->events);
     memcpy(values, s->events.out[0], (size_t)s->n_events * sizeof *values);
     return 0;

@@ -155,7 +155,7 @@ SYM_EXPORT int32_t sym_instance_rates(sym_instance *it, double *rates) {
     sym_scene *s = &it->scene;
     int32_t status;
     sym_instance_here(it);
-    sym_configuration_rate(s, it->q, rates);
+    sym_configuration_rate(s, it->q, s->v, rates);
     status = sym_accelerate(&it->run);
     memcpy(rates + s->nq, s->a, (size_t)s->nv * sizeof *rates);
     return status;

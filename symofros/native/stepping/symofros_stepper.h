@@ -108,9 +108,10 @@ int32_t sym_bind(sym_scene *scene, sym_call *call);
 int32_t sym_start(sym_run *run);
 /* Go on for at most max_steps accepted or rejected steps. Returns a status. */
 int32_t sym_advance(sym_run *run, int64_t max_steps);
-/* For integrators of others: docs in flat.c. */
-int32_t sym_flat_slope(double t, void *y_vector, void *rate_vector, void *run);
-int32_t sym_flat_events(double t, void *y_vector, double *values, void *run);
+/* For external integrators, whose states are y = (q, v). */
+void sym_flat_rate(const sym_run *run, const double *q, const double *w, double *rate);
+int32_t sym_flat_slope(sym_run *run, double t, const double *y, double *rate);
+int32_t sym_flat_events(sym_run *run, double t, const double *y, double *values);
 int32_t sym_flat_place(sym_run *run, double t, const double *y);
 /* cdef end */
 
