@@ -17,9 +17,10 @@ ALLOWED: dict[str, set[str]] = {
     "options": set(),
     "functions": set(),
     "native": set(),
+    "rotations": set(),
     "expr": {"errors"},
-    "description": {"expr", "errors", "atomic"},
-    "mechanics.topology": {"mechanics.beams", "description", "expr", "errors"},
+    "description": {"expr", "errors", "atomic", "rotations"},
+    "mechanics.topology": {"mechanics.beams", "description", "expr", "errors", "rotations"},
     "mechanics.beams": {"description", "expr", "errors"},
     "mechanics.kinematics": {"mechanics.beams", "mechanics.topology", "description", "expr", "errors"},
     "mechanics.dynamics": {
@@ -32,7 +33,7 @@ ALLOWED: dict[str, set[str]] = {
         "functions",
     },
     "generator.passes": {"expr", "options"},
-    "runtime": {"errors", "functions", "options", "atomic"},
+    "runtime": {"errors", "functions", "options", "atomic", "rotations"},
     "generator.codegen": {"native", "expr", "generator.passes", "options", "runtime"},
     # The stages of the pipeline between mechanics and the model, which the compiler puts together.
     "generator.record": {
@@ -88,6 +89,7 @@ ALLOWED: dict[str, set[str]] = {
     "exports": {
         "generator.codegen",
         "runtime",
+        "rotations",
         "description",
         "mechanics.topology",
         "expr",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symofros.blocks.rotations import matrix_of_quaternion, position_of_step, quaternion_product, vector_of_quaternion
+from symofros.blocks.rotations import matrix_of_quaternion, position_of_step, rotation_between
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.runtime.record import ModelRecord
 
@@ -10,18 +10,15 @@ from symofros.runtime.record import ModelRecord
 def difference(record: ModelRecord, q0: Tensor, q1: Tensor) -> Tensor:
     """The step (nv) from q0 (nq) to q1 (nq): rotation vectors of ball and free joints are in body axes."""
     parts = []
-    for kind, i, _, size in record.segments:
-        if kind == "linear":
-            parts.append(q1[i : i + size] - q0[i : i + size])
+    for segment in record.segments:
+        first, quaternion = segment.q, slice(segment.q + segment.translations, segment.q + segment.size)
+        position = slice(first, first + segment.translations)
+        shift = q1[position] - q0[position]
+        if segment.kind == "linear":
+            parts.append(shift)
             continue
-        at = i + 3 if kind == "pose" else i
-        turn = vector_of_quaternion(quaternion_product(_conjugate(q0[at : at + 4]), q1[at : at + 4]))
-        if kind == "pose":
-            shift = matrix_of_quaternion(q0[at : at + 4]).T @ (q1[i : i + 3] - q0[i : i + 3])
-            parts.append(position_of_step(turn, shift))
-        parts.append(turn)
+        w = rotation_between(q0[quaternion], q1[quaternion])
+        if segment.kind == "pose":
+            parts.append(position_of_step(w, matrix_of_quaternion(q0[quaternion]).T @ shift))
+        parts.append(w)
     return joined(parts)
-
-
-def _conjugate(quaternion: Tensor) -> Tensor:
-    return joined([-quaternion[:3], quaternion[3]])

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from symofros.diagrams.tensor import Tensor, joined, stacked
+from symofros.expr.quaternion import Quaternion
 
 # Its root is 1e-150: lost beside any length that is not zero itself.
 _TINY = 1e-300
@@ -40,18 +41,12 @@ def matrix_of_vector(w: Tensor) -> Tensor:
 
 def matrix_of_quaternion(quaternion: Tensor) -> Tensor:
     """R (3, 3) of a quaternion (4) of any length."""
-    x, y, z, w = _unit(quaternion)
-    rows = [
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-    ]
-    return stacked([joined(row) for row in rows])
+    unit = _quaternion(quaternion / length(quaternion))
+    return Tensor.of(quaternion.g, unit.matrix.entries, (3, 3))
 
 
-def _unit(quaternion: Tensor) -> list[Tensor]:
-    unit = quaternion / length(quaternion)
-    return [unit[i] for i in range(4)]
+def _quaternion(tensor: Tensor) -> Quaternion:
+    return Quaternion.of(tensor.g, *tensor.flat)
 
 
 def quaternion_of_matrix(R: Tensor) -> Tensor:
@@ -88,16 +83,7 @@ def _upper(quaternion: Tensor) -> Tensor:
 
 def vector_of_quaternion(quaternion: Tensor) -> Tensor:
     """The rotation vector (3), of at most pi, of a quaternion (4) of any length [rad]."""
-    upper = _upper(quaternion)
-    v = upper[:3]
-    size = length(v)
-    return v * (2.0 * size.apply("atan2", upper[3]) / size)
-
-
-def quaternion_of_vector(w: Tensor) -> Tensor:
-    """The unit quaternion (4) of a rotation vector (3) [rad]."""
-    half = 0.5 * length(w)
-    return joined([w * (0.5 * half.apply("sin") / half), half.apply("cos")])
+    return Tensor.of(quaternion.g, _quaternion(quaternion).logarithm, (3,))
 
 
 def vector_of_matrix(R: Tensor) -> Tensor:
@@ -105,10 +91,9 @@ def vector_of_matrix(R: Tensor) -> Tensor:
     return vector_of_quaternion(quaternion_of_matrix(R))
 
 
-def quaternion_product(a: Tensor, b: Tensor) -> Tensor:
-    """The quaternion (4) of R_a R_b."""
-    v = a[3] * b[:3] + b[3] * a[:3] + a[:3].cross(b[:3])
-    return joined([v, a[3] * b[3] - (a[:3] * b[:3]).sum()])
+def rotation_between(a: Tensor, b: Tensor) -> Tensor:
+    """The rotation vector (3), in body axes, from one unit quaternion (4) to another [rad]."""
+    return Tensor.of(a.g, (_quaternion(a).conjugate * _quaternion(b)).logarithm, (3,))
 
 
 def matrix_of_euler(angles: Tensor, sequence: str) -> Tensor:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.charts import chart_rate, retract
 from symofros.diagrams.compiled import Resolved, bare_record, unit_of
 from symofros.diagrams.layout import Part
 from symofros.diagrams.opaque import Called
@@ -19,6 +18,7 @@ from symofros.expr.program import Function, Output, Program
 from symofros.generator.passes import run_passes
 from symofros.runtime.constrained import constrained, project
 from symofros.runtime.kernel import Array
+from symofros.runtime.manifold import chart_rate, retract
 from symofros.runtime.toolchain import Toolchain
 from symofros.simulation.tableaus import Tableau
 

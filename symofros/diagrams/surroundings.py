@@ -20,7 +20,7 @@ from symofros.expr.substitute import transplant
 from symofros.functions import FRAME_FUNCTIONS
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import model_record
-from symofros.mechanics.dynamics.constraints import moved
+from symofros.mechanics.dynamics.constraints import retracted
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.forward import Factors
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program
@@ -205,7 +205,7 @@ class Models:
     def moved(self, g: Graph, model: str, q: Tensor, step: Tensor) -> Tensor:
         """The configuration that a step (nv) along the manifold leads to."""
         motion = set_in_motion(Graph(), self.tree(model))
-        edges = moved(motion)
+        edges = retracted(motion)
         groups = {"q": q, "step": step}
         replacement = {
             motion.g.input(group, i): edge for group, values in groups.items() for i, edge in enumerate(values.flat)

@@ -193,9 +193,8 @@ def _rate_dependencies(material: Material, at_q: int, at_v: int) -> dict[int, tu
         if s.kind == "linear":
             found |= {s.q + i: (at_v + s.v + i,) for i in range(s.size)}
             continue
-        n, own = (4, 3) if s.kind == "quaternion" else (7, 6)
-        quaternion = range(at_q + s.q + n - 4, at_q + s.q + n)
-        found |= {s.q + i: (*quaternion, *range(at_v + s.v, at_v + s.v + own)) for i in range(n)}
+        quaternion = range(at_q + s.q + s.translations, at_q + s.q + s.size)
+        found |= {s.q + i: (*quaternion, *range(at_v + s.v, at_v + s.v + s.speeds)) for i in range(s.size)}
     return found
 
 
@@ -209,8 +208,6 @@ def _moved_by(material: Material, frame: str, row: int, at_q: int) -> tuple[int,
     for s in material.record.segments:
         if s.kind == "linear":
             found += [at_q + s.q + i for i in range(s.size) if s.v + i in moving]
-        else:
-            n, own = (4, 3) if s.kind == "quaternion" else (7, 6)
-            if moving & set(range(s.v, s.v + own)):
-                found += range(at_q + s.q, at_q + s.q + n)
+        elif moving & set(range(s.v, s.v + s.speeds)):
+            found += range(at_q + s.q, at_q + s.q + s.size)
     return tuple(found)

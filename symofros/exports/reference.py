@@ -39,7 +39,7 @@ def checks(
             given = dict(point)
             if key[0] == "project":
                 move = _NEAR * rng.standard_normal(len(record.v_names))
-                given["q"] = manifold.integrate(record, closed, move)
+                given["q"] = manifold.integrate(record.segments, closed, move)
             inputs = [np.ascontiguousarray(given[name].reshape(1, -1)) for name, _ in kernel.signature.inputs]
             outputs = kernel.run(1, pre, inputs)
             found.append(Check(_flat(inputs), _flat(outputs)))

@@ -14,7 +14,8 @@ from symofros.description.forces import Damper
 from symofros.description.system import WORLD, Body, Inertia, Joint, RigidBody, System
 from symofros.errors import ExportError, Problem
 from symofros.mechanics.topology.coordinates import coordinate_names
-from symofros.mechanics.topology.numbers import Numbers, skew
+from symofros.mechanics.topology.numbers import Numbers
+from symofros.rotations import skew
 
 Array = npt.NDArray[np.float64]
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.rotations import skew
 from symofros.runtime.kernel import Array
 
 if TYPE_CHECKING:
@@ -111,17 +112,11 @@ def _turning(model: Model, v: Array) -> Array:
     for segment in model.record.segments:
         if segment.kind == "linear":
             continue
-        i = segment.v + (3 if segment.kind == "pose" else 0)
-        W = _skew(v[..., i : i + 3])
+        i = segment.v + segment.translations
+        W = skew(v[..., i : i + 3])
         block[..., i : i + 3, i : i + 3] = -W
         if segment.kind == "pose":
             k = segment.v
             block[..., k : k + 3, k : k + 3] = -W
-            block[..., k : k + 3, i : i + 3] = -_skew(v[..., k : k + 3])
+            block[..., k : k + 3, i : i + 3] = -skew(v[..., k : k + 3])
     return block
-
-
-def _skew(w: Array) -> Array:
-    K = np.zeros((*w.shape[:-1], 3, 3))
-    K[..., 0, 1], K[..., 0, 2], K[..., 1, 2] = -w[..., 2], w[..., 1], -w[..., 0]
-    return K - np.swapaxes(K, -1, -2)

@@ -43,11 +43,11 @@ class Model(Functions):
 
     def integrate(self, q: Given, dq: Given) -> Array:
         """Move from q (..., nq) along the manifold by dq (..., nv), a velocity times a time."""
-        return manifold.integrate(self.record, self._array("q", q, self.nq), self._array("dq", dq, self.nv))
+        return manifold.integrate(self.record.segments, self._array("q", q, self.nq), self._array("dq", dq, self.nv))
 
     def difference(self, q0: Given, q1: Given) -> Array:
         """The dq (..., nv) that leads from q0 to q1 (..., nq)."""
-        return manifold.difference(self.record, self._array("q0", q0, self.nq), self._array("q1", q1, self.nq))
+        return manifold.difference(self.record.segments, self._array("q0", q0, self.nq), self._array("q1", q1, self.nq))
 
     # Calls without checks.
 

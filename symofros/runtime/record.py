@@ -16,13 +16,23 @@ class Segment(NamedTuple):
         kind: "linear" (q' = v), "quaternion" (ball joint) or "pose" (free joint: position and quaternion).
         q: First index in q.
         v: First index in v.
-        size: Number of coordinates, for "linear".
+        size: Number of coordinates.
     """
 
     kind: SegmentKind
     q: int
     v: int
     size: int
+
+    @property
+    def speeds(self) -> int:
+        """Number of speeds."""
+        return {"linear": self.size, "quaternion": 3, "pose": 6}[self.kind]
+
+    @property
+    def translations(self) -> int:
+        """Number of coordinates, and of speeds, before the quaternion, or of all where there is none."""
+        return {"linear": self.size, "quaternion": 0, "pose": 3}[self.kind]
 
 
 class ClosureRecord(NamedTuple):

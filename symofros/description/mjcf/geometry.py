@@ -6,37 +6,22 @@ import math
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from symofros.description.values import IDENTITY, Rotation, Vector
 from symofros.expr.extended import nearest
+from symofros.rotations import Array, axis_rotation, quaternion_matrix
 
-Array = npt.NDArray[np.float64]
 
-
-def turned(quaternion: Any) -> Array:
-    """The rotation matrix (3, 3) of a quaternion (w, x, y, z), normalised."""
+def rotation_of(quaternion: Any) -> Array:
+    """The rotation matrix (3, 3) of a quaternion of MuJoCo's (w, x, y, z), of any length."""
     components = np.asarray(quaternion, dtype=float)
     w, x, y, z = components / math.sqrt(math.fsum(components * components))
-    K = cross(np.array([x, y, z]))
-    return np.asarray(np.eye(3) + 2.0 * w * K + 2.0 * times(K, K))
+    return quaternion_matrix(np.array([x, y, z, w]))
 
 
 def about(axis: Array, angle: float) -> Array:
-    """The rotation matrix (3, 3) of a turn [rad] about a unit axis (3,)."""
-    K = cross(axis)
-    return np.asarray(np.eye(3) + nearest("sin", angle) * K + (1.0 - nearest("cos", angle)) * times(K, K))
-
-
-def times(R: Array, x: Array) -> Array:
-    """The product of a matrix (3, 3) with a vector (3,) or a matrix (3, 3), rounded alike on every machine."""
-    columns = R[:, :, np.newaxis] if x.ndim == 2 else R
-    return np.asarray(columns[:, 0] * x[0] + columns[:, 1] * x[1] + columns[:, 2] * x[2])
-
-
-def cross(p: Array) -> Array:
-    """The matrix (3, 3) of the cross product with p (3,)."""
-    return np.array([[0.0, -p[2], p[1]], [p[2], 0.0, -p[0]], [-p[1], p[0], 0.0]])
+    """The rotation matrix (3, 3) by an angle [rad] about a unit axis (3,), the same on every machine."""
+    return axis_rotation(axis, nearest("cos", angle), nearest("sin", angle))
 
 
 class Exact:

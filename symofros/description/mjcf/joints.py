@@ -20,10 +20,11 @@ import numpy as np
 
 from symofros.description.forces import Damper, JointElement, Spring
 from symofros.description.joint_kinds import JointKindName
-from symofros.description.mjcf.geometry import Array, Exact, about, times
+from symofros.description.mjcf.geometry import Exact, about
 from symofros.description.mjcf.names import Names
 from symofros.description.remarks import Remarks
 from symofros.description.system import WORLD, Joint, Limits
+from symofros.rotations import Array, matrix_product
 
 # mjtJoint and mjtDisableBit of mujoco/mjmodel.h, which never change: compiled models are stored by them.
 FREE, BALL, SLIDE, HINGE = range(4)
@@ -87,11 +88,11 @@ class JointReader:
         # A shift is the same wherever it is anchored.
         anchor = np.zeros(3) if kind == SLIDE else np.array(m.jnt_pos[j])
         ref = 0.0 if kind == BALL else float(m.qpos0[m.jnt_qposadr[j]])
-        p, R = chain.p + times(chain.R, anchor), chain.R
+        p, R = chain.p + matrix_product(chain.R, anchor), chain.R
         if kind == SLIDE:
-            p = p - ref * times(R, axis)
+            p = p - ref * matrix_product(R, axis)
         elif ref:
-            R = times(R, about(axis, -ref))
+            R = matrix_product(R, about(axis, -ref))
         position, rotation = self.exact.placement(p, R)
         limits = self._limits(j)
         hinge: JointKindName = "revolute" if limits else "continuous"

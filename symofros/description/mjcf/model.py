@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.description.forces import Load
 from symofros.description.frames import Frame
-from symofros.description.mjcf.geometry import Exact, turned
+from symofros.description.mjcf.geometry import Exact, rotation_of
 from symofros.description.mjcf.joints import FREE, Chain, JointReader
 from symofros.description.mjcf.names import Names
 from symofros.description.mjcf.numbers import infinite_numbers
@@ -97,7 +97,7 @@ class Importer:
         """A body, after the massless ones that carry it from joint to joint."""
         m, name = self.model, self.bodies[i]
         indices = range(int(m.body_jntadr[i]), int(m.body_jntadr[i] + m.body_jntnum[i]))
-        chain = Chain(self.bodies[int(m.body_parentid[i])], np.array(m.body_pos[i]), turned(m.body_quat[i]))
+        chain = Chain(self.bodies[int(m.body_parentid[i])], np.array(m.body_pos[i]), rotation_of(m.body_quat[i]))
         if m.body_mocapid[i] >= 0:
             self.remarks.add("mocap bodies stay where the model puts them", "body", name)
         joint: Joint | None = None
@@ -121,7 +121,7 @@ class Importer:
         m = self.model
         if m.body_mass[i] == 0.0 and not np.any(m.body_inertia[i]):
             return None
-        position, rotation = self.exact.placement(np.array(m.body_ipos[i]), turned(m.body_iquat[i]))
+        position, rotation = self.exact.placement(np.array(m.body_ipos[i]), rotation_of(m.body_iquat[i]))
         return Inertia(float(m.body_mass[i]), position, tuple(map(float, m.body_inertia[i])), rotation=rotation)
 
     def _loads(self, i: int) -> tuple[Load, ...]:
@@ -137,7 +137,7 @@ class Importer:
         m = self.model
         found: dict[int, tuple[Frame, ...]] = {}
         for s in range(m.nsite):
-            frame = Frame(self.sites[s], *self.exact.placement(np.array(m.site_pos[s]), turned(m.site_quat[s])))
+            frame = Frame(self.sites[s], *self.exact.placement(np.array(m.site_pos[s]), rotation_of(m.site_quat[s])))
             body = int(m.site_bodyid[s])
             found[body] = (*found.get(body, ()), frame)
         return found

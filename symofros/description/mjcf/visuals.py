@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.description.mjcf.geometry import turned
+from symofros.description.mjcf.geometry import rotation_of
 from symofros.description.values import Rotation
 from symofros.description.visual import MOST_VISUALS, Visual, VisualKind
 
@@ -43,7 +43,7 @@ def visuals_of(model: Any, name: Callable[[int], str]) -> dict[str, tuple[Visual
         red, green, blue = (round(255 * min(max(float(share), 0.0), 1.0)) for share in rgba[:3])
         body = name(int(model.geom_bodyid[i]))
         visual = Visual(
-            shape, size, (x, y, z), Rotation.matrix(turned(model.geom_quat[i]).tolist()), (red, green, blue)
+            shape, size, (x, y, z), Rotation.matrix(rotation_of(model.geom_quat[i]).tolist()), (red, green, blue)
         )
         found[body] = (*found.get(body, ()), visual)
     return found

@@ -14,6 +14,7 @@ from symofros.description.constraints import AXES, AxisName, Closure, KnifeEdge,
 from symofros.description.forces import Anchor
 from symofros.expr.derivative import directional
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates, rates_per_speed
 from symofros.mechanics.kinematics.frames import FrameKinematics
@@ -200,23 +201,23 @@ class Constraints:
         return Row(phi, tuple(row), rate, gamma, tuple(Lever(body.name, f, n, sign) for body, f, n, sign in parts))
 
 
-def moved(motion: Motion) -> list[Edge]:
-    """The coordinates after a small step along the manifold: q + N step, quaternions made unit again (nq).
+def retracted(motion: Motion) -> list[Edge]:
+    """The coordinates after a small step along the manifold: q + N step, with quaternions normalised (nq).
 
     It leads where `Model.integrate` does but for terms of the second order, which Newton's method does not feel.
     """
     g, tree = motion.g, motion.tree
     q = [g.input("q", k) for k in range(len(tree.coordinates.q))]
-    found = dict(zip(q, q, strict=True))
+    coordinates = dict(zip(q, q, strict=True))
     for k, rates in enumerate(rates_per_speed(motion)):
         for coordinate, rate in rates.items():
-            found[coordinate] = g.add(found[coordinate], g.mul(rate, g.input("step", k)))
+            coordinates[coordinate] = g.add(coordinates[coordinate], g.mul(rate, g.input("step", k)))
     for link in tree.links:
         if link.joint.traits.quasi_velocities and not link.joint.prescribed:
-            parts = q[link.q[0] + link.q[1] - 4 : link.q[0] + link.q[1]]
-            size = g.sqrt(g.sum(g.mul(found[part], found[part]) for part in parts))
-            found |= {part: g.div(found[part], size) for part in parts}
-    return list(found.values())
+            components = q[link.q[0] + link.q[1] - 4 : link.q[0] + link.q[1]]
+            quaternion = Quaternion.of(g, *(coordinates[edge] for edge in components))
+            coordinates |= zip(components, quaternion.normalized, strict=True)
+    return list(coordinates.values())
 
 
 # A lever with its body.

@@ -13,6 +13,7 @@ from symofros.description.joint_kinds import JointKindName
 from symofros.description.system import Joint
 from symofros.expr.derivative import directional
 from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.kinematics.rotations import (
@@ -21,7 +22,6 @@ from symofros.mechanics.kinematics.rotations import (
     MatrixTurn,
     Turn,
     axis_angle_matrix,
-    quaternion_matrix,
     unit_vector,
 )
 
@@ -82,7 +82,7 @@ def across_joint(
     g = lowering.g
     zero = Vec3(g)
     if joint.traits.quasi_velocities:
-        R = Turn(g, (MatrixTurn(quaternion_matrix(g, *q[-4:])),))
+        R = Turn(g, (MatrixTurn(Quaternion.of(g, *q[-4:]).matrix),))
         units = [Vec3.unit(g, i) for i in range(3)]
         turning = [Column(unit, zero, zero, zero) for unit in units]
         moving = [Column(zero, unit, zero, zero) for unit in units] if joint.traits.manifold == "pose" else []

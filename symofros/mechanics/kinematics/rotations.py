@@ -15,6 +15,7 @@ from symofros.description.values import Rotation
 from symofros.expr.expression import Expression, lower
 from symofros.expr.extended import nearest
 from symofros.expr.graph import ONE, Edge, Graph
+from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Sym3, Vec3
 
 # cos(pi/2) is 6e-17 in doubles; a rotation's entries this close to 0 or 1 were meant as exact.
@@ -231,8 +232,7 @@ def stated_rotation(rotation: Rotation, g: Graph, bindings: Mapping[str, Edge]) 
         turns = [AxisTurn(k, g.call("cos", x[k]), g.call("sin", x[k])).matrix(g) for k in (2, 1, 0)]
         return snapped(snapped(turns[0]) @ snapped(turns[1]) @ snapped(turns[2]))
     if rotation.kind == "quaternion":
-        norm = g.sqrt(g.sum(g.mul(e, e) for e in x))
-        return snapped(quaternion_matrix(g, *(g.div(e, norm) for e in x)))
+        return snapped(Quaternion.of(g, *x).normalized.matrix)
     axis = unit_vector(Vec3(g, *x[:3]))
     return snapped(axis_angle_matrix(axis, g.call("cos", x[3]), g.call("sin", x[3])))
 
@@ -263,29 +263,6 @@ def axis_angle_matrix(n: Vec3, c: Edge, s: Edge) -> Mat3:
         entries[3 * i + j] = g.add(entries[3 * i + j], edge)
         entries[3 * j + i] = g.sub(entries[3 * j + i], edge)
     return Mat3(g, tuple(entries))
-
-
-def quaternion_matrix(g: Graph, x: Edge, y: Edge, z: Edge, w: Edge) -> Mat3:
-    """The matrix of a unit quaternion, scalar last."""
-    mul, add, sub = g.mul, g.add, g.sub
-    tx, ty, tz = add(x, x), add(y, y), add(z, z)
-    xx, yy, zz = mul(tx, x), mul(ty, y), mul(tz, z)
-    xy, xz, yz = mul(tx, y), mul(tx, z), mul(ty, z)
-    wx, wy, wz = mul(tx, w), mul(ty, w), mul(tz, w)
-    return Mat3(
-        g,
-        (
-            sub(ONE, add(yy, zz)),
-            sub(xy, wz),
-            add(xz, wy),
-            add(xy, wz),
-            sub(ONE, add(xx, zz)),
-            sub(yz, wx),
-            sub(xz, wy),
-            add(yz, wx),
-            sub(ONE, add(xx, yy)),
-        ),
-    )
 
 
 def frame_with_axis(n: Vec3) -> tuple[Mat3, int, bool] | None:

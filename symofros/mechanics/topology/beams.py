@@ -14,7 +14,8 @@ from symofros.errors import Problem
 from symofros.mechanics.beams.deformation import Deformation, deformation_of
 from symofros.mechanics.beams.piecewise import stations
 from symofros.mechanics.beams.shape_functions import FamilyError, Shape
-from symofros.mechanics.topology.numbers import Array, Numbers
+from symofros.mechanics.topology.numbers import Numbers
+from symofros.rotations import Array
 
 # Beyond this the mass matrix loses all but four of a double's sixteen digits.
 MOST_CONDITION = 1e12

@@ -7,14 +7,12 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from symofros.description.system import Joint, System
 from symofros.description.values import Rotation, Value
 from symofros.errors import Problem
 from symofros.expr.expression import evaluate
-
-Array = npt.NDArray[np.float64]
+from symofros.rotations import Array, axis_rotation, quaternion_matrix
 
 # Entries typed with seven digits still pass; a reflection or a shear does not.
 ROTATION_TOLERANCE = 1e-6
@@ -55,17 +53,15 @@ class Numbers:
         if rotation.kind == "matrix":
             return x.reshape(3, 3)
         if rotation.kind == "rpy":
-            return _about(2, x[2]) @ _about(1, x[1]) @ _about(0, x[0])
-        norm = float(np.linalg.norm(x if rotation.kind == "quaternion" else x[:3]))
+            roll, pitch, yaw = (_about(axis, angle) for axis, angle in zip(np.eye(3), x, strict=True))
+            return np.asarray(yaw @ pitch @ roll)
+        direction = x if rotation.kind == "quaternion" else x[:3]
+        norm = float(np.linalg.norm(direction))
         if not 0.0 < norm < math.inf:
             return np.full((3, 3), math.nan)
         if rotation.kind == "quaternion":
-            vector, scalar = x[:3] / norm, x[3] / norm
-        else:
-            vector, scalar = x[:3] / norm * math.sin(x[3] / 2), math.cos(x[3] / 2)
-        cross = skew(vector)
-        R: Array = np.eye(3) + 2 * scalar * cross + 2 * cross @ cross
-        return R
+            return quaternion_matrix(x / norm)
+        return _about(direction / norm, x[3])
 
     def value_problems(self, what: str, value: Value, where: str) -> Iterator[Problem]:
         """A value that is not finite at the defaults."""
@@ -114,18 +110,8 @@ class Numbers:
             )
 
 
-def skew(p: Array) -> Array:
-    """The matrix of the cross product with p."""
-    return np.array([[0.0, -p[2], p[1]], [p[2], 0.0, -p[0]], [-p[1], p[0], 0.0]])
-
-
-def _about(axis: int, angle: float) -> Array:
-    c, s = math.cos(angle), math.sin(angle)
-    R = np.eye(3)
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    R[i, i] = R[j, j] = c
-    R[i, j], R[j, i] = -s, s
-    return R
+def _about(axis: Array, angle: float) -> Array:
+    return axis_rotation(axis, math.cos(angle), math.sin(angle))
 
 
 def _show(values: Any) -> str:

@@ -38,7 +38,7 @@ def sliders_of(model: Model, elastic: tuple[bool, ...]) -> tuple[Slider, ...]:
     bounds = model.record.sampling_bounds()
     found: list[Slider] = []
     for segment in model.record.segments:
-        along = {"linear": segment.size, "quaternion": 0, "pose": 3}[segment.kind]
+        along = segment.translations
         for i in range(along):
             low, high = (float(f"{bound:.3g}") for bound in bounds[segment.q + i])  # For people to read.
             found.append(
@@ -55,7 +55,7 @@ def values_of(model: Model, q: Array) -> Array:
     """Where the sliders of a configuration (nq) stand (nv)."""
     values = model.difference(model.neutral(), q)
     for segment in model.record.segments:
-        along = segment.size if segment.kind == "linear" else 3 if segment.kind == "pose" else 0
+        along = segment.translations
         values[segment.v : segment.v + along] = q[segment.q : segment.q + along]
     return values
 
@@ -68,6 +68,6 @@ def coordinates_of(model: Model, values: Array) -> Array:
             steps[segment.v : segment.v + 3] = 0.0
     q = model.integrate(model.neutral(), steps)
     for segment in model.record.segments:
-        along = segment.size if segment.kind == "linear" else 3 if segment.kind == "pose" else 0
+        along = segment.translations
         q[segment.q : segment.q + along] = values[segment.v : segment.v + along]
     return q

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from symofros.description.joint_kinds import ManifoldKind
 from symofros.expr.derivative import along
 from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.expr.quaternion import Quaternion
 from symofros.mechanics.dynamics.acceleration import no_wrench
 from symofros.mechanics.dynamics.applied.beam_loads import beam_loads
 from symofros.mechanics.dynamics.applied.elements import element_energy, element_force
@@ -16,7 +17,6 @@ from symofros.mechanics.dynamics.jourdain import virtual_power
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import Motion, MovingBeam
 from symofros.mechanics.kinematics.lowering import Lowering
-from symofros.mechanics.kinematics.rotations import quaternion_matrix
 from symofros.mechanics.topology.coordinates import coordinate_names, speed_symbols
 from symofros.mechanics.topology.tree import Link
 
@@ -137,22 +137,22 @@ def _own_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, 
     return {lowering.symbol(names[k]): ONE}
 
 
+def _quaternion(lowering: Lowering, names: Sequence[str]) -> Quaternion:
+    return Quaternion.of(lowering.g, *(lowering.symbol(name) for name in names))
+
+
 def _ball_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
-    """Rates of a quaternion per unit angular velocity along axis k of D: half the product with that axis."""
-    g = lowering.g
-    e, s = [lowering.symbol(name) for name in names[:3]], lowering.symbol(names[3])
-    half = g.constant(0.5)
-    i, j = (k + 1) % 3, (k + 2) % 3
-    rates = {e[k]: s, e[i]: e[j], e[j]: -e[i], s: -e[k]}
-    return {edge: g.mul(half, rate) for edge, rate in rates.items()}
+    """Rates of a quaternion per unit angular velocity along axis k of D."""
+    quaternion = _quaternion(lowering, names)
+    return dict(zip(quaternion, quaternion.rate(k), strict=True))
 
 
 def _free_rate(lowering: Lowering, names: tuple[str, ...], k: int) -> dict[Edge, Edge]:
     """Rates of position and quaternion per unit body velocity: the position moves along column k of R_PD."""
     if k >= 3:
         return _ball_rate(lowering, names[3:], k - 3)
-    from_quaternion = quaternion_matrix(lowering.g, *(lowering.symbol(name) for name in names[3:]))
-    return {lowering.symbol(name): edge for name, edge in zip(names[:3], from_quaternion.column(k), strict=True)}
+    direction = _quaternion(lowering, names[3:]).matrix.column(k)
+    return {lowering.symbol(name): edge for name, edge in zip(names[:3], direction, strict=True)}
 
 
 _RATES: dict[ManifoldKind, Callable[[Lowering, tuple[str, ...], int], dict[Edge, Edge]]] = {

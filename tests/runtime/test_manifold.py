@@ -1,0 +1,187 @@
+"""The configuration manifold in NumPy against its definition on the graph, and its identities at any angle."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from symofros.expr.derivative import directional
+from symofros.expr.evaluate import evaluate_edges
+from symofros.expr.graph import Edge, Graph
+from symofros.expr.program import Program
+from symofros.expr.quaternion import Quaternion
+from symofros.expr.vector import Vec3
+from symofros.rotations import Array, axis_rotation, normalized, quaternion_matrix
+from symofros.runtime.manifold import chart_rate, difference, integrate, retract
+from symofros.runtime.record import Segment
+
+SEGMENTS = (
+    Segment("linear", 0, 0, 2),
+    Segment("quaternion", 2, 2, 4),
+    Segment("pose", 6, 5, 7),
+    Segment("linear", 13, 11, 1),
+)
+NQ, NV = 14, 12
+ROTATIONS = (slice(2, 5), slice(8, 11))
+# A few operations on numbers of the size of one.
+ROUNDING = 2e-15
+
+# Half of the angles are tiny or near a half turn, where closed forms and square roots lose digits.
+ANGLES = st.one_of(
+    st.sampled_from([0.0, 1e-300, 1e-160, 1e-16, 1e-9, 1e-8, 1e-5, 0.99e-4, 1e-4, 1e-3, 1e-2, 0.0999, 0.1, 0.1001]),
+    st.floats(0.0, 3.1),
+    st.floats(-14.0, -2.0).map(lambda exponent: np.pi - 10.0**exponent),
+)
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def configuration(rng: np.random.Generator) -> Array:
+    q = rng.uniform(-1.0, 1.0, NQ)
+    for i in (2, 9):
+        q[i : i + 4] = normalized(rng.standard_normal(4))
+    return q
+
+
+def step(rng: np.random.Generator, angles: tuple[float, float]) -> Array:
+    """A step (NV) whose two rotations have these angles, about random axes."""
+    dq = rng.uniform(-1.0, 1.0, NV)
+    for rotation, angle in zip(ROTATIONS, angles, strict=True):
+        dq[rotation] = angle * normalized(rng.standard_normal(3))
+    return dq
+
+
+class OnGraph:
+    """The same manifold by quaternions of a graph, whose inputs are q0, theta and v."""
+
+    def __init__(self) -> None:
+        g = self.g = Graph()
+        self.q0 = [g.input("q", i) for i in range(NQ)]
+        self.theta, self.v = ([g.input(name, i) for i in range(NV)] for name in ("x", "v"))
+
+    def vector(self, edges: list[Edge], start: int) -> Vec3:
+        return Vec3(self.g, *edges[start : start + 3])
+
+    def retracted(self) -> list[Edge]:
+        """The coordinates at theta in the chart about q0."""
+        g, q0, theta = self.g, self.q0, self.theta
+        ball, pose = Quaternion.of(g, *q0[2:6]), Quaternion.of(g, *q0[9:13])
+        shift = self.vector(q0, 6) + pose.matrix.times(self.vector(theta, 5))
+        return [
+            *(g.add(q0[i], theta[i]) for i in range(2)),
+            *(ball * Quaternion.exponential(self.vector(theta, 2))),
+            *shift,
+            *(pose * Quaternion.exponential(self.vector(theta, 8))),
+            g.add(q0[13], theta[11]),
+        ]
+
+    def rates(self, q: list[Edge]) -> list[Edge]:
+        """The rates N(q) v of coordinates."""
+        g, v = self.g, self.v
+
+        def quaternion_rate(quaternion: Quaternion, start: int) -> list[Edge]:
+            columns = [tuple(quaternion.rate(k)) for k in range(3)]
+            return [g.sum(g.mul(columns[k][i], v[start + k]) for k in range(3)) for i in range(4)]
+
+        ball, pose = Quaternion.of(g, *q[2:6]), Quaternion.of(g, *q[9:13])
+        linear = pose.matrix.times(self.vector(v, 5))
+        return [v[0], v[1], *quaternion_rate(ball, 2), *linear, *quaternion_rate(pose, 8), v[11]]
+
+
+def values(g: Graph, edges: list[Edge], **inputs: Array) -> Array:
+    """The values of edges, where the inputs have these values."""
+    columns = evaluate_edges(
+        Program("manifold", g, {}, ()), edges, {name: value[None] for name, value in inputs.items()}, {}
+    )
+    return np.array([np.ravel(column)[0] for column in columns])
+
+
+@given(SEEDS, ANGLES, ANGLES)
+@settings(max_examples=200, deadline=None)
+def test_a_chart_leads_where_the_graph_leads(seed: int, first: float, second: float) -> None:
+    rng = np.random.default_rng(seed)
+    q0, theta = configuration(rng), step(rng, (first, second))
+    graph = OnGraph()
+    expected = values(graph.g, graph.retracted(), q=q0, x=theta)
+    np.testing.assert_allclose(retract(SEGMENTS, q0, theta), expected, atol=ROUNDING, rtol=0)
+
+
+@given(SEEDS, ANGLES, ANGLES)
+@settings(max_examples=200, deadline=None)
+def test_the_rate_of_a_chart_makes_the_rates_of_the_coordinates(seed: int, first: float, second: float) -> None:
+    """The derivative of the graph's retraction along theta' equals N(q) v at the retracted configuration."""
+    rng = np.random.default_rng(seed)
+    q0, theta, v = configuration(rng), step(rng, (first, second)), rng.uniform(-1.0, 1.0, NV)
+    graph = OnGraph()
+    g, q = graph.g, graph.retracted()
+    theta_rate = [g.input("rate", i) for i in range(NV)]
+    moved = directional(g, q, dict(zip(graph.theta, theta_rate, strict=True)))
+    inputs = {"q": q0, "x": theta, "v": v, "rate": chart_rate(SEGMENTS, theta, v)}
+    by_chart, by_speeds = values(g, moved, **inputs), values(g, graph.rates(q), **inputs)
+    # The rate of a rotation vector is at most some pi times the speed up to a half turn.
+    np.testing.assert_allclose(by_chart, by_speeds, atol=10 * ROUNDING, rtol=0)
+
+
+@given(SEEDS, ANGLES, ANGLES)
+@settings(max_examples=300, deadline=None)
+def test_difference_undoes_integrate_at_any_angle(seed: int, first: float, second: float) -> None:
+    rng = np.random.default_rng(seed)
+    q0, dq = configuration(rng), step(rng, (first, second))
+    found = difference(SEGMENTS, q0, integrate(SEGMENTS, q0, dq))
+    np.testing.assert_allclose(found, dq, atol=20 * ROUNDING, rtol=0)
+
+
+@given(SEEDS, SEEDS)
+@settings(max_examples=100, deadline=None)
+def test_integrate_leads_to_what_the_difference_was_taken_of(first: int, second: int) -> None:
+    q0, q1 = (configuration(np.random.default_rng(seed)) for seed in (first, second))
+    reached = integrate(SEGMENTS, q0, difference(SEGMENTS, q0, q1))
+    for i in (2, 9):  # -q is the same rotation as q.
+        reached[i : i + 4] *= np.sign(reached[i : i + 4] @ q1[i : i + 4])
+    np.testing.assert_allclose(reached, q1, atol=10 * ROUNDING, rtol=0)
+
+
+@given(SEEDS, ANGLES)
+@settings(max_examples=100, deadline=None)
+def test_quaternions_stay_of_unit_length(seed: int, angle: float) -> None:
+    rng = np.random.default_rng(seed)
+    q = configuration(rng)
+    for _ in range(50):
+        q = integrate(SEGMENTS, q, step(rng, (angle, angle)))
+    assert abs(np.linalg.norm(q[2:6]) - 1.0) <= 4 * np.finfo(float).eps
+    assert abs(np.linalg.norm(q[9:13]) - 1.0) <= 4 * np.finfo(float).eps
+
+
+@given(SEEDS, ANGLES)
+@settings(max_examples=100, deadline=None)
+def test_a_constant_twist_may_be_followed_in_parts(seed: int, angle: float) -> None:
+    """A screw motion for unit time is two for half the time, whatever the angle."""
+    rng = np.random.default_rng(seed)
+    q, dq = configuration(rng), step(rng, (angle, angle))
+    halves = integrate(SEGMENTS, integrate(SEGMENTS, q, dq / 2), dq / 2)
+    np.testing.assert_allclose(integrate(SEGMENTS, q, dq), halves, atol=4 * ROUNDING, rtol=0)
+
+
+@given(SEEDS, ANGLES)
+@settings(max_examples=100, deadline=None)
+def test_the_logarithm_on_the_graph_is_the_difference(seed: int, angle: float) -> None:
+    rng = np.random.default_rng(seed)
+    q0, dq = configuration(rng), step(rng, (angle, angle))
+    q1 = integrate(SEGMENTS, q0, dq)
+    g = Graph()
+    a, b = (Quaternion.of(g, *(g.input(name, i) for i in range(4))) for name in ("a", "b"))
+    w = list((a.conjugate * b).logarithm)
+    found = values(g, w, a=q0[2:6], b=q1[2:6])
+    np.testing.assert_allclose(found, difference(SEGMENTS, q0, q1)[2:5], atol=ROUNDING, rtol=1e-15)
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-9, 0.3, 3.0])
+def test_the_matrix_of_a_rotation_vector_is_rodrigues_formula(angle: float) -> None:
+    axis = normalized(np.array([1.0, -2.0, 0.5]))
+    g = Graph()
+    R = Quaternion.exponential(Vec3(g, *(g.input("w", i) for i in range(3)))).matrix
+    found = values(g, list(R.entries), w=angle * axis).reshape(3, 3)
+    np.testing.assert_allclose(found, axis_rotation(axis, np.cos(angle), np.sin(angle)), atol=ROUNDING)
+    quaternion = np.append(axis * np.sin(angle / 2), np.cos(angle / 2))
+    np.testing.assert_allclose(found, quaternion_matrix(quaternion), atol=ROUNDING)
