@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -18,12 +19,24 @@ os.environ.setdefault("SYMOFROS_CACHE", str(_CACHE / "models"))
 # zig would use the home folder, which a machine of CI may lack; it does not end where it can't be made.
 os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(_CACHE / "zig"))
 
+# Tests start some hundred processes: each would translate the package's text again where bytecode is not kept.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run tests that take minutes")
     parser.addoption("--tools", action="store_true", help="also run tests of programs that .ci/run installs")
     parser.addoption("--browser", action="store_true", help="also run tests that look at pages with Chromium")
     parser.addoption("--update-golden", action="store_true", help="rewrite the expected texts that tests compare with")
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
+    """Workers of `-n auto`: one a core for folders; none for files and single tests, or where output is to be seen."""
+    folders = any(Path(argument).is_dir() for argument in config.args)
+    if not folders or config.getoption("capture") == "no" or config.getoption("benchmark_enable"):
+        return 0
+    return None  # As xdist counts them.
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
+from typing import Any
+
+import pytest
 
 import symofros as sf
 from reference_models import MODELS
@@ -38,6 +42,20 @@ REFERENCES = (
     "random_tree70",
 )
 CASES = (*TREES, *REFERENCES)
+# What every run takes of them: each kind of joint, branches, rotors, friction, numbers and parameters, one long chain.
+SAMPLE = (
+    "tree2",  # Branches; revolute, continuous, prismatic, ball.
+    "parametrised1",  # Parameters; free joints below others, continuous, fixed.
+    "joints2",  # Universal, screw, cylindrical in branches.
+    "joints7",  # Planar and general ones.
+    "double_pendulum",
+    "space_arm",
+    "chain7",
+    "heavy_top",
+    "gyroscope",
+    "friction_arm",
+    "joint_zoo",
+)
 
 # Mechanisms with constraints -> where to begin with closing their loops.
 GUESSES = {
@@ -50,6 +68,12 @@ GUESSES = {
     "rolling_disc": [0, 0, 0.5, 0.5, 0.5, 0.5, 0.5],
     "sleigh": [0.1, 0.2, 0.3],
 }
+
+
+def sampled(cases: Sequence[str], chosen: Sequence[str] = SAMPLE) -> list[Any]:
+    """The cases of a parametrisation: those that are chosen in every run, the others with --slow."""
+    assert set(chosen) <= set(cases), "chosen from elsewhere"
+    return [case if case in chosen else pytest.param(case, marks=pytest.mark.slow) for case in cases]
 
 
 @cache

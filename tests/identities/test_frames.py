@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tests.identities.test_dynamics import DIFFERENCE, ROUNDING, STATES, STEP, states
-from tests.models import CASES
+from tests.models import CASES, sampled
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", sampled(CASES))
 def test_velocity_is_jacobian_times_speed(case: str, rng: np.random.Generator) -> None:
     m, q, v = states(case, rng)
     for frame in m.names.frames:
@@ -17,7 +17,7 @@ def test_velocity_is_jacobian_times_speed(case: str, rng: np.random.Generator) -
         np.testing.assert_allclose(m.frame_velocity(frame, q, v), expected, atol=ROUNDING * 100)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", sampled(CASES))
 def test_velocity_is_the_rate_of_the_pose(case: str, rng: np.random.Generator) -> None:
     m, q, v = states(case, rng)
     ahead, behind = m.integrate(q, STEP * v), m.integrate(q, -STEP * v)
@@ -30,7 +30,7 @@ def test_velocity_is_the_rate_of_the_pose(case: str, rng: np.random.Generator) -
         np.testing.assert_allclose(m.frame_velocity(frame, q, v), measured, atol=DIFFERENCE)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", sampled(CASES))
 def test_acceleration_and_jacobian_rate_are_derivatives(case: str, rng: np.random.Generator) -> None:
     m, q, v = states(case, rng)
     a = rng.standard_normal((STATES, m.nv))
@@ -43,7 +43,7 @@ def test_acceleration_and_jacobian_rate_are_derivatives(case: str, rng: np.rando
         np.testing.assert_allclose(m.frame_acceleration(frame, q, v, a), expected, atol=ROUNDING * 1000)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", sampled(CASES))
 def test_poses_are_rotations(case: str, rng: np.random.Generator) -> None:
     m, q, _ = states(case, rng)
     for frame in m.names.frames:

@@ -15,10 +15,11 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation
+from symofros.description.system import JOINT_KINDS
 from symofros.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.generator.codegen.names import c_string, identifier, local_name
 from symofros.native import native_text
-from tests.models import system
+from tests.models import sampled, system
 
 COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1"]
@@ -41,10 +42,25 @@ def compile_strictly(folder: Path, source: str, compiler: str, *more: str) -> Pa
     return folder / "model.o"
 
 
+def every_joint() -> sf.System:
+    """Each kind of joint on the ground, with parameters: all that C text may hold, in little of it."""
+    solid = sf.Inertia("m", (0.1, -0.2, 0.05), (0.3, 0.4, 0.5))
+    axis = {"axis": (0, 0.6, 0.8), "axis2": (1, 0, 0), "pitch": 0.2}
+    joints = [sf.Joint(f"j_{kind}", kind, **axis) for kind in JOINT_KINDS if kind != "general"]
+    turned = {
+        "coordinates": ("a", "b"),
+        "moving_position": ("a", "sin(b)", 0),
+        "moving_rotation": sf.Rotation.rpy(0, 0, "b"),
+    }
+    joints.append(sf.Joint("j_general", "general", **turned))
+    bodies = [sf.RigidBody(f"b{i}", joint, solid, [sf.Frame("tip", (0.1, 0, "m"))]) for i, joint in enumerate(joints)]
+    return sf.System("every_joint", bodies, [sf.Parameter("m", 1.5)])
+
+
 @pytest.mark.parametrize("compiler", COMPILERS)
-@pytest.mark.parametrize("case", ["tree0", "tree5", "parametrised2"])
+@pytest.mark.parametrize("case", ["every joint", *sampled(("tree0", "tree5", "parametrised2"), ())])
 def test_builds_as_strict_c99(case: str, compiler: str, tmp_path: Path) -> None:
-    compile_strictly(tmp_path, source_of(system(case)), compiler)
+    compile_strictly(tmp_path, source_of(every_joint() if case == "every joint" else system(case)), compiler)
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
@@ -58,10 +74,10 @@ def test_derivatives_and_solvers_build_as_strict_c99(
 
 @pytest.mark.skipif(shutil.which("nm") is None, reason="needs binutils")
 def test_exports_one_symbol_and_keeps_no_state(tmp_path: Path) -> None:
-    done = compile_strictly(tmp_path, source_of(system("tree1")), COMPILERS[0])
+    done = compile_strictly(tmp_path, source_of(MODELS["friction_arm"]), COMPILERS[0])
     symbols = subprocess.run(["nm", str(done)], capture_output=True, text=True).stdout.splitlines()
     exported = [line.split()[-1] for line in symbols if re.search(r" [A-TV-Z] ", line)]
-    assert exported == ["random_tree1_model"]
+    assert exported == ["friction_arm_model"]
     writable = [line for line in symbols if re.search(r" [bBdDcC] ", line) and "rel.ro" not in line]
     # Tables of pointers are constant; a position-dependent object keeps them in .data.rel.ro, which nm shows as d.
     assert all(re.search(r"_(names|in|out|functions|struct|default|neutral)$", line) for line in writable), writable

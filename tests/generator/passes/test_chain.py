@@ -162,8 +162,8 @@ def test_what_other_functions_read_does_not_split_sums() -> None:
     ("name", "function"),
     [
         ("chain22", "dynamics"),
-        ("grasp", "residual_derivatives"),
-        ("mss", "inverse_dynamics_derivatives"),
+        pytest.param("grasp", "residual_derivatives", marks=pytest.mark.slow),
+        pytest.param("mss", "inverse_dynamics_derivatives", marks=pytest.mark.slow),
         ("spdm", "forward_dynamics_derivatives"),
     ],
 )

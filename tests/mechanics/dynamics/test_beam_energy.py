@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 import symofros as sf
@@ -43,9 +44,10 @@ def free_motion(retain: str, deflection: float, periods: int) -> tuple[np.ndarra
     return times / period, energy / energy[0] - 1.0
 
 
-def test_everything_kept_conserves_energy() -> None:
-    """Over a hundred periods, to what the integrator's tolerance of 1e-12 leaves."""
-    _, error = free_motion("all", 0.1, 100)
+@pytest.mark.parametrize("periods", [10, pytest.param(100, marks=pytest.mark.slow)])
+def test_everything_kept_conserves_energy(periods: int) -> None:
+    """Over some periods, to what the integrator's tolerance of 1e-12 leaves; over a hundred with --slow."""
+    _, error = free_motion("all", 0.1, periods)
     assert np.abs(error).max() < 1e-9
 
 

@@ -152,6 +152,7 @@ def test_the_rows_of_a_local_campaign(tmp_path: Path) -> None:
     assert rows(tmp_path / "c").equals(here())
 
 
+@pytest.mark.slow
 def test_a_dead_worker_leaves_its_batches_to_the_others(tmp_path: Path) -> None:
     folder = tmp_path / "c"
     with cluster(tmp_path / "cluster") as made:

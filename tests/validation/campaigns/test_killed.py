@@ -102,6 +102,7 @@ def uninterrupted() -> pa.Table:
     return pa.concat_tables([task.run() for task in tasks(make(SMALL, "test"))])
 
 
+@pytest.mark.slow  # In every run: tests/validation/campaigns/test_session.py, a worker that kills itself.
 def test_a_killed_worker_costs_its_batch_and_no_other(tmp_path: Path) -> None:
     client = start(tmp_path / "c")
     wait_for(client, lambda: sum(events(tmp_path / "c", "done").values()) >= 5)

@@ -16,7 +16,12 @@ from validation.oracle import compare, kane, lagrange
 from validation.oracle.models import EXACT, MODELS
 from validation.oracle.scope import NotDerivable
 
-CASES = [(name, by) for name, model in MODELS.items() for by in model.derivations]
+# Each model by one of its derivations in every run, by the others with --slow.
+CASES = [
+    pytest.param(name, by, marks=[pytest.mark.slow] if i else [])
+    for name, model in MODELS.items()
+    for i, by in enumerate(sorted(model.derivations, reverse=True))
+]
 SYSTEMS = [model.system for model in MODELS.values()]
 JOINTS = [body.joint for system in SYSTEMS for body in system.bodies if body.joint is not None]
 
