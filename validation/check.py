@@ -243,7 +243,6 @@ def _compared(bench: _Bench, quantity: Quantity) -> Iterator[Comparison]:
 def _judged(
     bench: _Bench, one: Participant, quantity: Quantity, ours: Array, states: States, scales: Scales
 ) -> Comparison:
-    quantity = replace(quantity, tolerance=max(quantity.tolerance, one.tolerance))
     errors, sizes = scaled_errors(quantity, ours, one.value(quantity, states), scales)
     row = judge(bench.label, one.name, quantity, errors, sizes=sizes)
     condition = _condition(bench, one)

@@ -32,7 +32,6 @@ class Participant:
         route: The way it was reached.
         model: Our model that it is compared with.
         states: States that it is asked at, with the forces of that model.
-        tolerance: The closest agreement that can be asked of it, relative.
         seconds: Time that its answers took [s].
     """
 
@@ -40,7 +39,6 @@ class Participant:
     route: Route
     model: SymofrosEngine
     states: States
-    tolerance: float = 0.0
     seconds: float = field(default=0.0)
 
     @property
@@ -86,7 +84,7 @@ def participants(
             continue
         states = variants.states_for(route)
         affordable = states[: getattr(engine, "most_states", len(states))]
-        yield Participant(engine, route, variants.model_for(route), affordable, variants.tolerance_for(route))
+        yield Participant(engine, route, variants.model_for(route), affordable)
 
 
 def _built(

@@ -7,16 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
-import symofros as sf
 from validation.adapters import Route, compiled
 from validation.adapters.compiled import SymofrosEngine
 from validation.comparison.loops import assembled_states
 from validation.contract.interface import States, Subject
 from validation.mechanics.assembly import Assembly
-
-# A user's own shape functions are interpolated by ours; the second derivative of the interpolant, which the strain
-# takes, keeps ten digits of the formula's.
-INTERPOLATED = 1e-10
 
 
 class ModelVariants:
@@ -48,10 +43,6 @@ class ModelVariants:
         if route.loops:
             return self.assembled
         return self._untruncated_states if route.variant == "untruncated" else self.states
-
-    def tolerance_for(self, route: Route) -> float:
-        """The closest agreement possible; zero for engines that take the same numbers as we do."""
-        return INTERPOLATED if route.variant == "untruncated" and has_formulas(self.subject.system) else 0.0
 
     @cached_property
     def assembled(self) -> States:
@@ -90,10 +81,3 @@ def with_forces(model: SymofrosEngine, states: States, efforts: int | None = Non
     force = model.model.generalized_force
     motions = np.arange(u.shape[1]) >= (u.shape[1] if efforts is None else efforts)
     return replace(states, applied=force(q, v, u), passive=force(q, v, np.where(motions, u, 0.0)))
-
-
-def has_formulas(system: sf.System) -> bool:
-    """Whether a beam's shape functions are formulas of the user."""
-    beams = [body for body in system.bodies if isinstance(body, sf.Beam)]
-    shapes = [shape for beam in beams for _, own in beam.shapes for shape in own]
-    return any(not isinstance(shape, sf.Samples) for shape in shapes)

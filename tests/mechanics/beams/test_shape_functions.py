@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
 import scipy.linalg
+import sympy
 
 import symofros as sf
 from symofros.description.beam import Direction
@@ -195,6 +197,20 @@ def test_formulas_are_followed() -> None:
     np.testing.assert_allclose([float(shape.phi(s)) for s in x], 1 - np.cos(np.pi * x / 2), atol=3e-15)
     root = [float(f(Fraction(0))) for f in (shape.phi, shape.phi.derivative())]
     assert max(map(abs, root)) < 1e-18
+
+
+@pytest.mark.parametrize("text", ["1 - cos(pi*xi/2)", "xi^2*exp(-xi)", "cosh(3*xi) - 1", "xi^2/(1 + xi)"])
+def test_mass_and_stiffness_of_a_formula_keep_their_digits(text: str) -> None:
+    """Integrals of phi^2 and phi''^2 against quadrature of the formula's own derivatives in thirty digits."""
+    ((phi, _),) = shapes("user", "bend_y", 1, (sf.formula(text),))
+    xi = sympy.Symbol("xi")
+    formula = sympy.sympify(text.replace("^", "**").replace("pi", f"({Fraction(np.pi)})"))
+    for order in (0, 2):
+        square = sympy.lambdify(xi, sympy.diff(formula, xi, order) ** 2, "mpmath")
+        with mpmath.workdps(30):
+            expected = float(mpmath.quad(square, [0, 1]))
+        f = derivative(phi, order)
+        assert float((f * f).integral()) == pytest.approx(expected, rel=1e-14)
 
 
 @pytest.mark.parametrize(
