@@ -27,9 +27,9 @@ RECORDED = 50  # States kept of each motion.
 # Below this relative drift, rounding rules and halving the step no longer helps: some 1e3 evaluations' worth of eps.
 ROUNDING_DRIFT = 1e-11
 
-# A fourth-order method's error falls by 16 when the step is halved: an order of three is asked for. Errors are thus half
-# of what is allowed wherever the order is four; it is orders that are compared, which differ from four by less than
-# 0.05 (terms of order five are still felt at the coarser step), while a wrong term has the order zero.
+# A fourth-order method's error falls by 16 when the step is halved: an order of three is asked for, and errors are half
+# of what is allowed wherever the order is four. Orders differ from four by less than 0.05 (terms of order five are
+# still felt at the coarser step), while a wrong term has the order zero.
 HALVING = 8.0
 
 # A drift above this says that the steps are too long for the motion, and so nothing about the order.
