@@ -31,11 +31,11 @@ from symofros.description.forces import Spring as Spring
 from symofros.description.forces import Stop as Stop
 from symofros.description.forces import VirtualPower as VirtualPower
 from symofros.description.frames import Frame as Frame
+from symofros.description.joint import Joint as Joint
+from symofros.description.joint import Limits as Limits
 from symofros.description.system import Body as Body
 from symofros.description.system import Inertia as Inertia
 from symofros.description.system import Input as Input
-from symofros.description.system import Joint as Joint
-from symofros.description.system import Limits as Limits
 from symofros.description.system import Parameter as Parameter
 from symofros.description.system import RigidBody as RigidBody
 from symofros.description.system import System as System

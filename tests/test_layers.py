@@ -3,222 +3,116 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
+from validation.adapters import ROUTES
+
 ROOT = Path(__file__).parent.parent
 
-# Room -> rooms it may import from. "errors" stands for errors.py, and so on.
-ALLOWED: dict[str, set[str]] = {
-    "errors": set(),
-    "atomic": set(),
-    "options": set(),
-    "functions": set(),
-    "native": set(),
-    "rotations": set(),
-    "expr": {"errors"},
-    "description": {"expr", "errors", "atomic", "rotations"},
-    "mechanics.topology": {"mechanics.beams", "description", "expr", "errors", "rotations"},
-    "mechanics.beams": {"description", "expr", "errors"},
-    "mechanics.kinematics": {"mechanics.beams", "mechanics.topology", "description", "expr", "errors"},
-    "mechanics.dynamics": {
-        "mechanics.kinematics",
-        "mechanics.beams",
-        "mechanics.topology",
-        "description",
-        "expr",
-        "errors",
-        "functions",
-    },
-    "generator.passes": {"expr", "options"},
-    "runtime": {"errors", "functions", "options", "atomic", "rotations"},
-    "generator.codegen": {"native", "expr", "generator.passes", "options", "runtime"},
+
+def table(text: str) -> dict[str, set[str]]:
+    """Lines "layer: layers it may import from", continued in lines without a colon; comments begin with #."""
+    rows: dict[str, set[str]] = {}
+    layer = ""
+    for line in text.splitlines():
+        if not line.strip().startswith("#"):
+            name, colon, others = line.rpartition(":")
+            layer = name.strip() if colon else layer
+            rows.setdefault(layer, set()).update(others.split())
+    return {layer: others for layer, others in rows.items() if layer}
+
+
+# "errors" stands for errors.py, and so on.
+ALLOWED = table("""
+    errors:
+    atomic:
+    options:
+    functions:
+    native:
+    rotations:
+    expr: errors
+    description: errors atomic rotations expr
+    mechanics.beams: errors expr description
+    mechanics.topology: errors rotations expr description mechanics.beams
+    mechanics.kinematics: errors expr description mechanics.beams mechanics.topology
+    mechanics.dynamics: errors functions expr description mechanics.beams mechanics.topology
+        mechanics.kinematics
+    generator.passes: options expr
+    runtime: errors atomic options functions rotations
+    generator.codegen: options native expr generator.passes runtime
     # The stages of the pipeline between mechanics and the model, which the compiler puts together.
-    "generator.record": {
-        "description",
-        "expr",
-        "mechanics.beams",
-        "mechanics.dynamics",
-        "mechanics.kinematics",
-        "mechanics.topology",
-        "options",
-        "runtime",
-    },
-    "generator.programs": {
-        "errors",
-        "expr",
-        "functions",
-        "generator.codegen",
-        "generator.passes",
-        "mechanics.dynamics",
-        "mechanics.topology",
-        "options",
-    },
-    "generator.units": {
-        "description",
-        "errors",
-        "expr",
-        "generator.codegen",
-        "generator.passes",
-        "generator.programs",
-        "generator.record",
-        "mechanics.dynamics",
-        "native",
-        "options",
-        "runtime",
-    },
-    "compiler": {
-        "description",
-        "errors",
-        "expr",
-        "generator.codegen",
-        "generator.programs",
-        "generator.record",
-        "generator.units",
-        "mechanics.dynamics",
-        "mechanics.topology",
-        "options",
-        "runtime",
-    },
-    "simulation": {"native", "runtime", "errors", "atomic", "generator.codegen"},
+    generator.record: options expr description mechanics.beams mechanics.topology mechanics.kinematics
+        mechanics.dynamics runtime
+    generator.programs: errors options functions expr mechanics.topology mechanics.dynamics generator.passes
+        generator.codegen
+    generator.units: errors options native expr description mechanics.dynamics generator.passes runtime
+        generator.codegen generator.record generator.programs
+    compiler: errors options expr description mechanics.topology mechanics.dynamics runtime generator.codegen
+        generator.record generator.programs generator.units
+    loading: errors atomic description mechanics.topology
+    simulation: errors atomic native runtime generator.codegen
+    # A diagram is one more program over the graph: its blocks are written beside the models' equations.
+    diagrams: errors options functions native expr description mechanics.topology mechanics.kinematics
+        mechanics.dynamics generator.passes runtime generator.codegen generator.record generator.programs
+        compiler simulation
+    # Formulas of blocks go through the parser of model files; one of them shows its model.
+    blocks: errors expr description runtime simulation diagrams studio.viewer
+    diagrams.files: errors atomic description loading simulation diagrams blocks
     # Packages carry the stepping loop and its methods; the front door, exporting.py, compiles the model.
     # URDF and MJCF hold numbers, which topology's Numbers makes of formulas.
     # A diagram's package is made of its parts' C, written as the diagram is resolved.
-    "exports": {
-        "generator.codegen",
-        "runtime",
-        "rotations",
-        "description",
-        "mechanics.topology",
-        "expr",
-        "simulation",
-        "errors",
-        "options",
-        "atomic",
-        "diagrams",
-        "functions",
-        "generator.passes",
-        "compiler",
-        "loading",
-        "native",
-    },
+    exports: errors atomic options functions native rotations expr description mechanics.topology
+        generator.passes runtime generator.codegen compiler loading simulation diagrams
     # Advice compiles and simulates reduced systems, and counts what they take.
-    "studio.advice": {
-        "compiler",
-        "description",
-        "expr",
-        "generator.passes",
-        "runtime",
-        "simulation",
-        "errors",
-        "options",
-        "atomic",
-    },
-    # A diagram is one more program over the graph: its blocks are written beside the models' equations.
-    "diagrams": {
-        "native",
-        "compiler",
-        "description",
-        "mechanics.topology",
-        "mechanics.kinematics",
-        "mechanics.dynamics",
-        "expr",
-        "functions",
-        "generator.passes",
-        "generator.codegen",
-        "generator.programs",
-        "generator.record",
-        "runtime",
-        "simulation",
-        "errors",
-        "options",
-    },
-    # Formulas of blocks go through the parser of model files; one of them shows its model.
-    "blocks": {"diagrams", "runtime", "simulation", "description", "expr", "studio.viewer", "errors"},
-    "diagrams.files": {"blocks", "diagrams", "description", "loading", "simulation", "atomic", "errors"},
-    # The editor checks documents itself, and hands the rest to workers that use the front doors.
-    "studio.editor": {
-        "__init__",
-        "atomic",
-        "mechanics.beams",
-        "compiler",
-        "description",
-        "errors",
-        "exports",
-        "expr",
-        "functions",
-        "generator.passes",
-        "simulation",
-        "mechanics.topology",
-        "studio.viewer",
-    },
-    "loading": {"errors", "atomic", "description", "mechanics.topology"},
+    studio.advice: errors atomic options expr description generator.passes runtime compiler simulation
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.
-    "studio.viewer": {
-        "mechanics.beams",
-        "compiler",
-        "description",
-        "diagrams",
-        "loading",
-        "runtime",
-        "simulation",
-        "mechanics.topology",
-        "errors",
-        "options",
-        "atomic",
-        "__init__",
-    },
-    "__init__": {
-        "errors",
-        "options",
-        "expr",
-        "description",
-        "compiler",
-        "loading",
-        "exports",
-        "runtime",
-        "simulation",
-        "studio.advice",
-        "diagrams",
-        "diagrams.files",
-        "studio.viewer",
-    },
-}
+    studio.viewer: errors atomic options description mechanics.beams mechanics.topology runtime compiler loading
+        simulation diagrams __init__
+    # The editor checks documents itself, and hands the rest to workers that use the front doors.
+    studio.editor: errors atomic functions expr description mechanics.beams mechanics.topology generator.passes
+        compiler simulation exports studio.viewer __init__
+    __init__: errors options expr description runtime compiler loading simulation diagrams diagrams.files
+        exports studio.advice studio.viewer
+""")
 
 # The same of the harness: what a check is made of ...
-HARNESS: dict[str, set[str]] = {
-    "mechanics": set(),
-    "contract": {"mechanics"},
-    "inputs": {"contract", "mechanics"},
-    "adapters": {"contract", "mechanics"},
-    "comparison": {"adapters", "contract", "mechanics"},
-    "check": {"comparison", "adapters", "inputs", "contract", "mechanics"},
-    "worker_pool": {"check", "adapters", "inputs"},
-    "evidence": {"mechanics"},
-    "reporting": {"evidence", "worker_pool", "check", "comparison", "adapters", "contract"},
-}
+HARNESS = table("""
+    mechanics:
+    contract:    mechanics
+    inputs:      contract mechanics
+    adapters:    contract mechanics
+    comparison:  adapters contract mechanics
+    check:       comparison adapters inputs contract mechanics
+    worker_pool: check adapters inputs
+    evidence:    mechanics
+    reporting:   evidence worker_pool check comparison adapters contract
+""")
 # ... and what builds on it: any of the above, and these others.
-STUDIES: dict[str, set[str]] = {
-    "oracle": set(),
-    "questions": set(),
-    "campaigns": set(),
-    "diagrams": {"questions"},
-    "accuracy": {"questions"},
-    "timing": {"oracle"},
-    "passes": {"timing"},
-    "stability": {"accuracy"},
-    "studies": {"accuracy", "oracle", "stability", "timing"},
-    "pareto": {"stability", "studies", "timing"},
-    "dashboard": {"passes"},
-}
+STUDIES = table("""
+    oracle:
+    questions:
+    campaigns:
+    diagrams:  questions
+    accuracy:  questions
+    timing:    oracle
+    passes:    timing
+    stability: accuracy
+    studies:   accuracy oracle stability timing
+    pareto:    stability studies timing
+    dashboard: passes
+""")
 # The oracle answers for itself: of the harness it knows how joints come apart, nothing else.
 MAY_USE = HARNESS | {name: others | set(HARNESS) for name, others in STUDIES.items()} | {"oracle": {"mechanics"}}
 
-ENGINES = {"pinocchio", "mujoco", "exudyn", "casadi"}
-# Room of validation/adapters -> the engine that it alone may import; Lagrange's equations are differentiated by CasADi.
-ADAPTERS = {name: name for name in ENGINES} | {"lagrangian": "casadi"}
+ENGINES = {route.package for route in ROUTES.values()} - {""}
+# Folder of validation/adapters -> the engine that it alone may import.
+ADAPTERS = {name: name for name in ENGINES} | {
+    route.module.split(".")[2]: route.package for route in ROUTES.values() if route.package
+}
 
 
 def imported(path: Path) -> Iterator[str]:
@@ -228,7 +122,7 @@ def imported(path: Path) -> Iterator[str]:
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import"
             module = node.module or ""
-            if module in ("validation", "validation.adapters"):  # What is taken from them may be a room.
+            if module in ("validation", "validation.adapters"):  # What is taken from them may be a layer.
                 yield from (f"{module}.{alias.name}" for alias in node.names)
             else:
                 yield module
@@ -238,7 +132,7 @@ def imported(path: Path) -> Iterator[str]:
 DIVIDED = {"mechanics", "generator", "studio"}
 
 
-def room(module: str) -> str:
+def layer(module: str) -> str:
     """The layer that a module belongs to: its folder, or its subfolder where the folder is divided."""
     package, *parts = module.split(".")
     if package == "symofros" and (parts[:2] == ["diagrams", "files"] or (parts and parts[0] in DIVIDED)):
@@ -251,7 +145,7 @@ SOURCES = sorted((ROOT / "symofros").rglob("*.py"))
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
 def test_imports_run_one_way(path: Path) -> None:
-    own = room(".".join(path.relative_to(ROOT).with_suffix("").parts))
+    own = layer(".".join(path.relative_to(ROOT).with_suffix("").parts))
     if (
         own in ("__main__", "commands") or path.name == "__init__.py" and own in DIVIDED
     ):  # The command line may use all.
@@ -259,8 +153,8 @@ def test_imports_run_one_way(path: Path) -> None:
     for module in imported(path):
         if module.partition(".")[0] in {"validation", "reference_models"}:
             pytest.fail(f"{path.name} imports {module}: the generator knows nothing of its harness")
-        if module.startswith("symofros") and room(module) != own:
-            assert room(module) in ALLOWED[own], f"{own} may not import {module}"
+        if module.startswith("symofros") and layer(module) != own:
+            assert layer(module) in ALLOWED[own], f"{own} may not import {module}"
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
@@ -280,8 +174,8 @@ def test_imports_of_the_harness_run_one_way(path: Path) -> None:
     if own == "__main__":  # The command line may use everything.
         return
     for module in imported(path):
-        if module.partition(".")[0] == "validation" and room(module) != own:
-            assert room(module) in MAY_USE[own], f"{own} may not import {module}"
+        if module.partition(".")[0] == "validation" and layer(module) != own:
+            assert layer(module) in MAY_USE[own], f"{own} may not import {module}"
 
 
 @pytest.mark.parametrize("path", HARNESS_SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
@@ -291,7 +185,9 @@ def test_engines_stay_in_their_adapters(path: Path) -> None:
     own = folder[1] if folder[:1] == ("adapters",) and len(folder) > 1 else ""
     for module in imported(path):
         package = module.partition(".")[0]
-        assert package not in ENGINES or package == ADAPTERS.get(own), f"{path.name} imports {package} outside its room"
+        assert package not in ENGINES or package == ADAPTERS.get(own), (
+            f"{path.name} imports {package} outside its folder"
+        )
         if folder[:1] == ("adapters",) and module.startswith("validation.adapters."):
             engine = module.split(".")[2]
             assert engine in (own, *BESIDE), f"adapters of '{own}' may not import {module}"
@@ -305,3 +201,31 @@ def test_importing_the_package_is_light() -> None:
     code = "import sys, symofros; print(*sorted({m.partition('.')[0] for m in sys.modules}))"
     loaded = set(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.split())
     assert not loaded & {"sympy", "pydantic", "ruamel", "cffi", "typer", "rich", "jinja2", "viser", *ENGINES}
+
+
+def _modules() -> dict[str, Path]:
+    """Module -> file, of all packages."""
+    files = [
+        path for package in ("symofros", "validation", "reference_models") for path in (ROOT / package).rglob("*.py")
+    ]
+    dotted = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in files}
+    return {name.removesuffix(".__init__"): path for name, path in dotted.items()}
+
+
+def _imported_modules(path: Path, known: Collection[str]) -> set[str]:
+    """The modules of ours that a file imports, for type checkers and within functions, too."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module is not None:
+            of_package = {f"{node.module}.{alias.name}" for alias in node.names}
+            names |= of_package & set(known) or {node.module}
+    return names & set(known)
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    """Imports for type checkers count: what two modules share belongs into a lower one."""
+    modules = _modules()
+    order = TopologicalSorter({name: _imported_modules(path, modules) - {name} for name, path in modules.items()})
+    order.prepare()

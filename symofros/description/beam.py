@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import Any, Literal, get_args
 
 from symofros.description.frames import Frame
+from symofros.description.joint import Joint
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
 from symofros.errors import DescriptionError, Problem, did_you_mean
-
-if TYPE_CHECKING:
-    from symofros.description.system import Joint
 
 Direction = Literal["bend_y", "bend_z", "twist"]
 DIRECTIONS: tuple[Direction, ...] = get_args(Direction)

@@ -12,7 +12,8 @@ from symofros.diagrams.surroundings import parameter_group
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
-from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.expr.substitute import transplant
 

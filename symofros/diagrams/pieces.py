@@ -12,8 +12,9 @@ from symofros.diagrams.opaque_block import OpaqueBlock
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import DescriptionError, Problem
+from symofros.expr.edges import Edge
 from symofros.expr.evaluate import needed_nodes
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.runtime.kernel import Array
 
 # Groups of inputs of a piece that belong to one port, state, memory or parameter begin with these.

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from symofros.diagrams.recording import Recording
 from symofros.diagrams.saving import columns
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import split
 from symofros.diagrams.wiring import Wired
 from symofros.errors import Problem, SymofrosError
 from symofros.simulation.plots import figure_class
-
-if TYPE_CHECKING:
-    from symofros.diagrams.result import DiagramRun
 
 # Matplotlib's ways to draw that have no windows.
 _PAPER = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
@@ -32,7 +30,7 @@ def plots_of(wired: Wired) -> list[Plot]:
     return [plot for plot in found if plot.signals]
 
 
-def draw(run: DiagramRun, plots: Sequence[Plot], figure: Any = None) -> Any:
+def draw(run: Recording, plots: Sequence[Plot], figure: Any = None) -> Any:
     """A Matplotlib figure with a diagram below the other for each plot, over one axis of time.
 
     Args:
@@ -71,8 +69,8 @@ def draw(run: DiagramRun, plots: Sequence[Plot], figure: Any = None) -> Any:
     return figure
 
 
-def show_window(run: DiagramRun, *signals: str) -> None:
-    """Draw in a window, and wait until it is closed.
+def window_figure() -> Any:
+    """A figure in a window, which `show_windows` opens.
 
     Raises:
         SymofrosError: Matplotlib is not installed, or has no screen to draw on.
@@ -89,5 +87,9 @@ def show_window(run: DiagramRun, *signals: str) -> None:
                 "write a picture: --plot run.png",
             )
         )
-    run.plot(*signals, figure=pyplot.figure(layout="constrained"))
-    pyplot.show()
+    return pyplot.figure(layout="constrained")
+
+
+def show_windows() -> None:
+    """Open the windows, and wait until they are closed."""
+    import_module("matplotlib.pyplot").show()

@@ -1,116 +1,18 @@
-"""What a run of a diagram left: states over time, and any signal from them."""
+"""A run of a diagram, with the ways to show it and to write it."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
-
-from symofros.diagrams.block import Shape
-from symofros.diagrams.compiled import CompiledDiagram
-from symofros.diagrams.fuse import AFTER
-from symofros.diagrams.plots import draw, plots_of
+from symofros.diagrams.plots import draw, plots_of, show_windows, window_figure
+from symofros.diagrams.recording import Recording
 from symofros.diagrams.saving import save_run
 from symofros.diagrams.settings import Plot
-from symofros.diagrams.wiring import Source
-from symofros.runtime.kernel import Array
-from symofros.simulation.outcome import Outcome
 
 
-class Crossed(NamedTuple):
-    """A crossing that was met."""
-
-    block: str
-    crossing: str
-    t: float
-
-
-@dataclass(frozen=True)
-class Cost:
-    """What a run took.
-
-    Attributes:
-        steps: Accepted, of all parts together.
-        rejected: Tried in vain.
-        evaluations: Of accelerations.
-        seconds: On the clock, in the loop.
-        worked: Of the processor, by the calling thread [s].
-        late: How late each instant began (n) [s]; empty unless pace was kept.
-        spacing: The shortest time between two instants, on the clock where pace was kept [s].
-    """
-
-    steps: int
-    rejected: int
-    evaluations: int
-    seconds: float
-    worked: float
-    late: Array = field(default_factory=lambda: np.zeros(0))
-    spacing: float = math.inf
-
-
-@dataclass(frozen=True)
-class DiagramRun(Mapping[str, Array]):
-    """Signals over time, `run["block.port"]`, computed from the recorded states when they are asked for.
-
-    Attributes:
-        compiled: What ran.
-        t: Times (n) [s].
-        q: Configurations (n, nq) of all mechanisms.
-        v: Speeds and continuous states (n, nv).
-        u: What was held between samples (n, nu).
-        par: Run-time parameters.
-        outcome: How the run ended.
-        crossings: What was met, in the order of time.
-        cost: What it took.
-        kept: Block -> what it kept of the run by itself, by name: arrays at its own times "t", or counts.
-    """
-
-    compiled: CompiledDiagram
-    t: Array
-    q: Array
-    v: Array
-    u: Array
-    par: Array
-    outcome: Outcome
-    crossings: tuple[Crossed, ...]
-    cost: Cost
-    kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
-    _known: dict[Source, Array] = field(default_factory=dict)
-
-    def __getitem__(self, name: str) -> Array:
-        """A signal over time (n, *shape).
-
-        Raises:
-            DescriptionError: There is no such output.
-        """
-        source = self.compiled.resolved.wired.output(name)
-        if source not in self._known:
-            self.compute([source])
-        return self._known[source]
-
-    def __iter__(self) -> Iterator[str]:
-        """Names of all outputs."""
-        wired = self.compiled.resolved.wired
-        return (f"{block}.{port.name}" for block in wired.ports for port in wired.ports[block].outputs)
-
-    def __len__(self) -> int:
-        """How many outputs there are."""
-        return sum(len(ports.outputs) for ports in self.compiled.resolved.wired.ports.values())
-
-    def unit(self, name: str) -> str:
-        """Of a signal."""
-        wired = self.compiled.resolved.wired
-        return wired.unit(wired.output(name))
-
-    def shape(self, name: str) -> Shape:
-        """Of a signal at one time."""
-        wired = self.compiled.resolved.wired
-        return wired.shape(wired.output(name))
+class DiagramRun(Recording):
+    """A recording that can be plotted and saved."""
 
     def save(self, path: str | Path, *signals: str) -> list[Path]:
         """Write signals, "block.port" or "block.port[i]"; all by default: .npz (arrays), .csv or .parquet (columns).
@@ -129,39 +31,11 @@ class DiagramRun(Mapping[str, Array]):
         wired = self.compiled.resolved.wired
         return draw(self, [Plot(s, (s,)) for s in signals] or plots_of(wired) or [Plot(s, (s,)) for s in self], figure)
 
-    def compute(self, sources: Sequence[Source]) -> None:
-        """Make several signals known by one compiled function."""
-        wanted = [source for source in sources if source not in self._known]
-        if not wanted:
-            return
-        kernel = self.compiled.signals(wanted)
-        pre = kernel.prepare(self.par.reshape(1, -1))
-        known = {"q": self.q, "v": self.v, "u": self.u, "t": self.t[:, np.newaxis]}
-        arrays = [known[group] if group in known else self._after[AFTER.index(group) - 4] for group in AFTER]
-        n = len(self.t)
-        (values,) = kernel.run(n, pre, [np.ascontiguousarray(a) for a in arrays])
-        at, wired = 0, self.compiled.resolved.wired
-        for source in wanted:
-            size = math.prod(wired.shape(source))
-            self._known[source] = values[:, at : at + size].reshape(n, *wired.shape(source))
-            at += size
+    def show(self, *signals: str) -> None:
+        """Draw signals, as `plot` does, in a window, and wait until it is closed.
 
-    @cached_property
-    def _after(self) -> tuple[Array, Array]:
-        """Accelerations (n, nv) and multipliers (n, nc) along the run."""
-        parts, layout = self.compiled.parts, self.compiled.resolved.layout
-        a, lam = np.zeros((len(self.t), len(layout.v0))), np.zeros((len(self.t), len(layout.condition_names)))
-        for part, model in zip(layout.parts, parts, strict=True):
-            if model.nc:  # Those of the others are written out in the signals themselves.
-                a[:, part.v], lam[:, part.conditions], _ = model.constrained_dynamics(
-                    self.q[:, part.q], self.v[:, part.v], self.u, par=self.par, t=self.t
-                )
-        return a, lam
-
-    def motion(self, block: str) -> tuple[Array, Array]:
-        """Configurations (n, nq) and speeds (n, nv) of the mechanism that a block moves."""
-        layout = self.compiled.resolved.layout
-        if block not in layout.q:
-            known = ", ".join(layout.q) or "none"
-            raise KeyError(f"block '{block}' moves no mechanism; those that do: {known}")
-        return self.q[:, layout.q[block].slice], self.v[:, layout.v[block].slice]
+        Raises:
+            SymofrosError: Matplotlib is not installed, or has no screen to draw on.
+        """
+        self.plot(*signals, figure=window_figure())
+        show_windows()

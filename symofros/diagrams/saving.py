@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from symofros.diagrams.recording import Recording
 from symofros.diagrams.signals import check_entry, entries, split
 from symofros.runtime.kernel import Array
 from symofros.simulation.saving import refuse_suffix, write_columns, write_npz
 
-if TYPE_CHECKING:
-    from symofros.diagrams.result import DiagramRun
 
-
-def save_run(run: DiagramRun, path: Path, signals: Iterable[str]) -> list[Path]:
+def save_run(run: Recording, path: Path, signals: Iterable[str]) -> list[Path]:
     """Write a run.
 
     Args:
@@ -48,7 +45,7 @@ def save_run(run: DiagramRun, path: Path, signals: Iterable[str]) -> list[Path]:
     return files
 
 
-def _save_npz(run: DiagramRun, path: Path, wanted: list[str]) -> None:
+def _save_npz(run: Recording, path: Path, wanted: list[str]) -> None:
     names = list(dict.fromkeys(split(name)[0] for name in wanted))
     arrays = {"t": run.t} | {name: run[name] for name in names}
     for block, found in run.kept.items():
@@ -57,7 +54,7 @@ def _save_npz(run: DiagramRun, path: Path, wanted: list[str]) -> None:
     write_npz(path, {**arrays, "names": ["t", *names], "units": units, "outcome": str(run.outcome)})
 
 
-def columns(run: DiagramRun, wanted: Iterable[str]) -> dict[str, Array]:
+def columns(run: Recording, wanted: Iterable[str]) -> dict[str, Array]:
     """Time and entries of signals by name (n).
 
     Raises:

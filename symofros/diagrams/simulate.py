@@ -16,7 +16,8 @@ from symofros.diagrams.opaque import Opaque, begun
 from symofros.diagrams.parts import place_parts, start
 from symofros.diagrams.pieces import watched
 from symofros.diagrams.rates import Schedule, schedule
-from symofros.diagrams.result import Cost, Crossed, DiagramRun
+from symofros.diagrams.recording import Cost, Crossed
+from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.values import parameter_values, record_interval
 from symofros.runtime.kernel import Array
 from symofros.runtime.library import CompiledKernel

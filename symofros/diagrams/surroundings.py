@@ -14,7 +14,8 @@ from symofros.diagrams.block import ModelSetup
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.variants import FRICTION, friction_only
 from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph
 from symofros.expr.program import Program
 from symofros.expr.substitute import transplant
 from symofros.functions import FRAME_FUNCTIONS

@@ -9,7 +9,8 @@ import numpy as np
 
 from symofros.description.constraints import Closure
 from symofros.description.forces import Anchor, Damper, Spring
-from symofros.description.system import Joint, System
+from symofros.description.joint import Joint
+from symofros.description.system import System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.rigid import Array, RigidLink, numbers_text, rigid_links
 from symofros.generator.codegen.names import identifier

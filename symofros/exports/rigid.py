@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from symofros.description.beam import STATION, Beam
 from symofros.description.forces import Damper
-from symofros.description.system import WORLD, Body, Inertia, Joint, RigidBody, System
+from symofros.description.joint import WORLD, Joint
+from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.errors import ExportError, Problem
 from symofros.mechanics.topology.coordinates import coordinate_names
 from symofros.mechanics.topology.numbers import Numbers

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.evaluate import needed_nodes
-from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.expr.ops import OPS
-from symofros.expr.packs import EMPTY, WIDTH, Pack, Signed, combined
+from symofros.expr.pack import EMPTY, WIDTH, Pack, Signed
+from symofros.expr.packs import combined
 
 
 def directional(graph: Graph, edges: Sequence[Edge], seeds: Mapping[Edge, Edge]) -> list[Edge]:

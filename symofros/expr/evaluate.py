@@ -6,7 +6,8 @@ from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
-from symofros.expr.graph import Edge, Graph, Slot
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph, Slot
 from symofros.expr.ops import OPS, Array
 from symofros.expr.program import Function, Program
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from symofros.expr.edges import Edge
 from symofros.expr.extended import CONTEXT, Extended, extended_rule
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.expr.ops import FUNCTIONS
 
 CONSTANTS: dict[str, float] = {"pi": 3.141592653589793}

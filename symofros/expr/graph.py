@@ -9,17 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.extended import nearest
 from symofros.expr.ops import ADD, DIV, MUL, OPS
-
-if TYPE_CHECKING:
-    from symofros.expr.packs import Pack
-
-Edge = int
-ZERO: Edge = 0
-ONE: Edge = 1
+from symofros.expr.pack import Pack
 
 _CONSTANT = "constant"
 _INPUT = "input"
@@ -42,7 +36,7 @@ class Graph:
         value: The number of a constant node, keyed by node.
         slot: The input slot of an input node, keyed by node.
         label: A readable name of a node, where it has one.
-        packs: Nodes that are computed alike (symofros/expr/packs.py), in the order in which they were formed.
+        packs: Nodes that are computed alike (symofros/expr/pack.py), in the order in which they were formed.
     """
 
     def __init__(self) -> None:

@@ -7,9 +7,9 @@ from typing import Any
 
 import mpmath
 
+from symofros.expr.edges import Edge
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.extended import extended_rule
-from symofros.expr.graph import Edge
 from symofros.expr.program import Function, Program
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import prod
 
-from symofros.expr.graph import Edge, Graph, Slot
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph, Slot
 
 
 @dataclass(frozen=True)

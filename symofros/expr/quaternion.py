@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from symofros.expr.graph import ONE, Edge, Graph
+from symofros.expr.edges import ONE, Edge
+from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 
 # Added to a squared length: its root, 1e-150, is lost beside any other length, and leaves sin(a)/a at 1 where a is 0.

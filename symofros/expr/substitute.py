@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.evaluate import needed_nodes
-from symofros.expr.graph import ONE, ZERO, Edge, Graph
-from symofros.expr.packs import WIDTH, Pack, Signed, combined
+from symofros.expr.graph import Graph
+from symofros.expr.pack import WIDTH, Pack, Signed
+from symofros.expr.packs import combined
 
 
 def substitute(graph: Graph, edges: Sequence[Edge], replacement: Mapping[Edge, Edge]) -> list[Edge]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
 
 
 @dataclass(frozen=True, slots=True)

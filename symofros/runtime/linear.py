@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.rotations import skew
 from symofros.runtime.kernel import Array
-
-if TYPE_CHECKING:
-    from symofros.runtime.model import Given, Model
+from symofros.runtime.record import Segment
 
 # An output: the name of a quantity, or (frame_pose | frame_velocity | frame_acceleration, frame).
 Output = str | tuple[str, str]
-State = tuple[Any, Any, Any]
 _PLAIN = ("q", "v", "a", "lam")
 _OF_FRAMES = ("frame_pose", "frame_velocity", "frame_acceleration")
 
@@ -44,32 +41,35 @@ class StateMatrices(NamedTuple):
 
 
 def linearize(
-    model: Model, slopes: Sequence[Array], state: State, outputs: Sequence[Output], par: Given | None, t: Given
+    segments: Sequence[Segment],
+    slopes: Sequence[Array],
+    v: Array,
+    outputs: Sequence[Output],
+    frame_derivatives: Callable[[str], FrameDerivatives],
 ) -> StateMatrices:
     """The matrices of small changes x = (along q, of v); C and D have the rows of the outputs, in order.
 
     Args:
-        model: Of the state.
+        segments: Segments of the configuration.
         slopes: The derivatives of (v'; lam) by q, v and u.
-        state: q, v, u.
+        v: Speeds (..., nv).
         outputs: See `Model.linearize`.
-        par: Run-time parameters.
-        t: Time.
+        frame_derivatives: The derivatives of a frame's motion by its name, at the state and its accelerations.
     """
-    nv, nu = model.nv, model.nu
+    nv, nu = slopes[1].shape[-1], slopes[2].shape[-1]
     batch = slopes[0].shape[:-2]
     both = np.concatenate(slopes, axis=-1)
     x_rows = np.zeros((*batch, 2 * nv, 2 * nv + nu))
     x_rows[..., :] = np.eye(2 * nv, 2 * nv + nu)
     rate = x_rows.copy()
     rate[..., :nv, :] = x_rows[..., nv:, :]
-    rate[..., :nv, :nv] = _turning(model, np.broadcast_to(np.asarray(state[1], dtype=np.float64), (*batch, nv)))
+    rate[..., :nv, :nv] = _turning(segments, np.broadcast_to(v, (*batch, nv)))
     rate[..., nv:, :] = both[..., :nv, :]
     known = {"q": x_rows[..., :nv, :], "v": x_rows[..., nv:, :], "a": both[..., :nv, :], "lam": both[..., nv:, :]}
     rows = [np.zeros((*batch, 0, 2 * nv + nu))]
     for output in outputs:
         if isinstance(output, tuple) and len(output) == 2 and output[0] in _OF_FRAMES:
-            rows.append(_of_frame(model, output, state, known["a"], par, t))
+            rows.append(_frame_rows(output[0], frame_derivatives(output[1]), known["a"]))
         elif output in _PLAIN:
             rows.append(known[str(output)])
         else:
@@ -90,12 +90,8 @@ def _unknown(output: Output) -> UnknownNameError:
     )
 
 
-def _of_frame(model: Model, output: tuple[str, str], state: State, a_rows: Array, par: Given | None, t: Given) -> Array:
+def _frame_rows(name: str, by: FrameDerivatives, a_rows: Array) -> Array:
     """A frame's pose, velocity or acceleration (..., 6, 2 nv + nu), by the chain rule through v'."""
-    name, frame = output
-    q, v, u = state
-    a = model.forward_dynamics(q, v, u, par=par, t=t)
-    by = model.frame_derivatives(frame, q, v, a, u=u, par=par)
     none = np.zeros_like(by.pose_by_q)
     if name == "frame_pose":
         return np.concatenate([by.pose_by_q, none, by.pose_by_u], axis=-1)
@@ -106,10 +102,10 @@ def _of_frame(model: Model, output: tuple[str, str], state: State, a_rows: Array
     return through
 
 
-def _turning(model: Model, v: Array) -> Array:
+def _turning(segments: Sequence[Segment], v: Array) -> Array:
     """How a change along q turns as its frame does: minus the adjoint of the speeds, for balls and free joints."""
-    block = np.zeros((*v.shape[:-1], model.nv, model.nv))
-    for segment in model.record.segments:
+    block = np.zeros((*v.shape[:-1], v.shape[-1], v.shape[-1]))
+    for segment in segments:
         if segment.kind == "linear":
             continue
         i = segment.v + segment.translations

@@ -251,8 +251,14 @@ class Model(Functions):
             UnknownNameError: No such output or frame.
         """
         slopes = self._call("forward_dynamics_derivatives", "", {"q": q, "v": v, "u": u, "t": t}, par)
-        found = linear.linearize(self, slopes, (q, v, u), outputs or (), par, t)
-        return found[:2] if outputs is None else found
+
+        def frame_derivatives(frame: str) -> FrameDerivatives:
+            a = self.forward_dynamics(q, v, u, par=par, t=t)
+            return self.frame_derivatives(frame, q, v, a, u=u, par=par)
+
+        speeds = np.asarray(v, dtype=np.float64)
+        matrices = linear.linearize(self.record.segments, slopes, speeds, outputs or (), frame_derivatives)
+        return matrices[:2] if outputs is None else matrices
 
     def residual_derivatives(
         self, q: Given, v: Given, a: Given, u: Given, lam: Given, *, par: Given | None = None, t: Given = 0.0

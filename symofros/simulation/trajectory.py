@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.outcome import Outcome
-from symofros.simulation.plots import plot
+from symofros.simulation.plots import draw
 from symofros.simulation.saving import refuse_suffix, write_columns, write_npz
 
 
@@ -168,7 +168,16 @@ class Trajectory:
         Raises:
             SymofrosError: Matplotlib is not installed.
         """
-        return plot(self, names)
+        known = self.model.names
+        panels = {
+            "coordinates [rad, m]": _curves(known.q, self.q, names),
+            "speeds [rad/s, m/s]": _curves(known.v, self.v, names),
+            "change of energy [J]": {"kinetic + potential": self.energy - self.energy[0]},
+        }
+        if self.u.any():
+            panels["inputs [N m, N]"] = _curves(known.u, self.u, ())
+        title = f"{self.model.record.name}: {self.statistics.method}, {self.outcome.kind} at t = {self.outcome.t:.4g} s"
+        return draw(self.t, panels, title)
 
     def save(self, path: str | Path) -> Path:
         """Write the trajectory: .npz (arrays), .csv or .parquet (a column a name).
@@ -188,3 +197,8 @@ class Trajectory:
         else:
             write_columns(path, self.columns(), "trajectory")
         return path
+
+
+def _curves(names: tuple[str, ...], values: Array, chosen: tuple[str, ...]) -> dict[str, Array]:
+    """Columns by name: those chosen, or all."""
+    return {name: values[:, i] for i, name in enumerate(names) if not chosen or name in chosen}

@@ -8,7 +8,7 @@ import pytest
 import symofros as sf
 from symofros.diagrams.jitter import histogram, jitter_of
 from symofros.diagrams.rates import schedule
-from symofros.diagrams.result import Cost
+from symofros.diagrams.recording import Cost
 
 
 def cost(late: list[float], spacing: float = 1e-3) -> Cost:

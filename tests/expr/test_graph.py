@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symofros.expr.graph import ONE, ZERO, Graph
+from symofros.expr.edges import ONE, ZERO
+from symofros.expr.graph import Graph
 from symofros.expr.ops import OPS
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from symofros.expr.graph import ONE, ZERO, Edge, Graph
-from symofros.expr.packs import EMPTY, WIDTH, Pack, combined
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
+from symofros.expr.pack import EMPTY, WIDTH, Pack
+from symofros.expr.packs import combined
 
 
 def inputs(g: Graph, group: str, n: int = WIDTH) -> Pack:

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symofros.expr.derivative import directional
+from symofros.expr.edges import Edge
 from symofros.expr.evaluate import evaluate_edges
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.expr.program import Program
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Vec3

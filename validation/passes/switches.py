@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import symofros as sf
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph
 from symofros.expr.ops import ADD, DIV, MUL
 from symofros.expr.vector import Sym3, Vec3
 from symofros.generator import passes

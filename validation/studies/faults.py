@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.expr.edges import Edge
 from symofros.expr.evaluate import needed_nodes
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.expr.ops import ADD, MUL, OPS
 from symofros.expr.program import Function, Program
 from validation.mechanics.geometry import Array

@@ -10,13 +10,14 @@ import numpy as np
 
 from symofros.description.forces import Load
 from symofros.description.frames import Frame
+from symofros.description.joint import WORLD, Joint
 from symofros.description.mjcf.geometry import Exact, rotation_of
 from symofros.description.mjcf.joints import FREE, Chain, JointReader
 from symofros.description.mjcf.names import Names
 from symofros.description.mjcf.numbers import infinite_numbers
 from symofros.description.mjcf.visuals import visuals_of
 from symofros.description.remarks import Remarks
-from symofros.description.system import WORLD, Inertia, Joint, RigidBody, System
+from symofros.description.system import Inertia, RigidBody, System
 from symofros.errors import DescriptionError
 
 _NO_GRAVITY = 1 << 7  # mjDSBL_GRAVITY

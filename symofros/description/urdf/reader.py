@@ -10,9 +10,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from symofros.description.joint import WORLD, Joint
 from symofros.description.joint_kinds import KINDS
 from symofros.description.reading import Reading, in_order, read_bytes
-from symofros.description.system import WORLD, Inertia, Joint, RigidBody, System
+from symofros.description.system import Inertia, RigidBody, System
 from symofros.description.urdf.values import Values
 from symofros.description.urdf.visuals import Visuals
 from symofros.description.visual import Visual

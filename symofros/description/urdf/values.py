@@ -6,8 +6,9 @@ import math
 import re
 from dataclasses import dataclass, field
 
+from symofros.description.joint import Limits
 from symofros.description.remarks import Remarks
-from symofros.description.system import Inertia, Limits
+from symofros.description.system import Inertia
 from symofros.description.values import IDENTITY, Rotation
 from symofros.description.xml_nodes import Element
 from symofros.errors import MAX_PROBLEMS, DescriptionError, Problem, first_of

@@ -14,8 +14,9 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from symofros.description.frames import Frame
+from symofros.description.joint import WORLD, Joint, Limits
 from symofros.description.joint_kinds import JointKindName
-from symofros.description.system import WORLD, Body, Inertia, Input, Joint, Limits, Parameter, RigidBody
+from symofros.description.system import Body, Inertia, Input, Parameter, RigidBody
 from symofros.description.values import IDENTITY, Rotation, RotationKind
 from symofros.description.yaml.fields import (
     MOMENTS,

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field
 
 from symofros.description.beam import Beam, BeamLoad, Direction, Family, Retain, Samples, UserShape
 from symofros.description.frames import Frame
-from symofros.description.system import Joint
+from symofros.description.joint import Joint
 from symofros.description.yaml.fields import CheckedEntry, Entry, Formula, Name, Number, Three, three
 
 Count = Annotated[int, Field(ge=0, le=40)]

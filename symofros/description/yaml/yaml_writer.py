@@ -16,7 +16,8 @@ from symofros.description.beam import Beam, BeamLoad, Samples, UserShape
 from symofros.description.constraints import AXES, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
 from symofros.description.forces import Anchor, Connection, JointElement, Load, Rotor
 from symofros.description.frames import Frame
-from symofros.description.system import WORLD, Body, Inertia, Joint, Limits, Parameter, System
+from symofros.description.joint import WORLD, Joint, Limits
+from symofros.description.system import Body, Inertia, Parameter, System
 from symofros.description.values import ORIGIN, Rotation, Value
 from symofros.description.yaml.faults import problem_of
 from symofros.description.yaml.schema import VERSION, NativeFile, default_joint_name

@@ -16,7 +16,6 @@ from symofros.diagrams.compiled import Resolved
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.registry import kind_of
 from symofros.diagrams.jitter import Jitter, histogram, jitter_of
-from symofros.diagrams.plots import show_window
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.simulate import run_compiled
 from symofros.diagrams.simulation import Simulation
@@ -90,7 +89,7 @@ def write_files(run: DiagramRun, wishes: Wishes) -> list[str]:
         histogram(run.cost.late, run.compiled.resolved.wired.name).savefig(wishes.jitter, dpi=120)
         files.append(wishes.jitter)
     if wishes.plot == WINDOW:
-        show_window(run, *wishes.signals)
+        run.show(*wishes.signals)
     elif wishes.plot:
         run.plot(*wishes.signals).savefig(wishes.plot, dpi=120)
         files.append(Path(wishes.plot))

@@ -7,7 +7,7 @@ from itertools import groupby
 from math import prod
 from string import Template
 
-from symofros.expr.graph import Edge
+from symofros.expr.edges import Edge
 from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
 from symofros.expr.program import Function, Program
 from symofros.generator.codegen import trigonometry

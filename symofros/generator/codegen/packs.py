@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 
+from symofros.expr.edges import ONE, Edge
 from symofros.expr.evaluate import needed_nodes
-from symofros.expr.graph import ONE, Edge, Graph
-from symofros.expr.packs import WIDTH, Pack
+from symofros.expr.graph import Graph
+from symofros.expr.pack import WIDTH, Pack
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,9 @@ from copy import copy
 from dataclasses import dataclass
 from heapq import merge
 
+from symofros.expr.edges import Edge
 from symofros.expr.evaluate import needed_nodes
-from symofros.expr.graph import Edge, Graph, Slot
+from symofros.expr.graph import Graph, Slot
 from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
 from symofros.generator.codegen.names import local_name
 from symofros.generator.codegen.packs import PackPlan, Store, Vector, vector_name

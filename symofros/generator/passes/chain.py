@@ -14,10 +14,11 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.evaluate import needed_nodes
-from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.expr.ops import ADD, MUL
-from symofros.expr.packs import EMPTY, Pack
+from symofros.expr.pack import EMPTY, Pack
 from symofros.expr.program import Function, Program
 from symofros.expr.substitute import carried
 

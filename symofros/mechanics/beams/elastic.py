@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 from symofros.description.beam import Beam, Retain
 from symofros.description.values import Value
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph
 from symofros.mechanics.beams.deformation import Deformation, deformation_of
 from symofros.mechanics.beams.fields import EVERY_DEGREE, Field, Form, no_form, unit_field
 from symofros.mechanics.beams.integrals import Along, Lower, points_for

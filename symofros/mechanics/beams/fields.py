@@ -14,7 +14,8 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations_with_replacement
 
-from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.edges import ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.mechanics.beams.piecewise import Number, Piecewise, polynomial
 
 Monomial = tuple[int, ...]  # Indices of the coordinates that are multiplied, in rising order.

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 from symofros.description.beam import STATION
 from symofros.description.values import Value, symbols
+from symofros.expr.edges import ZERO, Edge
 from symofros.expr.expression import Expression
-from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.mechanics.beams.fields import Field, Form, Monomial, length_power
 from symofros.mechanics.beams.piecewise import Number, Piecewise, stations
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.edges import ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
 from symofros.mechanics.dynamics.inertia import LinkInertia
 from symofros.mechanics.kinematics.links import Motion, MovingLink

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.acceleration import Acceleration, Wrench, no_wrench, velocities
 from symofros.mechanics.dynamics.articulated_inertia import (

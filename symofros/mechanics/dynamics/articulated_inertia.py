@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.edges import ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
 from symofros.mechanics.dynamics.acceleration import Acceleration, Wrench
 from symofros.mechanics.dynamics.inertia import LinkInertia

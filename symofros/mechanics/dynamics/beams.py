@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.edges import ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.elastic import PAIRS
 from symofros.mechanics.beams.fields import Form

@@ -13,7 +13,8 @@ from typing import NamedTuple
 from symofros.description.constraints import AXES, AxisName, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
 from symofros.description.forces import Anchor
 from symofros.expr.derivative import directional
-from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates, rates_per_speed

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symofros.expr.derivative import along, partials
-from symofros.expr.graph import Edge
+from symofros.expr.edges import Edge
 from symofros.mechanics.dynamics.applied.forces import rates_per_speed
 from symofros.mechanics.kinematics.links import Motion, speeds_by_path
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symofros.expr.graph import ZERO, Edge
+from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.beams import kinetic_energy_twice
 from symofros.mechanics.dynamics.inertia import LinkInertia, first_moment_change

@@ -8,8 +8,9 @@ from contextlib import contextmanager
 from functools import cached_property
 
 from symofros.errors import DescriptionError, Problem
-from symofros.expr.graph import ZERO, Edge, Graph
-from symofros.expr.packs import EMPTY
+from symofros.expr.edges import ZERO, Edge
+from symofros.expr.graph import Graph
+from symofros.expr.pack import EMPTY
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.applied.forces import generalized_forces, stored_energy

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from symofros.description.values import Value, symbols
 from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
 from symofros.expr.derivative import directional
-from symofros.expr.graph import ONE, Edge
+from symofros.expr.edges import ONE, Edge
 from symofros.expr.program import Function, Output, Program
 from symofros.mechanics.dynamics.derivatives import by_configuration, by_inputs
 from symofros.mechanics.kinematics.links import Motion

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from symofros.expr.graph import ONE, ZERO, Edge, Graph
-from symofros.expr.packs import LEAST, WIDTH, Pack, Signed, combined
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
+from symofros.expr.pack import LEAST, WIDTH, Pack, Signed
+from symofros.expr.packs import combined
 from symofros.mechanics.dynamics.mass_matrix import Matrix
 
 # Rows of short matrices are cheaper by scalars, measured: from so many speeds on, packs of so many lanes pay.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from symofros.expr.graph import Edge
+from symofros.expr.edges import Edge
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.dynamics.derivatives import Matrix
 from symofros.mechanics.dynamics.equations import Equations

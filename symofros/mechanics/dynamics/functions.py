@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.ops import HELD
-from symofros.expr.packs import WIDTH
+from symofros.expr.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
 from symofros.mechanics.dynamics.constraints import retracted

@@ -11,7 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from symofros.description.system import Inertia
-from symofros.expr.graph import ZERO, Edge, Graph
+from symofros.expr.edges import ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
 from symofros.mechanics.beams.fields import Form
 from symofros.mechanics.kinematics.links import Motion, MovingBeam, MovingLink

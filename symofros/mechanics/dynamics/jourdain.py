@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symofros.expr.graph import ZERO, Edge
+from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, base_to_tip, inertia_wrench
 from symofros.mechanics.dynamics.beams import beam_forces

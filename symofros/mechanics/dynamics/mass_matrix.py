@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symofros.expr.graph import ONE, ZERO, Edge
-from symofros.expr.packs import EMPTY, WIDTH, Signed, combined
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.pack import EMPTY, WIDTH, Signed
+from symofros.expr.packs import combined
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.beams import added_momentum, modal_mass
 from symofros.mechanics.dynamics.inertia import LinkInertia, carried_to_parent, deformed

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symofros.expr.derivative import directional
-from symofros.expr.graph import ZERO, Edge
+from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates
 from symofros.mechanics.kinematics.links import Motion

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from symofros.description.forces import Rotor
-from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.vector import Vec3
 from symofros.mechanics.kinematics.links import Motion
 from symofros.mechanics.kinematics.rotations import unit_vector

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from symofros.description.constraints import Closure, Constraint, Nonholonomic, Rod
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.constraints import Row
 from symofros.mechanics.kinematics.frames import FrameKinematics

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symofros.expr.graph import ZERO, Edge
+from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.kinematics.joint import Column
 from symofros.mechanics.kinematics.links import Motion

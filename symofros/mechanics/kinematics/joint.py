@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from symofros.description.joint import Joint
 from symofros.description.joint_kinds import JointKindName
-from symofros.description.system import Joint
 from symofros.expr.derivative import directional
-from symofros.expr.graph import ONE, ZERO, Edge, Graph
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.kinematics.lowering import Lowering

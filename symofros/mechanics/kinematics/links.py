@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.elastic import BeamForms, beam_forms
 from symofros.mechanics.kinematics.flexible import across_beam

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from symofros.description.values import Rotation, Value, Vector
+from symofros.expr.edges import Edge
 from symofros.expr.expression import Expression, lower
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.kinematics.rotations import snapped, stated_rotation
 from symofros.mechanics.topology.coordinates import CoordinateMap

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from itertools import permutations, product
 
 from symofros.description.values import Rotation
+from symofros.expr.edges import ONE, Edge
 from symofros.expr.expression import Expression, lower
 from symofros.expr.extended import nearest
-from symofros.expr.graph import ONE, Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Sym3, Vec3
 

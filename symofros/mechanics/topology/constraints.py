@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 
 from symofros.description.constraints import Closure, Nonholonomic, Rod
 from symofros.description.forces import Anchor
-from symofros.description.system import WORLD, Body, System
+from symofros.description.joint import WORLD
+from symofros.description.system import Body, System
 from symofros.errors import Problem, did_you_mean
 from symofros.mechanics.topology.coordinates import speed_symbols
 from symofros.mechanics.topology.frames import frame_remedy, frames_of

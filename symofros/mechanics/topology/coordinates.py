@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symofros.description.system import Joint, System
+from symofros.description.joint import Joint
+from symofros.description.system import System
 from symofros.expr.graph import Slot
 
 

@@ -8,7 +8,8 @@ from typing import Literal, NamedTuple
 
 from symofros.description.beam import DIRECTIONS, SECTION, STATION, Beam, Samples
 from symofros.description.constraints import Constraint, Nonholonomic
-from symofros.description.system import Joint, RigidBody, System
+from symofros.description.joint import Joint
+from symofros.description.system import RigidBody, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean
 from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols

@@ -7,7 +7,8 @@ from collections.abc import Collection, Iterator
 
 import numpy as np
 
-from symofros.description.system import WORLD, Joint, System
+from symofros.description.joint import WORLD, Joint
+from symofros.description.system import System
 from symofros.errors import Problem, did_you_mean
 from symofros.mechanics.topology.coordinates import joint_sizes
 from symofros.mechanics.topology.formulas import element_problems

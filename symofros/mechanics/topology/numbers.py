@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from symofros.description.system import Joint, System
+from symofros.description.joint import Joint
+from symofros.description.system import System
 from symofros.description.values import Rotation, Value
 from symofros.errors import Problem
 from symofros.expr.expression import evaluate

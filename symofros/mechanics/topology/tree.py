@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from symofros.description.beam import Beam
-from symofros.description.system import WORLD, Body, Inertia, Joint, RigidBody, System
+from symofros.description.joint import WORLD, Joint
+from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.description.values import IDENTITY, Rotation, Vector
 from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from symofros.description.beam import DIRECTIONS, Beam, Direction
 from symofros.description.forces import Spring
-from symofros.description.system import Joint, System
+from symofros.description.joint import Joint
+from symofros.description.system import System
 from symofros.description.values import as_value
 from symofros.studio.advice import estimators
 from symofros.studio.advice.loads import BeamLoads, Observed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symofros.description.system import WORLD
+from symofros.description.joint import WORLD
 from symofros.description.yaml.schema import default_joint_name
 
 GROUND = "world"  # The id of the block of the ground, whatever the body without a joint is called.

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from symofros.description.beam import STATION
+from symofros.description.joint import WORLD, Joint
 from symofros.description.joint_kinds import KINDS
-from symofros.description.system import WORLD, Joint
 from symofros.description.yaml.schema import default_joint_name
 from symofros.errors import DescriptionError
 from symofros.expr.expression import CONSTANTS

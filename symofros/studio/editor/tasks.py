@@ -14,31 +14,11 @@ import threading
 import traceback
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
-from symofros.description.reading import in_order
-from symofros.description.system import System
-from symofros.description.yaml.files import read_yaml
-from symofros.errors import DescriptionError, Problem, SymofrosError
-from symofros.mechanics.topology.graph import find_problems
+from symofros.errors import Problem, SymofrosError
 from symofros.studio.editor.plain import four_parts
-
-Json = dict[str, Any]
-Tell = Callable[[int, int, str], None]
-
-
-def system_of(request: Json) -> System:
-    """The system of a request's text.
-
-    Raises:
-        DescriptionError: It is not a mechanism.
-    """
-    reading = read_yaml(Path(request["file"]), request["text"])
-    found = find_problems(reading.system, reading.broken) if reading.system is not None else []
-    if reading.system is None or reading.problems or found:
-        raise DescriptionError(in_order([*reading.problems, *found]))
-    return reading.system
+from symofros.studio.editor.work_request import Json, Tell
 
 
 def error_of(error: Exception) -> Json:

@@ -23,8 +23,8 @@ from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_me
 from symofros.functions import exported
 from symofros.generator.passes.count import count_program
 from symofros.mechanics.topology.tree import SpanningTree
-from symofros.studio.editor.tasks import Json, Tell, system_of
 from symofros.studio.editor.units import coordinate_units
+from symofros.studio.editor.work_request import Json, Tell, system_of
 
 POINTS, MAX_POINTS = 1000, 5000
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from symofros.expr.graph import ONE, Edge, Graph, Slot
-from symofros.expr.packs import WIDTH, Pack, combined
+from symofros.expr.edges import ONE, Edge
+from symofros.expr.graph import Graph, Slot
+from symofros.expr.pack import WIDTH, Pack
+from symofros.expr.packs import combined
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen.effort import PACKED, TIE, cheapest, effort
 

@@ -12,9 +12,11 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation
+from symofros.expr.edges import ONE, ZERO
 from symofros.expr.evaluate import needed_nodes
-from symofros.expr.graph import ONE, ZERO, Graph
-from symofros.expr.packs import WIDTH, Pack, combined
+from symofros.expr.graph import Graph
+from symofros.expr.pack import WIDTH, Pack
+from symofros.expr.packs import combined
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.packs import PackPlan
 from tests.models import sampled

@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 from reference_models import MODELS
 from reference_models.rigid.chain import chain
 from symofros.compiler import plan
+from symofros.expr.edges import Edge
 from symofros.expr.evaluate import evaluate_edges, interpret, needed_nodes
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.expr.ops import ADD, MUL
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.passes.chain import chain_sums, check_packs

@@ -7,7 +7,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.edges import Edge
+from symofros.expr.graph import Graph
 from symofros.mechanics.beams.fields import Field, Form, length_power, no_form, unit_field
 from symofros.mechanics.beams.piecewise import polynomial
 

@@ -11,8 +11,9 @@ import scipy.integrate
 
 import symofros as sf
 from symofros.description.values import Value
+from symofros.expr.edges import Edge
 from symofros.expr.expression import Expression, lower
-from symofros.expr.graph import Edge, Graph
+from symofros.expr.graph import Graph
 from symofros.generator.passes.count import count_program
 from symofros.mechanics.beams.elastic import PAIRS, BeamForms, beam_forms
 from symofros.mechanics.beams.fields import Field, Form

@@ -7,7 +7,7 @@ from functools import partial
 
 from symofros.description.beam import BeamLoad
 from symofros.description.values import Value
-from symofros.expr.graph import ZERO, Edge
+from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3
 from symofros.mechanics.beams.fields import EVERY_DEGREE, Field, Form, unit_field
 from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench

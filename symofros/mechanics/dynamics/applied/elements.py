@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symofros.description.forces import Damper, Friction, JointElement, Spring, Stop
-from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.mechanics.kinematics.lowering import Lowering
 
 # Stribeck velocity where none is given, as a multiple of the minimum velocity.

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from symofros.description.joint_kinds import ManifoldKind
 from symofros.expr.derivative import along
-from symofros.expr.graph import ONE, ZERO, Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.quaternion import Quaternion
 from symofros.mechanics.dynamics.acceleration import no_wrench
 from symofros.mechanics.dynamics.applied.beam_loads import beam_loads

@@ -5,7 +5,7 @@ from __future__ import annotations
 from symofros.description.beam import Beam
 from symofros.description.forces import Connection, Load
 from symofros.description.system import RigidBody
-from symofros.expr.graph import ZERO, Edge
+from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench
 from symofros.mechanics.kinematics.frames import FrameKinematics

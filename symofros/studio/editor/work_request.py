@@ -1,0 +1,29 @@
+"""A request to a worker process: its data, its progress, and the system that its text describes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from symofros.description.reading import in_order
+from symofros.description.system import System
+from symofros.description.yaml.files import read_yaml
+from symofros.errors import DescriptionError
+from symofros.mechanics.topology.graph import find_problems
+
+Json = dict[str, Any]
+Tell = Callable[[int, int, str], None]
+
+
+def system_of(request: Json) -> System:
+    """The system of a request's text.
+
+    Raises:
+        DescriptionError: It is not a mechanism.
+    """
+    reading = read_yaml(Path(request["file"]), request["text"])
+    found = find_problems(reading.system, reading.broken) if reading.system is not None else []
+    if reading.system is None or reading.problems or found:
+        raise DescriptionError(in_order([*reading.problems, *found]))
+    return reading.system
