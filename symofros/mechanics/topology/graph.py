@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from itertools import chain
+from weakref import WeakValueDictionary
 
 import numpy as np
 
@@ -24,6 +25,8 @@ from symofros.mechanics.topology.joints import IDENTIFIER, joint_number_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import inertia_problems, massless_tip_problems
 
+# Systems in which no problem was found, by identity: nothing in a system can change, and `replace` makes another one.
+_sound: WeakValueDictionary[int, System] = WeakValueDictionary()
 _MAX_NAME = 200
 _SHOWN = 12  # Names listed in a message.
 
@@ -39,7 +42,6 @@ def check(system: System) -> None:
         raise DescriptionError(problems)
 
 
-@np.errstate(all="ignore")  # Numbers that overflow are found as numbers that are not finite.
 def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]:
     """Every problem of a description.
 
@@ -47,8 +49,21 @@ def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]
         system: What the user stated.
         broken: Names of bodies, parameters and inputs that exist but could not be read; that something refers to
             them is not reported again.
+
+    Returns:
+        The problems; a system that has none is looked at once.
     """
-    checker = _Checker(system, frozenset(broken))
+    if _sound.get(id(system)) is system:
+        return []
+    problems = _look_for_problems(system, frozenset(broken))
+    if not problems and not broken:
+        _sound[id(system)] = system
+    return problems
+
+
+@np.errstate(all="ignore")  # Numbers that overflow are found as numbers that are not finite.
+def _look_for_problems(system: System, broken: frozenset[str]) -> list[Problem]:
+    checker = _Checker(system, broken)
     formulas = formula_problems(system, checker.broken)
     problems = first_of(chain(checker.names(), checker.structure(), checker.acting(), formulas))
     if not problems and not broken:

@@ -1,0 +1,102 @@
+"""What journeys cost: how often equations are formed, C is compiled, a description is checked."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.generator import programs
+from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.topology import graph
+from symofros.runtime import build
+from symofros.studio.editor.work import compile_model
+
+
+@pytest.fixture
+def work(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Counter[str]:
+    """Work done so far, with an empty cache."""
+    done: Counter[str] = Counter()
+
+    def count(owner: Any, name: str, kind: str) -> None:
+        original: Callable[..., Any] = getattr(owner, name)
+
+        def counting(*arguments: Any, **named: Any) -> Any:
+            done[kind] += 1
+            return original(*arguments, **named)
+
+        monkeypatch.setattr(owner, name, counting)
+
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
+    count(Equations, "__init__", "derivations")
+    count(programs, "form_program", "programs")
+    count(build, "call_compiler", "compilations")
+    count(graph, "_look_for_problems", "checks")
+    return done
+
+
+def test_compiling_an_arm_derives_it_once(work: Counter[str]) -> None:
+    sf.compile(MODELS["puma560"])
+    assert work["derivations"] == work["programs"] == work["compilations"] == 1
+
+
+def test_a_model_that_is_known_is_not_derived(work: Counter[str]) -> None:
+    q = sf.compile(MODELS["puma560"]).neutral()
+    work.clear()
+    sf.compile(MODELS["puma560"]).dynamics(q, q, q)
+    assert work["derivations"] <= 1 and work["programs"] == work["compilations"] == 0
+
+
+def test_a_click_on_compile_derives_once(work: Counter[str]) -> None:
+    """Forward dynamics is formed by both methods, to be counted, and among the other functions."""
+    request = {"file": "arm.yaml", "text": ARM}
+    result = compile_model(request, lambda *_: None)
+    assert result["nq"] == 1
+    assert work["derivations"] == work["compilations"] == work["checks"] == 1
+    assert work["programs"] == 3
+
+
+ARM = """\
+symofros: 1
+bodies:
+  a:
+    joint: {name: x, kind: revolute}
+    inertia: {mass: 2, moments: [1, 1, 1]}
+"""
+
+
+def test_from_a_file_to_the_energy_of_a_closed_loop(work: Counter[str], tmp_path: Path) -> None:
+    """Compiled: M, h and Q; the constraints; forward dynamics with the projection; the energies; and the stepper."""
+    file = tmp_path / "slider_crank.yaml"
+    sf.save(MODELS["slider_crank"], file)
+    work.clear()
+    model = sf.compile(sf.load(file))
+    start = sf.assemble(model, v=[1.0, 0.0, 0.0], held=model.names.v[:1])
+    run = sf.simulate(model, start.q, start.v, 0.01)
+    assert np.ptp(run.energy) < 1e-6 * run.energy[0]
+    assert work["derivations"] == work["checks"] == 1
+    assert work["programs"] == 4
+    assert work["compilations"] == 5
+
+
+def test_results_do_not_depend_on_what_was_asked_before(work: Counter[str], rng: np.random.Generator) -> None:
+    """To the bit: each unit is formed on kinematics alone, whatever else the model has formed."""
+    options = sf.Options(backend="interpreter")
+    fresh, used = (sf.compile(MODELS["slider_crank"], options) for _ in range(2))
+    (q, v), u = fresh.random_state(rng), rng.normal(size=fresh.nu)
+    used.inverse_dynamics(q, v, v), used.constraint_bias(q, v), used.kinetic_energy(q, v)
+    np.testing.assert_array_equal(used.forward_dynamics(q, v, u), fresh.forward_dynamics(q, v, u))
+    np.testing.assert_array_equal(used.mass_matrix(q), fresh.mass_matrix(q))
+
+
+def test_a_changed_system_is_checked_anew() -> None:
+    sound = MODELS["puma560"]
+    assert graph.find_problems(sound) == []
+    assert graph.find_problems(replace(sound, inputs=(sf.Input("sin"),)))
