@@ -88,22 +88,21 @@ HARNESS = table("""
     comparison:  adapters contract mechanics
     check:       comparison adapters inputs contract mechanics
     worker_pool: check adapters inputs
-    evidence:    mechanics
-    reporting:   evidence worker_pool check comparison adapters contract
+    reporting:   mechanics
 """)
 # ... and what builds on it: any of the above, and these others.
 STUDIES = table("""
     oracle:
-    questions:
+    cross_check:
     campaigns:
-    diagrams:  questions
-    accuracy:  questions
-    timing:    oracle
-    passes:    timing
-    stability: accuracy
-    studies:   accuracy oracle stability timing
-    pareto:    stability studies timing
-    dashboard: passes
+    diagrams:
+    accuracy:
+    timing:      oracle
+    passes:      timing
+    stability:   accuracy
+    studies:     accuracy oracle stability timing
+    pareto:      stability studies timing
+    dashboard:   cross_check campaigns diagrams accuracy timing passes stability studies pareto
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, nothing else.
 MAY_USE = HARNESS | {name: others | set(HARNESS) for name, others in STUDIES.items()} | {"oracle": {"mechanics"}}

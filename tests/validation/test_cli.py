@@ -105,13 +105,15 @@ def test_interrupted(arm: Path, run: Any, monkeypatch: pytest.MonkeyPatch) -> No
         done(failed(cases[0].label, "load", "x"))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("validation.__main__.run", interrupt)
+    monkeypatch.setattr("validation.cross_check.report.run_cases", interrupt)
     result = run(arm, "ur5")
     assert result.exit_code == 130 and "Interrupted: 1 model not checked" in result.stdout
 
 
 def test_no_word_is_the_standard_set(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     asked: list[str] = []
-    monkeypatch.setattr("validation.__main__.run", lambda cases, *rest: asked.extend(case.label for case in cases))
+    monkeypatch.setattr(
+        "validation.cross_check.report.run_cases", lambda cases, *rest: asked.extend(case.label for case in cases)
+    )
     CliRunner().invoke(app, ["--report", str(tmp_path)])
     assert {"ur5", "talos"} < set(asked)

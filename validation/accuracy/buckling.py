@@ -10,8 +10,9 @@ import scipy.linalg
 import symofros as sf
 from validation.accuracy.beams import cantilever, interpreted, squares, stiffness_and_mass
 from validation.accuracy.reference import data, source
-from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, exponent, near
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.findings import Finding, Study, exponent, near
 
 FAMILIES = ("legendre", "polynomial", "spline", "clamped_free")
 COLORS = {"legendre": 0, "polynomial": 2, "spline": 1, "clamped_free": 5}
@@ -79,7 +80,7 @@ def study(quick: bool) -> Study:
         family: np.array([euler(family, int(n)) if n <= 7 or family != "polynomial" else np.nan for n in counts])
         for family in FAMILIES
     }
-    checks = [
+    findings = [
         near(f"Euler's load, {family}, 5 functions", float(loads[family][4]), EULER, 1e-3, "π²/4")
         for family in FAMILIES
     ]
@@ -88,7 +89,7 @@ def study(quick: bool) -> Study:
         worst = max(
             (abs(loads[family][n - 1] / known[str(n)][basis] - 1.0), n) for n in range(1, min(len(counts), 7) + 1)
         )
-        checks.append(
+        findings.append(
             near(
                 f"Euler's load, {family}, {worst[1]} functions, against a Ritz solution",
                 float(loads[family][worst[1] - 1]),
@@ -100,7 +101,7 @@ def study(quick: bool) -> Study:
     m = heavy(5)
     (K, _), (falling, _) = stiffness_and_mass(m), stiffness_and_mass(m, g=-1.0)
     greenhill = critical(K, K - falling)
-    checks.append(
+    findings.append(
         near(
             "buckling under its weight, 5 functions",
             greenhill,
@@ -111,7 +112,7 @@ def study(quick: bool) -> Study:
     )
     functions = np.arange(1.0, 5.0 if quick else 7.0)
     sideways = np.array([lateral(int(n)) for n in functions])
-    checks.append(
+    findings.append(
         near(
             f"lateral buckling, {functions[-1]:g} functions a field",
             float(sideways[-1]),
@@ -121,8 +122,8 @@ def study(quick: bool) -> Study:
         )
     )
     flat = lateral(3, "first_order")
-    checks.append(
-        Check(
+    findings.append(
+        Finding(
             "lateral buckling at first order, 1 if it occurs",
             float(np.isfinite(flat)),
             0.0,
@@ -142,7 +143,7 @@ def study(quick: bool) -> Study:
         "Does it buckle when it should?",
         answer,
         (axial(counts, loads, quick, reference), strip(functions, sideways)),
-        tuple(checks),
+        tuple(findings),
         (source("buckling_cantilever"),),
     )
 

@@ -1,4 +1,4 @@
-"""The studies of the report, in its order."""
+"""The report on the accuracy of beams: its studies, in its order."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ from validation.accuracy import (
     spinning,
     spinup,
 )
-from validation.evidence.findings import Asked
-from validation.questions.topic import Topic
+from validation.reporting.findings import Question
+from validation.reporting.questions import composing, measuring
+from validation.reporting.record import Topic
 
-STUDIES: dict[str, Asked] = {
+STUDIES: dict[str, Question] = {
     "spinning": spinning.study,
     "convergence": convergence.study,
     "modes_needed": modes_needed.study,
@@ -34,10 +35,10 @@ STUDIES: dict[str, Asked] = {
     "conditioning": conditioning.study,
 }
 
+measure = measuring(STUDIES, "Measure beams against closed forms, tables and exact rods.")
 TOPIC = Topic(
     "accuracy",
-    "Accuracy of beams",
-    "Measure beams against closed forms, tables and exact rods.",
-    "docs/theory/beams.md",
-    STUDIES,
+    "Accuracy",
+    "How accurate are beams?",
+    composing("Accuracy of beams", "docs/theory/beams.md", {"spinning": (0, 0), "convergence": (0, 0)}),
 )

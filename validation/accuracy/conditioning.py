@@ -7,8 +7,9 @@ import numpy as np
 import symofros as sf
 from validation.accuracy.beams import FIRST, cantilever, interpreted, squares, stiffness_and_mass
 from validation.accuracy.reference import data, source
-from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, near
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.findings import Finding, Study, near
 
 COLORS = {"polynomial": 2, "spline": 1, "legendre": 0, "clamped_free": 5}
 
@@ -30,7 +31,7 @@ def study(quick: bool) -> Study:
             numbers[family][i] = np.linalg.cond(M)
             errors[family][i] = abs(np.sqrt(squares(K, M)[0]) / FIRST - 1.0)
     rows = data("conditioning")["rows"]
-    checks = [
+    findings = [
         near(
             f"{family}: condition number with {n} functions",
             float(numbers[family][n - 1]),
@@ -45,8 +46,8 @@ def study(quick: bool) -> Study:
             ("clamped_free", 8, 1e-6),
         )
     ]
-    checks += [
-        Check(
+    findings += [
+        Finding(
             "polynomial: the number of functions that is refused",
             float(refused),
             8.0,
@@ -60,7 +61,7 @@ def study(quick: bool) -> Study:
             1e-9,
             "diagonal 1/(2k + 5), tip value one",
         ),
-        Check(
+        Finding(
             "clamped_free: first frequency at rest, relative error",
             float(np.nanmax(errors["clamped_free"])),
             1e-8,
@@ -77,7 +78,7 @@ def study(quick: bool) -> Study:
         "How many functions before the digits go?",
         answer,
         (figure(counts, numbers, errors),),
-        tuple(checks),
+        tuple(findings),
         (source("conditioning"),),
     )
 

@@ -6,8 +6,9 @@ import numpy as np
 
 from validation.accuracy.beams import spinning, spinning_squares
 from validation.accuracy.reference import data, source
-from validation.evidence.findings import Chart, Check, Curve, Figure, Study, exponent
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure
+from validation.reporting.findings import Finding, Study, exponent
 
 ETA, DELTA = 12, 1
 # Family -> most functions it is asked for; monomials are refused beyond seven.
@@ -35,23 +36,25 @@ def study(quick: bool) -> Study:
         for k, m in enumerate(errors["polynomial"][0])
         if m in n
     )
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "cubic splines: exponent in the number of spans, first frequency",
             powers["spline"],
             6.0,
             3.5,
             "h^4 for eigenvalues by cubic splines; seen before the limit is reached it may be steeper",
         ),
-        Check(
+        Finding(
             "cantilever modes: exponent in their number, first frequency",
             powers["clamped_free"],
             5.0,
             3.0,
             "the modes' bending moment has no slope at the root under a centrifugal load",
         ),
-        Check("Legendre: decades an added function gains, first frequency", gain, 2.0, 0.6, "exponential convergence"),
-        Check(
+        Finding(
+            "Legendre: decades an added function gains, first frequency", gain, 2.0, 0.6, "exponential convergence"
+        ),
+        Finding(
             "polynomial against Legendre: largest difference of the errors",
             float(shared),
             1e-9,
@@ -64,7 +67,9 @@ def study(quick: bool) -> Study:
         f"further one gains {gain:.1f} decades. Cantilever modes are a good start and a poor finish: they satisfy "
         "boundary conditions at the root that the spinning beam does not have."
     )
-    return Study("How many functions, and which?", answer, (figure(errors),), checks, (source("spinning_cantilever"),))
+    return Study(
+        "How many functions, and which?", answer, (figure(errors),), findings, (source("spinning_cantilever"),)
+    )
 
 
 def counts(family: str, quick: bool) -> list[int]:

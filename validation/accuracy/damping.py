@@ -6,8 +6,9 @@ import numpy as np
 
 import symofros as sf
 from validation.accuracy.beams import FIRST, cantilever, motion
-from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, near
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.findings import Finding, Study, near
 
 # Retardation time in units of sqrt(rhoA L^4/EI): the first mode has a damping ratio of about 0.02.
 TAU = 0.0114
@@ -37,23 +38,23 @@ def study(quick: bool) -> Study:
     heights = q[np.searchsorted(times, peaks), 0]
     decrement = float(np.log(heights[0] / heights[-1])) / periods
     closed = 2 * np.pi * zeta / np.sqrt(1 - zeta**2)
-    checks = (
+    findings = (
         near("logarithmic decrement of the first mode", decrement, closed, 1e-6, "2π ζ/√(1 − ζ²), ζ = τ ω₁/2"),
-        Check(
+        Finding(
             "modes: largest relative error of the damping ratio",
             float(np.abs(ratios / expected - 1.0).max()),
             1e-8,
             reason="ζ = τ ω/2",
         ),
         near("number of modes that oscillate", float(len(ratios)), float(oscillating.sum()), 0.0, "those with τ ω < 2"),
-        Check(
+        Finding(
             "other modes excited, over the first",
             float(np.abs(q[:, 1:]).max() / start[0]),
             1e-9,
             reason="damping in proportion to stiffness couples no modes",
         ),
         near("first frequency", float(omegas[0]), FIRST, 1e-8, "the cantilever's, M = 1"),
-        Check(
+        Finding(
             "mass matrix of the modes: distance from 1",
             float(np.abs(M - np.eye(MODES)).max()),
             1e-9,
@@ -66,7 +67,7 @@ def study(quick: bool) -> Study:
         "the others creep back. An explicit integrator sees them all: it needs steps below 2.785/(τ ω²)."
     )
     curve = Curve("first coordinate", times, q[:, 0] / start[0], 0)
-    return Study("Is damping what was asked for?", answer, (figure(curve, zeta, omegas, ratios),), checks)
+    return Study("Is damping what was asked for?", answer, (figure(curve, zeta, omegas, ratios),), findings)
 
 
 def figure(curve: Curve, zeta: float, omegas: Array, ratios: Array) -> Figure:

@@ -10,8 +10,9 @@ import symofros as sf
 from validation.accuracy.beams import cantilever, interpreted
 from validation.accuracy.reference import data, source
 from validation.adapters.exudyn.ancf import static_tip
-from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, near
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.findings import Finding, Study, near
 
 # Relative error of the tip's deflection, in per cent, whose beginning is looked for.
 # EA of Exudyn's beam, which stretches, in units of EI/L^2.
@@ -54,8 +55,8 @@ def study(quick: bool) -> Study:
     table = reference["table"]
     distance = max(abs(exact(row["alpha"])[0] - row["tip_y"]) for row in table if row["alpha"] <= 5)
     begins = {name: float(np.interp(float(name), ours[:, 0] / rod[:, 0] - 1, rod[:, 0])) for name in LEVELS}
-    checks = [Check("elastica in elliptic integrals against the table", distance, 1e-9, reason="the same curve")]
-    checks += [
+    findings = [Finding("elastica in elliptic integrals against the table", distance, 1e-9, reason="the same curve")]
+    findings += [
         near(
             f"deflection over L at which the error reaches {label}",
             begins[name],
@@ -73,8 +74,8 @@ def study(quick: bool) -> Study:
     )
     cable = np.array([static_tip(1.0, 1.0, STRETCH, (0.0, a)) for a in alphas.tolist()])
     cable = np.stack([cable[:, 1], 1.0 - cable[:, 0]], axis=-1)
-    checks.append(
-        Check(
+    findings.append(
+        Finding(
             "Exudyn, 16 ANCF cables: largest distance from the elastica over L",
             float(np.abs(cable - rod).max()),
             2e-4,
@@ -82,7 +83,7 @@ def study(quick: bool) -> Study:
         )
     )
     figures = (shapes(alphas, ours, rod, cable), growth(ours, rod))
-    return Study("How far may it bend?", answer, figures, tuple(checks), (source("elastica_tip_load"),))
+    return Study("How far may it bend?", answer, figures, tuple(findings), (source("elastica_tip_load"),))
 
 
 def shapes(alphas: Array, ours: Array, rod: Array, cable: Array) -> Figure:

@@ -6,8 +6,9 @@ import numpy as np
 
 import symofros as sf
 from validation.accuracy.beams import motion
-from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, exponent
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.findings import Finding, Study, exponent
 
 PERIOD = 2 * np.pi / 3.516
 # At an integrator's tolerance of 1e-12 over a hundred periods.
@@ -58,21 +59,21 @@ def study(quick: bool) -> Study:
     slope = -exponent(np.array(list(runs)), largest)
     half = time < periods / 2
     growth = float(runs[0.05][~half].max() / runs[0.05][half].max())
-    checks = (
-        Check(
+    findings = (
+        Finding(
             f"retain: all, {periods} periods: largest relative error of the energy",
             float(all_error.max()),
             KEPT,
             reason="the integrator's tolerance of 1e-12, gathered over the run",
         ),
-        Check(
+        Finding(
             "first order: exponent of the error in the deflection",
             slope,
             3.0,
             1.9,
             "terms from the second degree on are dropped",
         ),
-        Check(
+        Finding(
             "first order: error in the second half over that in the first",
             growth,
             1.5,
@@ -82,9 +83,9 @@ def study(quick: bool) -> Study:
     answer = (
         f"With everything kept, energy is constant to {all_error.max():.0e} over {periods} periods, which is what the "
         f"integrator leaves. At first order it errs by {largest[1]:.1e} at 0.05 L, falling with the deflection to the "
-        f"power {slope:.1f}, to and fro without drift. A check of energy must know which of the two it checks."
+        f"power {slope:.1f}, to and fro without drift. A check of energy must know which of the two it findings."
     )
-    return Study("Is energy kept?", answer, (figure(time, all_error, runs, largest),), checks)
+    return Study("Is energy kept?", answer, (figure(time, all_error, runs, largest),), findings)
 
 
 def figure(time: Array, kept: Array, runs: dict[float, Array], largest: Array) -> Figure:

@@ -6,8 +6,9 @@ import numpy as np
 
 from validation.accuracy.beams import spinning, spinning_squares
 from validation.accuracy.reference import data, source
-from validation.evidence.findings import Chart, Check, Curve, Figure, Kind, Study
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Kind
+from validation.reporting.findings import Finding, Study
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
 KINDS: dict[str, Kind] = {"clamped_free": "joined", "legendre": "dashed"}
@@ -36,8 +37,8 @@ def study(quick: bool) -> Study:
     tried = range(1, 7 if quick else MOST + 1)
     errors = {family: np.array([first(n, family, etas, exact) for n in tried]) for family in KINDS}
     needed = {(family, tolerance): least(errors[family], tolerance) for family in KINDS for tolerance in TOLERANCES}
-    checks = tuple(
-        Check(
+    findings = tuple(
+        Finding(
             f"cantilever modes, {n}: largest error over the known one, three frequencies, η ≤ 12",
             ratio,
             MARGIN,
@@ -59,7 +60,7 @@ def study(quick: bool) -> Study:
         "How many functions does a tolerance need?",
         answer,
         (figure(etas, needed, errors),),
-        checks,
+        findings,
         (source("modes_needed"),),
     )
 

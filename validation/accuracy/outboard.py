@@ -8,8 +8,9 @@ import scipy.special
 
 import symofros as sf
 from validation.accuracy.beams import spinning, spinning_squares
-from validation.evidence.findings import Chart, Check, Curve, Figure, Study
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure
+from validation.reporting.findings import Finding, Study
 
 MASSES = (0.0, 0.3, 1.0, 3.0)
 FUNCTIONS = 8
@@ -47,8 +48,8 @@ def study(quick: bool) -> Study:
     found = {mass: ours(etas, mass) for mass in MASSES}
     expected = {mass: ritz(etas, mass) for mass in MASSES}
     without = ours(etas, MASSES[2], foreshortening=False, retain="all")
-    checks = [
-        Check(
+    findings = [
+        Finding(
             f"mass ratio {mass:g}: largest relative error of the first flap frequency's square",
             float(np.abs(found[mass] / expected[mass] - 1.0).max()),
             1e-9,
@@ -58,8 +59,8 @@ def study(quick: bool) -> Study:
     ]
     slopes = {mass: float((squares[-1] - squares[0]) / etas[-1] ** 2) for mass, squares in found.items()}
     ratio = {mass: float(np.sqrt(squares[-1] / squares[0])) for mass, squares in found.items()}
-    checks.append(
-        Check(
+    findings.append(
+        Finding(
             "without foreshortening, mass ratio 1: change of the frequency with speed, relative",
             float(np.abs(without / without[0] - 1.0).max()),
             1e-8,
@@ -73,7 +74,7 @@ def study(quick: bool) -> Study:
         "is not foreshortened loses all of it."
     )
     return Study(
-        "What does a mass carried outboard do?", answer, (figure(etas, found, expected, without),), tuple(checks)
+        "What does a mass carried outboard do?", answer, (figure(etas, found, expected, without),), tuple(findings)
     )
 
 

@@ -9,8 +9,9 @@ import numpy as np
 import symofros as sf
 from validation.accuracy.beams import motion
 from validation.accuracy.reference import data, source
-from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, near
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.findings import Finding, Study, near
 
 GRAVITY, END = 9.81, 2.0
 MODELS: dict[str, dict[str, Any]] = {
@@ -80,8 +81,8 @@ def study(quick: bool) -> Study:
             ]
         )
     soft = int(np.flatnonzero(gammas == 5.0)[0])
-    checks = [
-        Check(
+    findings = [
+        Finding(
             f"stiff (EI = 20 N m²): {WORDS[name]}, 3 functions, largest distance from the rod [m]",
             float(errors[name].max()),
             bound,
@@ -90,7 +91,7 @@ def study(quick: bool) -> Study:
         for name, bound, known_error in (("all", 1.5e-4, 8.5e-5), ("first_order", 1.5e-4, 1.1e-4))
     ]
     deflection = float(np.abs(runs["all"][1]).max())
-    checks.append(
+    findings.append(
         near(
             "stiff: largest deflection from the tangent [m]",
             deflection,
@@ -101,8 +102,8 @@ def study(quick: bool) -> Study:
     )
     for name in ("all", "first_order"):
         excess = max(ends[name][i] / (1.2 * (row[name] + row["uncertainty"])) for i, row in enumerate(rows))
-        checks.append(
-            Check(
+        findings.append(
+            Finding(
                 f"{WORDS[name]}: distance at 2 s over 1.2 times the known largest one",
                 float(excess),
                 1.0,
@@ -112,7 +113,7 @@ def study(quick: bool) -> Study:
     for row in reference["energy_drift_in_10_s"]:
         if row["gamma"] in ((5.0,) if quick else (1.0, 2.0, 5.0)):
             found = gained(models["first_order"], models["all"], GRAVITY / row["gamma"], 1e-8 if quick else 1e-10)
-            checks.append(
+            findings.append(
                 near(
                     f"first order, ρA g L³/EI = {row['gamma']:g}: untruncated energy gained in 10 s [J]",
                     found,
@@ -131,7 +132,11 @@ def study(quick: bool) -> Study:
     )
     figures = (path(times, runs, known, exact, errors, float(stiff["uncertainty"])), softness(gammas, ends, rows))
     return Study(
-        "Does it swing as an exact rod, and how soft may it be?", answer, figures, tuple(checks), (source("pendulum"),)
+        "Does it swing as an exact rod, and how soft may it be?",
+        answer,
+        figures,
+        tuple(findings),
+        (source("pendulum"),),
     )
 
 

@@ -6,8 +6,9 @@ import numpy as np
 
 import symofros as sf
 from validation.adapters.exudyn.ancf import Strip, princeton
-from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, exponent
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.findings import Finding, Study, exponent
 
 # Dowell & Traybar 1975: loads of one, two and three pounds.
 LOADS = (4.448, 8.896, 13.345)
@@ -95,34 +96,34 @@ def study(quick: bool) -> Study:
     low = deflection <= 0.05
     lost = first_without_rest(m["all"], float(at[0]))
     untwisted = float(np.abs(turned["first_order"]).max())
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "retain: all, deflection up to 0.10 L: largest error over the displacement",
             float(whole[small].max()),
             0.015,
             reason="1 % of second-order theory in one plane, and the coupling's",
         ),
-        Check(
+        Finding(
             "retain: all, deflection up to 0.21 L: largest error over the displacement",
             float(whole[moderate].max()),
             0.08,
             reason="5 %, likewise",
         ),
-        Check(
+        Finding(
             "retain: all: exponent of the error in the deflection, from 0.05 to 0.21 L",
             -exponent(deflection[~low & moderate], whole[~low & moderate]),
             2.6,
             1.6,
             "second order errs by the square",
         ),
-        Check(
+        Finding(
             "retain: all: largest relative error of the twist, deflection up to 0.05 L",
             float(np.abs(turned["all"][low] - 1.0).max()),
             0.05,
             reason="cubic strain energy gives it",
         ),
-        Check("first order: twist over Exudyn's", untwisted, 1e-9, reason="its strain energy is quadratic"),
-        Check(
+        Finding("first order: twist over Exudyn's", untwisted, 1e-9, reason="its strain energy is quadratic"),
+        Finding(
             "retain: all, load at 60°: deflection over L, in Exudyn, where our equilibrium is lost",
             float(np.linalg.norm(exact(lost, at)[0][0, 1:]) / Strip().length),
             0.5,
@@ -143,7 +144,7 @@ def study(quick: bool) -> Study:
         "Bent both ways and twisted, where does second order fail?",
         answer,
         figures,
-        checks,
+        findings,
         ("Princeton beam: Dowell & Traybar 1975; Exudyn, 32 geometrically exact elements",),
     )
 

@@ -10,8 +10,9 @@ import scipy.optimize
 from validation.accuracy.beams import FIRST, spinning, spinning_squares
 from validation.accuracy.reference import data, source
 from validation.adapters.exudyn.ancf import spinning_frequencies
-from validation.evidence.findings import Chart, Check, Curve, Figure, Kind, Mark, Study, near
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Kind, Mark
+from validation.reporting.findings import Finding, Study, near
 
 PLANES = {"flap": ("bend_z", "flap"), "lag": ("bend_y", "chord")}
 LINES: dict[int, Kind] = {8: "joined", 10: "dashed"}
@@ -34,8 +35,8 @@ def study(quick: bool) -> Study:
         np.abs(np.sqrt(spinning_squares(flap, int(eta), 0.0)[:3]) - row).max()
         for eta, row in reference["published_wright_delta0"].items()
     )
-    checks = [
-        Check(
+    findings = [
+        Finding(
             f"{plane}, {n} Legendre functions: largest relative error of three frequencies, η ≤ 12",
             max(float(e.max()) for (p, _), e in found.items() if p == plane),
             BOUNDS[n],
@@ -44,15 +45,15 @@ def study(quick: bool) -> Study:
         for n, found in worst.items()
         for plane in PLANES
     ]
-    checks.append(
-        Check(
+    findings.append(
+        Finding(
             "flap, 10 functions: largest distance from the published table",
             float(published),
             PRINTED,
             reason="its printed decimals",
         )
     )
-    checks += [
+    findings += [
         near(
             f"speed of divergence without foreshortening, hub ratio {delta:g}",
             found,
@@ -64,8 +65,8 @@ def study(quick: bool) -> Study:
     ]
     slow = next(row["chord"][0] for row in reference["table"] if (row["delta"], row["eta"]) == (0, 1))
     apart = engine((3.0, 12.0) if quick else (0.5, 3.0, 6.0, 9.0, 12.0))
-    checks.append(
-        Check(
+    findings.append(
+        Finding(
             "against Exudyn, 16 ANCF cables: largest relative difference of three frequencies",
             apart,
             5e-4,
@@ -83,7 +84,7 @@ def study(quick: bool) -> Study:
         "Does a beam stiffen as it should when it spins?",
         answer,
         (frequencies(etas, reference["table"]), accuracy(worst)),
-        tuple(checks),
+        tuple(findings),
         (source("spinning_cantilever"),),
     )
 

@@ -10,8 +10,9 @@ import symofros as sf
 from validation.accuracy.beams import motion
 from validation.accuracy.reference import data, source
 from validation.adapters.exudyn.ancf import spin_up
-from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study, near
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.findings import Finding, Study, near
 
 LENGTH, EI, RHO_A, END, RATE = 8.0, 566.7095928, 0.20187837656, 15.0, 6.0
 # Over the whole run, whatever the number of functions: the converged theory's distance from the rod [m].
@@ -60,8 +61,8 @@ def study(quick: bool) -> Study:
     t, cable = spin_up(8, 5e-3, end, STRETCH) if quick else spin_up(16, 2.5e-3, end, STRETCH)
     apart = np.abs(cable[np.searchsorted(t, known - 1e-6)] - exact)
     peak = reference["peak"]["tip_y"]
-    checks = [
-        Check(
+    findings = [
+        Finding(
             f"{n} functions: largest distance from the rod across the beam [m]",
             float(error[:, 1].max()),
             BOUND,
@@ -70,8 +71,8 @@ def study(quick: bool) -> Study:
         for n, error in errors.items()
         if n >= 3
     ]
-    checks += [
-        Check("3 functions: along the beam [m]", float(errors[3][:, 0].max()), 2e-4, reason="1.3e-4 is known"),
+    findings += [
+        Finding("3 functions: along the beam [m]", float(errors[3][:, 0].max()), 2e-4, reason="1.3e-4 is known"),
         near(
             "3 functions: peak against the exact rod [m]",
             float(ours[3][:, 1].min()),
@@ -86,15 +87,15 @@ def study(quick: bool) -> Study:
             2e-5,
             "an independent program of the same theory",
         ),
-        Check(
+        Finding(
             "without foreshortening: the tip's displacement at 8 s [m]",
             float(without[-1, 1]),
             -LENGTH,
             reason="it has run away by more than its length",
         ),
     ]
-    checks.append(
-        Check(
+    findings.append(
+        Finding(
             "Exudyn, ANCF cables: largest distance from the rod [m]",
             float(apart.max()),
             3e-4,
@@ -116,7 +117,7 @@ def study(quick: bool) -> Study:
         "Does it stiffen while it spins up?",
         answer,
         figures,
-        tuple(checks),
+        tuple(findings),
         (source("spin_up"), "Exudyn, ObjectANCFCable2D, EA = 1e6 EI/L²"),
     )
 

@@ -10,11 +10,12 @@ from typing import Annotated, Any
 
 import typer
 
-from symofros.atomic import write_atomically
 from validation.campaigns.errors import PlanError, Unfinished
 from validation.campaigns.plan import make, read
+from validation.campaigns.report import TOPIC
 from validation.inputs.cases import standard_set
-from validation.reporting.page import compact
+from validation.reporting.command import AsJson, Exit, code, write
+from validation.reporting.terminal import show as show_report
 
 STATES = 100_000
 
@@ -28,7 +29,6 @@ Dashboard = Annotated[
 Report = Annotated[
     Path | None, typer.Option("--report", help="Also write campaign.md and campaign.json into this folder.")
 ]
-AsJson = Annotated[bool, typer.Option("--json", help="Print the summary as JSON, nothing else.")]
 
 
 @app.command("run")
@@ -102,14 +102,13 @@ def show(folder: Annotated[Path, typer.Argument(help="Of the campaign.")], as_js
 
 def _tell(data: dict[str, Any], folder: Path, report: Path | None, as_json: bool) -> None:
     """Write the summary beside the results, and where else it is wanted, and print it."""
-    from validation.campaigns.summary import markdown
-
     for place in filter(None, (folder, report)):
-        place.mkdir(parents=True, exist_ok=True)
-        write_atomically(place / "campaign.json", compact(data))
-        write_atomically(place / "campaign.md", markdown(data))
-    typer.echo(json.dumps(data, allow_nan=False) if as_json else markdown(data))
-    raise typer.Exit(0 if data["ok"] else 1)
+        made = write(TOPIC, data, place)
+    if as_json:
+        typer.echo(json.dumps(data, allow_nan=False))
+    else:
+        show_report(made)
+    raise typer.Exit(code(made))
 
 
 @contextmanager
@@ -122,13 +121,13 @@ def _refusing() -> Iterator[None]:
         yield
     except (PlanError, OSError, TimeoutError) as error:
         typer.echo(f"campaign: {error}", err=True)
-        raise typer.Exit(2) from None
+        raise typer.Exit(Exit.BAD_INPUT) from None
     except ImportError as error:
         typer.echo(f"campaign: {error}; pip install 'symofros[campaign]'", err=True)
-        raise typer.Exit(2) from None
+        raise typer.Exit(Exit.BAD_INPUT) from None
     except Unfinished as error:
         typer.echo(str(error), err=True)
-        raise typer.Exit(130 if error.interrupted else 1) from None
+        raise typer.Exit(Exit.INTERRUPTED if error.interrupted else Exit.MISSED) from None
 
 
 def register(parent: typer.Typer) -> None:

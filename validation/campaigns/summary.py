@@ -1,10 +1,10 @@
-"""What a campaign found, from its one file: as data, in words, as a page of Markdown."""
+"""What a campaign found, from its one file, as data."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import pyarrow as pa
@@ -16,7 +16,6 @@ _GROUP = ["model", "engine", "quantity"]
 # Of the batch with the largest error.
 _OF_WORST = ("error", "batch", "worst_state", "scale", "tolerance")
 _NULLS = pc.ScalarAggregateOptions(skip_nulls=False)
-_SHOWN = 20
 
 
 def effort(journal: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
@@ -89,86 +88,3 @@ def swept(rows: pa.Table) -> dict[str, Any]:
     ]
     ranges = {name: pc.min_max(rows[name]).as_py() for name in results}
     return {"ok": not failed, "points": rows.num_rows, "done": done, "failed": dict(failed), "ranges": ranges}
-
-
-def headline(data: Mapping[str, Any]) -> str:
-    """What it comes to, in a sentence or two."""
-    if data["kind"] == "sweep":
-        rest = "" if data["ok"] else f"; {data['points'] - data['done']} could not be evaluated"
-        asked = f"{data['plan']['model']}, {data['plan']['quantity'].replace('_', ' ')}"
-        return f"{asked}: {data['done']} of {data['points']} points{rest}."
-    groups = data["groups"]
-    engines = len({row["engine"] for row in groups})
-    wrong = sum(not row["agree"] for row in groups)
-    verdict = f"{wrong} of {len(groups)} comparisons disagree" if wrong else f"all {len(groups)} comparisons agree"
-    failed = f", {len(data['failed'])} batches could not be compared" if data["failed"] else ""
-    return f"{data['states']} states of {data['models']} models against {engines} engines: {verdict}{failed}."
-
-
-def markdown(data: Mapping[str, Any]) -> str:
-    """The page."""
-    spent = data["effort"]
-    size = data["states" if data["kind"] == "check" else "points"]
-    rate = f", {size / spent['seconds']:.0f} a second" if spent["seconds"] else ""
-    lines = ["# Campaign", "", f"**{headline(data)}**", ""]
-    lines += _checked_lines(data) if data["kind"] == "check" else _swept_lines(data)
-    versions = ", ".join(f"{name} {version}" for name, version in data["versions"].items())
-    lines += [
-        "",
-        f"Plan {data['hash']}; sessions: {spent['sessions']}, {spent['seconds']:.0f} s{rate}; "
-        f"{spent['executions']} executions, {len(spent['repeated'])} batches begun twice; "
-        f"{data['date']}; {', '.join(data['machine'].values())}; flags {data['flags']}; {versions}"
-        f"{'; revision ' + data['revision'] if data['revision'] else ''}.",
-        "",
-        "Every row: results.parquet. Written by `python -m validation campaign`.",
-        "",
-    ]
-    return "\n".join(lines)
-
-
-def _checked_lines(data: Mapping[str, Any]) -> list[str]:
-    lines = [
-        "The largest error of each quantity over all models, engines and states, relative to its scale.",
-        "",
-        "| quantity | comparisons | largest error | tolerance | of | against | batch, state |",
-        "|---|---:|---:|---:|---|---|---:|",
-    ]
-    for quantity in dict.fromkeys(row["quantity"] for row in data["groups"]):
-        rows = [row for row in data["groups"] if row["quantity"] == quantity]
-        worst = max(rows, key=_share)
-        lines.append(
-            f"| {quantity} | {len(rows)} | {_error(worst)} | {worst['tolerance']:.1e} | {worst['model']} | "
-            f"{worst['engine']} | {_place(worst)} |"
-        )
-    wrong: Sequence[Mapping[str, Any]] = [row for row in data["groups"] if not row["agree"]]
-    failed = data["failed"][:_SHOWN]
-    return [
-        *lines,
-        "" if wrong or failed else "\nNothing disagrees.",
-        *(
-            f"- disagrees: {row['model']}, {row['engine']}, {row['quantity']}: {_error(row)} in batch {_place(row)}"
-            for row in wrong[:_SHOWN]
-        ),
-        *(f"- failed: batch {row['batch']}, {row['model']}: {' '.join(row['note'].split())}" for row in failed),
-    ]
-
-
-def _place(row: Mapping[str, Any]) -> str:
-    return f"{row['batch']}, {'-' if row['worst_state'] is None else row['worst_state']}"
-
-
-def _share(row: Mapping[str, Any]) -> float:
-    """How much of its tolerance an error takes."""
-    return float("inf") if row["error"] is None else row["error"] / (row["tolerance"] or 1.0)
-
-
-def _error(row: Mapping[str, Any]) -> str:
-    return "NaN" if row["error"] is None else f"{row['error']:.1e}"
-
-
-def _swept_lines(data: Mapping[str, Any]) -> list[str]:
-    lines = ["| result | smallest | largest |", "|---|---:|---:|"]
-    for name, ends in data["ranges"].items():
-        shown = ["-" if ends[end] is None else f"{ends[end]:.6g}" for end in ("min", "max")]
-        lines.append(f"| {name} | {' | '.join(shown)} |")
-    return [*lines, "", *(f"- {number} points: {why}" for why, number in data["failed"].items())]

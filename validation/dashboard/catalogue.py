@@ -1,53 +1,36 @@
-"""The reports: what each answers, the command that writes it, and how it is read."""
+"""The reports, in the order of the index and of `--regenerate`, and the function that measures each."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from validation.accuracy import catalogue as accuracy
+from validation.campaigns import report as campaign
+from validation.cross_check import report as check
+from validation.diagrams import catalogue as diagrams
+from validation.pareto import report as pareto
+from validation.passes import report as passes
+from validation.reporting.command import Measure
+from validation.reporting.record import Topic
+from validation.stability import report as stability
+from validation.studies.reports import exports, fuzz, mutation, oracle, realtime, rollouts, simulation
+from validation.timing import report as timing
 
-from validation.dashboard import correctness, models, speed
-from validation.dashboard.card import Card
-
-
-@dataclass(frozen=True)
-class Topic:
-    """One report.
-
-    Attributes:
-        group: Heading that it stands under.
-        question: What it answers.
-        command: Words after `python -m validation` that write it.
-        read: Its JSON -> what is shown of it.
-        everyday: Whether `--regenerate` writes it; one that takes other tools, or a plan of one's own, is left to hand.
-    """
-
-    group: str
-    question: str
-    command: tuple[str, ...]
-    read: Callable[[Mapping[str, Any]], Card]
-    everyday: bool = True
-
-
-CAMPAIGN = ("campaign", "run", "--models", "all", "--report", "reports", "-o", "campaign")
-
-# In the order of the page, and of `--regenerate`.
-TOPICS: dict[str, Topic] = {
-    "check": Topic("Correctness", "Do our C and independent engines agree?", (), correctness.check),
-    "oracle": Topic("Correctness", "Do SymPy's derivations give the same digits?", ("oracle",), correctness.oracle),
-    "mutation": Topic("Correctness", "Would the cross-check see a fault?", ("mutation",), correctness.mutation),
-    "fuzz": Topic("Correctness", "Is every hostile file read, or refused in words?", ("fuzz",), correctness.fuzz),
-    "campaign": Topic("Correctness", "And over a hundred thousand states?", CAMPAIGN, correctness.campaign, False),
-    "accuracy": Topic("Accuracy", "How accurate are beams?", ("accuracy",), models.accuracy),
-    "diagrams": Topic("Diagrams", "How does the paper's robot trace its square?", ("diagrams",), models.accuracy),
-    "stability": Topic("Stability", "Where do simulations fail?", ("stability",), models.stability),
-    "timing": Topic("Speed", "How fast is the C against engines and other generators?", ("timing",), speed.timing),
-    "simulation": Topic("Speed", "How fast are motions at equal accuracy?", ("simulation",), speed.simulation),
-    "rollouts": Topic("Speed", "How fast are thousands of motions at once?", ("rollouts",), speed.rollouts),
-    "realtime": Topic("Speed", "How late do instants of diagrams begin?", ("realtime",), speed.realtime),
-    "passes": Topic("Speed", "What does each pass of the generator gain?", ("passes",), models.passes),
-    "exports": Topic("Speed", "What does a call cost, from where?", ("exports",), speed.exports),
-    "pareto": Topic(
-        "Accuracy against time", "Which model is the cheapest that is good enough?", ("pareto",), models.pareto
-    ),
-}
+_ORDER = (
+    check,
+    oracle,
+    mutation,
+    fuzz,
+    campaign,
+    accuracy,
+    diagrams,
+    stability,
+    timing,
+    simulation,
+    rollouts,
+    realtime,
+    passes,
+    exports,
+    pareto,
+)
+TOPICS: dict[str, Topic] = {module.TOPIC.name: module.TOPIC for module in _ORDER}
+# A campaign has commands of its own: it is begun, gone on with, and shown.
+MEASURES: dict[str, Measure] = {module.TOPIC.name: module.measure for module in _ORDER if hasattr(module, "measure")}

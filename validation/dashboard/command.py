@@ -1,4 +1,4 @@
-"""`python -m validation dashboard`: one page over all reports, and the summary that the README quotes."""
+"""`python -m validation dashboard` and `render`: one page over all reports, and their pages anew from their JSON."""
 
 from __future__ import annotations
 
@@ -10,52 +10,68 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import Entry, gather
-from validation.dashboard.page import QuoteError, headline, quote, write_dashboard
+from validation.dashboard.index import QuoteError, headline, quote, write_index
 from validation.dashboard.regenerate import Outcome, commands, regenerate
 from validation.reporting import provenance
+from validation.reporting.command import REPORTS, Exit, Output, known
+from validation.reporting.command import render as render_report
 
-# Distribution -> the names that reports have for it.
-_ALIASES = {"pin": ("pinocchio", "pinocchio-urdf"), "mujoco": ("mujoco-urdf",)}
+Readme = Annotated[Path, typer.Option(help="Gets the summary between its marks, if it is there.")]
 
 
 def register(app: typer.Typer) -> None:
-    """Add the command to the command line."""
+    """Add the commands to the command line."""
     app.command("dashboard")(dashboard)
+    app.command("render")(render)
 
 
 def dashboard(
-    report: Annotated[Path, typer.Option(help="Folder of the reports; index.html and summary.md go there.")] = Path(
-        "reports"
-    ),
-    readme: Annotated[Path, typer.Option(help="Gets the summary between its marks, if it is there.")] = Path(
-        "README.md"
-    ),
+    output: Output = REPORTS,
+    readme: Readme = Path("README.md"),
     anew: Annotated[bool, typer.Option("--regenerate", help="Write all reports anew before; hours.")] = False,
 ) -> None:
     """Gather the reports on one page.
 
-    Exit code: 0 no report is bad, 1 one is, 2 bad input, 130 interrupted while reports were written anew.
+    Exit code: 0 no report misses anything, 1 one does, 2 bad input, 130 interrupted while reports were written anew.
     """
-    if not report.is_dir():
-        raise typer.BadParameter(f"no folder {report}; `--regenerate` fills one that is there", param_hint="--report")
-    interrupted = anew and not _all_anew(report)
-    entries = gather(report, installed(), datetime.date.today())
-    page = write_dashboard(entries, report, provenance.now())
+    _existing(output)
+    interrupted = anew and not _all_anew(output)
+    entries = gather(output, provenance.versions_now(), datetime.date.today())
+    page = write_index(entries, output, provenance.now())
     try:
-        quote(readme, (report / "summary.md").read_text(encoding="utf-8"))
+        quote(readme, (output / "summary.md").read_text(encoding="utf-8"))
     except QuoteError as error:
         raise typer.BadParameter(str(error), param_hint="--readme") from None
     _show(entries)
     typer.echo(f"{headline(entries)} Page: {page}")
-    bad = any(entry.verdict == "bad" for entry in entries)
-    raise typer.Exit(130 if interrupted else 1 if bad else 0)
+    missed = any(entry.verdict == "missed" for entry in entries.values())
+    raise typer.Exit(Exit.INTERRUPTED if interrupted else Exit.MISSED if missed else Exit.GOOD)
 
 
-def installed() -> dict[str, str]:
-    """Versions of now, under the names that reports use."""
-    found = provenance.versions()
-    return found | {alias: found[name] for name, aliases in _ALIASES.items() if name in found for alias in aliases}
+def render(
+    names: Annotated[list[str] | None, typer.Argument(help=f"Reports: {', '.join(TOPICS)}; none: all.")] = None,
+    output: Output = REPORTS,
+) -> None:
+    """Write the HTML and Markdown of reports anew from their JSON, without measuring anything.
+
+    Exit code: 0 all could be read, 1 one could not, 2 bad input.
+    """
+    _existing(output)
+    chosen = known(names, TOPICS, "NAME", "report")
+    entries = gather(output, provenance.versions_now(), datetime.date.today())
+    for name in chosen:
+        if entries[name].report is not None:
+            render_report(TOPICS[name], entries[name].data, output)
+    _show({name: entries[name] for name in chosen})
+    unread = any(entries[name].report is None for name in chosen)
+    raise typer.Exit(Exit.MISSED if unread else Exit.GOOD)
+
+
+def _existing(folder: Path) -> None:
+    if not folder.is_dir():
+        raise typer.BadParameter(f"no folder {folder}; `--regenerate` fills one that is there", param_hint="--output")
 
 
 def _all_anew(folder: Path) -> bool:
@@ -66,7 +82,9 @@ def _all_anew(folder: Path) -> bool:
         task = bar.add_task("", total=len(commands()))
 
         def done(outcome: Outcome) -> None:
-            words = {0: "written", 1: "written; something in it is wrong"}.get(outcome.code, f"failed ({outcome.code})")
+            words = {0: "written", 1: "written; something in it is missed"}.get(
+                outcome.code, f"failed ({outcome.code})"
+            )
             console.print(f"{outcome.name}: {words}, {outcome.seconds:.0f} s", markup=False)
             if outcome.said:
                 console.print(outcome.said, markup=False)
@@ -80,7 +98,6 @@ def _all_anew(folder: Path) -> bool:
     return True
 
 
-def _show(entries: list[Entry]) -> None:
-    for entry in entries:
-        said = entry.card.headline if entry.card else "; ".join(entry.remarks)
-        typer.echo(f"{entry.name:11}{entry.verdict:10}{said}")
+def _show(entries: dict[str, Entry]) -> None:
+    for name, entry in entries.items():
+        typer.echo(f"{name:11}{entry.verdict:10}{entry.said}")

@@ -1,4 +1,4 @@
-"""Reports as they lie in a folder -> entries of the dashboard; one that is absent, broken or out of date says so."""
+"""Reports as they lie in a folder -> entries of the index; one that is absent, broken or out of date says so."""
 
 from __future__ import annotations
 
@@ -7,109 +7,78 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from validation.dashboard.card import Card
-from validation.dashboard.catalogue import TOPICS, Topic
+from validation.dashboard.catalogue import TOPICS
+from validation.reporting.provenance import Provenance
+from validation.reporting.record import Data, Report, Topic
 
 # Older reports are still true of what they name; they are marked, so that nobody takes them for news.
 STALE_DAYS = 30
 
 
 @dataclass(frozen=True)
-class Origin:
-    """Where a report's numbers come from; empty where it does not say."""
-
-    date: str
-    machine: str
-    flags: str
-    versions: dict[str, str]
-
-
-@dataclass(frozen=True)
 class Entry:
-    """One report on the dashboard.
+    """One report in the index.
 
     Attributes:
-        name: Of its files.
         topic: What it is about.
-        card: What it says; None if it is not there or can't be read.
-        origin: Where from.
+        report: What it says; None if it is not there or can't be read.
+        data: Its JSON.
+        provenance: Origin of its numbers.
         remarks: What a reader should know before relying on it.
         page: Its full page, in the same folder; empty if there is none.
     """
 
-    name: str
     topic: Topic
-    card: Card | None
-    origin: Origin
+    report: Report | None
+    data: Data
+    provenance: Provenance
     remarks: tuple[str, ...] = ()
     page: str = ""
 
     @property
-    def command(self) -> str:
-        """What writes it."""
-        return " ".join(("python -m validation", *self.topic.command))
+    def verdict(self) -> str:
+        """The verdict in a word."""
+        return "absent" if self.report is None else self.report.verdict
 
     @property
-    def verdict(self) -> str:
-        """In one word."""
-        if self.card is None:
-            return "absent"
-        return {True: "good", False: "bad", None: "measured"}[self.card.ok]
+    def said(self) -> str:
+        """What it found, in a sentence."""
+        return self.report.summary if self.report else "; ".join(self.remarks)
 
 
-def gather(folder: Path, installed: Mapping[str, str], today: datetime.date) -> list[Entry]:
+def gather(folder: Path, installed: Mapping[str, str], today: datetime.date) -> dict[str, Entry]:
     """Every report that is known of.
 
     Args:
-        folder: Of the reports.
+        folder: Folder of the reports.
         installed: Versions of now, with which those of a report are compared.
         today: From which their age counts.
     """
-    return [_entry(folder, name, topic, installed, today) for name, topic in TOPICS.items()]
+    return {name: _entry(folder, topic, installed, today) for name, topic in TOPICS.items()}
 
 
-def _entry(folder: Path, name: str, topic: Topic, installed: Mapping[str, str], today: datetime.date) -> Entry:
-    nowhere = Origin("", "", "", {})
+def _entry(folder: Path, topic: Topic, installed: Mapping[str, str], today: datetime.date) -> Entry:
+    nowhere, name = Provenance.of(None), topic.name
     pages = [f"{name}.{kind}" for kind in ("html", "md", "json") if (folder / f"{name}.{kind}").is_file()]
     page = pages[0] if pages else ""
     try:
         data = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
     except FileNotFoundError:
-        return Entry(name, topic, None, nowhere, ("is not made yet",), page)
+        return Entry(topic, None, {}, nowhere, ("is not made yet",), page)
     except (ValueError, OSError) as error:
-        return Entry(name, topic, None, nowhere, (f"can't be read: {error}",), page)
-    origin = origin_of(data)
+        return Entry(topic, None, {}, nowhere, (f"can't be read: {error}",), page)
+    origin = Provenance.of(data)
     try:
-        card = topic.read(data)
-    # A layout of another version may differ in any way; what went wrong with it is told, and the page stands.
+        report = topic.compose(data)
+    # A layout of another version may differ in any way; what went wrong with it is told, and the index stands.
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
         remark = f"has a layout that is not known here ({type(error).__name__}: {error})"
-        return Entry(name, topic, None, origin, (remark,), page)
-    return Entry(name, topic, card, origin, tuple(doubts(origin, installed, today)), page)
+        return Entry(topic, None, {}, origin, (remark,), page)
+    return Entry(topic, report, data, origin, tuple(doubts(origin, installed, today)), page)
 
 
-def origin_of(data: Any) -> Origin:
-    """From wherever a report says it: at the top, with the machine, or among its facts."""
-    levels = [data] if isinstance(data, dict) else []
-    levels += [data[key] for level in levels for key in ("machine", "facts") if isinstance(level.get(key), dict)]
-
-    def found(key: str, default: Any) -> Any:
-        return next((level[key] for level in levels if level.get(key)), default)
-
-    flags, versions = found("flags", ""), found("versions", {})
-    if isinstance(flags, dict):
-        flags = "; ".join(f"{name} {value}" for name, value in flags.items())
-    machine = [str(value) for value in (found("processor", ""), found("cores", ""), found("system", "")) if value]
-    if len(machine) > 1:
-        machine[1] += " cores"
-    flags = flags if isinstance(flags, str) else " ".join(map(str, flags))
-    versions = {str(name): str(value) for name, value in versions.items()} if isinstance(versions, dict) else {}
-    return Origin(str(found("date", "")), ", ".join(machine), flags, versions)
-
-
-def doubts(origin: Origin, installed: Mapping[str, str], today: datetime.date) -> list[str]:
+def doubts(origin: Provenance, installed: Mapping[str, str], today: datetime.date) -> list[str]:
     """Why a report may be out of date, or can't say."""
     asked = {
         "when it was made": origin.date,

@@ -31,7 +31,7 @@ class Outcome:
 
 def commands() -> dict[str, tuple[str, ...]]:
     """Report -> its command, for those that `--regenerate` writes."""
-    return {name: topic.command for name, topic in TOPICS.items() if topic.everyday}
+    return {name: (name,) if topic.words is None else topic.words for name, topic in TOPICS.items() if topic.everyday}
 
 
 def regenerate(folder: Path, starting: Callable[[str], None], done: Callable[[Outcome], None]) -> None:
@@ -45,7 +45,7 @@ def regenerate(folder: Path, starting: Callable[[str], None], done: Callable[[Ou
     for name, words in commands().items():
         starting(name)
         start = time.perf_counter()
-        command = [sys.executable, "-m", "validation", *words, "--report", str(folder)]
+        command = [sys.executable, "-m", "validation", *words, "--output", str(folder)]
         run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
         said = "" if run.returncode in (0, 1) else "\n".join(run.stderr.strip().splitlines()[-5:])
         done(Outcome(name, run.returncode, time.perf_counter() - start, said))

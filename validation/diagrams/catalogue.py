@@ -1,17 +1,20 @@
-"""The studies of the report, in its order."""
+"""The report on diagrams: its studies, in its order."""
 
 from __future__ import annotations
 
 from validation.diagrams import square, threads, two_arms
-from validation.evidence.findings import Asked
-from validation.questions.topic import Topic
+from validation.reporting.findings import Question
+from validation.reporting.questions import composing, measuring
+from validation.reporting.record import Topic
 
-STUDIES: dict[str, Asked] = {"square": square.study, "two_arms": two_arms.study, "threads": threads.study}
+STUDIES: dict[str, Question] = {"square": square.study, "two_arms": two_arms.study, "threads": threads.study}
 
+measure = measuring(STUDIES, "Run the paper's simulations from their block diagrams.")
 TOPIC = Topic(
     "diagrams",
-    "Diagrams: a controlled flexible robot",
-    "Run the paper's simulations from their block diagrams.",
-    "docs/theory/diagrams.md",
-    STUDIES,
+    "Diagrams",
+    "How does the paper's robot trace its square?",
+    composing(
+        "Diagrams: a controlled flexible robot", "docs/theory/diagrams.md", {"square": (0, 0), "two_arms": (0, 1)}
+    ),
 )

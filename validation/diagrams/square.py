@@ -10,8 +10,9 @@ import numpy as np
 import symofros as sf
 from reference_models import MODELS
 from reference_models.diagrams.square import square
-from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.findings import Finding, Study
 
 DT, RECORD, T_END = 1e-3, 0.005, 12.0
 APPROACH, ALONG, CORNER, SIDE = 3.0, 2.0, (0.3, 0.3), 0.6  # As the diagram's file has them.
@@ -66,58 +67,60 @@ def study(quick: bool) -> Study:
     corners = [float(np.linalg.norm(flexible["tip.p"][at, :2] - point)) for at, point in _corners(flexible)]
     layout = simulation.resolved.layout
     control = len(simulation.resolved.wired.models.record("control").v_names)
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "flexible robot: largest distance of the tool from its path [m]",
             worst,
             0.1,
             0.01,
             "of the size that links of spring steel bend by; a rigid model's controller does not know of it",
         ),
-        Check(
+        Finding(
             "rigid robot, same controller: largest distance [m]",
             stiff,
             5e-3,
             reason="what is left is the elastic joint, 1200 N m/rad, which the plant keeps and the controller"
             " holds at zero, and the friction of the sampled law",
         ),
-        Check(
+        Finding(
             "largest error of a motor's angle [rad]",
             float(joints.max()),
             5e-3,
             reason="the PD acts on the motors: the tool is off because links bend, not because motors lag",
         ),
-        Check("error of the tool at the corners, largest [m]", max(corners), 0.04, reason="it stops there and rings"),
-        Check(
+        Finding("error of the tool at the corners, largest [m]", max(corners), 0.04, reason="it stops there and rings"),
+        Finding(
             "speeds of the plant less those of the control model",
             float(layout.v["plant"].size - control),
             20.0,
             1.0,
             "two models in one run: the rigid one is the same description without shape functions",
         ),
-        Check(
+        Finding(
             "tool, 2 shape functions a link against the finest [m]",
             distances[2],
             1e-3,
             reason="the first function carries the bending, later ones the detail",
         ),
-        Check(
+        Finding(
             "foreshortening on and off, tool's largest difference [m]",
             shortened,
             1e-2,
             5e-4,
             "a clamped beam whose end moves aside by d shortens by 3 d^2/(5 L): 5 mm for 60 mm on 0.5 m",
         ),
-        Check(
+        Finding(
             "without friction compensation: motors' largest error over that with it",
             float(np.abs(bare["q_desired"] - bare["q"]).max() / joints.max()),
             10.0,
             0.9,
             "the harmonic drives' friction is small against the other efforts",
         ),
-        Check("compiled and interpreted run: largest difference of the tool [m]", agreement, 1e-11, reason="rounding"),
-        Check("seconds of motion a second, 1 kHz control, RK4 at 1 ms", speed, np.inf, 100.0, "asked for: 100"),
-        Check(
+        Finding(
+            "compiled and interpreted run: largest difference of the tool [m]", agreement, 1e-11, reason="rounding"
+        ),
+        Finding("seconds of motion a second, 1 kHz control, RK4 at 1 ms", speed, np.inf, 100.0, "asked for: 100"),
+        Finding(
             "time of the interpreted diagram (blocks compiled one by one) over the compiled one",
             ratio,
             np.inf,
@@ -137,7 +140,7 @@ def study(quick: bool) -> Study:
         "How does the flexible robot trace the paper's square?",
         answer,
         (_path(flexible, rigid), _errors(flexible, rigid), _effects(distances, runs, flexible)),
-        checks,
+        findings,
         ("the SYMOFROS paper, section 8: start, corner, side, friction; gains and times are ours",),
     )
 

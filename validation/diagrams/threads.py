@@ -7,7 +7,8 @@ import numpy as np
 import symofros as sf
 from reference_models import MODELS
 from symofros import blocks
-from validation.evidence.findings import Chart, Check, Curve, Figure, Study
+from validation.reporting.figures import Chart, Curve, Figure
+from validation.reporting.findings import Finding, Study
 
 DT, PERIODS = 1e-3, (1e-3, 2e-3, 5e-3, 1e-2)
 
@@ -46,15 +47,15 @@ def study(quick: bool) -> Study:
             times.append((alone.cost.seconds, shared.cost.seconds))
         one, two = np.min(times, axis=0)
         gains.append(float(one / two))
-    checks = (
-        Check("parts that move apart between samples", float(parts), 2.0, 2.0, "they meet at samples only"),
-        Check(
+    findings = (
+        Finding("parts that move apart between samples", float(parts), 2.0, 2.0, "they meet at samples only"),
+        Finding(
             "runs on one and on two threads that differ in a bit",
             0.0 if same else 1.0,
             0.0,
             reason="nothing is exchanged between samples",
         ),
-        Check(
+        Finding(
             "time on one thread over that on two, best period",
             max(gains),
             2.0,
@@ -81,4 +82,4 @@ def study(quick: bool) -> Study:
         f" run takes 1/{max(gains):.2f} of the time at best (wall clock, the fastest of five runs each), and every"
         " bit of the result is that of one thread."
     )
-    return Study("What do several processors gain, and do they change anything?", answer, (figure,), checks)
+    return Study("What do several processors gain, and do they change anything?", answer, (figure,), findings)

@@ -7,8 +7,9 @@ import numpy as np
 import symofros as sf
 from reference_models.closed.two_arms import HOLD, hand
 from reference_models.diagrams.two_arms import GRIPPED, PLACED, T_END, working
-from validation.evidence.findings import Chart, Check, Curve, Figure, Mark, Study
 from validation.mechanics.geometry import Array
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.findings import Finding, Study
 
 DT, RECORD = 1e-3, 0.02
 _SPRINGS = tuple(f"{kind}_{axis}" for kind in ("give", "sway") for axis in "xyz")
@@ -33,41 +34,41 @@ def study(quick: bool) -> Study:
     finer = held.run(GRIPPED + 2.0, dt=DT / 2, record=RECORD)
     same = float(np.abs(finer["payload.p"] - with_grip["payload.p"][: len(finer.t)]).max())
     at = int(np.searchsorted(with_grip.t, GRIPPED - 1e-9))
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "hand on the point once it has taken hold [m]",
             float(gap["takes hold"][later].max()),
             1e-9,
             reason="a closure kept by projection",
         ),
-        Check(
+        Finding(
             "hand off the point just before [m]",
             float(gap["takes hold"][at - 1]),
             0.1,
             1e-5,
             "the mount sways from the arm's own motion; the grip takes up the rest as a plastic impact",
         ),
-        Check(
+        Finding(
             "multipliers before the grip, largest [N, N m]",
             float(np.abs(with_grip["felt"][:at]).max()),
             0.0,
             reason="rows of a constraint that is off are zero",
         ),
-        Check(
+        Finding(
             "multipliers after it, largest [N, N m]",
             float(np.abs(with_grip["felt"][later]).max()),
             1e5,
             1.0,
             "the point carries what the payload's motion asks for",
         ),
-        Check(
+        Finding(
             "sway of the mount along y, towards the point, with the grip over without it",
             float(swing["takes hold"][1] / swing["stays open"][1]),
             0.5,
             reason="what the stabilisation point is for; across, the arm has less leverage",
         ),
-        Check("payload, step halved [m]", same, 1e-3, reason="an impact moves by a step at most"),
-        Check(
+        Finding("payload, step halved [m]", same, 1e-3, reason="an impact moves by a step at most"),
+        Finding(
             "seconds of motion a second",
             T_END / with_grip.cost.worked,
             np.inf,
@@ -86,7 +87,7 @@ def study(quick: bool) -> Study:
         "What does a stabilisation point do for two arms at work?",
         answer,
         (_motion(with_grip, open_hand), _grip(with_grip, gap)),
-        checks,
+        findings,
         ("the SYMOFROS paper, introduction: the task; all values are ours",),
     )
 

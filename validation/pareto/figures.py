@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 from string import ascii_lowercase
 
 import numpy as np
 
-from validation.evidence.findings import Chart, Curve, Figure, Mark, Tag
 from validation.pareto.front import charted, front, usable
 from validation.pareto.race import Result
 from validation.pareto.scene import OURS, Point, Scene
+from validation.reporting.figures import SHAPES, Chart, Curve, Figure, Kind, Mark, Tag
 
 TIME = "time of the processor  [s]"
-# Colours of ours and of the others, in the order in which models appear.
+# Colours of ours, which are cold, and of the others, in the order in which they appear.
 _OURS, _OTHERS = (0, 2, 6, 8, 10, 4), (1, 11, 7, 9, 3)
 _FRONT = 5
 
@@ -23,16 +24,33 @@ def letters(count: int) -> list[str]:
     return [ascii_lowercase[i % 26] + (str(i // 26) if i >= 26 else "") for i in range(count)]
 
 
-def figure(scene: Scene, result: Result, words: str) -> Figure:
+def figure(scene: Scene, result: Result, caption: str) -> Figure:
     """Everything that ran, by model; and the methods on the model that matters."""
     points = charted(scene, result.points)
-    every = _chart(scene, result, points, "models: every run, and the front", by_model=True)
-    best = _chart(scene, result, _finest(points), "methods: each on its best model", by_model=False)
-    return Figure(words, (every, best))
+    return Figure(caption, (models_chart(scene, result), _methods_chart(scene, result, points)))
+
+
+def models_chart(scene: Scene, result: Result) -> Chart:
+    """Every run, a colour and shape a model, and the front with the letters of its runs."""
+    points = charted(scene, result.points)
+    best = front(points)
+    stairs = [(b.seconds, a.error) for a, b in pairwise(best)] + [(p.seconds, p.error) for p in best]
+    stairs.sort(key=lambda at: (at[0], -at[1]))
+    line = Curve("front", np.array([x for x, _ in stairs]), np.array([y for _, y in stairs]), _FRONT)
+    tags = tuple(Tag(name, p.seconds, p.error) for name, p in zip(letters(len(best)), best, strict=True))
+    title = f"{scene.title}: every run, and the front"
+    curves = (*_series(points, lambda p: p.model, "points"), line)
+    return Chart(title, TIME, scene.axis, curves, _marks(result, points), log_x=True, log_y=True, tags=tags)
+
+
+def _methods_chart(scene: Scene, result: Result, points: list[Point]) -> Chart:
+    curves = _series(_finest(points), lambda p: p.method, "joined")
+    title = "methods: each on its best model"
+    return Chart(title, TIME, scene.axis, curves, _marks(result, points), log_x=True, log_y=True)
 
 
 def _finest(points: list[Point]) -> list[Point]:
-    """Of each method of each side, the series that reaches the smallest error."""
+    """The series of each method of each side that reaches the smallest error."""
     best: dict[tuple[str, str], Point] = {}
     for point in points:
         key = point.who, point.method
@@ -42,63 +60,33 @@ def _finest(points: list[Point]) -> list[Point]:
     return [p for p in points if p.series in chosen]
 
 
-def _chart(scene: Scene, result: Result, points: list[Point], title: str, by_model: bool) -> Chart:
-    groups = _by_model(points) if by_model else _by_method(points)
-    sides = [[item for item in groups.items() if (item[1][0].who == OURS) == ours] for ours in (True, False)]
-    curves = [
-        _curve(label, found, palette[n % len(palette)], by_model)
-        for side, palette in zip(sides, (_OURS, _OTHERS), strict=True)
-        for n, (label, found) in enumerate(side)
-    ]
-    marks = _floors(result)
-    apart = all(not 0.7 < value / result.agreement < 1.4 for value in result.floors.values() if result.agreement)
-    if result.agreement and apart and min(p.error for p in points) < 10 * result.agreement:
-        marks.append(Mark("the references agree to this", result.agreement))
-    tags: tuple[Tag, ...] = ()
-    if by_model:
-        best = front(points)
-        stairs = [(b.seconds, a.error) for a, b in pairwise(best)] + [(p.seconds, p.error) for p in best]
-        stairs.sort(key=lambda at: (at[0], -at[1]))
-        curves.append(Curve("front", np.array([x for x, _ in stairs]), np.array([y for _, y in stairs]), _FRONT))
-        tags = tuple(Tag(name, p.seconds, p.error) for name, p in zip(letters(len(best)), best, strict=True))
-    return Chart(title, TIME, scene.axis, tuple(curves), tuple(marks), log_x=True, log_y=True, tags=tags)
+def _series(points: list[Point], name: Callable[[Point], str], kind: Kind) -> tuple[Curve, ...]:
+    """A curve a side and name; no two have both colour and shape alike."""
+    groups: dict[tuple[bool, str], list[Point]] = {}
+    for p in points:
+        label = name(p) if p.who == OURS else f"{p.who}, {name(p)}"
+        groups.setdefault((p.who != OURS, label), []).append(p)
+    curves, count = [], {False: 0, True: 0}
+    for (other, label), members in sorted(groups.items(), key=lambda item: item[0][0]):
+        palette, n = _OTHERS if other else _OURS, count[other]
+        count[other] += 1
+        chosen = sorted(members, key=lambda p: p.seconds)
+        x, y = np.array([p.seconds for p in chosen]), np.array([p.error for p in chosen])
+        color, shape = palette[n % len(palette)], n // len(palette) % SHAPES
+        curves.append(Curve(label, x, y, color, kind, shape, tuple(p.name for p in chosen)))
+    return tuple(curves)
 
 
-def _floors(result: Result) -> list[Mark]:
-    """What our beams leave; under the lowest, who goes on."""
+def _marks(result: Result, points: list[Point]) -> tuple[Mark, ...]:
+    """Floors of our beams, under the lowest who goes on; and what the references can tell."""
     least = min(result.floors.values(), default=0.0)
     below = dict.fromkeys(p.who for p in usable(result.points) if p.who != OURS and p.error < least)
     tool = f"; below it use {' or '.join(below)}" if below else ""
-    return [
+    marks = [
         Mark(f"floor of our beams, {name}{tool if value == least else ''}", value)
         for name, value in result.floors.items()
     ]
-
-
-def _by_method(points: list[Point]) -> dict[str, list[Point]]:
-    groups: dict[str, list[Point]] = {}
-    for point in points:
-        groups.setdefault(f"{point.who}, {point.method}", []).append(point)
-    return groups
-
-
-def _by_model(points: list[Point]) -> dict[str, list[Point]]:
-    """By side and model; those for which there is no colour are together."""
-    labels = dict.fromkeys((p.who, p.model) for p in points)
-    sides = [[label for label in labels if (label[0] == OURS) == ours] for ours in (True, False)]
-    named = {
-        label
-        for side, palette in zip(sides, (_OURS, _OTHERS), strict=True)
-        for label in (side if len(side) <= len(palette) else side[: len(palette) - 1])
-    }
-    groups: dict[str, list[Point]] = {}
-    for point in points:
-        known = (point.who, point.model) in named
-        groups.setdefault(f"{point.who}, {point.model if known else 'other models'}", []).append(point)
-    return groups
-
-
-def _curve(label: str, points: list[Point], color: int, by_model: bool) -> Curve:
-    chosen = sorted(points, key=lambda p: p.seconds)
-    x, y = np.array([p.seconds for p in chosen]), np.array([p.error for p in chosen])
-    return Curve(label.removeprefix(f"{OURS}, "), x, y, color, "points" if by_model else "joined")
+    apart = all(not 0.7 < value / result.agreement < 1.4 for value in result.floors.values() if result.agreement)
+    if result.agreement and apart and min((p.error for p in points), default=1.0) < 10 * result.agreement:
+        marks.append(Mark("the references agree to this", result.agreement))
+    return tuple(marks)

@@ -1,167 +1,118 @@
-"""Results -> pareto.html (one self-contained page), pareto.md, pareto.json (every run; a later one goes on from it)."""
+"""Speed against accuracy: what is run, what is kept of it, and the report."""
 
 from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
-from pathlib import Path
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Annotated, Any
 
-from symofros.runtime.toolchain import DEFAULT_FLAGS
-from validation.evidence import charts
-from validation.pareto import words
+import typer
+
+from validation.pareto import verdicts
 from validation.pareto.catalogue import SCENES
-from validation.pareto.figures import figure, letters
+from validation.pareto.figures import figure, letters, models_chart
 from validation.pareto.front import charted, front
-from validation.pareto.race import Result
+from validation.pareto.race import Result, race
 from validation.pareto.scene import Point, Scene
-from validation.reporting.page import compact, number, render, run_data, versions, write_pages
-from validation.reporting.record import machine
+from validation.reporting.command import Done, Quick, Run, known
+from validation.reporting.numbers import counted, duration, finite, short, times
+from validation.reporting.provenance import machine, now
+from validation.reporting.record import (
+    Block,
+    Bullets,
+    Cell,
+    Data,
+    Fact,
+    Fold,
+    Report,
+    Section,
+    Table,
+    Text,
+    Topic,
+    verdict_word,
+)
 
 ENGINES = ("mujoco", "exudyn", "pin")
-FLAGS = " ".join(DEFAULT_FLAGS)
+INTRO = (
+    "Error against time, both logarithmic. One thread; times are those of the processor, of the stepping alone, "
+    "least of up to nine repeats; models are compiled, and engines' systems assembled, before. Both sides record at "
+    "the same interval. An engine's best is the best of all its runs here. Between two steps of one method times are "
+    "interpolated, between methods or models they are not. A fixed step that a solver can't finish ends its run.",
+    "Accelerations in single precision are a series of their own on the rigid arm: the generated code has floats for "
+    "batches alone, so a motion by itself pays for all lanes of a vector and uses one; what batches gain is in the "
+    "report on timing.",
+)
 
 
-@dataclass(frozen=True)
-class Page:
-    """A scene with its result."""
+def measure(
+    run: Run,
+    chosen: Annotated[list[str] | None, typer.Option("--scene", help=f"Only this; of {', '.join(SCENES)}.")] = None,
+    quick: Quick = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Leave out scenes that pareto.json has.")] = False,
+) -> Data:
+    """Compare speed at equal accuracy: our models and methods, and engines with their own integrators.
 
-    scene: Scene
-    result: Result
-
-    @property
-    def verdicts(self) -> list[words.Verdict]:
-        """Of its targets."""
-        return words.verdicts(self.scene, self.result.points)
-
-    @property
-    def trusted(self) -> bool:
-        """Whether the references agree below what targets ask."""
-        return self.result.agreement <= self.scene.trust
-
-    @property
-    def ok(self) -> bool:
-        """Whether the targets are met, and references are to be trusted."""
-        return self.trusted and all(verdict.ok for verdict in self.verdicts)
-
-    @property
-    def named(self) -> list[tuple[str, Point]]:
-        """The runs of the front, with the letters of the figure."""
-        best = front(charted(self.scene, self.result.points))
-        return list(zip(letters(len(best)), best, strict=True))
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """One run of the command, with what earlier ones left.
-
-    Attributes:
-        results: Short name -> result.
-        failures: Short name -> why it could not be done.
-        quick: Whether few contestants ran.
-        unfinished: Scenes that Ctrl-C cut.
-        seconds: Wall time of the scenes.
-        dates: Short name -> when it was run (UTC).
+    Scenes that are not run again keep the results that pareto.json has of them; those of --quick have a subfolder.
     """
+    names = known(chosen, SCENES, "--scene", "scene")
+    if quick:
+        run.folder = run.folder / "pareto_quick"
+    kept = _kept(run, quick)
+    names = [name for name in names if not (resume and name in kept)]
 
-    results: dict[str, Result]
-    failures: dict[str, str]
-    quick: bool
-    unfinished: tuple[str, ...]
-    dates: dict[str, str]
+    def raced(name: str) -> dict[str, Any]:
+        run.expect(1, f"{name}: references")
+        result = race(SCENES[name], quick, lambda count: run.expect(count, name), run.advance)
+        return scene_data(SCENES[name], result, now())
 
-    @property
-    def seconds(self) -> float:
-        """Wall time of the scenes."""
-        return sum(result.seconds for result in self.results.values())
+    def data(done: Done) -> dict[str, Any]:
+        scenes = kept | done.results
+        whole = Done(scenes, done.failures, done.unfinished)
+        ok = all(scene["ok"] for scene in scenes.values())
+        return run.head(ok, whole, *ENGINES, quick=quick) | {"scenes": {n: scenes[n] for n in SCENES if n in scenes}}
 
-    @property
-    def pages(self) -> dict[str, Page]:
-        """In the catalogue's order."""
-        return {name: Page(SCENES[name], self.results[name]) for name in SCENES if name in self.results}
-
-    @property
-    def ok(self) -> bool:
-        """Whether all was done and every target met."""
-        done = bool(self.results) and not self.failures and not self.unfinished
-        return done and all(page.ok for page in self.pages.values())
-
-    @property
-    def headline(self) -> str:
-        """The verdict in a sentence."""
-        found = [verdict for page in self.pages.values() for verdict in page.verdicts]
-        met = sum(verdict.ok for verdict in found)
-        runs = sum(len(result.points) for result in self.results.values())
-        said = f"{met} of {len(found)} targets met, on {len(self.results)} scenes with {runs} ways through them"
-        doubted = [name for name, page in self.pages.items() if not page.trusted]
-        said += f"; references disagree on {', '.join(doubted)}" if doubted else ""
-        said += f"; {len(self.failures)} could not be done" if self.failures else ""
-        return said + (f"; interrupted before {', '.join(self.unfinished)}." if self.unfinished else ".")
+    # Each is kept as soon as it is done.
+    return data(run.each(names, raced, lambda done: run.save(data(done))))
 
 
-def now() -> str:
-    """The date for the record."""
-    return datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+def _kept(run: Run, quick: bool) -> dict[str, Any]:
+    """What an earlier run left on this machine, in the same way: scenes by name."""
+    path = run.folder / "pareto.json"
+    data = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    if not data or data["quick"] != quick or data["machine"] != machine():
+        return {}
+    return {name: scene for name, scene in data["scenes"].items() if name in SCENES}
 
 
-def write_report(comparison: Comparison, folder: Path) -> Path:
-    """Write the three files.
-
-    Returns:
-        The page.
-
-    Raises:
-        OSError: The folder can't be written to.
-    """
-    data = compact(as_data(comparison))
-    return write_pages(folder, "pareto", data, lambda template: _render(template, comparison))
-
-
-def as_data(comparison: Comparison) -> dict[str, Any]:
-    """Everything, as plain data; None where there is no number."""
-    scenes = {name: _scene(page, comparison.dates[name]) for name, page in comparison.pages.items()}
-    return run_data(comparison, *ENGINES) | {"flags": FLAGS, "unfinished": comparison.unfinished, "scenes": scenes}
-
-
-def _scene(page: Page, date: str) -> dict[str, Any]:
-    scene, result = page.scene, page.result
+def scene_data(scene: Scene, result: Result, date: str) -> dict[str, Any]:
+    """A scene that was run, for JSON."""
+    judged = verdicts.verdicts(scene, result.points)
+    points = [asdict(p) | {"error": finite(p.error), "seconds": finite(p.seconds)} for p in result.points]
     return {
         "title": scene.title,
         "measure": scene.measure,
-        "ok": page.ok,
+        "ok": result.agreement <= scene.trust and all(v.ok for v in judged),
         "date": date,
-        "agreement": number(result.agreement),
+        "agreement": finite(result.agreement),
         "trust": scene.trust,
         "references": result.references,
         "floors": dict(result.floors),
         "seconds": round(result.seconds, 1),
-        "targets": [asdict(v.target) | {"found": _bounded(v.found), "ok": v.ok} for v in page.verdicts],
-        "words": [*words.compared(scene, result.points), *words.advice(scene, result)],
-        "front": [point.name for _, point in page.named],
-        "points": [asdict(p) | {"error": number(p.error), "seconds": number(p.seconds)} for p in result.points],
+        "targets": [
+            asdict(v.target) | {"found": "only ours" if math.isinf(v.found) else finite(v.found), "ok": v.ok}
+            for v in judged
+        ],
+        "words": [*verdicts.compared(scene, result.points), *verdicts.advice(scene, result)],
+        "front": [point.name for point in front(charted(scene, result.points))],
+        "points": points,
     }
 
 
-def _bounded(found: float) -> float | str | None:
-    return "only ours" if math.isinf(found) else number(found)
+def result_of(scene: Data) -> Result:
+    """The result that `scene_data` wrote."""
 
-
-def read(folder: Path, quick: bool) -> tuple[dict[str, Result], dict[str, str]]:
-    """What an earlier run left on this machine, in the same way: results and dates by scene."""
-    path = folder / "pareto.json"
-    if not path.is_file():
-        return {}, {}
-    data = json.loads(path.read_text())
-    if data["quick"] != quick or data["machine"] != machine():
-        return {}, {}
-    kept = {name: scene for name, scene in data["scenes"].items() if name in SCENES}
-    results = {name: _result(scene) for name, scene in kept.items()}
-    return results, {name: scene["date"] for name, scene in kept.items()}
-
-
-def _result(scene: dict[str, Any]) -> Result:
     def real(x: float | None) -> float:
         return math.nan if x is None else float(x)
 
@@ -169,19 +120,100 @@ def _result(scene: dict[str, Any]) -> Result:
     return Result(points, real(scene["agreement"]), scene["references"], scene["floors"], scene["seconds"])
 
 
-def _render(template: str, comparison: Comparison) -> str:
-    drawn = {
-        name: figure(page.scene, page.result, words.see(page.scene, page.result))
-        for name, page in comparison.pages.items()
-    }
-    overall = words.overall({name: (page.scene, page.result) for name, page in comparison.pages.items()})
-    return render(
-        template,
-        {"svg": charts.svg, "duration": words.duration},
-        comparison=comparison,
-        drawn=drawn,
-        words=words,
-        overall=overall,
-        flags=FLAGS,
-        versions=versions(*ENGINES),
+def compose(data: Data) -> Report:
+    """The report of its JSON."""
+    results = {name: (SCENES[name], result_of(scene)) for name, scene in data["scenes"].items()}
+    failures, unfinished = data["failures"], tuple(data["unfinished"])
+    targets = [target for scene in data["scenes"].values() for target in scene["targets"]]
+    met = sum(target["ok"] for target in targets)
+    runs = sum(len(result.points) for _, result in results.values())
+    doubted = [name for name, (scene, result) in results.items() if not result.agreement <= scene.trust]
+    said = f"{met} of {counted(len(targets), 'target')} met, in {counted(len(results), 'scene')}"
+    said += " (quick variant: few contestants, so its ratios mean little)" if data["quick"] else ""
+    said += f"; references disagree on {', '.join(doubted)}" if doubted else ""
+    said += f"; {counted(len(failures), 'scene')} could not be done" if failures else ""
+    said += f"; interrupted before {', '.join(unfinished)}" if unfinished else ""
+    most = max((t["found"] for t in targets if isinstance(t["found"], float)), default=0.0)
+    table = _targets(results)
+    advice = tuple(
+        f"**{scene.title}.** {_which(scene, result)} {verdicts.methods(scene, result)}"
+        for scene, result in results.values()
     )
+    which: tuple[Block, ...] = (verdicts.overall(results), table, Bullets(advice))
+    first = next(iter(results.values()), None)
+    return Report(
+        "Speed against accuracy",
+        f"{said}.",
+        bool(data["ok"]),
+        (*INTRO, *(Text(f"{name} could not be done: {reason}", "bad") for name, reason in failures.items())),
+        (
+            Section("Which to use when", which, "which"),
+            *(_section(name, *results[name], scene, data["quick"]) for name, scene in data["scenes"].items()),
+        ),
+        (
+            Fact(f"{met} of {len(targets)}", "targets are met", met == len(targets)),
+            Fact(str(runs), f"ways through {counted(len(results), 'scene')}"),
+            Fact(times(most), "an engine's best time over ours, at equal error, where it is most"),
+        ),
+        (models_chart(*first),) if first else (),
+        (table, *(Text(f"{name}: {reason}", "bad") for name, reason in failures.items())),
+        unfinished,
+    )
+
+
+def _targets(results: Mapping[str, tuple[Scene, Result]]) -> Table:
+    head = ("scene", "#at error", "against", "#ours", "#its best", "#ratio", "#asked", "verdict")
+    rows = [
+        (
+            f"[{scene.title}](#{name})",
+            scene.shown(v.target.error),
+            v.target.engine,
+            duration(v.ours),
+            duration(v.theirs),
+            Cell("only ours" if math.isinf(v.found) else f"{v.found:.3g}", v.ok),
+            short(v.target.ratio),
+            verdict_word(v.ok),
+        )
+        for name, (scene, result) in results.items()
+        for v in verdicts.verdicts(scene, result.points)
+    ]
+    return Table(head, tuple(rows))
+
+
+def _which(scene: Scene, result: Result) -> str:
+    return " ".join([*verdicts.compared(scene, result.points), verdicts.below_the_floor(scene, result)]).strip()
+
+
+def _section(name: str, scene: Scene, result: Result, data: Data, quick: bool) -> Section:
+    best = front(charted(scene, result.points))
+    rows = tuple(
+        (letter, p.who, p.model, p.method, p.setting, scene.shown(p.error), duration(p.seconds))
+        for letter, p in zip(letters(len(best)), best, strict=True)
+    )
+    trusted = result.agreement <= scene.trust
+    agree = scene.shown(result.agreement)
+    command = f"python -m validation pareto --scene {name}{' --quick' if quick else ''}"
+    blocks: tuple[Block, ...] = (
+        f"{scene.setting} **Error:** {scene.measure}.",
+        figure(scene, result, verdicts.see(scene, result)),
+        Text(f"**Which when.** {_which(scene, result)}", "advice"),
+        Table(("run", "who", "model", "method", "step or tolerance", "#error", "#time"), rows),
+        f"**Tuned:** {scene.tuned}",
+        Text(
+            f"**References:** {result.references}. They agree to {agree}; asked for is {scene.shown(scene.trust)}.",
+            "plain" if trusted else "bad",
+        ),
+        Fold(
+            f"{len(result.points)} runs; those that did not come to their end",
+            (Bullets(tuple(verdicts.refused(result))),),
+            page_only=True,
+        ),
+        Text(
+            f"`{command}`, {result.seconds:.0f} s, {data['date']}. Sources: {'; '.join(scene.sources)}.",
+            "soft",
+        ),
+    )
+    return Section(scene.title, blocks, name, bool(data["ok"]))
+
+
+TOPIC = Topic("pareto", "Accuracy against time", "Which model is the cheapest that is good enough?", compose)

@@ -8,7 +8,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -157,8 +157,3 @@ def _states(nq: int, nv: int, nu: int) -> Mapping[str, Array]:
     """Deflections stay small; angles need not be large to cost what they cost."""
     rng = np.random.default_rng(11)
     return {name: rng.uniform(-0.5, 0.5, (STATES, size)) for name, size in (("q", nq), ("v", nv), ("u", nu))}
-
-
-def as_data(rows: list[Measured]) -> list[dict[str, object]]:
-    """For JSON."""
-    return [asdict(row) for row in rows]

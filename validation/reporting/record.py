@@ -1,168 +1,217 @@
-"""What a check found, as data: results, versions, machine. Reports are made from it, now or later."""
+"""A report as data: what it says, found and shows. `html`, `markdown` and `terminal` render it.
+
+Texts may hold `code`, **bold** and [links](#anchor), as in Markdown, and nothing else of it.
+"""
 
 from __future__ import annotations
 
-import datetime
-import json
-import math
-import os
-import platform
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
-from importlib import metadata
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
 
-import numpy as np
+from validation.reporting.figures import Chart, Drawing, Figure
+from validation.reporting.findings import Finding
+from validation.reporting.numbers import counted, short
 
-import symofros as sf
-from validation.check import ModelResult, Settings
-from validation.comparison.errors import Comparison
-
-SCHEMA = 1
+Tone = Literal["plain", "soft", "bad", "advice"]
 
 
 @dataclass(frozen=True)
-class Record:
-    """One run of the check.
+class Text:
+    """A paragraph that is not plain: a remark, a warning, advice."""
+
+    text: str
+    tone: Tone = "plain"
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a table.
 
     Attributes:
-        settings: What was asked for.
-        models: Results, in the order asked for.
-        seconds: Wall time of it all.
-        date: When it ended (UTC).
-        versions: Package -> version.
-        machine: What it ran on.
-        unfinished: Models that were asked for, but the run was interrupted before.
-        build: Flags and compiler of the C, revision of the source.
+        text: Its content.
+        ok: Its verdict; None where nothing was asked of it.
+        shade: Depth of its background, 0 to 1.
+        hint: What is said when the pointer rests on it.
     """
 
-    settings: Settings
-    models: tuple[ModelResult, ...]
-    seconds: float
-    date: str
-    versions: dict[str, str]
-    machine: dict[str, str]
+    text: str
+    ok: bool | None = None
+    shade: float = 0.0
+    hint: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table.
+
+    Attributes:
+        head: Names of the columns; those that begin with "#" hold numbers.
+        rows: Cells.
+    """
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[str | Cell, ...], ...]
+
+
+@dataclass(frozen=True)
+class Bullets:
+    """A list."""
+
+    items: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Fold:
+    """Blocks under a line that opens and shuts them.
+
+    Attributes:
+        summary: The line.
+        blocks: What is folded.
+        opened: Whether it is open at first.
+        page_only: Whether the Markdown summary leaves it out.
+    """
+
+    summary: str
+    blocks: tuple[Block, ...]
+    opened: bool = False
+    page_only: bool = False
+
+
+Block = str | Text | Table | Bullets | Figure | Fold
+
+
+@dataclass(frozen=True)
+class Section:
+    """Blocks under a heading.
+
+    Attributes:
+        title: The heading.
+        blocks: Its content.
+        anchor: Name for links; "" for none.
+        ok: Its verdict; None where nothing was asked of it.
+        page_only: Whether the Markdown summary leaves it out.
+        badge: The verdict in a word, beside the heading.
+    """
+
+    title: str
+    blocks: tuple[Block, ...]
+    anchor: str = ""
+    ok: bool | None = None
+    page_only: bool = False
+    badge: str = ""
+
+
+@dataclass(frozen=True)
+class Fact:
+    """One key number with its meaning.
+
+    Attributes:
+        value: As shown.
+        label: What it is, with unit and bound.
+        ok: Its verdict; None where nothing was asked of it.
+    """
+
+    value: str
+    label: str
+    ok: bool | None = None
+
+
+@dataclass(frozen=True)
+class Report:
+    """One report.
+
+    Attributes:
+        title: Its heading.
+        summary: What it found, in a sentence.
+        ok: Its verdict; None for a measurement of which nothing was asked.
+        blocks: What comes before the first section.
+        sections: Its parts.
+        facts: Key numbers, for the top of the page and for the index of reports.
+        highlights: Most telling charts, for the index of reports.
+        digest: What a terminal shows.
+        unfinished: Names of parts that an interrupt cut.
+        refused: Inputs that could not be read, where nothing else is wrong.
+    """
+
+    title: str
+    summary: str
+    ok: bool | None
+    blocks: tuple[Block, ...]
+    sections: tuple[Section, ...] = ()
+    facts: tuple[Fact, ...] = ()
+    highlights: tuple[Chart | Drawing, ...] = ()
+    digest: tuple[Block, ...] = ()
     unfinished: tuple[str, ...] = ()
-    build: dict[str, str] = field(default_factory=dict)
+    refused: tuple[str, ...] = ()
 
     @property
-    def ok(self) -> bool:
-        """Whether all that was asked for was compared, and nothing disagrees or failed."""
-        return bool(self.compared) and all(model.ok for model in self.models) and not self.unfinished
+    def verdict(self) -> str:
+        """The verdict in a word."""
+        return {True: "good", False: "missed", None: "measured"}[self.ok]
+
+
+# The JSON of a report, and what makes a report of it.
+Data = Mapping[str, Any]
+Compose = Callable[[Data], Report]
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A report that can be asked for.
+
+    Attributes:
+        name: Name of its command and its files.
+        group: Heading that it stands under in the index.
+        question: What it answers.
+        compose: Its JSON -> report.
+        words: Words after `python -m validation` that write it; the name if None.
+        everyday: Whether `dashboard --regenerate` writes it; one that takes a plan of one's own is left to hand.
+    """
+
+    name: str
+    group: str
+    question: str
+    compose: Compose
+    words: tuple[str, ...] | None = None
+    everyday: bool = True
 
     @property
-    def comparisons(self) -> list[Comparison]:
-        """All rows."""
-        return [row for model in self.models for row in model.comparisons]
-
-    @property
-    def compared(self) -> list[Comparison]:
-        """The rows with a verdict on numbers."""
-        return self.rows("agree", "disagree")
-
-    def rows(self, *status: str) -> list[Comparison]:
-        """The rows of these statuses."""
-        return [row for row in self.comparisons if row.status in status]
+    def command(self) -> str:
+        """What writes it."""
+        return " ".join(("python -m validation", *((self.name,) if self.words is None else self.words)))
 
 
-def make_record(
-    settings: Settings,
-    models: Sequence[ModelResult],
-    seconds: float,
-    unfinished: Sequence[str] = (),
-    build: Mapping[str, str] | None = None,
-) -> Record:
-    """Add to results what is needed to judge them later."""
-    versions = {"symofros": sf.__version__, "python": platform.python_version(), "numpy": np.__version__}
-    for model in models:
-        versions |= {name: version for name, version in model.versions.items() if name not in _OURS}
-    robots = _version("example-robot-data")
-    if robots:
-        versions["example-robot-data"] = robots
-    now = datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")
-    return Record(settings, tuple(models), seconds, now, versions, machine(), tuple(unfinished), dict(build or {}))
+def findings_table(findings: Sequence[Finding]) -> Table:
+    """Numbers beside their bounds."""
+    rows = tuple((f.quantity, Cell(short(f.value), f.ok), short(f.low), short(f.high), f.reason) for f in findings)
+    return Table(("number", "#found", "#at least", "#at most", "reason of the bound"), rows)
 
 
-_OURS = frozenset({"interpreted", "description"})
+def findings_fold(findings: Sequence[Finding], noun: str) -> Fold:
+    """The numbers, open where one misses its bounds."""
+    missed = sum(not f.ok for f in findings)
+    said = f"{counted(len(findings), noun)} and their bounds" + (f": **{missed} missed**" if missed else "")
+    return Fold(said, (findings_table(findings),), opened=bool(missed))
 
 
-def _version(package: str) -> str:
-    try:
-        return metadata.version(package)
-    except metadata.PackageNotFoundError:
-        return ""
+def findings_digest(groups: Mapping[str, Sequence[Finding]], failures: Mapping[str, str], noun: str) -> Table:
+    """The numbers of several parts, for a terminal."""
+    rows: list[tuple[str | Cell, ...]] = [
+        (name, f.quantity, Cell(short(f.value), f.ok), f"{short(f.low)} … {short(f.high)}", verdict_word(f.ok))
+        for name, findings in groups.items()
+        for f in findings
+    ]
+    rows += [(name, Cell(reason, False), "", "", "failed") for name, reason in failures.items()]
+    return Table((noun, "number", "#found", "bounds", "verdict"), tuple(rows))
 
 
-def machine() -> dict[str, str]:
-    """The processor and the system; no name of host or user."""
-    return {
-        "processor": _processor(),
-        "cores": str(os.cpu_count()),
-        "system": " ".join(filter(None, [platform.system(), platform.machine(), *platform.libc_ver()])),
-    }
+def verdict_word(ok: bool) -> str:
+    """For a column of verdicts."""
+    return "ok" if ok else "missed"
 
 
-def _processor() -> str:
-    cpuinfo = Path("/proc/cpuinfo")  # Linux: `platform.processor` is empty there.
-    if cpuinfo.is_file():
-        for line in cpuinfo.read_text(errors="replace").splitlines():
-            if line.startswith("model name"):
-                return line.partition(":")[2].strip()
-    return platform.processor() or platform.machine()
-
-
-def summary(record: Record) -> dict[str, Any]:
-    """What `--json` prints: the verdict and one entry a comparison; None where there is no number."""
-    return {
-        "ok": record.ok,
-        "comparisons": [_entry(row) for row in record.rows("agree", "disagree", "failed")],
-        "unsupported": [
-            {"model": row.model, "engine": row.engine, "quantity": row.quantity, "reason": row.note}
-            for row in record.rows("unsupported")
-        ],
-    }
-
-
-def _entry(row: Comparison) -> dict[str, Any]:
-    entry: dict[str, Any] = {
-        "model": row.model,
-        "engine": row.engine,
-        "quantity": row.quantity,
-        "states": row.states,
-        "error": row.error,
-        "tolerance": row.tolerance,
-        "ok": row.ok,
-        "median": row.median,
-        "worst_state": row.worst_state,
-    }
-    if row.note:
-        entry["note"] = row.note
-    return entry | {name: value if math.isfinite(value) else None for name, value in row.extra.items()}
-
-
-def to_json(record: Record) -> str:
-    """Everything, for the archive."""
-    content = {
-        "schema": SCHEMA,
-        **summary(record),
-        "unfinished": record.unfinished,
-        "date": record.date,
-        "seconds": round(record.seconds, 1),
-        "settings": asdict(record.settings),
-        "versions": record.versions,
-        "machine": record.machine,
-        **record.build,
-        "models": [
-            {
-                "model": model.label,
-                "hash": model.hash,
-                **model.sizes,
-                "frames": model.frames,
-                "notes": model.notes,
-                "seconds": {stage: round(seconds, 3) for stage, seconds in model.seconds.items()},
-            }
-            for model in record.models
-        ],
-    }
-    return json.dumps(content, indent=1, allow_nan=False) + "\n"
+def bounds_kept(findings: Sequence[Finding]) -> str:
+    """What findings come to, in words."""
+    missed = sum(not f.ok for f in findings)
+    return f"{missed} miss their bounds" if missed else "all within their bounds"

@@ -1,4 +1,4 @@
-"""Map -> SVG text: a cell a run, the edge between good and bad, and closed forms over it; colours from the page."""
+"""Map -> drawing: a cell a run, the edge between good and bad, and closed forms over it; colours from the page."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from html import escape
 import numpy as np
 import numpy.typing as npt
 
-from validation.evidence.charts import Axis, line, shown, text
 from validation.mechanics.geometry import Array
+from validation.reporting.axes import Axis, line, names, shown, svg, text
+from validation.reporting.figures import Drawing
 from validation.stability.scene import FINISHED, Grid, Limit, Map
 
-WIDTH, HEIGHT = 620, 430
-_RIGHT, _TOP, _BOTTOM = 14, 66, 50
-_LETTER = 6.1
+WIDTH, HEIGHT = 620, 400
+_RIGHT, _TOP, _BOTTOM = 14, 12, 52
+# Width of a letter [px].
+_LETTER = 7.0
 # Decades below and above the bound at which colours are full.
 _DEEP = {"good": 8.0, "bad": 4.0}
 # Opacity from which on light letters are read more easily.
@@ -26,32 +28,27 @@ _APART = (22.0, 12.5)
 _NARROW = 13.0
 
 
-def svg(found: Map, x: Grid, y: Grid, quantity: str) -> str:
-    """The map as an SVG element.
+def draw(mapped: Map, x: Grid, y: Grid, quantity: str) -> Drawing:
+    """The map as a drawing with its legend.
 
     Args:
-        found: By one subject.
+        mapped: Runs of one subject.
         x: The parameter along.
         y: The parameter across.
-        quantity: Of the criterion, with its unit.
+        quantity: Quantity of the criterion, with its unit.
     """
-    longest = max(len(y.label(value)) for value in found.y) if y.labels else 0
-    left = 46.0 + (max(_LETTER * longest, 24.0))
-    columns, across = _borders(found.x, x, left, WIDTH - _RIGHT)
-    rows, down = _borders(found.y, y, HEIGHT - _BOTTOM, _TOP)
-    parts = [text((left + WIDTH - _RIGHT) / 2, 16, escape(found.subject.name), "middle", "row")]
-    parts += _legend(found, left, quantity)
-    parts += _filled(found, columns, rows)
-    parts += _edge(found.good, columns, rows)
-    parts += _named(found.x, x, across, columns, "x", rows[0])
-    parts += _named(found.y, y, down, rows, "y", left)
-    parts += [_limit(limit, across, down, k) for k, limit in enumerate(found.subject.limits)]
-    parts.append(text((left + WIDTH - _RIGHT) / 2, HEIGHT - 10, escape(x.name), "middle", "name"))
-    middle = (_TOP + HEIGHT - _BOTTOM) / 2
-    turned = f'transform="rotate(-90 15 {middle:.0f})"'
-    parts.append(f'<text class="name" x="15" y="{middle:.0f}" text-anchor="middle" {turned}>{escape(y.name)}</text>')
-    box_of_all = f'viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(found.subject.name)}"'
-    return f'<svg xmlns="http://www.w3.org/2000/svg" class="map" {box_of_all}>{"".join(parts)}</svg>'
+    longest = max(len(y.label(value)) for value in mapped.y) if y.labels else 0
+    left = 46.0 + max(_LETTER * longest, 34.0)
+    columns, across = _borders(mapped.x, x, left, WIDTH - _RIGHT)
+    rows, down = _borders(mapped.y, y, HEIGHT - _BOTTOM, _TOP)
+    parts = _cells(mapped, columns, rows)
+    parts += _edge(mapped.good, columns, rows)
+    parts += _named(mapped.x, x, across, columns, "x", rows[0])
+    parts += _named(mapped.y, y, down, rows, "y", left)
+    parts += [_limit(limit, across, down, k) for k, limit in enumerate(mapped.subject.limits)]
+    parts += names((left, WIDTH - _RIGHT), (_TOP, HEIGHT - _BOTTOM), HEIGHT, x.name, y.name)
+    picture = svg(WIDTH, HEIGHT, mapped.subject.name, parts, "map")
+    return Drawing(mapped.subject.name, _legend(mapped), picture, f"numbers: decade of the {quantity}")
 
 
 def _borders(values: Array, grid: Grid, start: float, end: float) -> tuple[list[float], Axis | None]:
@@ -71,15 +68,15 @@ def _stride(borders: list[float], apart: float) -> int:
     return math.ceil(apart / float(np.median(np.abs(np.diff(borders)))) - 1e-9)
 
 
-def _filled(found: Map, columns: list[float], rows: list[float]) -> list[str]:
+def _cells(mapped: Map, columns: list[float], rows: list[float]) -> list[str]:
     """The cells, those of one colour as one path, which keeps the page small; then what is written into them."""
     every_x, every_y = _stride(columns, _APART[0]), _stride(rows, _APART[1])
     areas: dict[str, list[str]] = {}
     written: dict[str, list[str]] = {"decade": [], "decade light": []}
-    for j, line_of_cells in enumerate(found.cells):
+    for j, line_of_cells in enumerate(mapped.cells):
         for i, one in enumerate(line_of_cells):
             left, top, width, height = columns[i], rows[j + 1], columns[i + 1] - columns[i], rows[j] - rows[j + 1]
-            colour, sign, dark = _cell(one.value, one.ended, found.bound)
+            colour, sign, dark = _cell(one.value, one.ended, mapped.bound)
             areas.setdefault(colour, []).append(f"M{left:.1f} {top:.1f}h{width:.1f}v{height:.1f}h{-width:.1f}z")
             if i % every_x == 0 and j % every_y == 0 and width * every_x > _NARROW:
                 place = f'x="{left + width / 2:.1f}" y="{top + height / 2 + 3.5:.1f}"'
@@ -149,22 +146,16 @@ def _limit(limit: Limit, across: Axis | None, down: Axis | None, k: int) -> str:
     return f'<polyline class="form f{k}" points="{points}"/>'
 
 
-def _legend(found: Map, left: float, quantity: str) -> list[str]:
+def _legend(mapped: Map) -> tuple[tuple[str, str], ...]:
     """What colours, signs and lines mean."""
-    bound = f"{found.bound:.3g}".replace("-", "−")
-    parts, x = [], left
-    items = [("good-cell", f"at most {bound}"), ("bad-cell", "more")]
-    ended = {c.ended for row in found.cells for c in row}
+    ended = {c.ended for row in mapped.cells for c in row}
+    items = [("good-cell", f"at most {mapped.bound:.3g}"), ("bad-cell", "more")]
     items += [("ended", "ended before (×)")] if ended - {*FINISHED, "refused"} else []
     items += [("refused", "refused (r)")] if "refused" in ended else []
-    said = f"numbers: decade of the {quantity}"
-    parts.append(text(max(4.0, min(left, WIDTH - 5.9 * len(said))), 34, escape(said), "start", "tick"))
-    for kind, label in items:
-        parts.append(f'<rect class="{kind}" fill-opacity="0.6" x="{x:.0f}" y="44" width="12" height="12"/>')
-        parts.append(text(x + 17, 54, escape(label), "start", "tick"))
-        x += 32 + _LETTER * len(label)
-    for k, limit in enumerate(found.subject.limits):
-        parts.append(f'<line class="form f{k}" x1="{x:.0f}" x2="{x + 20:.0f}" y1="50" y2="50"/>')
-        parts.append(text(x + 25, 54, escape(limit.label), "start", "tick"))
-        x += 40 + _LETTER * len(limit.label)
-    return parts
+    legend = [
+        (f'<rect class="{kind}" fill-opacity="0.6" x="6" y="0" width="12" height="12"/>', label)
+        for kind, label in items
+    ]
+    legend.append((line("edge", 0, 24, 6, 6), "edge as measured"))
+    legend += [(line(f"form f{k}", 0, 24, 6, 6), limit.label) for k, limit in enumerate(mapped.subject.limits)]
+    return tuple(legend)

@@ -1,118 +1,79 @@
-"""Scenes and their maps -> stability.html (one self-contained page), stability.md, stability.json (every cell)."""
+"""The atlas: where simulations fail, as maps with verdicts."""
 
 from __future__ import annotations
 
-import re
+import math
+import time
 from collections import Counter
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from dataclasses import replace
+from typing import Annotated, Any
 
-from markupsafe import Markup, escape
+import numpy as np
+import typer
 
-from validation.reporting.page import check_data, compact, render, rounded, run_data, versions, write_pages
+from validation.reporting.command import Quick, Run, known
+from validation.reporting.figures import Chart, Curve, Figure
+from validation.reporting.findings import Finding
+from validation.reporting.numbers import counted, rounded, short
+from validation.reporting.record import (
+    Block,
+    Bullets,
+    Data,
+    Fact,
+    Report,
+    Section,
+    Text,
+    Topic,
+    bounds_kept,
+    findings_digest,
+    findings_fold,
+)
 from validation.stability import heatmap
-from validation.stability.scene import FINISHED, Map, Maps, Scene, Verdict
+from validation.stability.catalogue import SCENES
+from validation.stability.scene import FINISHED, Cell, Grid, Map, Scene, survey
 
 ENGINES = ("mujoco", "exudyn", "pin")
+INTRO = (
+    "Where simulations fail, and what to use instead. Each map runs one scene over two parameters: a cell is a run, "
+    "blue where it meets the criterion, orange where it comes to its end and misses it, red where it ended before "
+    "with an outcome in words, grey where it was refused before it began. The black line is the edge between good "
+    "and bad as measured; a dashed line is a closed form. Numbers in cells are decades. Every claim comes back with "
+    "the command under its scene."
+)
+# Methods of the scene of energies that the index shows.
+_METHODS = ("semi_implicit_euler", "rk4", "dop853", "variational")
+# Different reasons of ends that are kept of a map.
+_MOST_NOTES = 8
 
 
-@dataclass(frozen=True)
-class Page:
-    """A scene that was run.
+def measure(
+    run: Run,
+    chosen: Annotated[list[str] | None, typer.Option("--scene", help=f"Only this; of {', '.join(SCENES)}.")] = None,
+    quick: Quick = False,
+) -> Data:
+    """Map where simulations fail, against closed forms and other engines.
 
-    Attributes:
-        scene: As it is stated.
-        maps: What the subjects came to.
-        verdict: What follows.
-        seconds: Wall time.
+    With --scene, the report is that of these scenes alone, in the subfolder stability.
     """
+    wanted = known(chosen, SCENES, "--scene", "scene")
+    if chosen:  # One scene must not overwrite the atlas of all of them.
+        run.folder = run.folder / "stability"
+    run.expect(sum(SCENES[name].runs(quick) for name in wanted))
 
-    scene: Scene
-    maps: Maps
-    verdict: Verdict
-    seconds: float
+    def surveyed(name: str) -> dict[str, Any]:
+        run.advance(name, steps=0)
+        return scene_data(SCENES[name], quick, run)
 
-    @property
-    def ok(self) -> bool:
-        """Whether every claim is within its bounds."""
-        return all(check.ok for check in self.verdict.checks)
-
-    @property
-    def endings(self) -> list[str]:
-        """How the runs of each map ended, in words."""
-        return [f"{name}: {_endings(found)}" for name, found in self.maps.items()]
+    done = run.each(wanted, surveyed)
+    ok = all(scene["ok"] for scene in done.results.values())
+    return run.head(ok, done, *ENGINES, quick=quick) | {"scenes": done.results}
 
 
-def _endings(found: Map) -> str:
-    cells = [c for row in found.cells for c in row]
-    said = [f"{int(found.good.sum())} of {len(cells)} meet the criterion"]
-    said += [f"{found.wrong} come to their end and miss it"] if found.wrong else []
-    kinds = Counter(c.ended for c in cells if c.ended not in FINISHED)
-    for kind, count in kinds.items():
-        first = next(c.note for c in cells if c.ended == kind)
-        said.append(f"{count} {kind} (“{first}”)")
-    notes = sum("singular posture" in c.note for c in cells)
-    said += [f"{notes} report a singular posture"] if notes else []
-    return ", ".join(said)
-
-
-@dataclass(frozen=True)
-class Atlas:
-    """One run of the command.
-
-    Attributes:
-        pages: Short name -> scene.
-        failures: Short name -> why it could not be done.
-        quick: Whether the grids were coarse.
-        unfinished: Scenes that Ctrl-C cut.
-        seconds: Wall time.
-    """
-
-    pages: dict[str, Page]
-    failures: dict[str, str]
-    quick: bool
-    unfinished: tuple[str, ...]
-    seconds: float
-
-    @property
-    def ok(self) -> bool:
-        """Whether all was done and every claim is within its bounds."""
-        done = bool(self.pages) and not self.failures and not self.unfinished
-        return done and all(page.ok for page in self.pages.values())
-
-    @property
-    def headline(self) -> str:
-        """The verdict in a sentence."""
-        checks = [check for page in self.pages.values() for check in page.verdict.checks]
-        runs = sum(found.values.size for page in self.pages.values() for found in page.maps.values())
-        missed = sum(not check.ok for check in checks)
-        verdict = "all are within their bounds" if not missed else f"{missed} miss their bounds"
-        failed = f"; {len(self.failures)} scenes could not be done" if self.failures else ""
-        cut = f" Interrupted: {', '.join(self.unfinished)} not done." if self.unfinished else ""
-        return f"{len(checks)} claims on {len(self.pages)} scenes, {runs} runs: {verdict}{failed}.{cut}"
-
-
-def write_report(atlas: Atlas, folder: Path) -> Path:
-    """Write the three files.
-
-    Returns:
-        The page.
-
-    Raises:
-        OSError: The folder can't be written to.
-    """
-    return write_pages(folder, "stability", compact(as_data(atlas)), lambda template: _render(template, atlas))
-
-
-def as_data(atlas: Atlas) -> dict[str, Any]:
-    """Everything, as plain data; None where there is no number."""
-    scenes = {name: _page(page) for name, page in atlas.pages.items()}
-    return run_data(atlas, *ENGINES) | {"unfinished": atlas.unfinished, "scenes": scenes}
-
-
-def _page(page: Page) -> dict[str, Any]:
-    scene, verdict = page.scene, page.verdict
+def scene_data(scene: Scene, quick: bool, run: Run) -> dict[str, Any]:
+    """Run one scene and judge it."""
+    start = time.perf_counter()
+    maps = survey(scene, quick, run.advance)
+    verdict = scene.judge(maps)
     return {
         "question": scene.question,
         "setting": scene.setting,
@@ -124,32 +85,116 @@ def _page(page: Page) -> dict[str, Any]:
         "see": verdict.see,
         "advice": scene.advice,
         "sources": scene.sources,
-        "ok": page.ok,
-        "seconds": round(page.seconds, 1),
-        "checks": [check_data(check) for check in verdict.checks],
-        "maps": {name: _cells(scene, found) for name, found in page.maps.items()},
+        "ok": all(finding.ok for finding in verdict.findings),
+        "seconds": round(time.perf_counter() - start, 1),
+        "checks": [finding.data() for finding in verdict.findings],
+        "maps": {name: _map_data(scene, one) for name, one in maps.items()},
     }
 
 
-def _cells(scene: Scene, found: Map) -> dict[str, Any]:
-    notes = sorted({c.note for row in found.cells for c in row if c.ended not in FINISHED})
+def _map_data(scene: Scene, one: Map) -> dict[str, Any]:
+    notes = sorted({c.note for row in one.cells for c in row if c.note})
     return {
-        "x": [scene.x.label(x) if scene.x.labels else float(x) for x in found.x],
-        "y": [scene.y.label(y) if scene.y.labels else float(y) for y in found.y],
-        "values": [rounded(row) for row in found.values],
-        "ended": [[c.ended for c in row] for row in found.cells],
-        "said": notes[:8],
+        "x": [scene.x.label(x) if scene.x.labels else float(x) for x in one.x],
+        "y": [scene.y.label(y) if scene.y.labels else float(y) for y in one.y],
+        "values": [rounded(row) for row in one.values],
+        "ended": [[c.ended for c in row] for row in one.cells],
+        "said": notes[:_MOST_NOTES],
     }
 
 
-def _render(template: str, atlas: Atlas) -> str:
-    return render(template, {"map": _map, "prose": _prose}, atlas=atlas, versions=versions(*ENGINES))
+def maps_of(scene: Scene, data: Data) -> dict[str, Map]:
+    """The maps that a report holds, with the closed forms of the scene's subjects."""
+    subjects = {subject.name: subject for subject in scene.subjects}
+    return {
+        name: Map(
+            subjects[name],
+            _values(scene.x, one["x"]),
+            _values(scene.y, one["y"]),
+            tuple(
+                tuple(Cell(math.nan if v is None else v, e) for v, e in zip(values, ends, strict=True))
+                for values, ends in zip(one["values"], one["ended"], strict=True)
+            ),
+            scene.bound,
+        )
+        for name, one in data["maps"].items()
+    }
 
 
-def _map(found: Map, scene: Scene) -> Markup:
-    return Markup(heatmap.svg(found, scene.x, scene.y, scene.quantity))
+def _values(grid: Grid, stated: list[Any]) -> np.ndarray:
+    return np.array([grid.labels.index(value) if grid.labels else value for value in stated], float)
 
 
-def _prose(text: str) -> Markup:
-    """Escaped, with `names of code` set as such."""
-    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+def compose(data: Data) -> Report:
+    """The report of its JSON."""
+    scenes, failures = data["scenes"], data["failures"]
+    findings = {name: [Finding.of(check) for check in scene["checks"]] for name, scene in scenes.items()}
+    every = [finding for group in findings.values() for finding in group]
+    runs = sum(len(row) for scene in scenes.values() for one in scene["maps"].values() for row in one["values"])
+    quick = " (quick variant: coarse grids)" if data["quick"] else ""
+    failed = f"; {counted(len(failures), 'scene')} could not be done" if failures else ""
+    cut = f" Interrupted: {', '.join(data['unfinished'])} not done." if data["unfinished"] else ""
+    said = f"{counted(len(every), 'claim')} about {counted(len(scenes), 'scene')}, {counted(runs, 'run')}"
+    return Report(
+        "Stability atlas",
+        f"{said}: {bounds_kept(every)}{failed}{quick}.{cut}",
+        bool(data["ok"]),
+        (INTRO, *(Text(f"{name} could not be done: {reason}", "bad") for name, reason in failures.items())),
+        tuple(_section(name, scene, findings[name], data["quick"]) for name, scene in scenes.items()),
+        (
+            Fact(str(len(scenes)), "scenes"),
+            Fact(str(runs), "runs"),
+            Fact(str(len(every)), f"claims, {bounds_kept(every)}", bool(data["ok"])),
+        ),
+        tuple(_energies(scenes["energy"])) if "energy" in scenes else (),
+        (findings_digest(findings, failures, "scene"),),
+        tuple(data["unfinished"]),
+    )
+
+
+def _section(name: str, data: Data, findings: list[Finding], quick: bool) -> Section:
+    scene = SCENES[name]
+    maps = maps_of(scene, data)
+    pictures = tuple(heatmap.draw(one, scene.x, scene.y, scene.quantity) for one in maps.values())
+    ends = tuple(f"{who}: {_ends(one, data['maps'][who]['said'])}." for who, one in maps.items())
+    claims = findings_fold(findings, "claim")
+    details = replace(
+        claims, summary=f"{claims.summary}, and how the runs ended", blocks=(*claims.blocks, Bullets(ends))
+    )
+    command = f"python -m validation stability --scene {name}{' --quick' if quick else ''}"
+    sources = f" Sources: {'; '.join(data['sources'])}." if data["sources"] else ""
+    blocks: tuple[Block, ...] = (
+        f"{data['setting']} **Criterion:** {data['quantity']} at most {short(data['bound'])}.",
+        data["verdict"],
+        Figure(data["see"], pictures),
+        Text(f"**Instead:** {data['advice']}", "advice"),
+        details,
+        Text(f"`{command}`, {data['seconds']:.0f} s.{sources}", "soft"),
+    )
+    return Section(data["question"], blocks, name, bool(data["ok"]))
+
+
+def _ends(one: Map, notes: list[str]) -> str:
+    """How the runs of a map ended, in words."""
+    cells = [c for row in one.cells for c in row]
+    said = [f"{int(one.good.sum())} of {len(cells)} meet the criterion"]
+    said += [f"{one.wrong} come to their end and miss it"] if one.wrong else []
+    said += [f"{count} {kind}" for kind, count in Counter(c.ended for c in cells if c.ended not in FINISHED).items()]
+    return ", ".join(said) + (f" (such as “{notes[0]}”)" if notes else "")
+
+
+def _energies(scene: Data) -> list[Chart]:
+    """Who keeps energy, over the longest runs."""
+    title, one = list(scene["maps"].items())[-1]
+    rows = [(name, values) for name, values in zip(one["y"], one["values"], strict=True) if name in _METHODS]
+    curves = tuple(
+        Curve(
+            name, np.array(one["x"], float), np.array([np.nan if x is None else x for x in values], float), k, "joined"
+        )
+        for k, (name, values) in enumerate(rows)
+    )
+    named = f"a pendulum's energy, {title}"
+    return [Chart(named, scene["x"], scene["quantity"], curves, log_x=True, log_y=True)] if curves else []
+
+
+TOPIC = Topic("stability", "Stability", "Where do simulations fail?", compose)

@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 import symofros as sf
-from validation.evidence.findings import Check
 from validation.mechanics.geometry import Array
+from validation.reporting.findings import Finding
 
 # What an Outcome is called when nothing went wrong, here as in `symofros.Outcome`.
 FINISHED = ("finished", "event")
@@ -224,12 +224,12 @@ class Verdict:
     Attributes:
         words: With the numbers found.
         see: What to see in the maps.
-        checks: Claims with bounds.
+        findings: Claims with bounds.
     """
 
     words: str
     see: str
-    checks: tuple[Check, ...]
+    findings: tuple[Finding, ...]
 
 
 Maps = dict[str, Map]

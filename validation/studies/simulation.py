@@ -18,7 +18,7 @@ from validation.adapters.exudyn.ancf import spin_up
 from validation.adapters.mujoco import motion as mujoco_motion
 from validation.adapters.mujoco import tree as mujoco
 from validation.contract.interface import Subject, Unsupported
-from validation.evidence.reference import References
+from validation.reporting.references import References
 from validation.stability.scenes import four_bars
 from validation.stability.scenes.singular import ends_of_crank
 from validation.stability.scenes.soft_closures import SOLIMP

@@ -194,17 +194,20 @@ def as_data(record: Record) -> dict[str, Any]:
     }
 
 
+def of(data: Mapping[str, Any]) -> Record:
+    """The record that `as_data` wrote."""
+    skipped, failed = ([(a, b, c, d) for a, b, c, d in data[name]] for name in ("skipped", "failed"))
+    entries, costs = [entry(row) for row in data["entries"]], [made(row) for row in data["costs"]]
+    return Record(entries, costs, skipped, failed, data["flexible"], data["machine"])
+
+
 def read(path: Path) -> Record:
     """The record of a file; an empty one where there is none, or one of another kind."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return Record()
-    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-        return Record()
-    skipped, failed = ([(a, b, c, d) for a, b, c, d in data[name]] for name in ("skipped", "failed"))
-    entries, costs = [entry(row) for row in data["entries"]], [made(row) for row in data["costs"]]
-    return Record(entries, costs, skipped, failed, data["flexible"], data["machine"])
+    return of(data) if isinstance(data, dict) and data.get("schema") == SCHEMA else Record()
 
 
 def entry(row: Mapping[str, Any]) -> Entry:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.runtime.toolchain import DEFAULT_FLAGS
-from validation.reporting.record import machine
+from validation.reporting.provenance import machine
 from validation.timing.models import SCENES
 from validation.timing.race import pin_to_one_cpu
 from validation.timing.record import Record, entry, made

@@ -15,9 +15,10 @@ from validation.__main__ import app
 from validation.accuracy import catalogue
 from validation.accuracy.catalogue import TOPIC
 from validation.accuracy.elastica import exact
-from validation.evidence import charts
-from validation.evidence.findings import Chart, Check, Curve, Mark, Study, exponent, near
-from validation.questions.report import Answers, write_report
+from validation.reporting import charts, html
+from validation.reporting.command import Done, Run, write
+from validation.reporting.figures import Chart, Curve, Mark
+from validation.reporting.findings import Finding, Study, exponent, near
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +76,7 @@ def test_the_page_is_whole_and_self_contained(quick: tuple[Path, dict[str, Any]]
     assert json.loads((folder / "accuracy.json").read_text()) == data
     figures = [figure for study in data["studies"].values() for figure in study["figures"]]
     assert page.count("<figcaption>") == len(figures)
-    assert page.count("<svg") == sum(len(figure["charts"]) for figure in figures)
+    assert page.count('role="img"') == sum(len(figure["charts"]) for figure in figures)
     assert not re.search(r'(src|href)="(?!#)', page) and "<script" not in page and "nan" not in page.lower().split()
     for study in data["studies"].values():
         assert study["title"] in summary
@@ -88,7 +89,7 @@ def test_the_page_is_whole_and_self_contained(quick: tuple[Path, dict[str, Any]]
 
 
 def test_a_missed_bound_fails_the_command(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    missed = Study("Does it fail?", "Yes.", (), (Check("zero", 1.0, 0.0),))
+    missed = Study("Does it fail?", "Yes.", (), (Finding("zero", 1.0, 0.0),))
     monkeypatch.setitem(catalogue.STUDIES, "spinning", lambda quick: missed)
     done = CliRunner().invoke(app, ["accuracy", "--study", "spinning", "--report", str(tmp_path)])
     assert done.exit_code == 1 and "1 miss their bounds" in done.stdout
@@ -121,8 +122,8 @@ def test_bounds(found: float, ok: bool) -> None:
 
 
 def test_nothing_asked_is_not_a_success(tmp_path: Path) -> None:
-    run = Answers(TOPIC, {}, {}, True, 0.0)
-    assert not run.ok and write_report(run, tmp_path).is_file()
+    data = Run(TOPIC).head(True, Done()) | {"studies": {}}
+    assert write(TOPIC, data, tmp_path).ok is False and (tmp_path / "accuracy.html").is_file()
 
 
 def test_exponent_of_a_power_law() -> None:
@@ -145,20 +146,21 @@ def points(svg: str) -> list[tuple[float, float]]:
 def test_a_chart_places_points_by_their_values() -> None:
     x = np.array([1.0, 10.0, 100.0])
     chart = Chart("t", "x  [1]", "y  [1]", (Curve("c", x, x**2),), (Mark("limit", 1e2),), log_x=True, log_y=True)
-    (x0, y0), (x1, y1), (x2, y2) = points(charts.svg(chart))
+    (x0, y0), (x1, y1), (x2, y2) = points(charts.draw(chart).svg)
     assert x1 - x0 == pytest.approx(x2 - x1, abs=0.2) and y0 - y1 == pytest.approx(y1 - y2, abs=0.2)
-    (mark,) = re.findall(r'class="limit"[^>]*y1="([\d.]+)"', charts.svg(chart))
+    (mark,) = re.findall(r'class="limit l0"[^>]*y1="([\d.]+)"', charts.draw(chart).svg)
     assert float(mark) == pytest.approx(y1, abs=0.2)
 
 
 @pytest.mark.parametrize("gap", [np.nan, np.inf, -1.0])
 def test_what_can_not_be_drawn_leaves_a_gap(gap: float) -> None:
     y = np.array([1.0, 2.0, gap, 2.0, 1.0])
-    text = charts.svg(Chart("t", "x", "y", (Curve("a < b", np.arange(5.0), y),), log_y=True))
-    assert text.count("<polyline") == 2 and "nan" not in text and "a &lt; b" in text
+    chart = Chart("t", "x", "y", (Curve("a < b", np.arange(5.0), y),), log_y=True)
+    drawn, page = charts.draw(chart).svg, html.chart(chart)
+    assert drawn.count("<polyline") == 2 and "nan" not in drawn and "a &lt; b" in page
 
 
 def test_a_range_cuts_curves() -> None:
     x = np.linspace(0.0, 10.0, 11)
-    shown = points(charts.svg(Chart("t", "x", "y", (Curve("c", x, x),), range_y=(0.0, 5.0))))
+    shown = points(charts.draw(Chart("t", "x", "y", (Curve("c", x, x),), range_y=(0.0, 5.0))).svg)
     assert len(shown) == 6

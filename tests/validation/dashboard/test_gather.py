@@ -8,7 +8,9 @@ from typing import Any
 import pytest
 
 from validation.dashboard.catalogue import TOPICS
-from validation.dashboard.gather import Entry, doubts, gather, origin_of
+from validation.dashboard.gather import Entry, doubts, gather
+from validation.reporting.figures import Chart
+from validation.reporting.provenance import Provenance
 
 TODAY = datetime.date(2026, 11, 21)
 FUZZ: dict[str, Any] = {
@@ -25,7 +27,7 @@ FUZZ: dict[str, Any] = {
 
 
 def entry(folder: Path, name: str = "fuzz") -> Entry:
-    return next(one for one in gather(folder, {"numpy": "2.0"}, TODAY) if one.name == name)
+    return gather(folder, {"numpy": "2.0"}, TODAY)[name]
 
 
 def write(folder: Path, data: object, name: str = "fuzz") -> Path:
@@ -37,13 +39,13 @@ def test_a_report_says_what_it_found_and_where_it_is_from(tmp_path: Path) -> Non
     (tmp_path / "fuzz.md").write_text("")
     found = entry(write(tmp_path, FUZZ))
     assert found.verdict == "good" and not found.remarks and found.page == "fuzz.md"
-    assert found.card is not None and found.card.headline == "10 hostile inputs: 0 crashed or hung a reader."
-    assert found.origin.machine == "Z80, 1 cores, CP/M" and found.origin.flags == "-O2"
-    assert found.command == "python -m validation fuzz"
+    assert found.report is not None and found.said == "10 hostile inputs: 0 crashed or hung a reader."
+    assert found.provenance.machine == "Z80, 1 cores, CP/M" and found.provenance.flags == "-O2"
+    assert found.topic.command == "python -m validation fuzz"
 
 
 def test_an_absent_report_says_so(tmp_path: Path) -> None:
-    assert {one.verdict for one in gather(tmp_path, {}, TODAY)} == {"absent"}
+    assert {one.verdict for one in gather(tmp_path, {}, TODAY).values()} == {"absent"}
     assert entry(tmp_path).remarks == ("is not made yet",)
 
 
@@ -73,7 +75,7 @@ def test_doubts_are_told(tmp_path: Path, change: dict[str, Any], says: str) -> N
 
 
 def test_a_package_that_is_not_installed_makes_nothing_stale() -> None:
-    origin = origin_of(FUZZ | {"versions": {"adams": "1"}})
+    origin = Provenance.of(FUZZ | {"versions": {"adams": "1"}})
     assert doubts(origin, {"numpy": "2.0"}, TODAY) == []
 
 
@@ -86,7 +88,7 @@ def test_origins_are_found_wherever_a_report_keeps_them(place: str) -> None:
         "processor": "Z80",
     }
     data = told | {"machine": {"processor": "Z80"}} if place == "top" else {place: told}
-    origin = origin_of(data)
+    origin = Provenance.of(data)
     assert (origin.date, origin.machine, origin.versions) == ("2026-01-01", "Z80", {"numpy": "2"})
     assert origin.flags == "ours -O2; theirs -O3"
 
@@ -98,7 +100,7 @@ PRESENT = [name for name in TOPICS if (REPORTS / f"{name}.json").is_file()]
 @pytest.mark.parametrize("name", PRESENT)
 def test_the_reports_that_are_here_are_understood(name: str) -> None:
     found = entry(REPORTS, name)
-    assert found.card is not None, found.remarks
-    assert found.card.headline.endswith(".") and found.page
-    for chart in found.card.charts:
-        assert any(len(curve.x) for curve in chart.curves)
+    assert found.report is not None, found.remarks
+    assert found.report.summary.endswith(".") and found.page
+    for chart in found.report.highlights:
+        assert isinstance(chart, Chart) and any(len(curve.x) for curve in chart.curves)

@@ -22,7 +22,7 @@ def test_the_studies_answer(name: str, tmp_path: Path) -> None:
     found = {check["what"]: check["ok"] for check in data["studies"][name]["checks"] if "second" not in check["what"]}
     assert found and all(found.values()), found
     page = (tmp_path / "diagrams.html").read_text()
-    assert page.count("<svg") >= 3 and "Figure 1.1" in page
+    assert page.count('role="img"') >= 3 and "Figure 1.1" in page
 
 
 def test_a_miss_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -30,7 +30,7 @@ def test_a_miss_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
 
     def missed(quick: bool) -> object:
         study = threads.study(quick)
-        return replace(study, checks=(replace(study.checks[0], high=1.0), *study.checks[1:]))
+        return replace(study, findings=(replace(study.findings[0], high=1.0), *study.findings[1:]))
 
     monkeypatch.setitem(catalogue.STUDIES, "threads", missed)
     done = CliRunner().invoke(app, ["diagrams", "--study", "threads", "--quick", "--report", str(tmp_path)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -96,17 +97,19 @@ def test_a_prescribed_motion_with_quaternions_is_refused_in_words() -> None:
         kane.derive(driven)
 
 
-def test_command() -> None:
-    result = CliRunner().invoke(app, ["oracle", "--model", "cart-pole", "--points", "1", "--json"])
+def test_command(tmp_path: Path) -> None:
+    result = CliRunner().invoke(app, ["oracle", "--model", "cart-pole", "--points", "1", "--json", "-o", str(tmp_path)])
     content = json.loads(result.stdout)
     assert result.exit_code == 0 and content["ok"]
     assert [(row["derivation"], row["ok"]) for row in content["comparisons"]] == [("lagrange", True), ("kane", True)]
 
 
-def test_command_fails_on_disagreement(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_command_fails_on_disagreement(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setitem(compare.DERIVATIONS, "lagrange", lambda system: lagrange.derive(pushed(system)))
-    result = CliRunner().invoke(app, ["oracle", "--model", "loads"])
-    assert result.exit_code == 1 and "do not agree: loads (lagrange)." in result.stdout
+    result = CliRunner().invoke(app, ["oracle", "--model", "loads", "-o", str(tmp_path)])
+    assert result.exit_code == 1 and "not all agree: loads (lagrange)." in result.stdout
+    # A part has a folder of its own, and leaves the whole report as it is.
+    assert (tmp_path / "oracle" / "oracle.html").is_file()
 
 
 def test_command_refuses_an_unknown_model() -> None:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import pytest
 
 import symofros as sf
 from reference_models import MODELS
 from symofros.generator.passes.count import count_program
-from validation.passes.command import table
 from validation.passes.measure import AGAIN, ALL, APART, Measured, measure
 from validation.passes.measure import MODELS as MEASURED
+from validation.passes.report import compose
 from validation.passes.switches import PASSES, Pass
+from validation.reporting.record import Table
 
 # A model in which the pass has something to do.
 WHERE = {"staging": "planar_robot", "rounding noise": "rx90", "constant factors": "planar_robot"}
@@ -48,10 +51,11 @@ def test_a_model_is_measured_without_each(monkeypatch: pytest.MonkeyPatch) -> No
 def test_gains_are_relative_to_all_passes() -> None:
     base = Measured("m", 2, ALL, 100, 1024, 0.1, 9.0, 10.0, 0.0)
     other = Measured("m", 2, "x", 150, 2048, 0.2, 11.0, 12.0, 0.0)
-    assert table("m", [base, other]) == {
-        "title": "m, 2 degrees of freedom",
-        "rows": [
-            ("all passes", "100", "", "9, 10", "", "1", "0.10"),
-            ("x", "150", "+50.0%", "11, 12", "+20%", "2", "0.20"),
-        ],
-    }
+    report = compose({"rows": [asdict(base), asdict(other)]})
+    (section,) = (section for section in report.sections if section.title == "m, 2 degrees of freedom")
+    (table,) = (block for block in section.blocks if isinstance(block, Table))
+    assert table.rows == (
+        ("all passes", "100", "", "9, 10", "", "1", "0.10"),
+        ("x", "150", "+50.0%", "11, 12", "+20%", "2", "0.20"),
+    )
+    assert report.facts[0].value == "1.2×"

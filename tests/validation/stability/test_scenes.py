@@ -16,12 +16,12 @@ from typer.testing import CliRunner
 
 import symofros as sf
 from validation.__main__ import app
-from validation.evidence.findings import Check
+from validation.reporting.command import Run
+from validation.reporting.findings import Finding
 from validation.stability import heatmap
 from validation.stability.catalogue import SCENES
-from validation.stability.command import draw, drawn
-from validation.stability.report import Page
-from validation.stability.scene import Cell, Grid, Limit, Map, Scene, Subject, Verdict, cell, decades, survey
+from validation.stability.report import TOPIC, compose, measure
+from validation.stability.scene import Cell, Grid, Limit, Map, Maps, Scene, Subject, Verdict, cell, decades, survey
 from validation.stability.scenes import baumgarte, beams, four_bars, light_bodies, spin, stick_slip
 
 
@@ -36,10 +36,10 @@ def quick(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any
 
 
 @pytest.fixture(scope="module")
-def pages() -> dict[str, Page]:
-    """Scenes whose coarse maps take less than a second."""
+def maps() -> dict[str, Maps]:
+    """Coarse maps of scenes that take less than a second."""
     names = ("baumgarte", "redundant", "stiff_beam", "damped_beam", "light_link", "stick_slip", "spin", "deflection")
-    return {name: draw(SCENES[name], quick=True) for name in names}
+    return {name: survey(SCENES[name], quick=True) for name in names}
 
 
 def test_the_catalogue_is_whole() -> None:
@@ -73,23 +73,23 @@ def test_the_page_is_whole_and_self_contained(quick: tuple[Path, dict[str, Any]]
     folder, data = quick
     page, summary = ((folder / f"stability.{kind}").read_text() for kind in ("html", "md"))
     assert page.count("<figcaption>") == len(SCENES)
-    assert page.count("<svg") == sum(len(scene["maps"]) for scene in data["scenes"].values())
+    assert page.count('role="img"') == sum(len(scene["maps"]) for scene in data["scenes"].values())
     assert not re.search(r'(src|href)="(?!#)', page) and "<script" not in page and "nan" not in page.lower().split()
     for name in SCENES:
         assert f"python -m validation stability --scene {name} --quick" in page and f"--scene {name}" in summary
 
 
 @pytest.mark.parametrize("name", ["baumgarte", "stiff_beam", "damped_beam", "light_link", "spin", "deflection"])
-def test_a_verdict_follows_from_its_maps(pages: dict[str, Page], name: str) -> None:
+def test_a_verdict_follows_from_its_maps(maps: dict[str, Maps], name: str) -> None:
     """Maps without a bad run have no edge: words change, and a claim about the edge is missed."""
-    page = pages[name]
+    scene = SCENES[name]
     flat = {
-        key: replace(found, cells=tuple(tuple(Cell(page.scene.bound / 2) for _ in row) for row in found.cells))
-        for key, found in page.maps.items()
+        key: replace(one, cells=tuple(tuple(Cell(scene.bound / 2) for _ in row) for row in one.cells))
+        for key, one in maps[name].items()
     }
-    other = page.scene.judge(flat)
-    assert other.words != page.verdict.words
-    assert page.ok and (not all(check.ok for check in other.checks) or name == "deflection")
+    verdict, other = scene.judge(maps[name]), scene.judge(flat)
+    assert other.words != verdict.words and all(finding.ok for finding in verdict.findings)
+    assert not all(finding.ok for finding in other.findings) or name == "deflection"
 
 
 # Closed forms, written here a second time.
@@ -166,7 +166,7 @@ class TestMaps:
         assert self.FOUND.miss("y", lambda x: limit) == pytest.approx(missed)
 
     def test_no_edge_misses_every_bound(self) -> None:
-        assert not Check("", a_map([[0.1, 0.1]]).miss("x", lambda y: 1.0), 100.0).ok
+        assert not Finding("", a_map([[0.1, 0.1]]).miss("x", lambda y: 1.0), 100.0).ok
 
     def test_a_run_that_ends_without_a_number_is_refused(self) -> None:
         with pytest.raises(ArithmeticError, match="has no number"):
@@ -183,18 +183,26 @@ class TestMaps:
             [[0.1, 0.1, 0.1], [0.1, 0.1, 5.0], [0.1, math.nan, 7.0]],
             limits=(Limit("one", np.array([1.0, 100.0]), np.array([10.0, 10.0])),),
         )
-        svg = heatmap.svg(found, grid, grid, "a < b [m]")
+        drawing = heatmap.draw(found, grid, grid, "a < b [m]")
+        svg = drawing.svg
         cells: Counter[str] = Counter()
         for kind, boxes in re.findall(r'<path class="([a-z-]+)"[^>]* d="([^"]*)"', svg):
             cells[kind] += boxes.count("M")
         assert cells == {"good-cell": 6, "bad-cell": 2, "ended": 1}
         # The edge: below the two bad columns, left of the middle and of the right one.
-        assert svg.count('class="edge"') == 4 and "a &lt; b" in svg
+        assert svg.count('class="edge"') == 4 and drawing.note.endswith("a < b [m]")
+        assert [name for _, name in drawing.legend] == [
+            "at most 1",
+            "more",
+            "ended before (×)",
+            "edge as measured",
+            "one",
+        ]
         (points,) = re.findall(r'class="form f0" points="([^"]*)"', svg)
         heights = {float(pair.split(",")[1]) for pair in points.split()}
         # The closed form at 10 runs through the middle row.
         (middle,) = {round(h, 1) for h in heights}
-        assert middle == pytest.approx((heatmap.HEIGHT - 50 + 66) / 2, abs=0.2)
+        assert middle == pytest.approx((heatmap.HEIGHT - 52 + 12) / 2, abs=0.2)
 
 
 def test_decades() -> None:
@@ -202,7 +210,7 @@ def test_decades() -> None:
 
 
 def test_a_missed_bound_fails_the_command(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    missed = replace(SCENES["spin"], judge=lambda maps: Verdict("1.", "2.", (Check("zero", 1.0, 0.0),)))
+    missed = replace(SCENES["spin"], judge=lambda maps: Verdict("1.", "2.", (Finding("zero", 1.0, 0.0),)))
     monkeypatch.setitem(SCENES, "spin", missed)
     done = CliRunner().invoke(app, ["stability", "--scene", "spin", "--quick", "--report", str(tmp_path)])
     assert done.exit_code == 1 and "1 miss their bounds" in done.stdout
@@ -216,8 +224,10 @@ def test_a_scene_that_can_not_be_done_keeps_no_other_from_it(monkeypatch: pytest
 
     scene = SCENES["spin"]
     monkeypatch.setitem(SCENES, "spin", replace(scene, subjects=(Subject("s", broken),)))
-    atlas = drawn(["spin", "redundant"], quick=True)
-    assert not atlas.ok and atlas.failures == {"spin": "ArithmeticError: no"} and atlas.pages["redundant"].ok
+    atlas = measure(Run(TOPIC), ["spin", "redundant"], quick=True)
+    assert (
+        not atlas["ok"] and atlas["failures"] == {"spin": "ArithmeticError: no"} and atlas["scenes"]["redundant"]["ok"]
+    )
 
 
 def test_ctrl_c_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -225,9 +235,9 @@ def test_ctrl_c_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setitem(SCENES, "spin", replace(SCENES["spin"], subjects=(Subject("s", interrupted),)))
-    atlas = drawn(["redundant", "spin", "deflection"], quick=True)
-    assert list(atlas.pages) == ["redundant"] and atlas.unfinished == ("spin", "deflection") and not atlas.ok
-    assert "Interrupted: spin, deflection" in atlas.headline
+    atlas = measure(Run(TOPIC), ["redundant", "spin", "deflection"], quick=True)
+    assert list(atlas["scenes"]) == ["redundant"] and atlas["unfinished"] == ("spin", "deflection") and not atlas["ok"]
+    assert "Interrupted: spin, deflection" in compose(atlas).summary
 
 
 def test_ctrl_c_within_a_run_ends_the_atlas(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -239,7 +249,7 @@ def test_ctrl_c_within_a_run_ends_the_atlas(monkeypatch: pytest.MonkeyPatch) -> 
 
     whole = sf.simulate
     monkeypatch.setattr(sf, "simulate", stopped)
-    assert drawn(["deflection", "redundant"], quick=True).unfinished == ("deflection", "redundant")
+    assert measure(Run(TOPIC), ["deflection", "redundant"], quick=True)["unfinished"] == ("deflection", "redundant")
 
 
 def test_an_unknown_scene_is_refused() -> None:

@@ -13,7 +13,7 @@ from validation.contract import quantities
 from validation.studies import mutation
 from validation.studies.faults import Bench, faults_at
 from validation.studies.mutation import mutate
-from validation.studies.mutation_report import as_data, as_markdown
+from validation.studies.reports.mutation import as_data, compose
 
 
 @pytest.mark.parametrize("name", ["double_pendulum", "space_arm"])
@@ -67,7 +67,7 @@ def test_an_incremental_evaluation_equals_a_full_one() -> None:
 
 
 def test_the_report_counts_what_happened() -> None:
-    data = as_data([mutate("pendulum", reference_models.MODELS["pendulum"], 50)], 50, 0, 1.0)
+    data = as_data([mutate("pendulum", reference_models.MODELS["pendulum"], 50)])
     (row,) = data["models"]
     assert row["planted"] == row["caught"] + row["silent"] + row["too_small"] + len(row["survived"]) == 50
-    assert "100 % were caught" in as_markdown(data)
+    assert "are caught (100 %)" in compose(data).summary

@@ -32,4 +32,8 @@ def test_report(tmp_path: Path) -> None:
     data = json.loads((tmp_path / "rollouts.json").read_text())
     assert data["trajectories"] == 9 and len(data["rollouts"]) == 8
     text = (tmp_path / "rollouts.md").read_text()
-    assert "# 9 motions" in text and "| PD control | MuJoCo, rollout | RK4, 1 ms | 1 |" in text and "load" in text
+    assert (
+        "# 9 motions of a 7-joint arm" in text
+        and "| PD control | MuJoCo, rollout | RK4, 1 ms | 1 |" in text
+        and "load" in text
+    )

@@ -11,14 +11,15 @@ from typer.testing import CliRunner
 
 from tests.validation.timing.records import cubic, entry, made
 from validation.__main__ import app
-from validation.timing import command, worker
+from validation.reporting.command import write
+from validation.reporting.record import Table
+from validation.timing import report, worker
 from validation.timing.models import FUNCTIONS, SCENES
-from validation.timing.record import Record
-from validation.timing.report import write_report
+from validation.timing.record import Record, as_data
 from validation.timing.run import jobs, peaks, take
-from validation.timing.sections import sections
 from validation.timing.sides import engines
 from validation.timing.sides.programs import BuildError, Built, Compiler, Skipped, build, compilers
+from validation.timing.tables import sections
 from validation.timing.worker import Job
 
 JOB = Job("panda", ("pinocchio", "sympy"), ("dynamics",), 3, 100)
@@ -139,11 +140,19 @@ def test_the_report_shows_targets_costs_growth_and_what_was_left_out(tmp_path: P
         "copied_bytes": 1e11,
         "versions": {"pinocchio": "4.1.0"},
     }
-    page = write_report(record, tmp_path)
-    for text in (page.read_text(), (tmp_path / "timing.md").read_text()):
+    made_of_it = write(report.TOPIC, as_data(record), tmp_path)
+    assert made_of_it.ok is False and made_of_it.summary.startswith("0 of 26 targets are met, 23 were not measured")
+    page = (tmp_path / "timing.html").read_text()
+    for text in (page, (tmp_path / "timing.md").read_text()):
         assert "missed by 7%" in text and "too large" in text and "with details" not in text
-        assert "4.1.0" in text and "n^3.0" in page.read_text()
-    cost = next(s for s in sections(record) if s.title == "How far from the machine's limit")
+        assert "4.1.0" in text and "n^3.0" in page
+    (cost,) = (
+        block
+        for section in sections(record)
+        if section.title == "How far from the machine's limit"
+        for block in section.blocks
+        if isinstance(block, Table)
+    )
     row = next(row for row in cost.rows if row[0] == SCENES["panda"].title)
     # 1000 operations at 10 GFlop/s take 100 ns, which is what was measured; vectors in batches 20 ns, of 12.5.
     assert row[cost.head.index("#distance")] == "1.0" and row[cost.head.index("#of batches")] == "1.6"
@@ -160,8 +169,8 @@ def test_interrupted_it_keeps_what_was_measured(tmp_path: Path, monkeypatch: pyt
         record.entries.append(entry())
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(command, "run_job", half)
-    monkeypatch.setattr(command, "prepare", lambda peers: [])
+    monkeypatch.setattr(report, "run_job", half)
+    monkeypatch.setattr(report, "prepare", lambda peers: [])
     arguments = ["timing", "--model", "panda", "--report", str(tmp_path)]
     assert CliRunner().invoke(app, arguments).exit_code == 130
     assert len(json.loads((tmp_path / "timing.json").read_text())["entries"]) == 1

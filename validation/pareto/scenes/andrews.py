@@ -12,12 +12,12 @@ import symofros as sf
 from validation import studies
 from validation.adapters.exudyn.scenes import joint_angles, looped
 from validation.adapters.exudyn.steps import Solver
-from validation.evidence.reference import References
 from validation.mechanics.geometry import Array
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
 from validation.pareto.scenes.four_bar import CLOSED
 from validation.pareto.sides.exudyn import Theirs
 from validation.pareto.sides.ours import Ours
+from validation.reporting.references import References
 
 END, OUTPUT = 0.03, 1e-3
 TIMES = np.linspace(0.0, END, round(END / OUTPUT) + 1)

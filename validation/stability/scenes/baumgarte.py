@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.evidence.findings import Check, exponent
+from validation.reporting.findings import Finding, exponent
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
@@ -92,9 +92,9 @@ def judge(maps: Maps) -> Verdict:
         for row in known
         for ratio in (off(swing("rk4", row["h"], row["alpha"])) / row["pos_err"],)
     ]
-    checks = (
+    findings = (
         [
-            Check(
+            Finding(
                 f"{method}: α h at the edge with h = 0.1 ms, over {bound:.3f}",
                 reached[method] / bound,
                 1.001,
@@ -104,7 +104,7 @@ def judge(maps: Maps) -> Verdict:
             for method, bound in REAL.items()
         ]
         + [
-            Check(
+            Finding(
                 f"{method}: factor by which α h = {REAL[method]:.3f} misses the edge of its map",
                 found.miss("y", lambda h, m=method: REAL[m] / h),  # type: ignore[misc]
                 1.25,
@@ -114,14 +114,14 @@ def judge(maps: Maps) -> Verdict:
             if method != "euler"  # Which fails at small gains, too: it has two edges.
         ]
         + [
-            Check(
+            Finding(
                 "rk4: exponent of the gap between edge and closed form in h",
                 slope,
                 0.55,
                 0.45,
                 "a double root moves by the square root of what perturbs it, here ω h",
             ),
-            Check(
+            Finding(
                 "rk4: largest factor between 28 known errors and ours",
                 max(ratios),
                 2.0,
@@ -154,7 +154,7 @@ def judge(maps: Maps) -> Verdict:
         f"{rk4.wrong} come to their end and are wrong. Going down from the edge the violation falls, until at small "
         "gains it rises again. Euler loses the rod at small gains and long steps."
     )
-    return Verdict(words, see, tuple(checks))
+    return Verdict(words, see, tuple(findings))
 
 
 SCENE = Scene(

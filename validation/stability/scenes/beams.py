@@ -9,8 +9,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 import symofros as sf
-from validation.evidence.findings import Check
 from validation.mechanics.geometry import Array
+from validation.reporting.findings import Finding
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
@@ -115,9 +115,9 @@ def judge(maps: Maps) -> Verdict:
         for method, bound in IMAGINARY.items()
         for w in (float(frequencies(2)[-1]),)
     }
-    checks = (
+    findings = (
         [
-            Check(
+            Finding(
                 f"{method}: h ω_max at the edge over {bound:.4f}",
                 reached[method] / bound,
                 1.005,
@@ -127,7 +127,7 @@ def judge(maps: Maps) -> Verdict:
             for method, bound in IMAGINARY.items()
         ]
         + [
-            Check(
+            Finding(
                 f"{method}: factor by which {bound:.3f}/ω_max misses the edge of the map",
                 maps[method].miss("y", lambda n, b=bound: b / float(frequencies(int(n))[-1])),  # type: ignore[misc]
                 1.01,
@@ -136,8 +136,8 @@ def judge(maps: Maps) -> Verdict:
             for method, bound in IMAGINARY.items()
         ]
         + [
-            Check("frequencies against the known ones, relative", apart, 1e-3, reason="Euler-Bernoulli theory"),
-            Check(
+            Finding("frequencies against the known ones, relative", apart, 1e-3, reason="Euler-Bernoulli theory"),
+            Finding(
                 f"{STABLE}: share of the map that holds", float(maps[STABLE].good.mean()), 1.0, 1.0, "it is L-stable"
             ),
         ]
@@ -156,7 +156,7 @@ def judge(maps: Maps) -> Verdict:
         "Each map is cut by the dashed closed form, which falls as the square of the number of modes: blue below, "
         "where energy stays, red above. The last map has no edge."
     )
-    return Verdict(words, see, tuple(checks))
+    return Verdict(words, see, tuple(findings))
 
 
 def judge_damped(maps: Maps) -> Verdict:
@@ -167,21 +167,21 @@ def judge_damped(maps: Maps) -> Verdict:
     edge = longest(lambda h: ring(3, "rk4", h, heavy), closed_form(heavy) / 2, closed_form(heavy) * 2)
     omega = float(frequencies(3)[-1])
     best = max(RETARDATION.values, key=closed_form)
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "rk4: factor by which |R(h s)| = 1 misses the edge of the map",
             missed,
             1.01,
             reason="the grid can't tell them apart",
         ),
-        Check(
+        Finding(
             "rk4, overdamped: h c ω² at the edge over 2.785",
             edge * heavy * omega**2 / 2.7853,
             1.005,
             0.99,
             "the fast root is -c ω² but for terms of 1/(c ω)²",
         ),
-        Check(
+        Finding(
             "implicit_euler: share of the map that holds",
             float(maps["implicit_euler"].good.mean()),
             1.0,
@@ -201,7 +201,7 @@ def judge_damped(maps: Maps) -> Verdict:
         "The dashed boundary is level on the left, where modes swing, and falls with slope one on the right, where "
         "the highest mode creeps; the measured edge follows it in every column."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 def line(bound: float) -> Limit:

@@ -12,7 +12,7 @@ import symofros as sf
 from validation.accuracy.pendulum import GRAVITY, MODELS, WORDS
 from validation.accuracy.pendulum import pendulum as stated
 from validation.accuracy.reference import data, source
-from validation.evidence.findings import Check
+from validation.reporting.findings import Finding
 from validation.stability.scene import Cell, Grid, Map, Maps, Scene, Subject, Verdict, cell, simulate
 
 END = 2.0
@@ -74,14 +74,14 @@ def judge(maps: Maps) -> Verdict:
     softest = reach(first, three)
     bends = row_of(softest)["max_defl_over_L"] if softest else 0.0
     stiffest, one = reach(without, three), reach(first, 0)
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "three modes: largest error over 1.2 times the known one",
             excess,
             1.0,
             reason="an exact rod and another program of the same order; the end is one of the instants of the largest",
         ),
-        Check(
+        Finding(
             "first order, three modes: deflection over L up to which 1 % of L is kept",
             bends,
             0.3,
@@ -102,7 +102,7 @@ def judge(maps: Maps) -> Verdict:
         "errors are larger, and a cell beyond the edge is good by the instant. Keeping every term (the first map) "
         "gains nothing over first order at the edge, for both lack the same."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 SCENE = Scene(

@@ -10,7 +10,7 @@ import numpy as np
 import symofros as sf
 from symofros.simulation.methods import METHODS
 from validation.adapters.mujoco import motion as mujoco_motion
-from validation.evidence.findings import Check
+from validation.reporting.findings import Finding
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
@@ -73,14 +73,14 @@ def judge(maps: Maps) -> Verdict:
             found = 9.81 * excursion(swing(row["method"], row["h"], round(100 / row["h"])))
             factors.append(max(found / row["max_dE_100s"], row["max_dE_100s"] / found))
     level = ["semi_implicit_euler", "variational"]
-    checks = [
-        Check(
+    findings = [
+        Finding(
             f"{name}: error of {STEPS:.0e} steps over that of {SHORT:.0e}", ratio[name], 1.05, 0.95, "it does not drift"
         )
         for name in level
     ] + [
-        Check("rk4: the same", ratio["rk4"], STEPS / SHORT * 1.2, 5.0, "it drifts, at most in proportion"),
-        Check("factor between known and found energies after 100 s", max(factors), 2.0, reason="another program"),
+        Finding("rk4: the same", ratio["rk4"], STEPS / SHORT * 1.2, 5.0, "it drifts, at most in proportion"),
+        Finding("factor between known and found energies after 100 s", max(factors), 2.0, reason="another program"),
     ]
     index = {name: late.values[k] for name, k in rows.items()}
     best = {
@@ -105,7 +105,7 @@ def judge(maps: Maps) -> Verdict:
         "Rows that look alike in both maps do not drift; those that darken towards orange from the left map to the "
         "right one do. Errors fall to the left with each method's order."
     )
-    return Verdict(words, see, tuple(checks))
+    return Verdict(words, see, tuple(findings))
 
 
 SCENE = Scene(

@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.evidence.findings import Check
 from validation.mechanics.geometry import Array
+from validation.reporting.findings import Finding
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
@@ -110,27 +110,27 @@ def judge(maps: Maps) -> Verdict:
     far, near = effort(by_angles(), 0.3), effort(by_angles(), 1e-4)
     steady = effort(by_quaternion(), 0.3), effort(by_quaternion(), 1e-4)
     spread = float(np.ptp(np.log10(np.maximum(quaternion.values, 1e-16)), axis=1).max())
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "angles by body rates: factor between known and found errors at h = 10 ms",
             max(factors),
             3.0,
             reason="another program, Euler's equations with zyx angles",
         ),
-        Check(
+        Finding(
             "quaternion: largest error on the map over h⁴ [rad/s⁴]",
             float((quaternion.values / quaternion.y[:, None] ** 4).max()),
             1.0,
             reason="its order, whatever the attitude",
         ),
-        Check(
+        Finding(
             "three angles, 1e-4 from the singularity: evaluations over those at 0.3",
             near / far,
             10.0,
             2.0,
             "adaptive steps feel it",
         ),
-        Check("quaternion: the same", steady[1] / steady[0], 1.1, 0.9, "there is nothing to feel"),
+        Finding("quaternion: the same", steady[1] / steady[0], 1.1, 0.9, "there is nothing to feel"),
     )
     edge = angles.good.mean()
     rates = maps[BODY_RATES]
@@ -149,7 +149,7 @@ def judge(maps: Maps) -> Verdict:
         "In the first two maps the edge rises with the distance from the singularity; below it the step is short "
         "against the passage. The last, the same body on a ball joint, is level."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 SCENE = Scene(

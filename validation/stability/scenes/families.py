@@ -8,7 +8,7 @@ import numpy as np
 
 import symofros as sf
 from validation.accuracy.reference import data, source
-from validation.evidence.findings import Check
+from validation.reporting.findings import Finding
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, refused
 
 BOUND = 1e-6
@@ -70,11 +70,13 @@ def judge(maps: Maps) -> Verdict:
     best = float(np.nanmin(exact.values[FAMILIES.index("legendre")]))
     frequencies = exact.values[0][np.isfinite(exact.values[0])]
     losing = bool(len(frequencies) and frequencies[-1] > frequencies.min())
-    checks = (
-        Check("polynomial: the number of functions that is refused", first, 8.0, 8.0, "condition 2e12"),
-        Check("polynomial: condition of M against the known one, relative", apart, 1e-6, reason="known independently"),
-        Check("other families: largest error of the round trip", others, 1e-11, reason="condition below 1e3"),
-        Check("legendre: smallest error of the first frequency", best, 1e-10, reason="it converges until rounding"),
+    findings = (
+        Finding("polynomial: the number of functions that is refused", first, 8.0, 8.0, "condition 2e12"),
+        Finding(
+            "polynomial: condition of M against the known one, relative", apart, 1e-6, reason="known independently"
+        ),
+        Finding("other families: largest error of the round trip", others, 1e-11, reason="condition below 1e3"),
+        Finding("legendre: smallest error of the first frequency", best, 1e-10, reason="it converges until rounding"),
     )
     words = (
         f"Monomials lose a digit and a half with each function: the round trip errs by {monomials[-1].value:.0e} "
@@ -87,7 +89,7 @@ def judge(maps: Maps) -> Verdict:
         "monomials; cantilever modes have it with one function. Right, only monomials get worse to the right, until "
         "they are refused."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 SCENE = Scene(

@@ -11,8 +11,8 @@ import numpy as np
 import scipy.linalg
 
 import symofros as sf
-from validation.evidence.findings import Check
 from validation.mechanics.geometry import Array
+from validation.reporting.findings import Finding
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
@@ -92,23 +92,23 @@ def judge(maps: Maps) -> Verdict:
     free = maps[FREE]
     said, kind = refusal()
     light, heavy = (2.8284 / fastest(m2, STIFFNESS) for m2 in (1e-12, 1.0))
-    checks = (
-        Check(
+    findings = (
+        Finding(
             f"{SPRING}: factor by which 2.828/ω_max misses the edge of the map",
             missed,
             1.01,
             reason="the grid can't tell them apart",
         ),
-        Check(
+        Finding(
             f"{FREE}: share of the map that is bounded",
             float(free.good.mean()),
             1.0,
             1.0,
             "no frequency grows with lightness",
         ),
-        Check(f"{IMPLICIT}: the same", float(maps[IMPLICIT].good.mean()), 1.0, 1.0, "L-stable"),
-        Check("a massless last link is refused (1: yes)", float(bool(said)), 1.0, 1.0),
-        Check(
+        Finding(f"{IMPLICIT}: the same", float(maps[IMPLICIT].good.mean()), 1.0, 1.0, "L-stable"),
+        Finding("a massless last link is refused (1: yes)", float(bool(said)), 1.0, 1.0),
+        Finding(
             "a mass set to zero at run time ends the run as singular (1: yes)",
             float(kind == "singular"),
             1.0,
@@ -127,7 +127,7 @@ def judge(maps: Maps) -> Verdict:
         "The edge of the first map has slope one half in the mass and lies on the dashed line down to 1e-12; the "
         "other two maps have none."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 @cache
@@ -174,10 +174,10 @@ def judge_cross(maps: Maps) -> Verdict:
     bare = found.at(y=0.0)
     first = max((float(x) for x, ok in zip(found.x, found.good[0], strict=True) if not ok), default=0.0)
     scaled = float((bare * np.radians(found.x) ** 2)[~np.isnan(bare)].max())
-    checks = (
-        Check("condition of M against the known one, relative", apart, 1e-6, reason="(1 + cos a)/(1 - cos a)"),
-        Check("massless cross: largest error times a²", scaled, 1e-14, reason="rounding times the condition, 4/a²"),
-        Check("right angle, massless cross: error", float(found.at(x=90.0, y=0.0)[0]), 1e-14, reason="rounding"),
+    findings = (
+        Finding("condition of M against the known one, relative", apart, 1e-6, reason="(1 + cos a)/(1 - cos a)"),
+        Finding("massless cross: largest error times a²", scaled, 1e-14, reason="rounding times the condition, 4/a²"),
+        Finding("right angle, massless cross: error", float(found.at(x=90.0, y=0.0)[0]), 1e-14, reason="rounding"),
     )
     words = (
         "A massless cross is legal: the body behind it bears both hinges. As they become parallel the mass matrix "
@@ -187,7 +187,7 @@ def judge_cross(maps: Maps) -> Verdict:
         f"{float(np.nanmax(found.at(y=float(CROSS.values.index(1e-6))))):.0e} at any angle."
     )
     see = "Bottom row, no mass: errors grow to the left as 1/a². Every row above is level left of a = √J."
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 def boundary(stiffness: float) -> Limit:

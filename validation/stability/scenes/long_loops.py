@@ -8,8 +8,8 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.evidence.findings import Check, exponent
 from validation.mechanics.geometry import Array
+from validation.reporting.findings import Finding, exponent
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 from validation.stability.scenes import four_bars
 
@@ -62,10 +62,10 @@ def judge(maps: Maps) -> Verdict:
     rk4 = maps["rk4"]
     growth = -exponent(rk4.y, rk4.at(x=1e-2))
     kept = float(np.nanmax(maps[PROJECTED].values))
-    checks = [
-        Check(f"{method}: exponent of the drift in h", slopes[method], order + 0.6, order - 0.6, "its order")
+    findings = [
+        Finding(f"{method}: exponent of the drift in h", slopes[method], order + 0.6, order - 0.6, "its order")
         for method, order in ORDERS.items()
-    ] + [Check(f"{PROJECTED}: largest violation [m]", kept, 1e-9, reason="what projection is asked for")]
+    ] + [Finding(f"{PROJECTED}: largest violation [m]", kept, 1e-9, reason="what projection is asked for")]
     longest = {}
     for method, found in maps.items():
         held = np.asarray(found.good).all(axis=0)
@@ -83,7 +83,7 @@ def judge(maps: Maps) -> Verdict:
         "Going right along a row, decades grow in equal steps: that is the order. Going up, each doubling of the "
         f"loops multiplies the drift by about {2**growth:.0f}. The map with projection is level at rounding."
     )
-    return Verdict(words, see, tuple(checks))
+    return Verdict(words, see, tuple(findings))
 
 
 SCENE = Scene(

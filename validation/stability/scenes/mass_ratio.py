@@ -14,8 +14,8 @@ import symofros as sf
 from validation.adapters import factory_of
 from validation.contract.interface import EngineFactory, States, TreeEngine, Unsupported
 from validation.contract.interface import Subject as Model
-from validation.evidence.findings import Check
 from validation.mechanics.geometry import Array
+from validation.reporting.findings import Finding
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 BOUND = 1e-8
@@ -138,33 +138,33 @@ def judge(maps: Maps) -> Verdict:
     heavy = {name: float(np.nanmax(found.values[:, -1])) for name, found in maps.items() if name != DRIFT}
     light = {name: float(np.nanmax(found.values[:, 0])) for name, found in maps.items()}
     slow = maps[DRIFT].count("interrupted")
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "symofros, articulated bodies: largest error of accelerations",
             worst[ARTICULATED],
             1e-7,
             reason="sixteen links, 1e8",
         ),
-        Check("symofros, factors: largest error of accelerations", worst[FACTORS], 1e-4, reason="sixteen links, 1e8"),
-        Check(
+        Finding("symofros, factors: largest error of accelerations", worst[FACTORS], 1e-4, reason="sixteen links, 1e8"),
+        Finding(
             "symofros, factors, over MuJoCo: ratio of largest errors",
             worst[FACTORS] / worst[MUJOCO],
             10.0,
             reason="both factor the mass matrix",
         ),
-        Check(
+        Finding(
             "symofros, articulated bodies, over Pinocchio: ratio of largest errors",
             worst[ARTICULATED] / worst[PINOCCHIO],
             10.0,
             reason="neither forms the mass matrix",
         ),
-        Check(
+        Finding(
             "articulated bodies over factors: ratio of our largest errors",
             worst[ARTICULATED] / worst[FACTORS],
             0.05,
             reason="what is large cancels link by link",
         ),
-        Check("symofros: largest change of energy in runs that end", worst[DRIFT], 1e-6, reason="tolerance 1e-12"),
+        Finding("symofros: largest change of energy in runs that end", worst[DRIFT], 1e-6, reason="tolerance 1e-12"),
     )
     words = (
         "A heavy load on light links costs digits: the light links' accelerations are small differences of large "
@@ -180,7 +180,7 @@ def judge(maps: Maps) -> Verdict:
         "number of links, two decades and more above articulated bodies. To the left nothing happens. In the last map "
         "red cells are runs that take too many steps."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 SCENE = Scene(

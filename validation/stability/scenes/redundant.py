@@ -9,7 +9,7 @@ import numpy as np
 
 import symofros as sf
 from reference_models import MODELS
-from validation.evidence.findings import Check
+from validation.reporting.findings import Finding
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, refused, simulate
 from validation.stability.scenes import four_bars
@@ -108,31 +108,31 @@ def judge(maps: Maps) -> Verdict:
         for k, kind in enumerate(ROWS)
     }
     first = {kind: min(found, default=np.inf) for kind, found in refusals.items()}
-    checks = (
-        Check("kinds of closure whose number of rows and rank are not as they should be", float(wrong_ranks), 0.0),
-        Check(
+    findings = (
+        Finding("kinds of closure whose number of rows and rank are not as they should be", float(wrong_ranks), 0.0),
+        Finding(
             "accelerations with redundant rows against those without [rad/s²]",
             spread,
             1e-10,
             reason="multipliers of least norm move nothing",
         ),
-        Check(
+        Finding(
             "Bricard's mechanism, 5 rows of rank 4: accelerations against the known ones [rad/s²]",
             apart,
             1e-10,
             reason="least norm, computed independently",
         ),
-        Check(
+        Finding(
             "two rows: share of the map that is good", float(rows_good[PIN].mean()), 1.0, 1.0, "an offset is harmless"
         ),
-        Check(
+        Finding(
             "smallest misfit that is refused [m]",
             min(first.values()),
             1e-6,
             1e-13,
             "above what the assembly may leave, 1e-12",
         ),
-        Check("runs that come to their end and are wrong", float(silent), 0.0, reason="a misfit is refused or told"),
+        Finding("runs that come to their end and are wrong", float(silent), 0.0, reason="a misfit is refused or told"),
     )
     words = (
         "Rows that repeat others are found by their rank and cost nothing: with 3, 5 and 4 rows of rank 2, 2 and "
@@ -145,7 +145,7 @@ def judge(maps: Maps) -> Verdict:
         "The top three rows turn from good to refused where the misfit passes what rounding excuses; the bottom row "
         "does not, because nothing in it is redundant."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 SCENE = Scene(

@@ -10,8 +10,8 @@ import numpy as np
 import symofros as sf
 from validation.adapters.exudyn import motion as exudyn_motion
 from validation.adapters.mujoco import motion as mujoco_motion
-from validation.evidence.findings import Check
 from validation.mechanics.geometry import Array
+from validation.reporting.findings import Finding
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Maps, Scene, Subject, Verdict, cell, decades, simulate
 from validation.stability.scenes import four_bars
@@ -152,21 +152,23 @@ def judge(maps: Maps) -> Verdict:
     told = passages_told(maps)
     level = WAYS.labels.index("projection")
     errors = np.concatenate([found.at(y=level) for found in maps.values()])
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "projection: largest distance over all steps [m]",
             float(errors.max()),
             BOUND,
             reason="a step that all but lands in the flat posture costs decades",
         ),
-        Check("projection: median distance over all steps [m]", float(np.median(errors)), 1e-5, reason="its order, h⁴"),
-        Check(
+        Finding(
+            "projection: median distance over all steps [m]", float(np.median(errors)), 1e-5, reason="its order, h⁴"
+        ),
+        Finding(
             "N = 2, steps that all but land in the flat posture: largest distance [m]",
             max(near.values()),
             0.1,
             reason="four of 172 steps, where neighbours leave 1e-9",
         ),
-        Check(
+        Finding(
             "ways by Baumgarte's gains of 20/s and more that fail somewhere",
             float(
                 sum(
@@ -178,21 +180,21 @@ def judge(maps: Maps) -> Verdict:
             0.0,
             reason="20 holds in absolute coordinates, too",
         ),
-        Check(
+        Finding(
             "share of runs without stabilisation that meet the criterion",
             float(np.mean([found.good[0].mean() for found in maps.values()])),
             0.2,
             reason="drift decides, at times rightly",
         ),
-        Check(
+        Finding(
             "N = 2: known verdicts on gains 5, 20 and 100/s that ours contradict",
             float(contradictions),
             0.0,
             reason="another program, in absolute coordinates",
         ),
-        Check("a start in the flat posture is reported (1: yes)", reported, 1.0, 1.0, "nothing is silently wrong"),
-        Check("share of our runs through it that hold and say so", told, 1.0, 1.0, "nothing is silently wrong"),
-        Check("exact motion against the known one, largest distance [m]", exact, 1e-9, reason="the same equation"),
+        Finding("a start in the flat posture is reported (1: yes)", reported, 1.0, 1.0, "nothing is silently wrong"),
+        Finding("share of our runs through it that hold and say so", told, 1.0, 1.0, "nothing is silently wrong"),
+        Finding("exact motion against the known one, largest distance [m]", exact, 1e-9, reason="the same equation"),
     )
     wrong = sum(found.wrong for found in maps.values())
     stopped = sum(found.stopped for found in maps.values())
@@ -212,7 +214,7 @@ def judge(maps: Maps) -> Verdict:
         f"outcome, but {wrong} come to their end on the wrong branch or out of phase, and only a check of energy or "
         "of the step tells."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 def good(gain: float, h: float) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from validation.adapters.mujoco import motion as mujoco_motion
-from validation.evidence.findings import Check
+from validation.reporting.findings import Finding
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, decades, simulate
 from validation.stability.scenes import four_bars
@@ -76,23 +76,23 @@ def judge(maps: Maps) -> Verdict:
     ours = simulate(m, *four_bars.state(m, *four_bars.START), END, dt=float(H.chosen(True)[0]), output=[0.0, END])
     held = four_bars.tip_error(1, END, ours.frames["crank0.end"][0][-1, [0, 2]])
     best = {name: float(np.nanmin(found.values)) for name, found in maps.items()}
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "factor between known and found energies and distances",
             max(factors),
             3.0,
             reason="of the known runs; Euler's positions were read a step late there, ω h = 2 mm: left out",
         ),
-        Check("MuJoCo's defaults, RK4, h = 1 ms: distance [m]", upright, 3.0, 0.5, "far off, whatever the step"),
-        Check(
+        Finding("MuJoCo's defaults, RK4, h = 1 ms: distance [m]", upright, 3.0, 0.5, "far off, whatever the step"),
+        Finding(
             "the same stated flat: change of that distance [m]",
             abs(flat - upright),
             3.0,
             0.1,
             "softness is scaled by inertias in the posture where coordinates are zero",
         ),
-        Check("MuJoCo RK4, stiff: smallest distance on the map [m]", best["MuJoCo RK4"], 1e-3, reason="short steps"),
-        Check("ours, RK4 and projection, h = 1 ms: distance [m]", held, 1e-9, reason="closures are exact, order h⁴"),
+        Finding("MuJoCo RK4, stiff: smallest distance on the map [m]", best["MuJoCo RK4"], 1e-3, reason="short steps"),
+        Finding("ours, RK4 and projection, h = 1 ms: distance [m]", held, 1e-9, reason="closures are exact, order h⁴"),
     )
     words = (
         f"MuJoCo closes loops by stiff springs and dampers. With its defaults the crank's end is {min(astray):.2f} "
@@ -106,7 +106,7 @@ def judge(maps: Maps) -> Verdict:
         "Errors fall with the time constant until it reaches two steps, the dashed line; below it MuJoCo raises the "
         "time constant by itself, and rows become equal. A shorter step alone, along a row, gains nothing."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 SCENE = Scene(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.evidence.findings import Check
+from validation.reporting.findings import Finding
 from validation.stability.reference import data, source
 from validation.stability.scene import Cell, Grid, Limit, Maps, Scene, Subject, Verdict, cell, simulate
 
@@ -70,16 +70,18 @@ def judge(maps: Maps) -> Verdict:
     apart = max(abs(found[eta] / known[eta] - 1.0) for eta in known)
     stiff, ruthless = maps["foreshortened, first order"], maps["zeroth order"]
     edges = [low for _, low, _ in without.edge("x")], [high for _, _, high in without.edge("x")]
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "without foreshortening: factor by which η = 3.516 misses the edge of the map",
             missed,
             1.01,
             reason="the first frequency at rest, whatever the hub",
         ),
-        Check("rates of growth at η = 4 and 6 against the known ones, relative", apart, 1e-3, reason="√(η² - 3.516²)"),
-        Check("foreshortened: share of the map that is bounded", float(stiff.good.mean()), 1.0, 1.0, "it stiffens"),
-        Check("zeroth order: the same", float(ruthless.good.mean()), 1.0, 1.0, "it neither stiffens nor softens"),
+        Finding(
+            "rates of growth at η = 4 and 6 against the known ones, relative", apart, 1e-3, reason="√(η² - 3.516²)"
+        ),
+        Finding("foreshortened: share of the map that is bounded", float(stiff.good.mean()), 1.0, 1.0, "it stiffens"),
+        Finding("zeroth order: the same", float(ruthless.good.mean()), 1.0, 1.0, "it neither stiffens nor softens"),
     )
     words = (
         "Without foreshortening the softening term of rotation is kept and the stiffening one lost: between η = "
@@ -93,7 +95,7 @@ def judge(maps: Maps) -> Verdict:
         "Only the map without foreshortening has an edge, upright on the dashed line at the first frequency: it "
         "does not depend on the hub."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 def limits(name: str) -> tuple[Limit, ...]:

@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from validation.evidence.findings import Check
 from validation.mechanics.geometry import Array
+from validation.reporting.findings import Finding
 from validation.stability.scene import Cell, Grid, Limit, Map, Maps, Scene, Subject, Verdict, cell, decades, simulate
 
 STATED, DYNAMIC, SPRING, PULL = 4.0, 2.0, 100.0, 0.05
@@ -118,24 +118,24 @@ def judge(maps: Maps) -> Verdict:
     blunt = [float(v0) for v0, error in zip(rk4.x, finest, strict=True) if error > BOUND]
     adaptive = steady(1e-4)
     stopped = sum(found.stopped for found in maps.values())
-    checks = (
-        Check(
+    findings = (
+        Finding(
             "explicit runs below the closed form, v₀ at most 0.1 mm/s, that miss the criterion",
             float(below),
             0.0,
             reason="the closed form is on the safe side",
         ),
-        Check(
+        Finding(
             "rk4: smallest factor between the edge and the closed form",
             min(ratios, default=np.nan),
             100.0,
             1.0,
             "chatter is bounded: it costs little at first",
         ),
-        Check(
+        Finding(
             "rodas4, adaptive, v₀ = 0.1 mm/s: mean distance [slips]", adaptive[0], 0.05, reason="what smoothing leaves"
         ),
-        Check(
+        Finding(
             "break-away force over the static friction stated",
             STATIC / STATED,
             0.96,
@@ -158,7 +158,7 @@ def judge(maps: Maps) -> Verdict:
         "Good runs fill a wedge: its right edge is smoothing, the slanted one chatter, which runs along the dashed "
         "closed form and above it. Implicit Euler reaches further, with holes."
     )
-    return Verdict(words, see, checks)
+    return Verdict(words, see, findings)
 
 
 def steady(v0: float) -> tuple[float, int]:

@@ -5,11 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from rich.console import Console
-from rich.table import Table
-
-from validation.timing.flexible.race import CALLS, FlexibleTiming
-from validation.timing.sections import Section
+from validation.reporting.record import Section, Table
+from validation.timing.flexible.race import CALLS
 
 _LIMITS = (
     "`planar_robot`: three motors with harmonic drives, the first of them elastic, and two strips that bend. Exudyn "
@@ -30,8 +27,8 @@ _LIMITS = (
     "minima are what a calm machine gives.",
 )
 _HEAD = (
-    "#ours: functions (nv)",
-    "#Exudyn: elements (coordinates + equations)",
+    "ours: functions (nv)",
+    "Exudyn: elements (coordinates + equations)",
     "error: ours, Exudyn's",
     "quantity",
     "#ours [ns]",
@@ -52,32 +49,5 @@ def flexible_section(rows: Iterable[Mapping[str, Any]]) -> Section:
         sizes = f"{row['functions']} ({nv})", f"{row['elements']} ({coordinates} + {equations})"
         ratios = f"{row['ratio']:.1f}", f"{row['corrected']:.1f}"
         cells.append((*sizes, errors, row["quantity"], ours, theirs, calls, *ratios))
-    return Section("A flexible robot against Exudyn, at equal accuracy", _LIMITS, _HEAD, tuple(cells))
-
-
-def show_flexible(rows: Iterable[FlexibleTiming]) -> None:
-    """The table for a terminal."""
-    rows = list(rows)
-    table = Table(
-        "functions",
-        "elements",
-        "quantity",
-        "ours [ns]",
-        "Exudyn [ns]",
-        "ratio",
-        "net ratio",
-        title="planar_robot against Exudyn at equal accuracy, minimum and median a state",
-    )
-    for row in rows:
-        ours, theirs = (f"{low:.0f}, {middle:.0f}" for low, middle in (row.ours, row.theirs))
-        table.add_row(
-            str(row.functions),
-            str(row.elements),
-            row.quantity,
-            ours,
-            theirs,
-            f"{row.ratio:.1f}",
-            f"{row.corrected:.1f}",
-        )
-    if rows:
-        Console().print(table)
+    title = "A flexible robot against Exudyn, at equal accuracy"
+    return Section(title, (*_LIMITS, Table(_HEAD, tuple(cells))), "flexible")

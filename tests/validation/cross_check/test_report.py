@@ -1,0 +1,153 @@
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from tests.validation.subjects import pendulum
+from validation.check import ModelResult, Settings, check, failed
+from validation.comparison.errors import Comparison
+from validation.contract.interface import Subject
+from validation.cross_check.record import Record, as_data
+from validation.cross_check.report import PRINTED, TOPIC, compose
+from validation.reporting import html, markdown
+from validation.reporting.command import code, write
+from validation.reporting.provenance import Provenance
+from validation.reporting.record import Data
+
+SETTINGS = Settings(states=20)
+NASTY = "<script>alert(1)</script>|x"
+
+
+@pytest.fixture(scope="module")
+def good() -> ModelResult:
+    return check(Subject("pendulum", pendulum(notes=("shapes ignored",))), SETTINGS)
+
+
+@pytest.fixture(scope="module")
+def mixed(good: ModelResult) -> Data:
+    wrong = Comparison(NASTY, "mujoco", "bias", "disagree", 20, 3e-7, 1e-12, 1e-7, 4, (0,) * 40 + (20,) + (0,) * 33)
+    nan = Comparison(NASTY, "mujoco", "mass_matrix", "disagree", 20, None, 1e-12, None, 0, (0,) * 73 + (20,))
+    cannot = Comparison(NASTY, "mujoco-urdf", "all", "unsupported", note="body 'a': it | can't")
+    models = [good, ModelResult(NASTY, (wrong, nan, cannot)), failed("gone", "load", "no such file")]
+    return as_data(SETTINGS, models, 3.0, ())
+
+
+def to_html(data: Data) -> str:
+    return html.page(compose(data), Provenance.of(data))
+
+
+def to_markdown(data: Data) -> str:
+    return markdown.page(compose(data), Provenance.of(data), "")
+
+
+class Tags(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.seen: set[str] = set()
+        self.links: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.seen.add(tag)
+        self.links += [value or "" for name, value in attrs if name in ("src", "href", "xlink:href")]
+        if tag not in ("meta", "link", "br", "img", "circle", "line", "path", "polygon", "polyline", "rect"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        if self.open and self.open[-1] == tag:
+            self.open.pop()
+
+
+def test_the_page_needs_nothing_from_outside(mixed: Data) -> None:
+    page = to_html(mixed)
+    tags = Tags()
+    tags.feed(page)
+    assert not tags.open and not tags.links and not tags.seen & {"script", "link", "img"}
+    assert "url(" not in page and "@import" not in page
+    assert re.findall(r'https?://[^"\s<]+', page.replace("http://www.w3.org/2000/svg", "")) == []
+
+
+def test_names_from_files_can_not_break_the_page(mixed: Data) -> None:
+    assert NASTY not in to_html(mixed) and "&lt;script&gt;" in to_html(mixed)
+    for block in to_markdown(mixed).split("\n\n"):
+        columns = {len(re.findall(r"(?<!\\)\|", row)) for row in block.splitlines() if row.startswith("|")}
+        assert len(columns) <= 1, block
+
+
+def test_good_news(good: ModelResult) -> None:
+    record = as_data(SETTINGS, [good], 1.0, ())
+    page = to_html(record)
+    assert record["ok"] and "comparisons on 1 model agree" in page and "polygon" in page
+    assert "What disagrees" not in page and "What disagrees" not in to_markdown(record)
+    assert "shapes ignored" in page
+
+
+def test_bad_news(mixed: Data) -> None:
+    assert not mixed["ok"] and code(compose(mixed)) == 1
+    for text in (to_html(mixed), to_markdown(mixed)):
+        assert "What disagrees or failed" in text and "bias: error 3.0e-07 in state 4 of 20" in text
+        assert "no such file" in text and "not a number" in text and "1 model failed" in text
+
+
+def test_nothing_at_all() -> None:
+    record = as_data(SETTINGS, [], 0.0, ())
+    assert not record["ok"]
+    assert "Nothing was compared" in to_html(record) and "Nothing was compared" in to_markdown(record)
+
+
+def test_json_is_strict_and_complete(mixed: Data) -> None:
+    content = json.loads(json.dumps(mixed), parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
+    assert content["ok"] is False and set(PRINTED) < set(content)
+    assert {model["model"] for model in content["models"]} == {"pendulum", NASTY, "gone"}
+    assert content["settings"]["states"] == 20 and "numpy" in content["versions"] and content["machine"]["processor"]
+    first = content["models"][0]
+    assert re.fullmatch(r"[0-9a-f]{16}", first["hash"]) and first["nv"] == 1
+
+
+def test_files_are_whole_and_tell_no_paths(mixed: Data, tmp_path: Path) -> None:
+    folder = tmp_path / "new" / "reports"
+    write(TOPIC, mixed, folder)
+    written = sorted(path.name for path in folder.iterdir())
+    assert written == ["check.html", "check.json", "check.md"]
+    for path in folder.iterdir():
+        text = path.read_text()
+        assert str(Path.home()) not in text and str(Path.cwd()) not in text and str(tmp_path) not in text
+
+
+def test_the_hash_is_of_the_mechanism() -> None:
+    base = check(Subject("a", pendulum()), Settings(states=2, engines=("pinocchio",)))
+    noted = check(Subject("b", pendulum(notes=("n",))), Settings(states=2, engines=("pinocchio",)))
+    other = check(Subject("c", pendulum(gravity=(0, 0, -1.62))), Settings(states=2, engines=("pinocchio",)))
+    assert base.hash == noted.hash != other.hash
+
+
+def test_a_motion_without_a_verdict_is_no_row_of_the_drift(good: ModelResult) -> None:
+    rows = [Comparison("fast", "symofros", "energy_drift", status, note="why") for status in ("failed", "unsupported")]
+    page = to_html(as_data(SETTINGS, [good, ModelResult("fast", tuple(rows))], 1.0, ()))
+    drifts = page.partition("half the step should leave a sixteenth")[2]
+    assert ">pendulum</td>" in drifts and ">fast</td>" not in drifts.partition("</table>")[0]
+
+
+def test_a_record_survives_its_file(good: ModelResult, mixed: Data) -> None:
+    record = Record.of(json.loads(json.dumps(mixed)))
+    assert [model.label for model in record.models] == ["pendulum", NASTY, "gone"]
+    whole = [(row.model, row.engine, row.quantity, row.status, row.error) for row in good.comparisons]
+    read = [(row.model, row.engine, row.quantity, row.status, row.error) for row in record.models[0].comparisons]
+    assert sorted(map(str, read)) == sorted(map(str, whole))
+    assert {row.status for row in record.models[1].comparisons} == {"disagree", "unsupported"}
+    assert [row.status for row in record.models[2].comparisons] == ["failed"]
+    assert sum(record.distributions["bias"]["pinocchio"]) == good.comparisons[0].states
+
+
+def test_only_unreadable_models_are_bad_input(good: ModelResult) -> None:
+    data = as_data(SETTINGS, [good, failed("gone", "load", "no such file")], 1.0, ())
+    assert code(compose(data)) == 2
+    assert code(compose(as_data(SETTINGS, [good], 1.0, ("later",)))) == 130
+    assert code(compose(as_data(SETTINGS, [good], 1.0, ()))) == 0
+
+
+def test_every_engine_has_a_name_in_the_legend(good: ModelResult) -> None:
+    page = to_html(as_data(SETTINGS, [good], 1.0, ()))
+    assert "interpreted (our own)</span>" in page and "tolerance</span>" in page

@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+import datetime
+import json
+import re
+import subprocess
+import xml.etree.ElementTree
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from tests.validation.dashboard.test_gather import FUZZ, TODAY, write
+from validation.__main__ import app
+from validation.dashboard import regenerate
+from validation.dashboard.catalogue import TOPICS
+from validation.dashboard.gather import gather
+from validation.dashboard.index import BEGIN, END, QuoteError, headline, quote, quoted, write_index
+from validation.reporting.charts import draw
+from validation.reporting.figures import Chart
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_the_readme_quotes_the_summary() -> None:
+    assert quoted(ROOT / "README.md") == (ROOT / "reports" / "summary.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def page(tmp_path: Path) -> str:
+    write(tmp_path, FUZZ | {"versions": {"numpy": "<b>1"}})
+    path = write_index(gather(tmp_path, {"numpy": "2"}, TODAY), tmp_path, "2026-11-21 12:00 UTC")
+    return path.read_text(encoding="utf-8")
+
+
+def test_the_page_has_every_report_and_nothing_from_outside(page: str) -> None:
+    assert all(f'id="{name}"' in page for name in TOPICS)
+    assert not re.search(r'(src|href)="(https?:)?//', page) and "<script" not in page
+    assert "is not made yet" in page and "stale: made with numpy &lt;b&gt;1, now 2" in page
+
+
+def test_charts_are_sound_svg() -> None:
+    for entry in gather(ROOT / "reports", {}, datetime.date.today()).values():
+        for chart in entry.report.highlights if entry.report else ():
+            assert isinstance(chart, Chart)
+            assert xml.etree.ElementTree.fromstring(draw(chart).svg).tag.endswith("svg")
+
+
+def test_a_bad_report_is_in_the_headline(tmp_path: Path) -> None:
+    write(tmp_path, FUZZ | {"ok": False})
+    said = headline(gather(tmp_path, {}, TODAY))
+    assert said.startswith("0 of 1 reports with a verdict are good; missed: fuzz; absent: check, ")
+
+
+def test_a_readme_keeps_what_stands_around_the_summary(tmp_path: Path) -> None:
+    readme = tmp_path / "README.md"
+    readme.write_text(f"before\n{BEGIN}\nold\n{END}\nafter\n")
+    assert quote(readme, "new\n") and readme.read_text() == f"before\n{BEGIN}\nnew\n{END}\nafter\n"
+    assert quoted(readme) == "new\n"
+    readme.write_text(f"{END}\n{BEGIN}\n")
+    with pytest.raises(QuoteError, match="no '<!-- "):
+        quote(readme, "new\n")
+    assert not quote(tmp_path / "none", "new\n")
+
+
+def test_the_command_gathers_what_is_there(tmp_path: Path) -> None:
+    write(tmp_path, FUZZ)
+    readme = tmp_path / "README.md"
+    readme.write_text(f"{BEGIN}\n{END}\n")
+    result = CliRunner().invoke(app, ["dashboard", "--report", str(tmp_path), "--readme", str(readme)])
+    assert result.exit_code == 0 and "fuzz       good" in result.output, result.output
+    assert quoted(readme) == (tmp_path / "summary.md").read_text()
+    write(tmp_path, FUZZ | {"ok": False})
+    assert CliRunner().invoke(app, ["dashboard", "--report", str(tmp_path), "--readme", "none"]).exit_code == 1
+
+
+def test_a_folder_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    result = CliRunner().invoke(app, ["dashboard", "--report", str(tmp_path / "none")])
+    assert result.exit_code == 2 and "no folder" in result.output
+
+
+def test_reports_are_written_one_by_one_and_an_interrupt_keeps_the_finished(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ran: list[list[str]] = []
+
+    def fake(command: list[str], **_: object) -> subprocess.CompletedProcess[str]:
+        ran.append(command[3:])
+        if len(ran) == 3:
+            raise KeyboardInterrupt
+        return subprocess.CompletedProcess(command, 0 if len(ran) == 1 else 7, None, "lines\nthe reason")
+
+    monkeypatch.setattr(regenerate.subprocess, "run", fake)
+    result = CliRunner().invoke(app, ["dashboard", "--report", str(tmp_path), "--readme", "none", "--regenerate"])
+    assert result.exit_code == 130
+    assert ran == [["--output", str(tmp_path)], *([name, "--output", str(tmp_path)] for name in ("oracle", "mutation"))]
+    for says in (
+        "check: written",
+        "oracle: failed (7)",
+        "the reason",
+        "interrupted; the reports that were finished are kept",
+    ):
+        assert says in result.output
+    assert (tmp_path / "index.html").is_file()
+
+
+def test_pages_are_rendered_anew_from_what_was_measured(tmp_path: Path) -> None:
+    write(tmp_path, FUZZ)
+    write(tmp_path, "{", "mutation")
+    result = CliRunner().invoke(app, ["render", "fuzz", "--output", str(tmp_path)])
+    assert result.exit_code == 0 and "fuzz       good" in result.output
+    assert "10 hostile inputs" in (tmp_path / "fuzz.html").read_text() and (tmp_path / "fuzz.md").is_file()
+    assert json.loads((tmp_path / "fuzz.json").read_text()) == FUZZ
+    assert CliRunner().invoke(app, ["render", "mutation", "--output", str(tmp_path)]).exit_code == 1
+    assert CliRunner().invoke(app, ["render", "fuss", "--output", str(tmp_path)]).exit_code == 2

@@ -1,0 +1,89 @@
+"""The words follow from the points: whoever wins is named, with the factor."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from validation.pareto import verdicts
+from validation.pareto.catalogue import SCENES
+from validation.pareto.figures import figure, letters
+from validation.pareto.front import charted, front
+from validation.pareto.race import Result
+from validation.pareto.scene import OURS, Point, Scene, Target
+from validation.reporting.charts import draw
+from validation.reporting.figures import Chart
+from validation.reporting.numbers import duration
+
+SCENE = replace(SCENES["spin_up"], targets=(Target("Exudyn", 1e-2, 200.0),))
+
+
+def result(mine: float, theirs: float, best: float = 1e-3) -> Result:
+    points = (
+        Point(OURS, "3 modes", "rk4", "20 ms", 5e-3, mine),
+        Point(OURS, "3 modes", "rk4", "200 ms", math.nan, mine, "lost"),
+        Point("Exudyn", "4 elements", "alpha", "5 ms", 5e-3, theirs),
+        Point("Exudyn", "8 elements", "alpha", "1 ms", best, 9.0),
+    )
+    return Result(points, 1e-5, "two", {"first order": 2e-3}, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("mine", "theirs", "winner", "met"),
+    [(1e-4, 1e-1, OURS, True), (1e-3, 1e-1, OURS, False), (1e-1, 1e-2, "Exudyn", False)],
+)
+def test_the_winner_is_named(mine: float, theirs: float, winner: str, met: bool) -> None:
+    found = result(mine, theirs)
+    (said,), (verdict,) = verdicts.compared(SCENE, found.points), verdicts.verdicts(SCENE, found.points)
+    assert f"{winner} wins by {max(theirs / mine, mine / theirs):.3g}" in said and verdict.ok is met
+    assert verdict.found == pytest.approx(theirs / mine)
+
+
+def test_who_alone_keeps_an_error_wins() -> None:
+    scene = replace(SCENE, targets=(Target("Exudyn", 1.5e-3, 1.0),))
+    assert "Exudyn wins: no model of ours" in verdicts.compared(scene, result(1e-4, 1e-1).points)[0]
+    assert not verdicts.verdicts(scene, result(1e-4, 1e-1).points)[0].ok
+
+
+def test_below_the_floor_the_engine_is_the_tool() -> None:
+    assert "below 0.2 % Exudyn is the tool: 8 elements" in verdicts.below_the_floor(SCENE, result(1e-4, 1e-1))
+    assert "no run here goes below" in verdicts.below_the_floor(SCENE, result(1e-4, 1e-1, best=3e-3))
+
+
+def test_advice_goes_along_the_front() -> None:
+    lines = verdicts.advice(SCENE, result(1e-4, 1e-1))
+    assert [OURS in lines[0], "Exudyn, 8 elements" in lines[-1], len(lines)] == [True, True, 2]
+    assert any("lost" in said for said in verdicts.refused(result(1e-4, 1e-1)))
+
+
+def test_the_front_is_tagged_and_the_floor_drawn() -> None:
+    found = result(1e-4, 1e-1)
+    far_off = Point(OURS, "none", "euler", "1 s", 1e3, 1e-9)
+    drawn = figure(SCENE, replace(found, points=(far_off, *found.points)), "see")
+    every, methods = drawn.charts
+    assert isinstance(every, Chart) and isinstance(methods, Chart)
+    best = front(charted(SCENE, (far_off, *found.points)))
+    assert [(t.label, t.y) for t in every.tags] == [(letters(k + 1)[k], p.error) for k, p in enumerate(best)]
+    assert [tag.label for tag in every.tags] == letters(2) and every.log_x and every.log_y
+    legend = [name for _, name in draw(every).legend]
+    assert "floor of our beams, first order; below it use Exudyn: 0.002" in legend and 'class="tag"' in draw(every).svg
+    assert all("[s]" in chart.x and "[1]" in chart.y for chart in (every, methods))
+    assert letters(28)[25:] == ["z", "a1", "b1"]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "shown"), [(2.0, "2 s"), (3e-3, "3 ms"), (4.56e-5, "45.6 µs"), (math.inf, "no time")]
+)
+def test_durations(seconds: float, shown: str) -> None:
+    assert duration(seconds) == shown
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_scenes_say_what_they_compare(scene: Scene) -> None:
+    assert scene.targets and scene.sources and scene.axis.endswith("]")
+    assert all(target.error > scene.trust for target in scene.targets), "references must tell what is asked"
+    assert {target.engine for target in scene.targets} <= {
+        word for e in ("Exudyn", "MuJoCo") for word in [e] if e in scene.tuned
+    }

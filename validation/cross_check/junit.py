@@ -1,0 +1,49 @@
+"""Results in the JUnit form that continuous integration servers read."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Sequence
+
+from validation.check import ModelResult
+from validation.comparison.errors import Comparison
+
+# What XML 1.0 has no way to write; messages may quote anything.
+_ILLEGAL = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def to_junit(models: Sequence[ModelResult], seconds: float) -> str:
+    """One suite a model, one case a comparison."""
+    root = ElementTree.Element("testsuites", name="symofros cross-check", time=f"{seconds:.1f}")
+    for model in models:
+        _suite(root, model)
+    ElementTree.indent(root)
+    text = ElementTree.tostring(root, encoding="unicode")
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + _ILLEGAL.sub("?", text) + "\n"
+
+
+def _suite(root: ElementTree.Element, model: ModelResult) -> None:
+    rows = model.comparisons
+    counts = {
+        "tests": len(rows),
+        "failures": sum(row.status == "disagree" for row in rows),
+        "errors": sum(row.status == "failed" for row in rows),
+        "skipped": sum(row.status == "unsupported" for row in rows),
+    }
+    suite = ElementTree.SubElement(
+        root, "testsuite", {"name": model.label, **{key: str(value) for key, value in counts.items()}}
+    )
+    for row in rows:
+        case = ElementTree.SubElement(suite, "testcase", classname=f"{row.model}.{row.engine}", name=row.quantity)
+        _verdict(case, row)
+
+
+def _verdict(case: ElementTree.Element, row: Comparison) -> None:
+    if row.status == "disagree":
+        message = f"error {row.error} exceeds {row.tolerance} in state {row.worst_state} of {row.states}"
+        ElementTree.SubElement(case, "failure", message=f"{message}; {row.note}" if row.note else message)
+    elif row.status == "failed":
+        ElementTree.SubElement(case, "error", message=row.note)
+    elif row.status == "unsupported":
+        ElementTree.SubElement(case, "skipped", message=row.note)

@@ -1,0 +1,250 @@
+"""The cross-check: what it asks of which models, and the report."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from symofros.atomic import write_atomically
+from validation.adapters import ROUTES, differences
+from validation.check import ModelResult, Settings
+from validation.comparison.errors import Comparison
+from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, ROUNDING, SMALL, SOLVE
+from validation.cross_check.figures import error_against_condition, error_distributions, errors_by_engine
+from validation.cross_check.junit import to_junit
+from validation.cross_check.record import Record, as_data
+from validation.cross_check.tables import BRIEF, by_engine, by_model, failures, headline, unsupported, worst
+from validation.inputs.cases import named, standard_set
+from validation.inputs.sampling import DEFAULT_STATES
+from validation.reporting.command import Run, known
+from validation.reporting.figures import Figure
+from validation.reporting.numbers import digits
+from validation.reporting.record import Block, Bullets, Cell, Data, Fact, Fold, Report, Section, Table, Text, Topic
+from validation.worker_pool import run as run_cases
+
+# What `--json` prints.
+PRINTED = ("ok", "comparisons", "unsupported")
+# Up to so many models, each engine has a line of its own on a terminal.
+_DETAILED = 2
+
+Models = Annotated[
+    list[str] | None,
+    typer.Argument(help="URDF, MJCF or YAML files, or names of the standard set; none: all of it."),
+]
+FloatingBase = Annotated[bool, typer.Option("--floating-base", help="Put a free joint under the root of URDF files.")]
+States = Annotated[int, typer.Option(min=1, help="Random states a model.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of the random states.")]
+Engines = Annotated[
+    list[str] | None, typer.Option("--engine", help=f"Compare with this engine only; repeatable. {', '.join(ROUTES)}.")
+]
+Junit = Annotated[Path | None, typer.Option(help="Also write a JUnit file.")]
+Workers = Annotated[int, typer.Option(min=1, help="Models checked at the same time.")]
+
+WORKERS = min(os.cpu_count() or 1, 4)
+
+
+def measure(
+    run: Run,
+    models: Models = None,
+    floating_base: FloatingBase = False,
+    states: States = DEFAULT_STATES,
+    seed: Seed = 0,
+    engine: Engines = None,
+    junit: Junit = None,
+    workers: Workers = WORKERS,
+) -> Data:
+    """Compare our C of each MODEL with every engine that can represent it."""
+    known(engine, ROUTES, "--engine", "engine")
+    settings = Settings(states, seed, tuple(engine) if engine else None)
+    try:
+        cases = named(models, floating_base) if models else standard_set()
+    except (LookupError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error.args[0]), param_hint="MODEL") from None
+    run.expect(len(cases), "cross-checking")
+    results: dict[str, ModelResult] = {}
+
+    def done(result: ModelResult) -> None:
+        results[result.label] = result
+        run.advance(f"{result.label}: {'agrees' if result.ok else 'DISAGREES'}")
+
+    with contextlib.suppress(KeyboardInterrupt):  # What was finished is reported.
+        run_cases(cases, settings, workers, done)
+    finished = [results[case.label] for case in cases if case.label in results]
+    if junit is not None:
+        junit.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(junit, to_junit(finished, run.seconds))
+    unfinished = [case.label for case in cases if case.label not in results]
+    return as_data(settings, finished, run.seconds, unfinished)
+
+
+def compose(data: Data) -> Report:
+    """The report of its JSON."""
+    record = Record.of(data)
+    engines = [name for name in ROUTES if any(row.engine == name for row in record.compared)]
+    sections = [
+        _failures(record),
+        _distributions(record),
+        _models(record, engines),
+        _conditions(record),
+        _drifts(record),
+        _unsupported(record),
+        _method(),
+        Section("Models", tuple(map(_model, record.models)), page_only=True),
+    ]
+    return Report(
+        "Cross-check of the generated code",
+        headline(record),
+        record.ok,
+        (f"{record.states} states a model, seed {record.seed}.",),
+        tuple(section for section in sections if section.blocks),
+        tuple(_facts(record, engines)),
+        (errors_by_engine(record),) if engines else (),
+        tuple(_digest(record)),
+        record.unfinished,
+        record.refused,
+    )
+
+
+def _facts(record: Record, engines: list[str]) -> list[Fact]:
+    independent = [name for name in engines if ROUTES[name].independent]
+    speeds = [model.sizes["nv"] for model in record.models if "nv" in model.sizes]
+    span = f", {min(speeds)} to {max(speeds)} speeds" if speeds else ""
+    facts = [
+        Fact(str(len(record.models)), f"models{span}, {record.states} states each"),
+        Fact(str(len(independent)), f"independent opinions, and {len(engines) - len(independent)} of our own"),
+    ]
+    rounded = {q.name for q in (*QUANTITIES.values(), MOTION_ENERGY) if q.tolerance == ROUNDING}
+    for label, names, tolerance in (
+        ("largest relative error", rounded, ROUNDING),
+        ("in forward dynamics", {"forward_dynamics"}, SOLVE),
+    ):
+        row = worst(row for row in record.compared if row.quantity in names)
+        if row is not None:
+            place = f"{row.quantity.replace('_', ' ')} of {row.model}, {row.engine}"
+            condition = f", cond(M) {digits(row.extra['condition'])}" if "condition" in row.extra else ""
+            said = f"{label}: {place}{condition}; tolerance {digits(tolerance)}"
+            facts.append(Fact(digits(row.error), said, row.ok))
+    return facts
+
+
+def _failures(record: Record) -> Section:
+    rows = tuple((model, engine, Cell(text, False)) for model, engine, text in failures(record))
+    return Section("What disagrees or failed", (Table(("model", "against", "what"), rows),) if rows else ())
+
+
+def _distributions(record: Record) -> Section:
+    drawing = error_distributions(record.distributions)
+    see = (
+        "Each row is a quantity, each curve an engine that our C is compared with, over all states of all models. What "
+        "lies left of the red bar agrees: see how far left the curves stay, near the rounding of a double (2.2e-16). "
+        "“Exact” is the share of states where every digit is the same."
+    )
+    return Section("How close", (Figure(see, (drawing,)),) if drawing else (), page_only=True)
+
+
+def _models(record: Record, engines: list[str]) -> Section:
+    text = (
+        "The largest error over all states and all engines, relative to the largest entry of the other engine's "
+        "result. The redder, the more of the tolerance is used. “drift” is our own energy drift in free motion, see "
+        "below."
+    )
+    alone = (Fold(f"Against {name} alone", (by_engine(record, engines=(name,)),), page_only=True) for name in engines)
+    return Section("Model by model", (text, by_model(record), *alone) if record.models else ())
+
+
+def _conditions(record: Record) -> Section:
+    chart = error_against_condition(record)
+    see = (
+        "Solving M dv/dt = Q − h amplifies rounding by up to cond(M), which is large for a heavy robot with light "
+        "fingers. Points at or below the dashed line are as good as doubles allow; that is why this one quantity has a "
+        "wider tolerance."
+    )
+    blocks = (Figure(see, (chart,)),) if chart else ()
+    return Section("Forward dynamics and the condition of M", blocks, page_only=True)
+
+
+def _drifts(record: Record) -> Section:
+    rows = [row for row in record.compared if row.quantity == "energy_drift"]
+    text = (
+        "Four motions of each model under gravity without inputs, by a fourth-order method. The engines' energies "
+        "along the way are compared in the table above (“motion”). Our own energy, less the work done, drifts by "
+        "what the integrator loses: half the step should leave a sixteenth of it, until rounding rules."
+    )
+    head = ("model", "#drift at the full step", "#at half the step", "#ratio", "#allowed")
+    table = Table(head, tuple(map(_drift, rows)))
+    return Section("Energy along a free motion", (text, table) if rows else (), page_only=True)
+
+
+def _drift(row: Comparison) -> tuple[str | Cell, ...]:
+    coarse, fine = row.extra["drift_coarse"], row.extra["drift_fine"]
+    ratio = f"{coarse / fine:.1f}" if fine else ""
+    return row.model, digits(coarse), digits(fine), ratio, Cell(digits(row.tolerance), row.ok)
+
+
+def _unsupported(record: Record) -> Section:
+    rows = tuple((engine, models, reason) for models, engine, reason in unsupported(record))
+    text = "These engines have no say on these models; nobody else's comparison is weakened."
+    blocks = (text, Table(("engine", "models", "reason"), rows)) if rows else ()
+    return Section("What an engine could not represent", blocks)
+
+
+def _method() -> Section:
+    quantities = tuple(
+        (
+            q.name,
+            q.symbol,
+            q.unit,
+            digits(q.tolerance),
+            "rounding amplified by cond(M)"
+            if q.tolerance == SOLVE
+            else "rounding of sums of some hundred products, and a margin",
+        )
+        for q in (*QUANTITIES.values(), MOTION_ENERGY)
+    )
+    conventions = tuple((d.engine, d.what, d.ours, d.theirs) for d in differences())
+    text = (
+        "The error of a state is the largest difference of any entry, divided by the largest entry of the other "
+        f"engine's result in that state. Where that result happens to be small, it is divided by {SMALL} of what the "
+        f"quantity typically is on this model, because rounding errors are those of the terms that are summed. "
+        f"Random states cover the whole manifold of q, whatever the joint limits; the first few are special: "
+        f"neutral, at rest, many turns, half turns, negated quaternions, fast. pinocchio and mujoco are built from "
+        f"our description, body by body, by code that shares nothing with the generator; pinocchio-urdf and "
+        f"mujoco-urdf read the robot's file themselves, every digit as it stands; interpreted is our NumPy "
+        f"evaluation of the same equations; description is the stated formulas of the joint efforts."
+    )
+    blocks = (
+        text,
+        Table(("quantity", "symbol", "unit", "#tolerance", "reason"), quantities),
+        Fold(
+            "Conventions that differ between engines, and are converted",
+            (Table(("engine", "what", "ours", "theirs"), conventions),),
+        ),
+    )
+    return Section("How it is measured", blocks, page_only=True)
+
+
+def _model(model: ModelResult) -> Fold:
+    blocks: list[Block] = [f"Frames compared: {', '.join(model.frames)}"] if model.frames else []
+    blocks += [Bullets(model.notes)] if model.notes else []
+    blocks.append(Text(", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in model.seconds.items()), "soft"))
+    sizes = ", ".join(f"{name} {number}" for name, number in model.sizes.items())
+    return Fold(f"{model.label} {sizes} {model.hash}".strip(), tuple(blocks))
+
+
+def _digest(record: Record) -> list[Block]:
+    detailed = len(record.models) <= _DETAILED
+    which = "" if detailed else " and engines"
+    blocks: list[Block] = []
+    if record.models:
+        blocks.append(f"Largest error over all states{which}, relative to the largest entry")
+        blocks.append(by_engine(record, BRIEF) if detailed else by_model(record, BRIEF))
+    blocks += [Text(f"not compared: {model}, {engine}: {text}", "soft") for model, engine, text in unsupported(record)]
+    blocks += [Text(f"{model}, {engine}: {text}", "bad") for model, engine, text in failures(record)]
+    return blocks
+
+
+TOPIC = Topic("check", "Correctness", "Do our C and independent engines agree?", compose, ())

@@ -1,0 +1,173 @@
+"""Comparisons arranged for people: one line a model or engine, one column a kind of quantity."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from validation.adapters import ROUTES
+from validation.check import ModelResult
+from validation.comparison.errors import Comparison
+from validation.contract.quantities import FRAME_QUANTITIES
+from validation.cross_check.record import Record
+from validation.reporting.numbers import counted, digits
+from validation.reporting.record import Cell, Table
+
+# Title of a column -> quantities that share it.
+Columns = dict[str, tuple[str, ...]]
+
+COLUMNS: Columns = {
+    "M": ("mass_matrix",),
+    "h": ("bias",),
+    "gravity": ("gravity",),
+    "Q": ("generalized_force",),
+    "T, V": ("kinetic_energy", "potential_energy"),
+    "inverse": ("inverse_dynamics",),
+    "forward": ("forward_dynamics",),
+    "poses": ("frame_pose",),
+    "twists": ("frame_velocity", "frame_acceleration"),
+    "J, dJ/dt": ("frame_jacobian", "frame_jacobian_rate"),
+    "phi, G, gamma": ("constraint", "constraint_jacobian", "constraint_bias", "closure_gap"),
+    "multipliers": ("multipliers", "constraint_force", "frame_response"),
+    "motion": ("motion_energy",),
+    "drift": ("energy_drift",),
+}
+
+# The same with fewer columns, for a terminal.
+BRIEF: Columns = {
+    "M": ("mass_matrix",),
+    "h": ("bias",),
+    "gravity": ("gravity",),
+    "Q": ("generalized_force",),
+    "energy": ("kinetic_energy", "potential_energy", "motion_energy"),
+    "inverse": ("inverse_dynamics",),
+    "forward": ("forward_dynamics",),
+    "frames": tuple(sorted(FRAME_QUANTITIES)),
+    "loops": (*COLUMNS["phi, G, gamma"], *COLUMNS["multipliers"]),
+    "drift": ("energy_drift",),
+}
+
+# Engines of rows that no other engine is behind: our own drift, and what was asked of any of them.
+_OURS = ("symofros", "any")
+# Depth of the background of a cell whose error is at the tolerance.
+_DEEPEST = 0.55
+
+
+def by_model(record: Record, columns: Columns = COLUMNS) -> Table:
+    """One line a model, the worst over all engines in each cell."""
+    lines = [(model, model.comparisons) for model in record.models]
+    head = ("model", "#nv", "#engines")
+    rows = [
+        (_name(m, rows), _speeds(m), str(_engines(rows)), *_cells(rows, columns), _status(rows)) for m, rows in lines
+    ]
+    return _used((*head, *(f"#{title}" for title in columns), "verdict"), rows)
+
+
+def by_engine(record: Record, columns: Columns = COLUMNS, engines: Sequence[str] = (*ROUTES, *_OURS)) -> Table:
+    """One line for each engine of each model that it has something to say of."""
+    lines = [
+        (model, engine, [row for row in model.comparisons if row.engine == engine])
+        for model in record.models
+        for engine in engines
+    ]
+    rows = [(_name(m, rows), _speeds(m), e, *_cells(rows, columns), _status(rows)) for m, e, rows in lines if rows]
+    return _used(("model", "#nv", "engine", *(f"#{title}" for title in columns), "verdict"), rows)
+
+
+def _used(head: Sequence[str], rows: Sequence[tuple[str | Cell, ...]]) -> Table:
+    """The table without columns in which nothing was compared."""
+    kept = [k for k in range(len(head)) if k < 3 or any(row[k] != "" for row in rows)]
+    return Table(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
+
+
+def _name(model: ModelResult, rows: Sequence[Comparison]) -> Cell:
+    return Cell(model.label, None if _status(rows).text in ("agree", "unsupported") else False)
+
+
+def _speeds(model: ModelResult) -> str:
+    return str(model.sizes.get("nv", ""))
+
+
+def _engines(rows: Sequence[Comparison]) -> int:
+    return len({row.engine for row in rows if row.status in ("agree", "disagree")} - {"symofros"})
+
+
+def _status(rows: Sequence[Comparison]) -> Cell:
+    statuses = {row.status for row in rows}
+    status = next((status for status in ("failed", "disagree", "agree") if status in statuses), "unsupported")
+    return Cell(status, False if status in ("failed", "disagree") else None)
+
+
+def _cells(rows: Sequence[Comparison], columns: Columns) -> list[str | Cell]:
+    """The worst comparison of those that fall into each column."""
+    cells: list[str | Cell] = []
+    for quantities in columns.values():
+        row = worst(row for row in rows if row.quantity in quantities)
+        if row is None:
+            cells.append("")
+        else:
+            hint = f"{row.quantity}, {row.engine}; median {digits(row.median)}"
+            text = digits(row.error, 1 if columns is BRIEF else 2)
+            cells.append(Cell(text, row.ok, _DEEPEST * margin_used(row) if row.ok else 0.0, hint))
+    return cells
+
+
+def margin_used(row: Comparison) -> float:
+    """Share of the tolerance that is used, on a logarithmic scale: 0 at rounding (1e-16), 1 at the tolerance."""
+    if row.error == 0.0:
+        return 0.0
+    if row.error is None or row.error >= row.tolerance:
+        return 1.0
+    whole = math.log10(row.tolerance) + 16.0
+    return min(max((math.log10(row.error) + 16.0) / whole, 0.0), 1.0) if whole > 0.0 else 1.0
+
+
+def worst(rows: Iterable[Comparison]) -> Comparison | None:
+    """The row nearest to its tolerance, or farthest beyond; one without a number is worst of all."""
+
+    def badness(row: Comparison) -> float:
+        return float("inf") if row.error is None else row.error / row.tolerance
+
+    return max((row for row in rows if row.status in ("agree", "disagree")), key=badness, default=None)
+
+
+def failures(record: Record) -> list[tuple[str, str, str]]:
+    """Model, engine and what disagrees or failed, with its numbers."""
+    return [(row.model, row.engine, _failure(row)) for row in record.rows("disagree", "failed")]
+
+
+def _failure(row: Comparison) -> str:
+    if row.status == "failed":
+        return f"{row.quantity}: {row.note}"
+    error = "not a number" if row.error is None else f"error {digits(row.error)}"
+    place = "" if row.worst_state is None else f" in state {row.worst_state} of {row.states}"
+    return f"{row.quantity}: {error}{place}, tolerance {digits(row.tolerance)}" + (f"; {row.note}" if row.note else "")
+
+
+def unsupported(record: Record) -> list[tuple[str, str, str]]:
+    """Models, engine, and what it could not represent and why; the same reason is told once."""
+    grouped: dict[tuple[str, str], list[Comparison]] = {}
+    for row in record.rows("unsupported"):
+        grouped.setdefault((row.engine, row.note), []).append(row)
+    return [
+        (", ".join(dict.fromkeys(row.model for row in rows)), engine, _quantities(rows) + reason)
+        for (engine, reason), rows in grouped.items()
+    ]
+
+
+def _quantities(rows: Sequence[Comparison]) -> str:
+    """Which quantities, where it is not all."""
+    names = dict.fromkeys(row.quantity for row in rows if row.quantity != "all")
+    return f"{', '.join(names)}: " if names else ""
+
+
+def headline(record: Record) -> str:
+    """The verdict in one sentence, or two."""
+    what = f"{counted(len(record.compared), 'comparison')} on {counted(len(record.models), 'model')}"
+    disagreeing = len(record.rows("disagree"))
+    failed = len({row.model for row in record.rows("failed")})
+    parts = [f"{disagreeing} of {what} disagree" if disagreeing else f"all {what} agree"] if record.compared else []
+    parts += [f"{counted(failed, 'model')} failed"] if failed else []
+    said = ", ".join(parts) or "nothing was compared"
+    cut = f" Interrupted: {counted(len(record.unfinished), 'model')} not checked." if record.unfinished else ""
+    return f"{said[0].upper()}{said[1:]}.{cut}"

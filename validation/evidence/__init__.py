@@ -1,1 +1,0 @@
-"""What a study rests on and shows: reference numbers, findings with their bounds, charts."""

@@ -1,0 +1,153 @@
+"""What follows from the points, in words: who wins where, and which to use when."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import groupby
+
+from validation.pareto.front import charted, front, ratio, seconds_at, usable
+from validation.pareto.race import Result, engines
+from validation.pareto.scene import OURS, Point, Scene, Target
+from validation.reporting.numbers import duration
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A target and what was found.
+
+    Attributes:
+        target: As stated.
+        ours, theirs: Least seconds that keep the error; infinity where nothing does.
+        found: Their seconds over ours.
+    """
+
+    target: Target
+    ours: float
+    theirs: float
+    found: float
+
+    @property
+    def ok(self) -> bool:
+        """Whether it is met; NaN is not."""
+        return bool(self.found >= self.target.ratio)
+
+
+def verdicts(scene: Scene, points: tuple[Point, ...]) -> list[Verdict]:
+    """Of each target."""
+    found = []
+    for target in scene.targets:
+        sides = [seconds_at((p for p in points if p.who == who), target.error) for who in (OURS, target.engine)]
+        found.append(Verdict(target, sides[0], sides[1], ratio(points, OURS, target.engine, target.error)))
+    return found
+
+
+def compared(scene: Scene, points: tuple[Point, ...]) -> list[str]:
+    """A sentence on each target."""
+    return [_sentence(scene, verdict) for verdict in verdicts(scene, points)]
+
+
+def _sentence(scene: Scene, verdict: Verdict) -> str:
+    at, engine = scene.shown(verdict.target.error), verdict.target.engine
+    if math.isnan(verdict.found):
+        return f"At {at} neither symofros nor {engine} has a run."
+    if verdict.found == 0.0:
+        return f"At {at} {engine} wins: no model of ours keeps it, and {engine} takes {duration(verdict.theirs)}."
+    if math.isinf(verdict.found):
+        return f"At {at} symofros wins with {duration(verdict.ours)}: no run of {engine} keeps it."
+    times = f"{duration(verdict.ours)} against {duration(verdict.theirs)}"
+    if verdict.found >= 1.0:
+        return f"At {at} symofros wins by {verdict.found:.3g}: {times} of {engine}'s best."
+    return f"At {at} {engine} wins by {1.0 / verdict.found:.3g}: symofros takes {times} of {engine}'s best."
+
+
+def advice(scene: Scene, result: Result) -> list[str]:
+    """Which to use when: the front from the fastest to the most accurate, a line for each side, model and method."""
+    best = front(charted(scene, result.points))
+    lines = []
+    for (who, model, method), group in groupby(best, key=lambda p: p.series):
+        run = list(group)
+        times = duration(run[-1].seconds)
+        lines.append(
+            f"down to an error of {scene.shown(run[-1].error)}: {who}, {model}, {method}, {run[-1].setting} ({times})"
+        )
+    return lines
+
+
+def below_the_floor(scene: Scene, result: Result) -> str:
+    """Who serves those who want less than our model's own error."""
+    if not result.floors:
+        return ""
+    least = min(result.floors.values())
+    finer = [p for p in usable(result.points) if p.who != OURS and p.error < least]
+    floors = ", ".join(f"{scene.shown(value)} ({name})" for name, value in result.floors.items())
+    said = f"Our beam model leaves {floors}, whatever its functions and method (a step's error may hide some of it)"
+    if not finer:
+        return f"{said}; no run here goes below it."
+    first = min(finer, key=lambda p: p.seconds)
+    return (
+        f"{said}; below {scene.shown(least)} {first.who} is the tool: {first.model}, {first.method}, "
+        f"{first.setting} reach {scene.shown(first.error)} in {duration(first.seconds)}."
+    )
+
+
+def methods(scene: Scene, result: Result) -> str:
+    """Which of our methods is first at the errors that matter."""
+    mine = [p for p in usable(result.points) if p.who == OURS]
+    if not mine:
+        return "No run of ours came to its end."
+    parts = []
+    # References can't tell what is below their disagreement.
+    least = max(min(p.error for p in mine), result.agreement)
+    for error in sorted({target.error for target in scene.targets if target.error >= least} | {least}, reverse=True):
+        by: dict[str, float] = {}
+        for p in mine:
+            by[p.method] = min(by.get(p.method, math.inf), seconds_at((o for o in mine if o.method == p.method), error))
+        first, *rest = sorted((s, m) for m, s in by.items() if math.isfinite(s))
+        second = f", then {rest[0][1]} ({duration(rest[0][0])})" if rest else ""
+        parts.append(f"at {scene.shown(error)} {first[1]} ({duration(first[0])}){second}")
+    return "Of our methods the fastest are " + "; ".join(parts) + "."
+
+
+def overall(results: dict[str, tuple[Scene, Result]]) -> str:
+    """What holds across scenes: whose the front is, and our first method at the smallest error asked for."""
+    firsts: dict[str, list[str]] = {}
+    for scene, result in results.values():
+        if not scene.targets:
+            continue
+        error = min(target.error for target in scene.targets)
+        mine = [p for p in usable(result.points) if p.who == OURS]
+        by = {p.method: seconds_at((o for o in mine if o.method == p.method), error) for p in mine}
+        if by and math.isfinite(min(by.values())):
+            firsts.setdefault(min(by, key=lambda m: by[m]), []).append(scene.title)
+    said = [f"{method} on {', '.join(where)}" for method, where in firsts.items()]
+    floors = [scene.title for scene, result in results.values() if result.floors]
+    where = ", ".join(floors)
+    beams = (
+        f" Below the floors of our beams, on {where}, the tool is a nonlinear finite element: Exudyn." if where else ""
+    )
+    return f"At the smallest error asked for, the first of our methods is {'; '.join(said) or 'none'}.{beams}"
+
+
+def see(scene: Scene, result: Result) -> str:
+    """The sentence under a figure."""
+    others = " and ".join(engines(result.points)) or "nobody else"
+    best = front(charted(scene, result.points))
+    mine, total = sum(p.who == OURS for p in best), len(best)
+    return (
+        f"Down is more accurate, left is faster. {mine} of the {total} runs on the green front are ours. Cold "
+        f"colours are ours, warm ones those of {others}. Letters name the runs of the front in the table "
+        "below. At the right, each method on the model with which it comes closest."
+    )
+
+
+def refused(result: Result) -> list[str]:
+    """Runs that did not come to their end: whose, how many, and the first one's reason."""
+    found: dict[tuple[str, str], list[Point]] = {}
+    for p in result.points:
+        if p.ended:
+            found.setdefault((p.who, p.method), []).append(p)
+    return [
+        f"{who}, {method}: {len(runs)} ({runs[0].model}, {runs[0].setting}: {runs[0].ended})"
+        for (who, method), runs in found.items()
+    ]

@@ -1,0 +1,228 @@
+"""One way to make a command of a report: the same options, progress, files, output and exit codes everywhere."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import time
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from enum import IntEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+import symofros as sf
+from symofros.atomic import write_atomically
+from validation.reporting import html, markdown, terminal
+from validation.reporting.provenance import Provenance, stamp
+from validation.reporting.record import Data, Report, Topic
+
+REPORTS = Path("reports")
+
+
+class Exit(IntEnum):
+    """Exit codes."""
+
+    GOOD = 0
+    MISSED = 1
+    BAD_INPUT = 2
+    INTERRUPTED = 130
+
+
+Output = Annotated[Path, typer.Option("--output", "-o", "--report", help="Folder of the report's files.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")]
+Quick = Annotated[bool, typer.Option("--quick", help="A short way to the same questions: fewer points and runs.")]
+
+_CODES = "Exit code: 0 everything asked for is met, 1 something is not, 2 bad input, 130 interrupted."
+
+
+@dataclass
+class Done:
+    """What became of several parts.
+
+    Attributes:
+        results: Name -> result.
+        failures: Name -> reason why it could not be done.
+        unfinished: Names that Ctrl-C cut.
+    """
+
+    results: dict[str, Any] = field(default_factory=dict)
+    failures: dict[str, str] = field(default_factory=dict)
+    unfinished: tuple[str, ...] = ()
+
+
+class Run:
+    """What a command gives the function that measures: progress, and a place for results.
+
+    Args:
+        topic: The report that is made.
+        folder: Folder of its files; a part of a report may choose another.
+    """
+
+    def __init__(self, topic: Topic, folder: Path = REPORTS) -> None:
+        self.topic, self.folder = topic, folder
+        self.start = time.perf_counter()
+        self._console = Console(stderr=True)
+        # The bar is for eyes: a file or a pipe gets nothing.
+        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+        self._bar = Progress(*columns, console=self._console, transient=True, disable=not self._console.is_terminal)
+        self._task = self._bar.add_task(topic.name, total=None)
+
+    @contextmanager
+    def progress(self) -> Iterator[None]:
+        """The bar is there meanwhile."""
+        with self._bar:
+            yield
+
+    def expect(self, total: int, doing: str | None = None) -> None:
+        """So many steps are to be done."""
+        self._bar.reset(self._task, total=total, description=doing or self.topic.name)
+
+    def advance(self, doing: str | None = None, steps: int = 1) -> None:
+        """Steps are done; `doing` says what comes next, or came out."""
+        self._bar.update(self._task, advance=steps, description=doing)
+
+    def say(self, text: str, bad: bool = False) -> None:
+        """A line on the error stream."""
+        self._console.print(text, style="bold red" if bad else "yellow", markup=False)
+
+    def each(self, names: Sequence[str], work: Callable[[str], Any], after: Callable[[Done], object] = id) -> Done:
+        """Do parts one by one: one that fails does not keep the others from being done, Ctrl-C ends them.
+
+        Args:
+            names: The parts.
+            work: Name -> result.
+            after: Told after each of what is done so far.
+        """
+        done = Done()
+        for position, name in enumerate(names):
+            try:
+                done.results[name] = work(name)
+            except (sf.SymofrosError, ArithmeticError, ValueError, RuntimeError) as error:
+                done.failures[name] = f"{type(error).__name__}: {error}"
+            except KeyboardInterrupt:
+                done.unfinished = tuple(names[position:])
+                break
+            after(Done(done.results, done.failures, tuple(names[position + 1 :])))
+        return done
+
+    def head(self, ok: bool, done: Done, *tools: str, quick: bool = False) -> dict[str, Any]:
+        """How a run of several parts went and on what, for JSON; `tools`: packages whose versions matter."""
+        return {
+            "ok": ok and bool(done.results) and not done.failures and not done.unfinished,
+            "quick": quick,
+            "seconds": self.seconds,
+            "failures": done.failures,
+            "unfinished": done.unfinished,
+            **stamp(*tools),
+        }
+
+    @property
+    def seconds(self) -> float:
+        """Wall time so far."""
+        return round(time.perf_counter() - self.start, 1)
+
+    def save(self, data: Data) -> Report:
+        """Write the report as far as it is."""
+        return write(self.topic, data, self.folder)
+
+
+Measure = Callable[..., Data]
+
+
+def write(topic: Topic, data: Data, folder: Path) -> Report:
+    """Write NAME.json (everything), NAME.md (texts and tables), NAME.html (one self-contained page).
+
+    Raises:
+        OSError: The folder can't be written to.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    write_atomically(folder / f"{topic.name}.json", json.dumps(data, allow_nan=False) + "\n")
+    return render(topic, json.loads(json.dumps(data)), folder)
+
+
+def render(topic: Topic, data: Data, folder: Path) -> Report:
+    """Write NAME.md and NAME.html from what NAME.json holds."""
+    report, provenance = topic.compose(data), Provenance.of(data)
+    written = f"Written by `{topic.command}`; everything is in `{topic.name}.json`"
+    page = html.page(report, provenance, f"{written}.")
+    write_atomically(folder / f"{topic.name}.html", page)
+    write_atomically(
+        folder / f"{topic.name}.md", markdown.page(report, provenance, f"{written}, figures in `{topic.name}.html`.")
+    )
+    return report
+
+
+def code(report: Report) -> Exit:
+    """The exit code of a report."""
+    if report.unfinished:
+        return Exit.INTERRUPTED
+    if report.ok is False and report.refused:
+        return Exit.BAD_INPUT
+    return Exit.MISSED if report.ok is False else Exit.GOOD
+
+
+def execute(
+    topic: Topic, measure: Measure, folder: Path, as_json: bool, printed: Sequence[str] = (), **options: Any
+) -> None:
+    """Measure, write, print, exit.
+
+    Args:
+        topic: The report.
+        measure: Run and options -> data.
+        folder: Folder of the files.
+        as_json: Whether data is printed, and nothing else.
+        printed: Names in the data that are printed; none: all.
+        options: Options of `measure`.
+    """
+    run = Run(topic, folder)
+    try:
+        with run.progress():
+            data = measure(run, **options)
+    except KeyboardInterrupt:
+        run.say(f"{topic.name}: interrupted, nothing is written", bad=True)
+        raise typer.Exit(Exit.INTERRUPTED) from None
+    report = run.save(data)
+    if as_json:
+        chosen = {name: data[name] for name in printed} if printed else data
+        typer.echo(json.dumps(chosen, allow_nan=False))
+    else:
+        terminal.show(report)
+        typer.echo(f"Report: {run.folder / topic.name}.html")
+    raise typer.Exit(code(report))
+
+
+def add_command(app: typer.Typer, topic: Topic, measure: Measure, printed: Sequence[str] = ()) -> None:
+    """Add a report's command: the options of `measure` after its first argument, the folder, and --json."""
+    signature = inspect.signature(measure, eval_str=True)
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    own = [parameter.replace(kind=keyword) for parameter in list(signature.parameters.values())[1:]]
+    shared = [
+        inspect.Parameter("output", keyword, default=REPORTS, annotation=Output),
+        inspect.Parameter("as_json", keyword, default=False, annotation=AsJson),
+    ]
+
+    def command(**options: Any) -> None:
+        execute(topic, measure, options.pop("output"), options.pop("as_json"), printed, **options)
+
+    command.__signature__ = inspect.Signature([*own, *shared])  # type: ignore[attr-defined]
+    command.__annotations__ = {parameter.name: parameter.annotation for parameter in (*own, *shared)}
+    said = (inspect.getdoc(measure) or "").partition("\n\nArgs:")[0]
+    app.command(topic.name, help=f"{said}\n\n{_CODES}")(command)
+
+
+def known(chosen: Sequence[str] | None, names: Collection[str], option: str, noun: str) -> list[str]:
+    """What is chosen, or else all.
+
+    Raises:
+        BadParameter: One of them does not exist.
+    """
+    for name in chosen or ():
+        if name not in names:
+            raise typer.BadParameter(f"no {noun} '{name}'; there are {', '.join(names)}", param_hint=option)
+    return list(chosen or names)

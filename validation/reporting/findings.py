@@ -1,0 +1,90 @@
+"""A number with the bounds it must keep, and the answer to one question that such numbers make."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from validation.mechanics.geometry import Array
+from validation.reporting.figures import Figure
+from validation.reporting.numbers import finite
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A number and the bounds it must keep.
+
+    Attributes:
+        quantity: Name of the number, in words, with its unit.
+        value: The number.
+        high: Upper bound, allowed itself.
+        low: Lower bound, allowed itself.
+        reason: Origin of the bounds.
+    """
+
+    quantity: str
+    value: float
+    high: float
+    low: float = -math.inf
+    reason: str = ""
+
+    @property
+    def ok(self) -> bool:
+        """Whether the number is within its bounds; NaN is not."""
+        return bool(self.low <= self.value <= self.high)
+
+    def data(self) -> dict[str, Any]:
+        """The finding for JSON, which has neither NaN nor infinity."""
+        low, high, value = (finite(float(x)) for x in (self.low, self.high, self.value))
+        return {"what": self.quantity, "found": value, "high": high, "low": low, "reason": self.reason, "ok": self.ok}
+
+    @classmethod
+    def of(cls, data: Mapping[str, Any]) -> Finding:
+        """The finding that `data` wrote."""
+        value = math.nan if data["found"] is None else data["found"]
+        high = math.inf if data["high"] is None else data["high"]
+        low = -math.inf if data["low"] is None else data["low"]
+        return cls(data["what"], value, high, low, data["reason"])
+
+
+@dataclass(frozen=True)
+class Study:
+    """The answer to one question.
+
+    Attributes:
+        title: The question.
+        answer: The answer in words, with the numbers found.
+        figures: Figures that show it.
+        findings: Numbers with their bounds.
+        sources: Origins of the reference numbers.
+    """
+
+    title: str
+    answer: str
+    figures: tuple[Figure, ...]
+    findings: tuple[Finding, ...]
+    sources: tuple[str, ...] = field(default=())
+
+    @property
+    def ok(self) -> bool:
+        """Whether every number is within its bounds."""
+        return all(finding.ok for finding in self.findings)
+
+
+# Answers a question; the argument says whether a short way is taken: fewer points and shorter motions.
+Question = Callable[[bool], Study]
+
+
+def near(quantity: str, value: float, expected: float, relative: float, reason: str) -> Finding:
+    """A finding whose bounds are the expected number, less and more a relative tolerance."""
+    margin = abs(expected) * relative
+    return Finding(quantity, value, expected + margin, expected - margin, reason)
+
+
+def exponent(x: Array, y: Array) -> float:
+    """The k of y ~ x^-k, by least squares on logarithms."""
+    return -float(np.polyfit(np.log(x), np.log(y), 1)[0])

@@ -1,0 +1,146 @@
+"""Report -> one self-contained page: nothing from outside, no script, readable on a phone, light or dark."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from html import escape
+from importlib.resources import files
+
+from validation.reporting.charts import draw
+from validation.reporting.figures import Chart, Drawing, Figure
+from validation.reporting.provenance import Provenance
+from validation.reporting.record import Block, Bullets, Cell, Fact, Fold, Report, Section, Table, Text
+
+# Tones of verdicts in the style sheet.
+_TONE = {True: "good", False: "bad", None: "soft"}
+# Tables of more columns are set closer.
+_MANY_COLUMNS = 11
+
+
+def page(report: Report, provenance: Provenance | None = None, closing: str = "", listed: bool = True) -> str:
+    """The page.
+
+    Args:
+        report: What it shows.
+        provenance: Origin of the numbers, told at the end.
+        closing: Last line.
+        listed: Whether links to the sections come before them.
+    """
+    style = files("validation.reporting").joinpath("style.css").read_text(encoding="utf-8")
+    links = [section for section in report.sections if section.anchor]
+    parts = [
+        f"<h1>{escape(report.title)}</h1>",
+        f'<p class="verdict {_TONE[report.ok]}">{prose(report.summary)}</p>',
+        facts(report.facts),
+        *(block(one, "") for one in report.blocks),
+        contents(links) if listed and len(links) > 1 else "",
+        *(section(one, k + 1) for k, one in enumerate(report.sections)),
+    ]
+    if provenance is not None:
+        parts += ["<h2>Versions and machine</h2>", table(Table(("what", "value"), tuple(provenance.rows())))]
+    parts.append(f'<p class="soft">{prose(closing)}</p>' if closing else "")
+    body = "\n".join(filter(None, parts))
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{escape(report.title)}</title>\n<style>\n{style}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n"
+    )
+
+
+def prose(text: str) -> str:
+    """Escaped, with `code`, **bold** and [links](#anchor) set as such."""
+    text = re.sub("`([^`]+)`", r"<code>\1</code>", escape(text, quote=False))
+    text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
+    return re.sub(r"\[([^\]]+)\]\(([#\w][\w.#/-]*)\)", r'<a href="\2">\1</a>', text)
+
+
+def facts(facts: Sequence[Fact]) -> str:
+    """Key numbers as tiles."""
+    tiles = [
+        f'<div class="tile"><b class="{_TONE[fact.ok] if fact.ok is not None else ""}">{escape(fact.value)}</b>'
+        f"<span>{prose(fact.label)}</span></div>"
+        for fact in facts
+    ]
+    return f'<div class="tiles">{"".join(tiles)}</div>' if tiles else ""
+
+
+def contents(sections: Sequence[Section]) -> str:
+    """Links to sections, with those that miss something marked."""
+    items = [
+        f'<li><a href="#{escape(one.anchor)}">{prose(one.title)}</a>'
+        f"{' <b class=bad>missed</b>' if one.ok is False else ''}</li>"
+        for one in sections
+    ]
+    return f"<ol>{''.join(items)}</ol>"
+
+
+def section(one: Section, number: int) -> str:
+    """A section; its figures are numbered within it."""
+    anchor = f' id="{escape(one.anchor)}"' if one.anchor else ""
+    badge = f' <span class="badge {_TONE[one.ok]}">{escape(one.badge)}</span>' if one.badge else ""
+    parts, figures = [], 0
+    for item in one.blocks:
+        figures += isinstance(item, Figure)
+        parts.append(block(item, f"Figure {number}.{figures}."))
+    return f"<h2{anchor}>{prose(one.title)}{badge}</h2>\n" + "\n".join(parts)
+
+
+def block(item: Block, figure_name: str) -> str:
+    """Any block."""
+    match item:
+        case str():
+            return f"<p>{prose(item)}</p>"
+        case Text(text, tone):
+            return f'<p class="{tone}">{prose(text)}</p>'
+        case Table():
+            return table(item)
+        case Bullets(items):
+            return f"<ul>{''.join(f'<li>{prose(one)}</li>' for one in items)}</ul>"
+        case Figure(caption, charts):
+            name = f"<b>{figure_name}</b> " if figure_name else ""
+            said = f"<figcaption>{name}{prose(caption)}</figcaption>" if caption else ""
+            return f'<figure><div class="charts">{"".join(map(chart, charts))}</div>{said}</figure>'
+        case Fold(summary, blocks, opened):
+            inner = "\n".join(block(one, figure_name) for one in blocks)
+            return f"<details{' open' if opened else ''}><summary>{prose(summary)}</summary>\n{inner}</details>"
+
+
+def chart(item: Chart | Drawing) -> str:
+    """A picture under its title and legend."""
+    drawing = item if isinstance(item, Drawing) else draw(item)
+    legend = [
+        f'<span><svg class="sample" viewBox="0 0 24 12">{sample}</svg>{escape(name)}</span>'
+        for sample, name in drawing.legend
+    ]
+    note = f'<p class="soft">{escape(drawing.note)}</p>' if drawing.note else ""
+    return (
+        f'<div class="chart"><h4>{escape(drawing.title)}</h4><div class="legend">{"".join(legend)}</div>{note}'
+        f"{drawing.svg}</div>"
+    )
+
+
+def table(item: Table) -> str:
+    """A table that scrolls by itself where it is wider than the page; its first column stays."""
+    numeric = [name.startswith("#") for name in item.head]
+    head = "".join(
+        f"<th{' class=n' if is_number else ''}>{prose(name.removeprefix('#'))}</th>"
+        for name, is_number in zip(item.head, numeric, strict=True)
+    )
+    rows = "\n".join(
+        "<tr>" + "".join(cell(one, is_number) for one, is_number in zip(row, numeric, strict=True)) + "</tr>"
+        for row in item.rows
+    )
+    dense = " class=dense" if len(item.head) > _MANY_COLUMNS else ""
+    return f'<div class="scroll"><table{dense}>\n<tr>{head}</tr>\n{rows}\n</table></div>'
+
+
+def cell(item: str | Cell, is_number: bool) -> str:
+    """A cell of a table."""
+    kinds = ["n"] if is_number else []
+    if isinstance(item, str):
+        return f"<td{' class=n' if is_number else ''}>{prose(item)}</td>"
+    kinds += ["wrong"] if item.ok is False else []
+    shade = f' style="background: rgba(var(--heat), {item.shade:.2f})"' if item.shade else ""
+    hint = f' title="{escape(item.hint)}"' if item.hint else ""
+    return f'<td class="{" ".join(kinds)}"{shade}{hint}>{prose(item.text)}</td>'

@@ -1,0 +1,1 @@
+"""The reports of studies: what is measured, and what is said of it."""

@@ -1,0 +1,103 @@
+"""What became of a hundred thousand hostile inputs."""
+
+from __future__ import annotations
+
+import resource
+import sys
+from dataclasses import asdict
+from typing import Annotated
+
+import typer
+
+from validation.reporting.command import Run
+from validation.reporting.numbers import counted
+from validation.reporting.provenance import stamp
+from validation.reporting.record import Bullets, Cell, Data, Fact, Report, Section, Table, Topic
+from validation.studies.fuzz import COMPILED, SLOWEST, fuzz
+
+INPUTS = 120_000
+_FAULTS_SHOWN = 20
+
+
+def measure(
+    run: Run,
+    count: Annotated[int, typer.Option(min=1, help="Inputs, all kinds together.")] = INPUTS,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the mutations.")] = 0,
+) -> Data:
+    """Feed mutated, hostile files and formulas to the readers: none may crash or hang them."""
+    run.expect(count, "feeding")
+    last = 0
+
+    def done(number: int) -> None:
+        nonlocal last
+        run.advance(steps=number - last)
+        last = number
+
+    result = fuzz(count, seed, done)
+    kinds = {kind: {"inputs": 0, **asdict(answers)} for kind, answers in result.answers.items()}
+    for kind, row in kinds.items():
+        row["faults"] = sum(fault.kind == kind for fault in result.faults)
+        row["inputs"] = row["read"] + row["refused"] + row["faults"]
+        row["slowest"] = round(row["slowest"], 4)
+    # Linux counts kilobytes, macOS bytes.
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1 << (20 if sys.platform == "darwin" else 10))
+    return {
+        "ok": not result.faults,
+        "inputs": sum(row["inputs"] for row in kinds.values()),
+        "seed": seed,
+        "seconds": run.seconds,
+        "peak_memory_mib": round(peak),
+        "kinds": kinds,
+        "faults": [
+            {"kind": f.kind, "number": f.number, "what": f.what, "input": f.data.decode("latin-1")}
+            for f in result.faults
+        ],
+        **stamp("pydantic", "ruamel.yaml"),
+    }
+
+
+def compose(data: Data) -> Report:
+    """The report of its JSON."""
+    kinds, faults = data["kinds"], data["faults"]
+    slowest = max(row["slowest"] for row in kinds.values())
+    read, refused = (sum(row.get(answer, 0) for row in kinds.values()) for answer in ("read", "refused"))
+    columns = ("inputs", "refused", "read", "compiled", "faults")
+    table = Table(
+        ("kind", *(f"#{name}" for name in columns), "#slowest [ms]", "#its number"),
+        tuple(
+            (
+                kind,
+                *(Cell(str(row.get(n, "")), not row.get(n) if n == "faults" else None) for n in columns),
+                f"{1e3 * row['slowest']:.0f}",
+                str(row.get("slowest_input", "")),
+            )
+            for kind, row in kinds.items()
+        ),
+    )
+    text = (
+        "An input is one of the package's own descriptions with one to four random changes: of bytes, words, numbers, "
+        "pieces, lines, or a hostile snippet (code, bombs, document types, endless numbers) put in. A fault is any "
+        f"exception but the refusal, a warning, an input that takes longer than {SLOWEST:g} s, or an accepted input "
+        "that is another one after it was written and read again. Of the accepted files, one in "
+        f"{COMPILED} is also compiled, to the interpreter, and its mass matrix evaluated."
+    )
+    listed = Bullets(tuple(f"{f['kind']} no. {f['number']}: `{f['what']}`" for f in faults[:_FAULTS_SHOWN]))
+    sections = [Section("By kind of input", (table,))]
+    sections += [Section("Faults", (listed,))] if faults else []
+    return Report(
+        "Fuzz test of the readers",
+        f"{counted(data['inputs'], 'hostile input')}: {len(faults)} crashed or hung a reader.",
+        bool(data["ok"]),
+        (text,),
+        tuple(sections),
+        (
+            Fact(str(refused), "refused with a description of their faults"),
+            Fact(str(read), "read"),
+            Fact(f"{slowest:.1f} s", f"the slowest, of at most {SLOWEST:g} s", slowest <= SLOWEST),
+            Fact(f"{data['peak_memory_mib']} MiB", f"peak memory; seed {data.get('seed', 0)}"),
+        ),
+        digest=(table, *([listed] if faults else [])),
+    )
+
+
+TOPIC = Topic("fuzz", "Correctness", "Is every hostile file read, or refused in words?", compose)

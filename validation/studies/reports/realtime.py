@@ -1,0 +1,119 @@
+"""How late the instants of diagrams begin."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import asdict
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from validation.mechanics.geometry import Array
+from validation.reporting.command import Run
+from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.provenance import stamp
+from validation.reporting.record import Cell, Data, Fact, Report, Section, Table, Topic
+from validation.studies import realtime
+
+_LIMITS = (
+    "Each scene runs in real time in the C loop, which sleeps until an instant is due; how late an instant began is "
+    "read off the clock afterwards, so it is the operating system's waking plus whatever the instant before took too "
+    "long. No core is set apart, and other programs run beside (see the load); what the machine does for a loop with "
+    "nothing in it is the first row. Ordinary: a thread as any other. First: it comes before those of ordinary "
+    "programs (SCHED_FIFO, as by `chrt -f 20 symofros simulate`), where the system permits that. An instant is missed "
+    "if it began when the next one was due already. Busy is the loop's processor time an instant, motion included."
+)
+_SEE = (
+    "The further left a curve falls, the more punctual. The body of each lies at tens of microseconds; the tail to the "
+    "right is the operating system doing other things, and it is shorter for a thread that comes first. Right of a "
+    "dashed line the next instant of a loop of that rate was due already."
+)
+# Edges of bins of lateness [us], twelve a decade.
+_EDGES = np.logspace(-1, 5, 73)
+
+
+def measure(run: Run, seconds: Annotated[float, typer.Option(min=0.01, help="Length of each scene.")] = 20.0) -> Data:
+    """Keep pace with the clock, and say how well."""
+    ways = (False, True) if realtime.may_come_first() else (False,)
+    run.expect(len(ways) * len(realtime.SCENES), "in real time")
+    scenes = []
+    for first in ways:
+        for scene in realtime.SCENES:
+            row = realtime.run(seconds, scene, first)
+            scenes.append(
+                {
+                    "what": row.what,
+                    "first": row.first,
+                    "period": row.period,
+                    "busy": row.busy,
+                    **asdict(row.jitter),
+                    "late": _share_later(row.late),
+                }
+            )
+            run.advance()
+    return {"scenes": scenes, "seconds": seconds, "cores": os.cpu_count(), "load": os.getloadavg()[0], **stamp()}
+
+
+def _share_later(late: Array) -> dict[str, list[float]]:
+    """Share of the instants that began later than each of some times [us], as far as there are any."""
+    shares = 1.0 - np.searchsorted(np.sort(1e6 * late), _EDGES) / len(late)
+    used = int(np.count_nonzero(shares)) + 1
+    return {"us": [float(f"{x:.4g}") for x in _EDGES[:used]], "share": [float(f"{x:.4g}") for x in shares[:used]]}
+
+
+def compose(data: Data) -> Report:
+    """The report of its JSON."""
+    scenes = data["scenes"]
+    best = [row for row in scenes if row["first"]] or scenes
+    least, most = (pick(1e6 * row["median"] for row in best) for pick in (min, max))
+    numbers = ("minimum", "median", "p999", "maximum")
+    table = Table(
+        ("scene", "thread", "#least", "#median", "#99.9 %", "#worst", "#missed", "#busy"),
+        tuple(
+            (
+                row["what"],
+                _thread(row["first"]),
+                *(f"{1e6 * row[name]:.1f}" for name in numbers),
+                Cell(f"{row['missed']} of {row['instants']}"),
+                f"{1e6 * row['busy']:.1f}",
+            )
+            for row in scenes
+        ),
+    )
+    charts = [
+        _chart([row for row in scenes if row["first"] is first and "late" in row], first) for first in (False, True)
+    ]
+    shown = tuple(chart for chart in charts if chart.curves)
+    said = f"{data['seconds']:g} s each, at load {data['load']:.1f} on {data['cores']} cores; late by, in microseconds:"
+    return Report(
+        "Diagrams in real time",
+        f"Instants of diagrams begin {least:.0f} to {most:.0f} µs late (medians), at load {data['load']:.1f} on "
+        f"{data['cores']} cores.",
+        None,
+        (_LIMITS,),
+        (Section("How late instants begin", (said, table, *([Figure(_SEE, shown)] if shown else []))),),
+        tuple(
+            Fact(f"{1e6 * row['median']:.0f} µs", f"median: {row['what']}; {row['missed']} of {row['instants']} missed")
+            for row in best
+        ),
+        shown[-1:],
+        (table,),
+    )
+
+
+def _thread(first: bool) -> str:
+    return "first" if first else "ordinary"
+
+
+def _chart(rows: list[dict[str, Any]], first: bool) -> Chart:
+    curves = tuple(
+        Curve(row["what"], np.array(row["late"]["us"]), np.array(row["late"]["share"]), k) for k, row in enumerate(rows)
+    )
+    periods = dict.fromkeys(1e6 * row["period"] for row in rows)
+    marks = tuple(Mark(f"next instant due at {1e3 / period:g} kHz [us]", period, "x") for period in periods)
+    title = f"{_thread(first)} thread: share of instants that began later"
+    return Chart(title, "late by  [us]", "share of the instants  [1]", curves, marks, log_x=True, log_y=True)
+
+
+TOPIC = Topic("realtime", "Speed", "How late do instants of diagrams begin?", compose)

@@ -1,0 +1,86 @@
+"""Thousands of motions at once."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import asdict
+from typing import Annotated
+
+import typer
+
+from validation.reporting.command import Run
+from validation.reporting.numbers import counted, times
+from validation.reporting.provenance import stamp
+from validation.reporting.record import Cell, Data, Fact, Report, Section, Table, Topic
+from validation.studies import rollouts
+
+_LIMITS = (
+    "Loops in C on both sides, in turn, from the same starts; times are the processor's, so that other programs do not "
+    "lengthen them, and the loops' alone, without compiling, loading or copying the starts. MuJoCo keeps the state "
+    "after each step, we the last one (some nanoseconds a step). The arm's joints are free of friction and of limits "
+    "on both sides, and nothing touches; springs and dampers of the joints are the PD control. The ratio is the median "
+    "over interleaved repeats of the whole times, so that of an adaptive method is one of time to the end, at the "
+    "errors shown."
+)
+
+
+def measure(
+    run: Run,
+    trajectories: Annotated[int, typer.Option(min=1, help="Number of motions.")] = rollouts.TRAJECTORIES,
+    steps: Annotated[int, typer.Option(min=1, help="Steps of a millisecond each.")] = rollouts.STEPS,
+    repeats: Annotated[int, typer.Option(min=1, help="Interleaved repeats.")] = 7,
+    threads: Annotated[int, typer.Option(min=1, help="Threads of each side.")] = 1,
+) -> Data:
+    """Time thousands of motions of an arm, against mujoco.rollout."""
+    rows = rollouts.run(repeats, trajectories, steps, threads)
+    return {
+        "rollouts": [asdict(row) for row in rows],
+        "trajectories": trajectories,
+        "repeats": repeats,
+        "load": os.getloadavg()[0],
+        "seconds": run.seconds,
+        **stamp(),
+    }
+
+
+def compose(data: Data) -> Report:
+    """The report of its JSON."""
+    rows = data["rollouts"]
+    ours = [row for row in rows if "MuJoCo" not in row["who"]]
+    fastest = min(ours, key=lambda row: row["nanoseconds"][0])
+    best = max(ours, key=lambda row: row["ratio"])
+    motions = counted(data["trajectories"], "motion")
+    rate = 1e3 / fastest["nanoseconds"][0]
+    table = Table(
+        ("scene", "who", "how", "#threads", "#error [rad]", "#steps", "#ns a step (min, median)",
+         "#million steps a second and core", "#MuJoCo's time over it"),
+        tuple(
+            (
+                row["scene"],
+                row["who"],
+                row["how"],
+                str(row["threads"]),
+                f"{row['error']:.1e}",
+                str(row["steps"]),
+                ", ".join(f"{x:.0f}" for x in row["nanoseconds"]),
+                f"{1e3 / row['nanoseconds'][0]:.2f}",
+                Cell(f"**{row['ratio']:.1f}**"),
+            )
+            for row in rows
+        ),
+    )  # fmt: skip
+    return Report(
+        f"{motions} of a 7-joint arm at once",
+        f"{motions} of a 7-joint arm at once: {rate:.2g} million steps a second and core.",
+        None,
+        (_LIMITS,),
+        (Section("Time of a step", (table, f"{data['repeats']} repeats; load {data['load']:.1f}.")),),
+        (
+            Fact(f"{fastest['nanoseconds'][0]:.0f} ns", f"a step: {fastest['scene']}, {fastest['how']}"),
+            Fact(times(best["ratio"]), f"mujoco.rollout's time over ours: {best['scene']}, {best['how']}"),
+        ),
+        digest=(table,),
+    )
+
+
+TOPIC = Topic("rollouts", "Speed", "How fast are thousands of motions at once?", compose)
