@@ -21,11 +21,11 @@ from symofros.expr.substitute import transplant
 from symofros.functions import FRAME_FUNCTIONS
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import model_record
-from symofros.mechanics.dynamics.constraints import retracted
+from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.equations import Equations
-from symofros.mechanics.dynamics.forward import Factors
+from symofros.mechanics.dynamics.forward.factors import Factors
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program
-from symofros.mechanics.kinematics.links import set_in_motion
+from symofros.mechanics.kinematics.links import tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.options import Options
 from symofros.runtime.kernel import Array
@@ -205,13 +205,13 @@ class Models:
 
     def moved(self, g: Graph, model: str, q: Tensor, step: Tensor) -> Tensor:
         """The configuration that a step (nv) along the manifold leads to."""
-        motion = set_in_motion(Graph(), self.tree(model))
-        edges = retracted(motion)
+        kinematics = tree_kinematics(Graph(), self.tree(model))
+        edges = retracted(kinematics)
         groups = {"q": q, "step": step}
         replacement = {
-            motion.g.input(group, i): edge for group, values in groups.items() for i, edge in enumerate(values.flat)
+            kinematics.g.input(group, i): edge for group, values in groups.items() for i, edge in enumerate(values.flat)
         }
-        return Tensor.of(g, transplant(motion.g, edges, replacement, g), (len(edges),))
+        return Tensor.of(g, transplant(kinematics.g, edges, replacement, g), (len(edges),))
 
     def _bound(
         self, g: Graph, model: str, program: Program, inputs: tuple[str, ...], groups: Mapping[str, Tensor]

@@ -8,7 +8,7 @@ from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
 from symofros.expr.expression import evaluate
 from symofros.mechanics.beams.deformation import small_coordinates
-from symofros.mechanics.dynamics.wrenches import acts_on_bodies
+from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
 from symofros.mechanics.topology.tree import SpanningTree, frame_of

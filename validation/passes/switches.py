@@ -17,9 +17,9 @@ from symofros.generator.codegen import function as functions
 from symofros.generator.codegen.statements import StatementWriter
 from symofros.generator.passes import stage
 from symofros.generator.passes.chain import chain_sums
-from symofros.mechanics.dynamics import inertia
+from symofros.mechanics.dynamics.bodies import inertia
 from symofros.mechanics.kinematics import rotations
-from symofros.mechanics.kinematics.rotations import MatrixTurn, Turn
+from symofros.mechanics.kinematics.rotations import MatrixRotation, RotationProduct
 from symofros.runtime.toolchain import DEFAULT_FLAGS
 
 Without = Callable[[], AbstractContextManager[object]]
@@ -71,19 +71,19 @@ def _without_regrouping() -> AbstractContextManager[None]:
 def _without_turns() -> Iterator[None]:
     """Vectors and tensors are multiplied by whole rotation matrices."""
 
-    def apply(self: Turn, v_B: Vec3) -> Vec3:
+    def apply(self: RotationProduct, v_B: Vec3) -> Vec3:
         return self.matrix().times(v_B)
 
-    def apply_inverse(self: Turn, v_A: Vec3) -> Vec3:
+    def apply_inverse(self: RotationProduct, v_A: Vec3) -> Vec3:
         return self.matrix().T.times(v_A)
 
-    def conjugate(self: Turn, S_B: Sym3) -> Sym3:
-        return MatrixTurn(self.matrix()).conjugate(self.g, S_B)
+    def conjugate(self: RotationProduct, S_B: Sym3) -> Sym3:
+        return MatrixRotation(self.matrix()).conjugate(self.g, S_B)
 
     with (
-        _replaced(Turn, "apply", apply),
-        _replaced(Turn, "apply_inverse", apply_inverse),
-        _replaced(Turn, "conjugate", conjugate),
+        _replaced(RotationProduct, "apply", apply),
+        _replaced(RotationProduct, "apply_inverse", apply_inverse),
+        _replaced(RotationProduct, "conjugate", conjugate),
     ):
         yield
 

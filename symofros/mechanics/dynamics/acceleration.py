@@ -1,4 +1,4 @@
-"""Motion of links, base to tip, and the wrench that a link's inertia takes (docs/theory/rigid.md, section 3)."""
+"""Velocity and acceleration of links, base to tip; the wrench of a link's inertia (docs/theory/rigid.md, section 3)."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
-from symofros.mechanics.dynamics.inertia import LinkInertia
-from symofros.mechanics.kinematics.links import Motion, MovingLink
+from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
+from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics
 from symofros.mechanics.topology.tree import BASE
 
 
@@ -18,23 +18,23 @@ class LinkMotion:
     """Velocity and acceleration of one link.
 
     Attributes:
-        w: w_WL_L.
-        alpha: alpha_WL_L.
-        a: a_WLo_L, with gravity as an acceleration of the base.
-        U: [alpha] + [w][w], the matrix that takes a point's position to its relative acceleration.
-        ww: The products wx wx, wy wy, wz wz.
+        w_WL_L: Angular velocity [rad/s].
+        alpha_WL_L: Angular acceleration [rad/s^2].
+        a_WLo_L: Acceleration of Lo, with gravity as an acceleration of the base [m/s^2].
+        U: [alpha] + [w][w], the matrix that takes a point's position in L to its acceleration relative to Lo [1/s^2].
+        w_squares: The products wx wx, wy wy, wz wz.
     """
 
-    w: Vec3
-    alpha: Vec3
-    a: Vec3
+    w_WL_L: Vec3
+    alpha_WL_L: Vec3
+    a_WLo_L: Vec3
     U: Mat3
-    ww: tuple[Edge, Edge, Edge]
+    w_squares: tuple[Edge, Edge, Edge]
 
 
 @dataclass(frozen=True)
 class Acceleration:
-    """Of a link: alpha and a, or a part of them, in the link frame."""
+    """Acceleration of a link, or a part of it: alpha_WL_L and a_WLo_L, without the terms of its velocity."""
 
     alpha: Vec3
     a: Vec3
@@ -45,7 +45,7 @@ class Acceleration:
 
 @dataclass(frozen=True)
 class Wrench:
-    """Force and moment about a link's origin, in the link frame."""
+    """Force and moment on a link, the moment about its origin: f_Lo_L [N] and n_Lo_L [N m]."""
 
     f: Vec3
     n: Vec3
@@ -55,57 +55,57 @@ class Wrench:
 
 
 def no_wrench(g: Graph) -> Wrench:
-    """The wrench of nothing."""
+    """Zero wrench."""
     return Wrench(Vec3(g), Vec3(g))
 
 
-def base_to_tip(motion: Motion, v_rate: Sequence[Edge], gravity: Vec3) -> list[LinkMotion]:
+def base_to_tip(kinematics: TreeKinematics, v_rate: Sequence[Edge], gravity: Vec3) -> list[LinkMotion]:
     """Velocity and acceleration of every link (eqs. 6-8)."""
-    g = motion.g
-    base = _moving(Vec3(g), Vec3(g), -gravity)
-    moving: list[LinkMotion] = []
-    for link in motion.links:
-        parent = base if link.parent == BASE else moving[link.parent]
-        w, alpha, a = _across(g, link, parent, link.rates_given(v_rate))
+    g = kinematics.g
+    base = _link_motion(Vec3(g), Vec3(g), -gravity)
+    motions: list[LinkMotion] = []
+    for link in kinematics.links:
+        parent = base if link.parent == BASE else motions[link.parent]
+        w, alpha, a = _across(g, link, parent, link.speed_rates(v_rate))
         alpha.named(f"alpha_WL_L[{link.name}]")
-        moving.append(_moving(w, alpha, a.named(f"a_WLo_L[{link.name}]")))
-    return moving
+        motions.append(_link_motion(w, alpha, a.named(f"a_WLo_L[{link.name}]")))
+    return motions
 
 
-def velocities(motion: Motion) -> tuple[list[LinkMotion], list[Acceleration]]:
-    """What speeds alone make of the motion.
+def velocities(kinematics: TreeKinematics) -> tuple[list[LinkMotion], list[Acceleration]]:
+    """The part of the motion that speeds alone determine.
 
     Returns:
-        Each link with its velocity, as if it did not accelerate; and what its joint adds to the acceleration of its
-        parent (eqs. 7, 8) at v' = 0, or at the given rates of a prescribed motion.
+        Each link with its velocity and no acceleration; and the bias acceleration of each joint: what it adds to the
+        acceleration of its parent (eqs. 7, 8) at v' = 0, or at the stated rates of a prescribed motion.
     """
-    g, still = motion.g, Vec3(motion.g)
-    base = _moving(still, still, still)
-    moving: list[LinkMotion] = []
-    added: list[Acceleration] = []
-    for link in motion.links:
-        parent = base if link.parent == BASE else moving[link.parent]
-        w, alpha, a = _across(g, link, parent, link.rates_given([ZERO] * motion.nv))
-        moving.append(_moving(w, still, still))
-        added.append(Acceleration(alpha, a))
-    return moving, added
+    g, zero = kinematics.g, Vec3(kinematics.g)
+    base = _link_motion(zero, zero, zero)
+    motions: list[LinkMotion] = []
+    biases: list[Acceleration] = []
+    for link in kinematics.links:
+        parent = base if link.parent == BASE else motions[link.parent]
+        w, alpha, a = _across(g, link, parent, link.speed_rates([ZERO] * kinematics.nv))
+        motions.append(_link_motion(w, zero, zero))
+        biases.append(Acceleration(alpha, a))
+    return motions, biases
 
 
 def _across(g: Graph, link: MovingLink, parent: LinkMotion, rates: Sequence[Edge]) -> tuple[Vec3, Vec3, Vec3]:
     """From the parent's motion to the link's w, alpha, a."""
-    w_AL, v_AL, w_rate, v_rel_rate = Vec3(g), Vec3(g), Vec3(g), Vec3(g)
-    for column, speed, rate in zip(link.columns, link.speeds, rates, strict=True):
-        w_AL, v_AL = w_AL + column.w.scaled(speed), v_AL + column.v.scaled(speed)
-        w_rate = w_rate + (column.w.scaled(rate) + column.w_rate.scaled(speed))
-        v_rel_rate = v_rel_rate + (column.v.scaled(rate) + column.v_rate.scaled(speed))
-    w_WA = link.R_AL.apply_inverse(parent.w)
-    w = (w_WA + w_AL).named(f"w_WL_L[{link.name}]")
-    alpha = link.R_AL.apply_inverse(parent.alpha) + (w_rate + w_WA.cross(w_AL))
-    a = link.R_AL.apply_inverse(parent.a + parent.U.times(link.p_AL)) + (v_rel_rate + (w_WA + w).cross(v_AL))
+    w_AL_L, v_ALo_L, w_AL_rate, v_AL_rate = Vec3(g), Vec3(g), Vec3(g), Vec3(g)
+    for partial, speed, rate in zip(link.partial_velocities, link.speeds, rates, strict=True):
+        w_AL_L, v_ALo_L = w_AL_L + partial.w.scaled(speed), v_ALo_L + partial.v.scaled(speed)
+        w_AL_rate = w_AL_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
+        v_AL_rate = v_AL_rate + (partial.v.scaled(rate) + partial.v_rate.scaled(speed))
+    w_WA_L = link.R_AL.apply_inverse(parent.w_WL_L)
+    w = (w_WA_L + w_AL_L).named(f"w_WL_L[{link.name}]")
+    alpha = link.R_AL.apply_inverse(parent.alpha_WL_L) + (w_AL_rate + w_WA_L.cross(w_AL_L))
+    a = link.R_AL.apply_inverse(parent.a_WLo_L + parent.U.times(link.p_AL)) + (v_AL_rate + (w_WA_L + w).cross(v_ALo_L))
     return w, alpha, a
 
 
-def _moving(w: Vec3, alpha: Vec3, a: Vec3) -> LinkMotion:
+def _link_motion(w: Vec3, alpha: Vec3, a: Vec3) -> LinkMotion:
     return LinkMotion(w, alpha, a, *_relative_acceleration(w, alpha))
 
 
@@ -131,17 +131,17 @@ def _relative_acceleration(w: Vec3, alpha: Vec3) -> tuple[Mat3, tuple[Edge, Edge
     return U, (xx, yy, zz)
 
 
-def inertia_wrench(body: LinkInertia, moving: LinkMotion) -> Wrench:
+def inertia_wrench(inertia: LinkInertia, motion: LinkMotion) -> Wrench:
     """Force and moment about Lo that the link's acceleration takes (eqs. 9, 10)."""
-    f = moving.a.scaled(body.m) + moving.U.times(body.S)
-    n = _moment(body.second_moment(), moving) + body.S.cross(moving.a)
+    f = motion.a_WLo_L.scaled(inertia.m) + motion.U.times(inertia.mp_LLcm)
+    n = _moment(inertia.second_moment(), motion) + inertia.mp_LLcm.cross(motion.a_WLo_L)
     return Wrench(f, n)
 
 
-def _moment(E: Sym3, moving: LinkMotion) -> Vec3:
+def _moment(E: Sym3, motion: LinkMotion) -> Vec3:
     """The integral of r x U r dm, with E the integral of r r^T dm (eq. 10)."""
-    g, U = E.g, moving.U
-    xx, yy, zz = moving.ww
+    g, U = E.g, motion.U
+    xx, yy, zz = motion.w_squares
     mul, sub = g.mul, g.sub
 
     def combine(*products: tuple[Edge, Edge]) -> Edge:

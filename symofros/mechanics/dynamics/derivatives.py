@@ -11,22 +11,22 @@ from collections.abc import Sequence
 from symofros.expr.derivative import along, partials
 from symofros.expr.edges import Edge
 from symofros.mechanics.dynamics.applied.forces import rates_per_speed
-from symofros.mechanics.kinematics.links import Motion, speeds_by_path
+from symofros.mechanics.kinematics.links import TreeKinematics, speeds_by_path
 
 Matrix = list[list[Edge]]
 
 
-def by_configuration(motion: Motion, edges: Sequence[Edge]) -> Matrix:
+def by_configuration(kinematics: TreeKinematics, edges: Sequence[Edge]) -> Matrix:
     """One row an edge, one column a speed: the change of the edge as q moves with that speed alone."""
-    return along(motion.g, edges, rates_per_speed(motion), _together(motion))
+    return along(kinematics.g, edges, rates_per_speed(kinematics), _together(kinematics))
 
 
-def by_inputs(motion: Motion, edges: Sequence[Edge], group: str, count: int) -> Matrix:
+def by_inputs(kinematics: TreeKinematics, edges: Sequence[Edge], group: str, count: int) -> Matrix:
     """One row an edge, one column an input of a group such as "v" or "u"."""
-    inputs = [motion.g.input(group, k) for k in range(count)]
-    return partials(motion.g, edges, inputs, _together(motion) if group == "v" else None)
+    inputs = [kinematics.g.input(group, k) for k in range(count)]
+    return partials(kinematics.g, edges, inputs, _together(kinematics) if group == "v" else None)
 
 
-def _together(motion: Motion) -> list[list[int]]:
+def _together(kinematics: TreeKinematics) -> list[list[int]]:
     """Speeds that move the same links, in ascending order, as they stand in a row."""
-    return [sorted(path) for path in speeds_by_path(motion)]
+    return [sorted(path) for path in speeds_by_path(kinematics)]

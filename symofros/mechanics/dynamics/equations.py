@@ -14,19 +14,19 @@ from symofros.expr.pack import EMPTY
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.applied.forces import generalized_forces, stored_energy
-from symofros.mechanics.dynamics.articulated import articulated_acceleration, is_local
-from symofros.mechanics.dynamics.constraints import Constraints, Row
+from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, inertia_inputs, link_inertias
+from symofros.mechanics.dynamics.bodies.rotors import MovingRotor, rotors_of
+from symofros.mechanics.dynamics.constraints.rows import Constraints, Row
+from symofros.mechanics.dynamics.constraints.wrenches import closure_wrenches
 from symofros.mechanics.dynamics.derivatives import by_configuration, by_inputs
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
-from symofros.mechanics.dynamics.forward import Factors, SingularMassMatrixError
-from symofros.mechanics.dynamics.inertia import LinkInertia, inertia_inputs, link_inertias
+from symofros.mechanics.dynamics.forward.articulated import articulated_acceleration, is_local
+from symofros.mechanics.dynamics.forward.factors import Factors, SingularMassMatrixError
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.mechanics.dynamics.momentum import coadjoint, momentum_rate
-from symofros.mechanics.dynamics.rotors import MovingRotor, rotors_of
-from symofros.mechanics.dynamics.wrenches import closure_wrenches
 from symofros.mechanics.kinematics.frames import FrameKinematics
-from symofros.mechanics.kinematics.links import Motion, set_in_motion
+from symofros.mechanics.kinematics.links import TreeKinematics, tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree
 
 _DIVIDES = "forward dynamics divides by the inertia that each speed moves"
@@ -49,43 +49,43 @@ class Equations:
 
     def fork(self) -> Equations:
         """A copy with a graph of its own, in which the kinematics are formed; what else it forms, this one lacks."""
-        assert self.motion.g is self.g  # Formed once, for all copies.
+        assert self.kinematics.g is self.g  # Formed once, for all copies.
         kept = (self.tree, self.tree.coordinates, EMPTY)
         return copy.deepcopy(self, {id(item): item for item in kept})
 
     @cached_property
-    def motion(self) -> Motion:
-        """The tree in motion."""
-        return set_in_motion(self.g, self.tree)
+    def kinematics(self) -> TreeKinematics:
+        """Kinematics of the tree."""
+        return tree_kinematics(self.g, self.tree)
 
     @cached_property
     def _inertias(self) -> tuple[list[LinkInertia], LinkInertia]:
-        return link_inertias(self.motion)
+        return link_inertias(self.kinematics)
 
     @cached_property
     def rotors(self) -> list[MovingRotor]:
         """Rotors and armatures."""
-        return rotors_of(self.motion)
+        return rotors_of(self.kinematics)
 
     @cached_property
     def gravity(self) -> Vec3:
         """Acceleration of gravity in the world."""
-        return self.motion.lowering.vector(self.tree.system.gravity)
+        return self.kinematics.lowering.vector(self.tree.system.gravity)
 
     @cached_property
     def M(self) -> Matrix:
         """Mass matrix (nv x nv)."""
-        return mass_matrix(self.motion, self._inertias[0], self.rotors)
+        return mass_matrix(self.kinematics, self._inertias[0], self.rotors)
 
     @cached_property
     def h(self) -> list[Edge]:
         """Coriolis, centrifugal and gravity terms (nv)."""
-        return inertia_forces(self.motion, self._inertias[0], self.rotors, [ZERO] * self.nv, self.gravity)
+        return inertia_forces(self.kinematics, self._inertias[0], self.rotors, [ZERO] * self.nv, self.gravity)
 
     @cached_property
     def Q(self) -> list[Edge]:
         """Generalized forces (nv)."""
-        return generalized_forces(self.motion, self.frames)
+        return generalized_forces(self.kinematics, self.frames)
 
     @cached_property
     def v_rate(self) -> list[Edge]:
@@ -100,7 +100,7 @@ class Equations:
     @property
     def is_articulated(self) -> bool:
         """Whether each joint concerns its link and its parent alone, rotors included."""
-        return all(is_local(self.motion, rotor) for rotor in self.rotors)
+        return all(is_local(self.kinematics, rotor) for rotor in self.rotors)
 
     @cached_property
     def articulated(self) -> list[Edge]:
@@ -118,9 +118,9 @@ class Equations:
                     "choose Options(forward_dynamics='factors'), or 'auto'",
                 )
             )
-        inertias, _ = link_inertias(self.motion, regrouped=False)
+        inertias, _ = link_inertias(self.kinematics, regrouped=False)
         with self._refusing_singular():
-            return articulated_acceleration(self.motion, inertias, self.rotors, self.gravity, self.Q)
+            return articulated_acceleration(self.kinematics, inertias, self.rotors, self.gravity, self.Q)
 
     @cached_property
     def factors(self) -> Factors:
@@ -134,7 +134,7 @@ class Equations:
 
     @contextmanager
     def _refusing_singular(self) -> Iterator[None]:
-        """In words, where the matter is that M is singular in every state."""
+        """Turns a mass matrix that is singular in every state into a DescriptionError that names the speed."""
         try:
             yield
         except SingularMassMatrixError as error:
@@ -165,7 +165,7 @@ class Equations:
 
     @cached_property
     def force_minus_bias(self) -> list[Edge]:
-        """Q - h (nv)."""
+        """Force minus bias, Q - h (nv)."""
         return [self.g.sub(Q, h) for Q, h in zip(self.Q, self.h, strict=True)]
 
     @cached_property
@@ -221,19 +221,19 @@ class Equations:
 
     @cached_property
     def inverse_dynamics(self) -> list[Edge]:
-        """M a + h - Q(q, v, 0): what the inputs must supply for an acceleration a (nv)."""
-        total = inertia_forces(self.motion, self._inertias[0], self.rotors, self.v_rate, self.gravity)
+        """Inverse dynamics tau = M a + h - Q(q, v, 0): the inputs' share of the forces for an acceleration a (nv)."""
+        total = inertia_forces(self.kinematics, self._inertias[0], self.rotors, self.v_rate, self.gravity)
         passive = substitute(self.g, self.Q, {self.g.input("u", i): ZERO for i in range(self.efforts)})
         return [self.g.sub(needed, given) for needed, given in zip(total, passive, strict=True)]
 
     def unconstrained_residual(self, a: Sequence[Edge]) -> list[Edge]:
-        """M a + h - Q at an acceleration a (nv)."""
-        total = inertia_forces(self.motion, self._inertias[0], self.rotors, a, self.gravity)
+        """Residual M a + h - Q at an acceleration a, without constraints (nv)."""
+        total = inertia_forces(self.kinematics, self._inertias[0], self.rotors, a, self.gravity)
         return [self.g.sub(needed, given) for needed, given in zip(total, self.Q, strict=True)]
 
     @cached_property
     def residual(self) -> list[Edge]:
-        """M a + h - Q - G^T lam, then G a - gamma: zero for the motion that the inputs produce (nv + nc)."""
+        """Residual M a + h - Q - G^T lam, then G a - gamma: zero for the motion that the inputs produce (nv + nc)."""
         g, a = self.g, self.v_rate
         forces = self.unconstrained_residual(a)
         for i, row in enumerate(self.constraints):
@@ -246,26 +246,26 @@ class Equations:
 
     @property
     def dynamic_residual(self) -> list[Edge]:
-        """M a + h - Q - G^T lam (nv)."""
+        """Residual M a + h - Q - G^T lam (nv)."""
         return self.residual[: self.nv]
 
     # Derivatives, along the manifold of q where they are by q.
 
     def by_q(self, edges: Sequence[Edge]) -> Matrix:
         """Derivatives of some edges by the coordinates, one column a speed."""
-        return by_configuration(self.motion, edges)
+        return by_configuration(self.kinematics, edges)
 
     def by_v(self, edges: Sequence[Edge]) -> Matrix:
         """Derivatives of some edges by the speeds."""
-        return by_inputs(self.motion, edges, "v", self.nv)
+        return by_inputs(self.kinematics, edges, "v", self.nv)
 
     def by_u(self, edges: Sequence[Edge]) -> Matrix:
         """Derivatives of some edges by the inputs."""
-        return by_inputs(self.motion, edges, "u", self.nu)
+        return by_inputs(self.kinematics, edges, "u", self.nu)
 
     def by_par(self, edges: Sequence[Edge]) -> Matrix:
         """Derivatives of some edges by the run-time parameters."""
-        return by_inputs(self.motion, edges, "par", len(self.tree.coordinates.par))
+        return by_inputs(self.kinematics, edges, "par", len(self.tree.coordinates.par))
 
     @cached_property
     def residual_by_q(self) -> Matrix:
@@ -309,38 +309,38 @@ class Equations:
 
     @cached_property
     def momentum(self) -> list[Edge]:
-        """Momentum p = M v (nv)."""
+        """Generalized momentum p = M v (nv)."""
         return [self.g.sum(self.g.mul(m, self.g.input("v", k)) for k, m in enumerate(row)) for row in self.M]
 
     @cached_property
     def momentum_force(self) -> list[Edge]:
         """Force F with p' = F + ad_v^T p: the equations of motion give F = dM/dt v + Q - h - ad_v^T p (nv)."""
         g = self.g
-        rate = momentum_rate(self.motion, self.momentum)
-        turning = coadjoint(self.motion, self.momentum)
+        rate = momentum_rate(self.kinematics, self.momentum)
+        turning = coadjoint(self.kinematics, self.momentum)
         total = [g.sub(g.add(r, Q), g.add(h, c)) for r, Q, h, c in zip(rate, self.Q, self.h, turning, strict=True)]
         return total
 
     @cached_property
     def regressor(self) -> list[list[Edge]]:
-        """Y with M a + h = Y pi for rigid links: the sum is linear in their inertial parameters (nv x 10 links)."""
-        own = inertia_inputs(self.motion)
-        total = inertia_forces(self.motion, own, [], self.v_rate, self.gravity)
-        return by_inputs(self.motion, total, "pi", 10 * len(own))
+        """Regressor Y with M a + h = Y pi: for rigid links, linear in their inertial parameters (nv x 10 links)."""
+        own = inertia_inputs(self.kinematics)
+        total = inertia_forces(self.kinematics, own, [], self.v_rate, self.gravity)
+        return by_inputs(self.kinematics, total, "pi", 10 * len(own))
 
     @cached_property
     def T(self) -> Edge:
         """Kinetic energy."""
-        return kinetic_energy(self.motion, self._inertias[0], self.rotors)
+        return kinetic_energy(self.kinematics, self._inertias[0], self.rotors)
 
     @cached_property
     def V(self) -> Edge:
         """Potential energy: of the weight, and what forces store."""
-        weight = potential_energy(self.frames.motion, *self._inertias, self.gravity)
-        return self.g.add(weight, stored_energy(self.motion, self.frames))
+        weight = potential_energy(self.frames.kinematics, *self._inertias, self.gravity)
+        return self.g.add(weight, stored_energy(self.kinematics, self.frames))
 
     @cached_property
     def frames(self) -> FrameKinematics:
         """Kinematics of the frames, at their deflected places."""
-        as_stated = all(beam.forms.order > 0 for beam in self.motion.beams)
-        return FrameKinematics(self.motion if as_stated else set_in_motion(self.g, self.tree, as_seen=True))
+        as_stated = all(beam.forms.order > 0 for beam in self.kinematics.beams)
+        return FrameKinematics(self.kinematics if as_stated else tree_kinematics(self.g, self.tree, as_seen=True))

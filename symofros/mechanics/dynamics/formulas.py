@@ -10,10 +10,12 @@ from symofros.expr.derivative import directional
 from symofros.expr.edges import ONE, Edge
 from symofros.expr.program import Function, Output, Program
 from symofros.mechanics.dynamics.derivatives import by_configuration, by_inputs
-from symofros.mechanics.kinematics.links import Motion
+from symofros.mechanics.kinematics.links import TreeKinematics
 
 
-def formula_program(motion: Motion, values: Sequence[tuple[Value, int]], derivatives: bool = True) -> Program:
+def formula_program(
+    kinematics: TreeKinematics, values: Sequence[tuple[Value, int]], derivatives: bool = True
+) -> Program:
     """One function, "formulas", of q, v, u and t: the values, and their derivatives along the manifold of q and by v.
 
     Args:
@@ -25,7 +27,7 @@ def formula_program(motion: Motion, values: Sequence[tuple[Value, int]], derivat
         UnknownNameError: A formula uses a name that the mechanism lacks.
         DescriptionError: One that is differentiated depends on more than t and parameters.
     """
-    tree, names = motion.tree, motion.tree.coordinates
+    tree, names = kinematics.tree, kinematics.tree.coordinates
     known = {*names.symbols, *names.constants}
     for value, _ in values:
         for name in sorted(symbols(value) - known):
@@ -37,29 +39,29 @@ def formula_program(motion: Motion, values: Sequence[tuple[Value, int]], derivat
                     did_you_mean(name, known) or "see model.names",
                 )
             )
-    g, nv, n = motion.g, len(names.v), len(values)
-    edges = [_rate(motion, value, order) for value, order in values]
+    g, nv, n = kinematics.g, len(names.v), len(values)
+    edges = [_rate(kinematics, value, order) for value, order in values]
     outputs = [Output("value", (n,), tuple(edges))]
     if derivatives:
-        slopes = {"by_q": by_configuration(motion, edges), "by_v": by_inputs(motion, edges, "v", nv)}
+        slopes = {"by_q": by_configuration(kinematics, edges), "by_v": by_inputs(kinematics, edges, "v", nv)}
         outputs += [Output(name, (n, nv), tuple(edge for row in rows for edge in row)) for name, rows in slopes.items()]
     sizes = {"q": len(names.q), "v": nv, "u": len(names.u), "par": len(names.par), "t": 1}
     return Program(tree.system.name, g, sizes, (Function("formulas", "", ("q", "v", "u", "t"), tuple(outputs)),))
 
 
-def _rate(motion: Motion, value: Value, order: int) -> Edge:
-    names, g = motion.tree.coordinates, motion.g
+def _rate(kinematics: TreeKinematics, value: Value, order: int) -> Edge:
+    names, g = kinematics.tree.coordinates, kinematics.g
     moving = {name for name, slot in names.symbols.items() if slot.group in ("q", "v", "u")}
     if order and (used := sorted(symbols(value) & moving)):
         raise DescriptionError(
             Problem(
-                f"system '{motion.tree.system.name}': a motion that depends on '{used[0]}'",
+                f"system '{kinematics.tree.system.name}': a motion that depends on '{used[0]}'",
                 f"'{value}'",
                 "the rates of a prescribed motion are found for formulas of t and parameters only",
                 "give its speeds and their rates as well",
             )
         )
-    edge = motion.lowering.value(value)
+    edge = kinematics.lowering.value(value)
     for _ in range(order):
         edge = directional(g, [edge], {g.input("t", 0): ONE})[0]
     return edge

@@ -10,10 +10,10 @@ from symofros.expr.ops import HELD
 from symofros.expr.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
-from symofros.mechanics.dynamics.constraints import retracted
+from symofros.mechanics.dynamics.constraints.rows import retracted
+from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
-from symofros.mechanics.dynamics.wrenches import acts_on_bodies
 
 
 class Request(NamedTuple):
@@ -179,7 +179,7 @@ def _project(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[
         _vector("phi", e.phi),
         _vector("rate", e.constraint_rate),
     )
-    move = Function("move", "", ("q", "step"), (_vector("q_moved", retracted(e.motion)),))
+    move = Function("move", "", ("q", "step"), (_vector("q_moved", retracted(e.kinematics)),))
     return Function(row.name, "", row.inputs, outputs, Solver("project", _returns(row, known), (move,)))
 
 

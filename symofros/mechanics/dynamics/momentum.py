@@ -8,33 +8,33 @@ from symofros.expr.derivative import directional
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates
-from symofros.mechanics.kinematics.links import Motion
+from symofros.mechanics.kinematics.links import TreeKinematics
 
 
-def momentum_rate(motion: Motion, momentum: Sequence[Edge]) -> list[Edge]:
+def momentum_rate(kinematics: TreeKinematics, momentum: Sequence[Edge]) -> list[Edge]:
     """The rate of p = M v while the speeds stay as they are: dM/dt v (nv)."""
-    return directional(motion.g, momentum, coordinate_rates(motion))
+    return directional(kinematics.g, momentum, coordinate_rates(kinematics))
 
 
-def coadjoint(motion: Motion, momentum: Sequence[Edge]) -> list[Edge]:
+def coadjoint(kinematics: TreeKinematics, momentum: Sequence[Edge]) -> list[Edge]:
     """ad_v^T p (nv): how the momenta of balls and free joints change because their axes turn; zero elsewhere."""
-    g = motion.g
-    found = [ZERO] * motion.nv
-    for link in motion.tree.links:
+    g = kinematics.g
+    found = [ZERO] * kinematics.nv
+    for link in kinematics.tree.links:
         if link.joint.prescribed or not link.joint.traits.quasi_velocities:
             continue
         start, size = link.v
-        w = _three(motion, [g.input("v", k) for k in range(start + size - 3, start + size)])
-        n = _three(motion, momentum[start + size - 3 : start + size])
+        w = _three(kinematics, [g.input("v", k) for k in range(start + size - 3, start + size)])
+        n = _three(kinematics, momentum[start + size - 3 : start + size])
         turned = n.cross(w)
         if size == 6:
-            f = _three(motion, momentum[start : start + 3])
-            velocity = _three(motion, [g.input("v", k) for k in range(start, start + 3)])
+            f = _three(kinematics, momentum[start : start + 3])
+            velocity = _three(kinematics, [g.input("v", k) for k in range(start, start + 3)])
             turned = turned + f.cross(velocity)
             found[start : start + 3] = list(f.cross(w))
         found[start + size - 3 : start + size] = list(turned)
     return found
 
 
-def _three(motion: Motion, edges: Sequence[Edge]) -> Vec3:
-    return Vec3(motion.g, edges[0], edges[1], edges[2])
+def _three(kinematics: TreeKinematics, edges: Sequence[Edge]) -> Vec3:
+    return Vec3(kinematics.g, edges[0], edges[1], edges[2])

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.kinematics.joint import Column
-from symofros.mechanics.kinematics.links import Motion
+from symofros.mechanics.kinematics.joint import PartialVelocity
+from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.topology.tree import BASE, NamedFrame
 
 
@@ -33,16 +33,16 @@ class Rates:
 class FrameKinematics:
     """The frames of one tree; link results are shared between frames and functions."""
 
-    def __init__(self, motion: Motion) -> None:
-        self.motion = motion
-        self.g = motion.g
+    def __init__(self, kinematics: TreeKinematics) -> None:
+        self.kinematics = kinematics
+        self.g = kinematics.g
         self._poses: dict[int, Pose] = {BASE: Pose(Vec3(self.g), Mat3.identity(self.g))}
 
     def link_pose(self, index: int) -> Pose:
         """Pose of a link."""
-        path = [i for i in self.motion.tree.ancestors(index) if i not in self._poses]
+        path = [i for i in self.kinematics.tree.ancestors(index) if i not in self._poses]
         for i in reversed(path):
-            link = self.motion.links[i]
+            link = self.kinematics.links[i]
             parent = self._poses[link.parent]
             p = (parent.p + parent.R.times(link.p_AL)).named(f"p_WLo_W[{link.name}]")
             self._poses[i] = Pose(p, link.R_AL.after(parent.R))
@@ -55,26 +55,26 @@ class FrameKinematics:
         return Pose(link.p + link.R.times(p_LF), link.R @ R_LF)
 
     def _in_link(self, frame: NamedFrame) -> tuple[Mat3, Vec3]:
-        return self.motion.lowering.placement(frame.placement, self.motion.in_link(frame.link))
+        return self.kinematics.lowering.placement(frame.placement, self.kinematics.in_link(frame.link))
 
-    def _partials(self, index: int) -> list[Column]:
+    def _partials(self, index: int) -> list[PartialVelocity]:
         """Partial velocities of a link's own joint in world axes; their rates are those seen in the link."""
         R = self.link_pose(index).R
         return [
-            Column(*map(R.times, (column.w, column.v, column.w_rate, column.v_rate)))
-            for column in self.motion.links[index].columns
+            PartialVelocity(*map(R.times, (partial.w, partial.v, partial.w_rate, partial.v_rate)))
+            for partial in self.kinematics.links[index].partial_velocities
         ]
 
     def _link_rates(self, frame: NamedFrame, v_rate: Sequence[Edge] | None) -> dict[int, Rates]:
         """Rates of every link on the way to a frame (eqs. 28, 29); without v', accelerations are left zero."""
         zero = Vec3(self.g)
         rates = {BASE: Rates(zero, zero, zero, zero)}
-        for i in reversed(self.motion.tree.ancestors(frame.link)):
-            link = self.motion.links[i]
+        for i in reversed(self.kinematics.tree.ancestors(frame.link)):
+            link = self.kinematics.links[i]
             parent = rates[link.parent]
             r = self.link_pose(i).p - self.link_pose(link.parent).p
             w_AL, v_AL, w_rate, v_rate_rel = zero, zero, zero, zero
-            given = [ZERO] * len(link.columns) if v_rate is None else link.rates_given(v_rate)
+            given = [ZERO] * len(link.partial_velocities) if v_rate is None else link.speed_rates(v_rate)
             for partial, speed, rate in zip(self._partials(i), link.speeds, given, strict=True):
                 w_AL, v_AL = w_AL + partial.w.scaled(speed), v_AL + partial.v.scaled(speed)
                 w_rate = w_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
@@ -109,7 +109,7 @@ class FrameKinematics:
         for i in self._free(frame):
             r = p - self.link_pose(i).p
             for k, partial in enumerate(self._partials(i)):
-                self._fill(rows, self.motion.links[i].v + k, partial.v + partial.w.cross(r), partial.w)
+                self._fill(rows, self.kinematics.links[i].v + k, partial.v + partial.w.cross(r), partial.w)
         return rows
 
     def jacobian_rate(self, frame: NamedFrame) -> list[list[Edge]]:
@@ -125,15 +125,15 @@ class FrameKinematics:
                 w_k_rate = partial.w_rate + rates[i].w.cross(partial.w)
                 v_k_rate = partial.v_rate + rates[i].w.cross(partial.v)
                 linear = v_k_rate + (w_k_rate.cross(r) + partial.w.cross(r_rate))
-                self._fill(rows, self.motion.links[i].v + k, linear, w_k_rate)
+                self._fill(rows, self.kinematics.links[i].v + k, linear, w_k_rate)
         return rows
 
     def _free(self, frame: NamedFrame) -> list[int]:
         """Links on the way to a frame whose motion is not prescribed."""
-        return [i for i in self.motion.tree.ancestors(frame.link) if self.motion.links[i].rates is None]
+        return [i for i in self.kinematics.tree.ancestors(frame.link) if self.kinematics.links[i].rates is None]
 
     def _empty(self) -> list[list[Edge]]:
-        return [[ZERO] * self.motion.nv for _ in range(6)]
+        return [[ZERO] * self.kinematics.nv for _ in range(6)]
 
     @staticmethod
     def _fill(rows: list[list[Edge]], k: int, linear: Vec3, angular: Vec3) -> None:

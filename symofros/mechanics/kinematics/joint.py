@@ -1,7 +1,7 @@
 """Across one joint: the motion of its distal frame D in its proximal frame P (docs/theory/rigid.md, section 2).
 
-Every joint is a displacement p_PD(q) in P followed by turns. Partial velocities follow from that alone: those of the
-turns by composition, those of formulas by differentiating the graph; no joint needs code of its own in the dynamics.
+Every joint is a displacement p_PD(q) in P followed by rotations. Partial velocities follow from that alone: those of
+the rotations by composition, those of formulas by differentiating the graph; the dynamics need no code for a joint.
 """
 
 from __future__ import annotations
@@ -18,18 +18,25 @@ from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.kinematics.rotations import (
-    AxisTurn,
+    AxisRotation,
     Factor,
-    MatrixTurn,
-    Turn,
+    MatrixRotation,
+    RotationProduct,
     axis_angle_matrix,
     unit_vector,
 )
 
 
 @dataclass(frozen=True)
-class Column:
-    """The partial velocity of one speed: w_PD_D and v_PDo_D per unit speed, both in D, and their rates in D."""
+class PartialVelocity:
+    """Partial velocity of one speed, and the derivatives of its components.
+
+    Attributes:
+        w: w_PD_D per unit speed; w_AL_L of a link.
+        v: v_PDo_D per unit speed; v_ALo_L of a link.
+        w_rate: Derivative of the components of w in D.
+        v_rate: Derivative of the components of v in D.
+    """
 
     w: Vec3
     v: Vec3
@@ -39,17 +46,17 @@ class Column:
 
 @dataclass(frozen=True)
 class AcrossJoint:
-    """How D moves in P.
+    """Motion of the distal frame D in the proximal frame P.
 
     Attributes:
         R_PD: Rotation.
-        p_PD: From Po to Do, in P.
-        columns: Partial velocities, one a speed.
+        p_PD: Position from Po to Do, in P [m].
+        partial_velocities: Partial velocities of D in P, in D, one a speed.
     """
 
-    R_PD: Turn
+    R_PD: RotationProduct
     p_PD: Vec3
-    columns: tuple[Column, ...]
+    partial_velocities: tuple[PartialVelocity, ...]
 
 
 @dataclass(frozen=True)
@@ -57,12 +64,12 @@ class Axis:
     """A joint's main axis in P, where P and D are turned so that it lies along a coordinate axis if it is constant.
 
     Attributes:
-        n: Unit vector.
+        direction: Unit vector.
         k: The coordinate axis it lies along; None if along none.
-        negative: Whether it points against it.
+        negative: Whether it points against that coordinate axis.
     """
 
-    n: Vec3
+    direction: Vec3
     k: int | None
     negative: bool
 
@@ -83,61 +90,65 @@ def across_joint(
     g = lowering.g
     zero = Vec3(g)
     if joint.traits.quasi_velocities:
-        R = Turn(g, (MatrixTurn(Quaternion.of(g, *q[-4:]).matrix),))
+        R = RotationProduct(g, (MatrixRotation(Quaternion.of(g, *q[-4:]).matrix),))
         units = [Vec3.unit(g, i) for i in range(3)]
-        turning = [Column(unit, zero, zero, zero) for unit in units]
-        moving = [Column(zero, unit, zero, zero) for unit in units] if joint.traits.manifold == "pose" else []
+        turning = [PartialVelocity(unit, zero, zero, zero) for unit in units]
+        moving = [PartialVelocity(zero, unit, zero, zero) for unit in units] if joint.traits.manifold == "pose" else []
         return AcrossJoint(R, Vec3(g, *q[:-4]), tuple(moving + turning))
-    return moved(g, q, speeds, *_DISPLACEMENTS[joint.kind](lowering, joint, q, axis))
+    return across_rotations(g, q, speeds, *_DISPLACEMENTS[joint.kind](lowering, joint, q, axis))
 
 
-def moved(g: Graph, q: tuple[Edge, ...], speeds: Sequence[Edge], p_PD: Vec3, turns: list[AngleTurn]) -> AcrossJoint:
-    """The motion that a displacement and turns make, where the speeds are the rates of the coordinates.
+def across_rotations(
+    g: Graph, q: tuple[Edge, ...], speeds: Sequence[Edge], p_PD: Vec3, rotations: list[JointRotation]
+) -> AcrossJoint:
+    """Motion across a displacement and rotations after it, where the speeds are the rates of the coordinates.
 
     Args:
         g: The graph.
         q: The coordinates.
-        speeds: Their rates.
-        p_PD: The displacement, in P.
-        turns: What follows it, first to last.
+        speeds: Rates of the coordinates.
+        p_PD: Displacement, in P.
+        rotations: Rotations after the displacement, first to last.
     """
-    R = Turn(g, tuple(turn.factor for turn in turns))
-    columns = _differentiated(g, q, p_PD, R, turns)
-    return AcrossJoint(R, p_PD, tuple(_with_rates(g, q, speeds, w, v) for w, v in columns))
+    R = RotationProduct(g, tuple(rotation.factor for rotation in rotations))
+    partials = _partial_velocities(g, q, p_PD, R, rotations)
+    return AcrossJoint(R, p_PD, tuple(_with_rates(g, q, speeds, w, v) for w, v in partials))
 
 
 @dataclass(frozen=True)
-class AngleTurn:
-    """One turn of a joint: about an axis by an angle, or by a matrix whose entries depend on q."""
+class JointRotation:
+    """One rotation of a joint: about an axis by an angle, or by a matrix whose entries depend on q."""
 
     factor: Factor
-    n: Vec3 | None = None
+    axis: Vec3 | None = None
     angle: Edge = ZERO
 
 
-def about(n: Vec3, angle: Edge, k: int | None, negative: bool) -> AngleTurn:
+def rotation_about(n: Vec3, angle: Edge, k: int | None, negative: bool) -> JointRotation:
     """A turn about a unit axis.
 
     Args:
         n: The axis.
-        angle: Of the turn.
+        angle: Of the rotation.
         k: The coordinate axis that n lies along; None if along none.
         negative: Whether n points against it.
     """
     g = n.g
     c, s = g.call("cos", angle), g.call("sin", angle)
-    factor = MatrixTurn(axis_angle_matrix(n, c, s)) if k is None else AxisTurn(k, c, -s if negative else s)
-    return AngleTurn(factor, n, angle)
+    factor = MatrixRotation(axis_angle_matrix(n, c, s)) if k is None else AxisRotation(k, c, -s if negative else s)
+    return JointRotation(factor, n, angle)
 
 
-def _about_stated(n: Vec3, angle: Edge) -> AngleTurn:
+def _rotation_about_any(n: Vec3, angle: Edge) -> JointRotation:
     """A turn about any unit axis, cheap if it is a coordinate axis."""
     along = [i for i, edge in enumerate(n) if abs(edge) == ONE]
-    return about(n, angle, along[0], tuple(n)[along[0]] < 0) if along else about(n, angle, None, False)
+    return (
+        rotation_about(n, angle, along[0], tuple(n)[along[0]] < 0) if along else rotation_about(n, angle, None, False)
+    )
 
 
-# Displacement p_PD and the turns that follow it.
-_Displacement = tuple[Vec3, list["AngleTurn"]]
+# Displacement p_PD and the rotations that follow it.
+_Displacement = tuple[Vec3, list["JointRotation"]]
 
 
 def _fixed(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
@@ -145,34 +156,34 @@ def _fixed(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) ->
 
 
 def _revolute(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
-    return Vec3(lowering.g), [about(axis.n, q[0], axis.k, axis.negative)]
+    return Vec3(lowering.g), [rotation_about(axis.direction, q[0], axis.k, axis.negative)]
 
 
 def _prismatic(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
-    return axis.n.scaled(q[0]), []
+    return axis.direction.scaled(q[0]), []
 
 
 def _screw(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
     shift = lowering.g.mul(lowering.value(joint.pitch), q[0])
-    return axis.n.scaled(shift), [about(axis.n, q[0], axis.k, axis.negative)]
+    return axis.direction.scaled(shift), [rotation_about(axis.direction, q[0], axis.k, axis.negative)]
 
 
 def _cylindrical(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
-    return axis.n.scaled(q[1]), [about(axis.n, q[0], axis.k, axis.negative)]
+    return axis.direction.scaled(q[1]), [rotation_about(axis.direction, q[0], axis.k, axis.negative)]
 
 
 def _universal(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
     second = unit_vector(lowering.vector(joint.axis2))
-    return Vec3(lowering.g), [_about_stated(axis.n, q[0]), _about_stated(second, q[1])]
+    return Vec3(lowering.g), [_rotation_about_any(axis.direction, q[0]), _rotation_about_any(second, q[1])]
 
 
 def _planar(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
     g = lowering.g
-    return Vec3(g, q[0], q[1]), [about(Vec3.unit(g, 2), q[2], 2, False)]
+    return Vec3(g, q[0], q[1]), [rotation_about(Vec3.unit(g, 2), q[2], 2, False)]
 
 
 def _general(lowering: Lowering, joint: Joint, q: tuple[Edge, ...], axis: Axis) -> _Displacement:
-    return lowering.vector(joint.moving_position), _stated_turns(lowering, joint)
+    return lowering.vector(joint.moving_position), _stated_rotations(lowering, joint)
 
 
 # Kinds whose speeds are the rates of their coordinates.
@@ -189,51 +200,51 @@ _DISPLACEMENTS: dict[JointKindName, Callable[[Lowering, Joint, tuple[Edge, ...],
 }
 
 
-def _stated_turns(lowering: Lowering, joint: Joint) -> list[AngleTurn]:
-    """The turns of the user's own R_PD(q)."""
+def _stated_rotations(lowering: Lowering, joint: Joint) -> list[JointRotation]:
+    """The rotations of the user's own R_PD(q)."""
     g, rotation = lowering.g, joint.moving_rotation
     if rotation.is_identity:
         return []
     values = [lowering.value(value) for value in rotation.values]
     if rotation.kind == "rpy":
-        return [about(Vec3.unit(g, k), values[k], k, False) for k in (2, 1, 0) if values[k] != ZERO]
+        return [rotation_about(Vec3.unit(g, k), values[k], k, False) for k in (2, 1, 0) if values[k] != ZERO]
     if rotation.kind == "axis_angle" and all(map(g.is_constant, values[:3])):
-        return [_about_stated(unit_vector(Vec3(g, *values[:3])), values[3])]
-    return [AngleTurn(MatrixTurn(lowering.rotation(rotation)))]
+        return [_rotation_about_any(unit_vector(Vec3(g, *values[:3])), values[3])]
+    return [JointRotation(MatrixRotation(lowering.rotation(rotation)))]
 
 
-def _differentiated(
-    g: Graph, q: tuple[Edge, ...], p_PD: Vec3, R: Turn, turns: list[AngleTurn]
+def _partial_velocities(
+    g: Graph, q: tuple[Edge, ...], p_PD: Vec3, R: RotationProduct, rotations: list[JointRotation]
 ) -> list[tuple[Vec3, Vec3]]:
     """Partial velocities w and v of v = q', in D (eqs. 32, 33)."""
-    columns = []
+    partials = []
     for coordinate in q:
         seeds = {coordinate: ONE}
         w = Vec3(g)
-        for turn in turns:
-            # What was turned so far is seen from the next frame, where this turn adds its own part.
-            w = Turn(g, (turn.factor,)).apply_inverse(w) + _turn_rate(g, turn, seeds)
+        for rotation in rotations:
+            # What was turned so far is seen from the next frame, where this rotation adds its own part.
+            w = RotationProduct(g, (rotation.factor,)).apply_inverse(w) + _angular_velocity(g, rotation, seeds)
         v = R.apply_inverse(Vec3(g, *directional(g, list(p_PD), seeds)))
-        columns.append((w, v))
-    return columns
+        partials.append((w, v))
+    return partials
 
 
-def _turn_rate(g: Graph, turn: AngleTurn, seeds: dict[Edge, Edge]) -> Vec3:
-    """Angular velocity of one turn, in the frame it leads to."""
-    if turn.n is not None:
-        # The axis is the same vector on both sides of the turn.
-        return turn.n.scaled(directional(g, [turn.angle], seeds)[0])
-    R = turn.factor.matrix(g)
+def _angular_velocity(g: Graph, rotation: JointRotation, seeds: dict[Edge, Edge]) -> Vec3:
+    """Angular velocity of one rotation, in the frame it leads to."""
+    if rotation.axis is not None:
+        # The axis is the same vector on both sides of the rotation.
+        return rotation.axis.scaled(directional(g, [rotation.angle], seeds)[0])
+    R = rotation.factor.matrix(g)
     R_rate = Mat3(g, tuple(directional(g, list(R.entries), seeds)))
     columns = [R.column(i) for i in range(3)]
     rates = [R_rate.column(i) for i in range(3)]
     return Vec3(g, columns[2].dot(rates[1]), columns[0].dot(rates[2]), columns[1].dot(rates[0]))
 
 
-def _with_rates(g: Graph, q: tuple[Edge, ...], speeds: Sequence[Edge], w: Vec3, v: Vec3) -> Column:
+def _with_rates(g: Graph, q: tuple[Edge, ...], speeds: Sequence[Edge], w: Vec3, v: Vec3) -> PartialVelocity:
     seeds = dict(zip(q, speeds, strict=True))
     w_rate, v_rate = (Vec3(g, *directional(g, list(x), seeds)) for x in (w, v))
-    return Column(w, v, w_rate, v_rate)
+    return PartialVelocity(w, v, w_rate, v_rate)
 
 
 def neutral_coordinates(joint: Joint, nq: int) -> tuple[float, ...]:

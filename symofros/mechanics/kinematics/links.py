@@ -1,4 +1,4 @@
-"""From the spanning tree to its motion: each link's frame in its parent's, and its partial velocities.
+"""Kinematics of the spanning tree: each link's frame in its parent's, and its partial velocities.
 
 A link's own frame L shares its origin with the body frame B, but is turned so that the joint axis lies along a
 coordinate axis: a joint about any constant axis then costs what a joint about z costs (docs/theory/rigid.md, 2.3).
@@ -14,9 +14,15 @@ from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.elastic import BeamForms, beam_forms
 from symofros.mechanics.kinematics.flexible import across_beam
-from symofros.mechanics.kinematics.joint import Axis, Column, across_joint
+from symofros.mechanics.kinematics.joint import Axis, PartialVelocity, across_joint
 from symofros.mechanics.kinematics.lowering import Lowering
-from symofros.mechanics.kinematics.rotations import Turn, constant_turn, frame_with_axis, snapped, unit_vector
+from symofros.mechanics.kinematics.rotations import (
+    RotationProduct,
+    constant_rotation,
+    frame_with_axis,
+    snapped,
+    unit_vector,
+)
 from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
 from symofros.mechanics.topology.tree import BASE, Link, SpanningTree
 
@@ -26,12 +32,12 @@ class MovingLink:
     """One link's motion on its parent A (a link, or the base).
 
     Attributes:
-        name: Of the link's body.
+        name: Name of the link's body.
         parent: Index of the parent, or BASE.
         R_AL: Rotation from link to parent.
         p_AL: From Ao to Lo, in A [m].
-        columns: Partial velocities of L in A, in L.
-        speeds: Edge of each column's speed.
+        partial_velocities: Partial velocities of L in A, in L, one a speed.
+        speeds: Edges of those speeds.
         rates: Edge of each speed's rate where the motion is prescribed; None where it is free.
         v: Index of the first speed, where the motion is free.
         R_LB: The body frame in the link frame.
@@ -41,9 +47,9 @@ class MovingLink:
 
     name: str
     parent: int
-    R_AL: Turn
+    R_AL: RotationProduct
     p_AL: Vec3
-    columns: tuple[Column, ...]
+    partial_velocities: tuple[PartialVelocity, ...]
     speeds: tuple[Edge, ...]
     rates: tuple[Edge, ...] | None
     v: int
@@ -52,13 +58,13 @@ class MovingLink:
     axis: int | None
 
     @property
-    def free_columns(self) -> tuple[Column, ...]:
-        """The columns that have a speed among v."""
-        return self.columns if self.rates is None else ()
+    def free_partial_velocities(self) -> tuple[PartialVelocity, ...]:
+        """Partial velocities of the speeds that are among v; none where the motion is prescribed."""
+        return self.partial_velocities if self.rates is None else ()
 
-    def rates_given(self, v_rate: Sequence[Edge]) -> Sequence[Edge]:
+    def speed_rates(self, v_rate: Sequence[Edge]) -> Sequence[Edge]:
         """Rates of the speeds: prescribed, or this link's part of v'."""
-        return v_rate[self.v : self.v + len(self.columns)] if self.rates is None else self.rates
+        return v_rate[self.v : self.v + len(self.partial_velocities)] if self.rates is None else self.rates
 
 
 @dataclass(frozen=True)
@@ -77,14 +83,14 @@ class MovingBeam:
 
 
 @dataclass(frozen=True)
-class Motion:
-    """The whole tree in motion, in one graph.
+class TreeKinematics:
+    """Kinematics of the whole tree, in one graph.
 
     Attributes:
         g: The graph.
         lowering: Values -> edges.
-        tree: What it was made from.
-        links: Parents before children.
+        tree: The spanning tree.
+        links: Motion of each link on its parent, parents before children.
         nv: Number of speeds.
         beams: The beams.
     """
@@ -101,32 +107,32 @@ class Motion:
         return Mat3.identity(self.g) if index == BASE else self.links[index].R_LB
 
 
-def speeds_by_path(motion: Motion) -> list[list[int]]:
-    """Indices of all speeds by paths to the base: what lies on one path is carried over the same joints.
+def speeds_by_path(kinematics: TreeKinematics) -> list[list[int]]:
+    """Indices of all speeds by paths to the base: the momenta of one path cross the same joints.
 
-    The longest path takes all it passes, each branch what is left of it.
+    The longest path has every speed on its way, each branch those that no path before it has.
 
     Returns:
         One list a path, outermost speed first.
     """
     depth: list[int] = []
-    for link in motion.links:
-        depth.append(len(link.free_columns) + (depth[link.parent] if link.parent != BASE else 0))
-    taken: set[int] = set()
+    for link in kinematics.links:
+        depth.append(len(link.free_partial_velocities) + (depth[link.parent] if link.parent != BASE else 0))
+    visited: set[int] = set()
     paths: list[list[int]] = []
-    for i in sorted(range(len(motion.links)), key=lambda i: -depth[i]):
+    for i in sorted(range(len(kinematics.links)), key=lambda i: -depth[i]):
         path: list[int] = []
-        while i != BASE and i not in taken:
-            taken.add(i)
-            link = motion.links[i]
-            path += range(link.v + len(link.free_columns) - 1, link.v - 1, -1)
+        while i != BASE and i not in visited:
+            visited.add(i)
+            link = kinematics.links[i]
+            path += range(link.v + len(link.free_partial_velocities) - 1, link.v - 1, -1)
             i = link.parent
         if path:
             paths.append(path)
     return paths
 
 
-def set_in_motion(g: Graph, tree: SpanningTree, as_seen: bool = False) -> Motion:
+def tree_kinematics(g: Graph, tree: SpanningTree, as_seen: bool = False) -> TreeKinematics:
     """Lower a tree's joints, beams and offsets into a graph.
 
     Args:
@@ -139,10 +145,10 @@ def set_in_motion(g: Graph, tree: SpanningTree, as_seen: bool = False) -> Motion
     links: list[MovingLink] = []
     beams: list[MovingBeam] = []
     for i, link in enumerate(tree.links):
-        R_LB_parent = Mat3.identity(g) if link.parent == BASE else links[link.parent].R_LB
-        R_AP, p_AP = lowering.placement(link.placement, R_LB_parent)
-        # P and D are turned alike by A, so that the axis lies along a coordinate axis of both.
-        A, axis = _aligned(lowering, link)
+        R_AB = Mat3.identity(g) if link.parent == BASE else links[link.parent].R_LB
+        R_AP, p_AP = lowering.placement(link.placement, R_AB)
+        # P and D are turned alike by R_BL, so that the axis lies along a coordinate axis of both.
+        R_BL, axis = _aligned(lowering, link)
         q = tuple(lowering.symbol(name) for name in coordinate_names(link.joint))
         speeds = tuple(lowering.symbol(name) for name in speed_symbols(link.joint))
         rates = tuple(lowering.symbol(name) for name in rate_symbols(link.joint)) if link.joint.prescribed else None
@@ -154,33 +160,33 @@ def set_in_motion(g: Graph, tree: SpanningTree, as_seen: bool = False) -> Motion
             across = across_joint(lowering, link.joint, q, speeds, axis)
         else:
             across = across_beam(beams[-1].forms, q, speeds, as_seen or link.tip_of.retain != "zeroth_order")
-        constant = constant_turn(snapped(R_AP @ A))
+        constant = constant_rotation(snapped(R_AP @ R_BL))
         links.append(
             MovingLink(
                 name=link.name,
                 parent=link.parent,
                 R_AL=constant @ across.R_PD,
                 p_AL=p_AP + constant.apply(across.p_PD),
-                columns=across.columns,
+                partial_velocities=across.partial_velocities,
                 speeds=speeds,
                 rates=rates,
                 v=link.v[0],
-                R_LB=A.T,
+                R_LB=R_BL.T,
                 fixed_origin=across.p_PD.is_zero,
                 axis=axis.k if link.joint.traits.turns_about else None,
             )
         )
-    return Motion(g, lowering, tree, tuple(links), len(tree.coordinates.v), tuple(beams))
+    return TreeKinematics(g, lowering, tree, tuple(links), len(tree.coordinates.v), tuple(beams))
 
 
 def _aligned(lowering: Lowering, link: Link) -> tuple[Mat3, Axis]:
-    """The rotation A of a link's frame, and the joint's axis seen in the turned frames."""
+    """R_BL of a link's frame, and the joint's axis seen in the turned frames."""
     g, joint = lowering.g, link.joint
     if "axis" not in joint.traits.entries:
         return Mat3.identity(g), Axis(Vec3.unit(g, 2), 2, False)
-    n = unit_vector(lowering.vector(joint.axis))
-    aligned = frame_with_axis(n) if joint.traits.aligned else None
+    direction = unit_vector(lowering.vector(joint.axis))
+    aligned = frame_with_axis(direction) if joint.traits.aligned else None
     if aligned is None:
-        return Mat3.identity(g), Axis(n, None, False)
-    A, k, negative = aligned
-    return A, Axis(-Vec3.unit(g, k) if negative else Vec3.unit(g, k), k, negative)
+        return Mat3.identity(g), Axis(direction, None, False)
+    R_BL, k, negative = aligned
+    return R_BL, Axis(-Vec3.unit(g, k) if negative else Vec3.unit(g, k), k, negative)

@@ -24,7 +24,7 @@ EXACT = 1e-15
 
 
 @dataclass(frozen=True, slots=True)
-class AxisTurn:
+class AxisRotation:
     """A turn about coordinate axis k with the given cosine and sine."""
 
     k: int
@@ -76,7 +76,7 @@ class AxisTurn:
 
 
 @dataclass(frozen=True, slots=True)
-class MatrixTurn:
+class MatrixRotation:
     """Any rotation by its matrix; free of cost where it permutes axes, because zeros and ones fold."""
 
     R: Mat3
@@ -99,10 +99,10 @@ class MatrixTurn:
         return self.R @ B @ self.R.T
 
 
-Factor = AxisTurn | MatrixTurn
+Factor = AxisRotation | MatrixRotation
 
 
-class Turn:
+class RotationProduct:
     """R_AB as a product of factors, left to right.
 
     Attributes:
@@ -115,9 +115,9 @@ class Turn:
         self.factors = factors
         self.tensor_factors = factors if tensor_factors is None else tensor_factors
 
-    def __matmul__(self, other: Turn) -> Turn:
+    def __matmul__(self, other: RotationProduct) -> RotationProduct:
         """R_AB R_BC = R_AC."""
-        return Turn(self.g, self.factors + other.factors, self.tensor_factors + other.tensor_factors)
+        return RotationProduct(self.g, self.factors + other.factors, self.tensor_factors + other.tensor_factors)
 
     def apply(self, v_B: Vec3) -> Vec3:
         """R_AB v_B."""
@@ -154,7 +154,7 @@ class Turn:
         return self.after(Mat3.identity(self.g))
 
 
-def constant_turn(R: Mat3) -> Turn:
+def constant_rotation(R: Mat3) -> RotationProduct:
     """A rotation that does not change with q, in its cheapest factors.
 
     A number matrix with an entry +-1 is an axis permutation times one elementary turn; any other number matrix is
@@ -162,7 +162,7 @@ def constant_turn(R: Mat3) -> Turn:
     """
     g = R.g
     if not R.is_constant:
-        return Turn(g, (MatrixTurn(R),))
+        return RotationProduct(g, (MatrixRotation(R),))
     rows = R.numbers()
     for i, j in product(range(3), range(3)):
         # An entry rounds to 1 long before the others of its row and column round to 0.
@@ -172,18 +172,19 @@ def constant_turn(R: Mat3) -> Turn:
             k, c, s = j, rest[(j + 1) % 3][(j + 1) % 3], rest[(j + 2) % 3][(j + 1) % 3]
             # Multiples of 90 degrees join the permutation: nothing is left to turn.
             if c in (0.0, 1.0, -1.0):
-                return Turn(g, (MatrixTurn(R),)) if R != Mat3.identity(g) else Turn(g, ())
-            factors: list[Factor] = [AxisTurn(k, g.constant(c), g.constant(s))]
+                return RotationProduct(g, (MatrixRotation(R),)) if R != Mat3.identity(g) else RotationProduct(g, ())
+            factors: list[Factor] = [AxisRotation(k, g.constant(c), g.constant(s))]
             if permutation != [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]:
-                factors.insert(0, MatrixTurn(_number_matrix(g, permutation)))
-            return Turn(g, tuple(factors))
+                factors.insert(0, MatrixRotation(_number_matrix(g, permutation)))
+            return RotationProduct(g, tuple(factors))
     a, c = nearest("atan2", rows[0][2], -rows[1][2]), nearest("atan2", rows[2][0], rows[2][1])
     tilt = math.sqrt(rows[0][2] * rows[0][2] + rows[1][2] * rows[1][2])
     b = nearest("atan2", tilt, rows[2][2])  # An arc cosine would lose small tilts.
     zxz = tuple(
-        AxisTurn(k, g.constant(nearest("cos", x)), g.constant(nearest("sin", x))) for k, x in ((2, a), (0, b), (2, c))
+        AxisRotation(k, g.constant(nearest("cos", x)), g.constant(nearest("sin", x)))
+        for k, x in ((2, a), (0, b), (2, c))
     )
-    return Turn(g, (MatrixTurn(R),), zxz)
+    return RotationProduct(g, (MatrixRotation(R),), zxz)
 
 
 def _axis_permutation(i: int, j: int, sign: float) -> list[list[float]]:
@@ -230,7 +231,7 @@ def stated_rotation(rotation: Rotation, g: Graph, bindings: Mapping[str, Edge]) 
     if rotation.kind == "matrix":
         return snapped(Mat3(g, tuple(x)))
     if rotation.kind == "rpy":
-        turns = [AxisTurn(k, g.call("cos", x[k]), g.call("sin", x[k])).matrix(g) for k in (2, 1, 0)]
+        turns = [AxisRotation(k, g.call("cos", x[k]), g.call("sin", x[k])).matrix(g) for k in (2, 1, 0)]
         return snapped(snapped(turns[0]) @ snapped(turns[1]) @ snapped(turns[2]))
     if rotation.kind == "quaternion":
         return snapped(Quaternion.of(g, *x).normalized.matrix)

@@ -11,9 +11,9 @@ from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
 from symofros.generator.passes.count import count_operations
 from symofros.mechanics.kinematics.rotations import (
-    AxisTurn,
-    Turn,
-    constant_turn,
+    AxisRotation,
+    RotationProduct,
+    constant_rotation,
     frame_with_axis,
     snapped,
     stated_rotation,
@@ -45,17 +45,17 @@ def test_constant_factors_multiply_to_the_rotation(seed: int) -> None:
     rng = np.random.default_rng(seed)
     g = Graph()
     R = stated_rotation(random_rotation(rng), g, {})
-    turn = constant_turn(R)
+    rotation = constant_rotation(R)
     expected = numbers(R, g)
-    np.testing.assert_allclose(numbers(turn.matrix(), g), expected, atol=1e-15)
+    np.testing.assert_allclose(numbers(rotation.matrix(), g), expected, atol=1e-15)
     v = Vec3(g, *map(g.constant, rng.standard_normal(3)))
-    np.testing.assert_allclose(numbers(turn.apply(v), g), expected @ numbers(v, g), atol=1e-14)
-    np.testing.assert_allclose(numbers(turn.apply_inverse(v), g), expected.T @ numbers(v, g), atol=1e-14)
+    np.testing.assert_allclose(numbers(rotation.apply(v), g), expected @ numbers(v, g), atol=1e-14)
+    np.testing.assert_allclose(numbers(rotation.apply_inverse(v), g), expected.T @ numbers(v, g), atol=1e-14)
     S = Sym3(g, *map(g.constant, rng.standard_normal(6)))
-    turned = numbers(turn.conjugate(S), g)
+    turned = numbers(rotation.conjugate(S), g)
     np.testing.assert_allclose(turned, expected @ numbers(S, g) @ expected.T, atol=1e-14)
     B = Mat3(g, tuple(map(g.constant, rng.standard_normal(9))))
-    turned = numbers(turn.conjugate_any(B), g)
+    turned = numbers(rotation.conjugate_any(B), g)
     np.testing.assert_allclose(turned, expected @ numbers(B, g) @ expected.T, atol=1e-14)
 
 
@@ -65,32 +65,32 @@ def test_slight_tilts_survive_every_form(tilt: float, form: tuple[float, ...]) -
     """Near a permutation of axes entries round to 1 before the others round to 0."""
     g = Graph()
     R = stated_rotation(Rotation.rpy(*(x * tilt for x in form[:2]), form[2] * 0.25), g, {})
-    turn, expected = constant_turn(R), numbers(R, g)
+    rotation, expected = constant_rotation(R), numbers(R, g)
     S = Sym3(g, *map(g.constant, (1.0, 20.0, 300.0, 2.0, -3.0, 5.0)))
-    np.testing.assert_allclose(numbers(turn.matrix(), g), expected, atol=1e-16)
-    np.testing.assert_allclose(numbers(turn.conjugate(S), g), expected @ numbers(S, g) @ expected.T, atol=1e-13)
+    np.testing.assert_allclose(numbers(rotation.matrix(), g), expected, atol=1e-16)
+    np.testing.assert_allclose(numbers(rotation.conjugate(S), g), expected @ numbers(S, g) @ expected.T, atol=1e-13)
 
 
 def test_right_angles_are_exact_and_free() -> None:
     g = Graph()
-    turn = constant_turn(stated_rotation(Rotation.rpy(np.pi / 2, 0.0, -np.pi), g, {}))
+    rotation = constant_rotation(stated_rotation(Rotation.rpy(np.pi / 2, 0.0, -np.pi), g, {}))
     v = Vec3(g, *(g.input("q", i) for i in range(3)))
-    assert count_operations(g, list(turn.apply(v))).total == 0
-    assert {abs(edge) for edge in turn.apply(v)} == {abs(edge) for edge in v}
+    assert count_operations(g, list(rotation.apply(v))).total == 0
+    assert {abs(edge) for edge in rotation.apply(v)} == {abs(edge) for edge in v}
 
 
 @pytest.mark.parametrize("k", range(3))
 def test_an_axis_turn_costs_what_the_theory_says(k: int) -> None:
     """Vectors 4 + 2, symmetric tensors 8 + 8, others 12 + 11 (docs/theory/rigid.md, eq. 12)."""
     g = Graph()
-    turn = Turn(g, (AxisTurn(k, g.input("q", 0), g.input("q", 1)),))
+    rotation = RotationProduct(g, (AxisRotation(k, g.input("q", 0), g.input("q", 1)),))
     v = Vec3(g, *(g.input("v", i) for i in range(3)))
     S = Sym3(g, *(g.input("u", i) for i in range(6)))
-    vector, tensor = count_operations(g, list(turn.apply(v))), count_operations(g, list(turn.conjugate(S)))
+    vector, tensor = count_operations(g, list(rotation.apply(v))), count_operations(g, list(rotation.conjugate(S)))
     assert (vector.mul, vector.add) == (4, 2)
     # d + d counts as a multiplication by two: 8 + 8 in all.
     assert (tensor.mul + tensor.add, tensor.total) == (16, 16)
-    other = count_operations(g, turn.conjugate_any(Mat3(g, tuple(g.input("a", i) for i in range(9)))).entries)
+    other = count_operations(g, rotation.conjugate_any(Mat3(g, tuple(g.input("a", i) for i in range(9)))).entries)
     assert (other.mul, other.add) == (12, 11)
 
 

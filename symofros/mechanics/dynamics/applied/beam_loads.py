@@ -12,29 +12,29 @@ from symofros.expr.vector import Vec3
 from symofros.mechanics.beams.fields import EVERY_DEGREE, Field, Form, unit_field
 from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench
 from symofros.mechanics.kinematics.frames import FrameKinematics
-from symofros.mechanics.kinematics.links import Motion, MovingBeam
+from symofros.mechanics.kinematics.links import MovingBeam, TreeKinematics
 
 # A field, weighted by a component of a load, at its station or over the length.
 Weighted = Callable[[Field, Value], Form]
 
 
-def beam_loads(motion: Motion, frames: FrameKinematics, beam: MovingBeam) -> tuple[Wrench, list[Edge]]:
+def beam_loads(kinematics: TreeKinematics, frames: FrameKinematics, beam: MovingBeam) -> tuple[Wrench, list[Edge]]:
     """What the loads along a beam do (eqs. 18, 19).
 
     Args:
-        motion: The tree.
+        kinematics: Kinematics of the tree.
         frames: For components in world axes.
         beam: The beam.
 
     Returns:
         The wrench on its root in the link frame, and the force on each elastic coordinate.
     """
-    g, R_LB = motion.g, motion.links[beam.root].R_LB
+    g, R_LB = kinematics.g, kinematics.links[beam.root].R_LB
     wrench = no_wrench(g)
     modal = [ZERO] * beam.forms.beam.modes
     for load in beam.forms.beam.loads:
         weighted = partial(_at_station, beam, load.at) if load.at is not None else beam.forms.along.integral
-        directions = _directions(motion, frames, beam, load)
+        directions = _directions(kinematics, frames, beam, load)
         for d, force, torque in zip(directions, load.force, load.torque, strict=True):
             one, forces = _along(beam, weighted, load.at, d, force, torque)
             wrench = wrench + Wrench(R_LB.times(one.f), R_LB.times(one.n))
@@ -46,11 +46,11 @@ def _at_station(beam: MovingBeam, xi: float, field: Field, weight: Value) -> For
     return beam.forms.along.at(field, xi).scaled(beam.forms.along.lower(weight))
 
 
-def _directions(motion: Motion, frames: FrameKinematics, beam: MovingBeam, load: BeamLoad) -> list[Vec3]:
+def _directions(kinematics: TreeKinematics, frames: FrameKinematics, beam: MovingBeam, load: BeamLoad) -> list[Vec3]:
     """The axes that a load's components are along, in B."""
     if load.axes == "body":
-        return [Vec3.unit(motion.g, k) for k in range(3)]
-    R_WL, R_LB = frames.link_pose(beam.root).R, motion.links[beam.root].R_LB
+        return [Vec3.unit(kinematics.g, k) for k in range(3)]
+    R_WL, R_LB = frames.link_pose(beam.root).R, kinematics.links[beam.root].R_LB
     return [R_LB.T.times(R_WL.row(k)) for k in range(3)]
 
 

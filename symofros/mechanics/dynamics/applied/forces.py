@@ -12,66 +12,68 @@ from symofros.mechanics.dynamics.acceleration import no_wrench
 from symofros.mechanics.dynamics.applied.beam_loads import beam_loads
 from symofros.mechanics.dynamics.applied.elements import element_energy, element_force
 from symofros.mechanics.dynamics.applied.loads import connection_energy, wrenches
-from symofros.mechanics.dynamics.beams import elastic_forces
+from symofros.mechanics.dynamics.bodies.beams import elastic_forces
 from symofros.mechanics.dynamics.jourdain import virtual_power
 from symofros.mechanics.kinematics.frames import FrameKinematics
-from symofros.mechanics.kinematics.links import Motion, MovingBeam
+from symofros.mechanics.kinematics.links import MovingBeam, TreeKinematics
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.topology.coordinates import coordinate_names, speed_symbols
 from symofros.mechanics.topology.tree import Link
 
 
-def generalized_forces(motion: Motion, frames: FrameKinematics) -> list[Edge]:
+def generalized_forces(kinematics: TreeKinematics, frames: FrameKinematics) -> list[Edge]:
     """Q: joint efforts and elements, virtual power by formula, potentials, loads and connections.
 
     Args:
-        motion: The tree.
+        kinematics: Kinematics of the tree.
         frames: Its frames, where loads and connections act.
 
     Returns:
         One edge a speed.
     """
-    g, system = motion.g, motion.tree.system
-    total = _joint_forces(motion)
-    index = {name: motion.lowering.coordinates.symbols[name].index for name in _free_speeds(motion)}
+    g, system = kinematics.g, kinematics.tree.system
+    total = _joint_forces(kinematics)
+    index = {name: kinematics.lowering.coordinates.symbols[name].index for name in _free_speeds(kinematics)}
     for power in system.virtual_power:
         for speed, formula in power.forces:
-            total[index[speed]] = g.add(total[index[speed]], motion.lowering.value(formula))
-    potentials = [motion.lowering.value(potential.energy) for potential in system.potentials]
+            total[index[speed]] = g.add(total[index[speed]], kinematics.lowering.value(formula))
+    potentials = [kinematics.lowering.value(potential.energy) for potential in system.potentials]
     if potentials:
-        total = [g.sub(force, slope) for force, slope in zip(total, _gradient(motion, g.sum(potentials)), strict=True)]
-    acting = wrenches(motion, frames)
-    for beam in motion.beams:
+        total = [
+            g.sub(force, slope) for force, slope in zip(total, _gradient(kinematics, g.sum(potentials)), strict=True)
+        ]
+    acting = wrenches(kinematics, frames)
+    for beam in kinematics.beams:
         if beam.forms.beam.loads:
-            wrench, modal = beam_loads(motion, frames, beam)
-            acting = acting or [no_wrench(g) for _ in motion.links]
+            wrench, modal = beam_loads(kinematics, frames, beam)
+            acting = acting or [no_wrench(g) for _ in kinematics.links]
             acting[beam.root] = acting[beam.root] + wrench
-            _add_modal(motion, beam, total, modal)
-        _add_modal(motion, beam, total, elastic_forces(motion, beam))
+            _add_modal(kinematics, beam, total, modal)
+        _add_modal(kinematics, beam, total, elastic_forces(kinematics, beam))
     if acting is not None:
-        total = [g.add(a, b) for a, b in zip(total, virtual_power(motion, acting), strict=True)]
+        total = [g.add(a, b) for a, b in zip(total, virtual_power(kinematics, acting), strict=True)]
     return total
 
 
-def _add_modal(motion: Motion, beam: MovingBeam, total: list[Edge], forces: list[Edge]) -> None:
+def _add_modal(kinematics: TreeKinematics, beam: MovingBeam, total: list[Edge], forces: list[Edge]) -> None:
     if beam.tip is not None:
-        for k, force in enumerate(forces, start=motion.links[beam.tip].v):
-            total[k] = motion.g.add(total[k], force)
+        for k, force in enumerate(forces, start=kinematics.links[beam.tip].v):
+            total[k] = kinematics.g.add(total[k], force)
 
 
-def stored_energy(motion: Motion, frames: FrameKinematics) -> Edge:
+def stored_energy(kinematics: TreeKinematics, frames: FrameKinematics) -> Edge:
     """The potential energy of joint elements, connections and formulas; gravity's is another function's."""
-    g, lowering = motion.g, motion.lowering
-    parts = [lowering.value(potential.energy) for potential in motion.tree.system.potentials]
-    for link in motion.tree.links:
+    g, lowering = kinematics.g, kinematics.lowering
+    parts = [lowering.value(potential.energy) for potential in kinematics.tree.system.potentials]
+    for link in kinematics.tree.links:
         for element in link.joint.elements:
             parts.append(element_energy(lowering, element, _coordinate(lowering, link, element.coordinate)))
-    parts += [beam.forms.strain_energy.value() for beam in motion.beams]
-    return g.sum([*parts, connection_energy(motion, frames)])
+    parts += [beam.forms.strain_energy.value() for beam in kinematics.beams]
+    return g.sum([*parts, connection_energy(kinematics, frames)])
 
 
-def _free_speeds(motion: Motion) -> list[str]:
-    return [name for link in motion.tree.links if not link.joint.prescribed for name in speed_symbols(link.joint)]
+def _free_speeds(kinematics: TreeKinematics) -> list[str]:
+    return [name for link in kinematics.tree.links if not link.joint.prescribed for name in speed_symbols(link.joint)]
 
 
 def _coordinate(lowering: Lowering, link: Link, index: int) -> Edge:
@@ -80,10 +82,10 @@ def _coordinate(lowering: Lowering, link: Link, index: int) -> Edge:
     return lowering.symbol(names[index]) if index < len(names) else ZERO
 
 
-def _joint_forces(motion: Motion) -> list[Edge]:
+def _joint_forces(kinematics: TreeKinematics) -> list[Edge]:
     """Efforts, motors and elements: their virtual power on their own speed is the force itself (eq. 23)."""
-    g, lowering, tree = motion.g, motion.lowering, motion.tree
-    total: list[Edge] = [ZERO] * motion.nv
+    g, lowering, tree = kinematics.g, kinematics.lowering, kinematics.tree
+    total: list[Edge] = [ZERO] * kinematics.nv
     motor = len(tree.system.inputs)
 
     def add(k: int, edge: Edge) -> None:
@@ -106,25 +108,25 @@ def _joint_forces(motion: Motion) -> list[Edge]:
     return total
 
 
-def _gradient(motion: Motion, energy: Edge) -> list[Edge]:
+def _gradient(kinematics: TreeKinematics, energy: Edge) -> list[Edge]:
     """The rate of an energy per unit of each speed: its gradient through q' = N v (eq. 38)."""
-    return along(motion.g, [energy], rates_per_speed(motion))[0]
+    return along(kinematics.g, [energy], rates_per_speed(kinematics))[0]
 
 
-def rates_per_speed(motion: Motion) -> list[dict[Edge, Edge]]:
+def rates_per_speed(kinematics: TreeKinematics) -> list[dict[Edge, Edge]]:
     """For each speed, the rates of coordinates per unit of it: the columns of N in q' = N v."""
     return [
-        _RATES[link.joint.traits.manifold](motion.lowering, coordinate_names(link.joint), k)
-        for link in motion.tree.links
+        _RATES[link.joint.traits.manifold](kinematics.lowering, coordinate_names(link.joint), k)
+        for link in kinematics.tree.links
         for k in range(link.v[1])
     ]
 
 
-def coordinate_rates(motion: Motion) -> dict[Edge, Edge]:
+def coordinate_rates(kinematics: TreeKinematics) -> dict[Edge, Edge]:
     """The rate of every coordinate, q' = N v; of prescribed ones, their given speeds."""
-    g, lowering = motion.g, motion.lowering
+    g, lowering = kinematics.g, kinematics.lowering
     rates: dict[Edge, Edge] = {}
-    for link in motion.tree.links:
+    for link in kinematics.tree.links:
         names, speeds = coordinate_names(link.joint), speed_symbols(link.joint)
         for k, speed in enumerate(speeds):
             for coordinate, slope in _RATES[link.joint.traits.manifold](lowering, names, k).items():

@@ -9,73 +9,77 @@ from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench
 from symofros.mechanics.kinematics.frames import FrameKinematics
-from symofros.mechanics.kinematics.links import Motion
+from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.topology.tree import BASE, NamedFrame, Step, frame_of
 
 
-def wrenches(motion: Motion, frames: FrameKinematics) -> list[Wrench] | None:
+def wrenches(kinematics: TreeKinematics, frames: FrameKinematics) -> list[Wrench] | None:
     """What acts on each link; None if nothing does."""
-    total = [no_wrench(motion.g) for _ in motion.links]
+    total = [no_wrench(kinematics.g) for _ in kinematics.links]
     acting = False
-    for body in motion.tree.system.bodies:
+    for body in kinematics.tree.system.bodies:
         if isinstance(body, Beam):
             continue  # Its loads also act on its elastic coordinates.
         for load in body.loads:
-            frame = frame_of(motion.tree, body.name)
+            frame = frame_of(kinematics.tree, body.name)
             if frame.link != BASE:
-                total[frame.link] = total[frame.link] + _load(motion, frames, body, frame, load)
+                total[frame.link] = total[frame.link] + _load(kinematics, frames, body, frame, load)
                 acting = True
-    for connection in motion.tree.system.connections:
+    for connection in kinematics.tree.system.connections:
         acting = True
-        force = _Line(motion, frames, connection).force()
+        force = _Line(kinematics, frames, connection).force()
         for anchor, pull in ((connection.first, force), (connection.second, -force)):
-            frame = frame_of(motion.tree, *anchor)
+            frame = frame_of(kinematics.tree, *anchor)
             if frame.link != BASE:
-                total[frame.link] = total[frame.link] + _at_frame(motion, frames, frame, pull, Vec3(motion.g))
+                total[frame.link] = total[frame.link] + _at_frame(kinematics, frames, frame, pull, Vec3(kinematics.g))
     return total if acting else None
 
 
-def _load(motion: Motion, frames: FrameKinematics, body: RigidBody, frame: NamedFrame, load: Load) -> Wrench:
+def _load(
+    kinematics: TreeKinematics, frames: FrameKinematics, body: RigidBody, frame: NamedFrame, load: Load
+) -> Wrench:
     """A load's wrench about its link's origin."""
-    force, torque = motion.lowering.vector(load.force), motion.lowering.vector(load.torque)
+    force, torque = kinematics.lowering.vector(load.force), kinematics.lowering.vector(load.torque)
     if load.at == "center_of_mass":
         assert body.inertia is not None
         step = Step(body.inertia.center_of_mass, body.inertia.rotation)
         frame = NamedFrame("", "", frame.link, (*frame.placement, step))
         if load.axes == "body":
             # Components along the body's axes, also where the mass-centre frame is turned.
-            R_LB, _ = motion.lowering.placement(frame.placement[:-1], motion.in_link(frame.link))
-            return _in_link(motion, frame, R_LB.times(force), R_LB.times(torque))
+            R_LB, _ = kinematics.lowering.placement(frame.placement[:-1], kinematics.in_link(frame.link))
+            return _in_link(kinematics, frame, R_LB.times(force), R_LB.times(torque))
     elif load.at != "body":
-        frame = motion.tree.frame(f"{body.name}.{load.at}")
+        frame = kinematics.tree.frame(f"{body.name}.{load.at}")
     if load.axes == "world":
-        return _at_frame(motion, frames, frame, force, torque)
-    R_LF, _ = motion.lowering.placement(frame.placement, motion.in_link(frame.link))
-    return _in_link(motion, frame, R_LF.times(force), R_LF.times(torque))
+        return _at_frame(kinematics, frames, frame, force, torque)
+    R_LF, _ = kinematics.lowering.placement(frame.placement, kinematics.in_link(frame.link))
+    return _in_link(kinematics, frame, R_LF.times(force), R_LF.times(torque))
 
 
-def _at_frame(motion: Motion, frames: FrameKinematics, frame: NamedFrame, force: Vec3, torque: Vec3) -> Wrench:
+def _at_frame(
+    kinematics: TreeKinematics, frames: FrameKinematics, frame: NamedFrame, force: Vec3, torque: Vec3
+) -> Wrench:
     """The wrench of a force and torque in world axes."""
     R_WL: Mat3 = frames.link_pose(frame.link).R
-    return _in_link(motion, frame, R_WL.T.times(force), R_WL.T.times(torque))
+    return _in_link(kinematics, frame, R_WL.T.times(force), R_WL.T.times(torque))
 
 
-def _in_link(motion: Motion, frame: NamedFrame, force: Vec3, torque: Vec3) -> Wrench:
+def _in_link(kinematics: TreeKinematics, frame: NamedFrame, force: Vec3, torque: Vec3) -> Wrench:
     """The wrench about Lo of a force at a frame's origin and a torque, both in link axes."""
-    _, p_LF = motion.lowering.placement(frame.placement, motion.in_link(frame.link))
+    _, p_LF = kinematics.lowering.placement(frame.placement, kinematics.in_link(frame.link))
     return Wrench(force, torque + p_LF.cross(force))
 
 
 class _Line:
     """The line from the first frame of a connection to the second."""
 
-    def __init__(self, motion: Motion, frames: FrameKinematics, connection: Connection) -> None:
-        self.g = motion.g
-        self.motion, self.frames, self.connection = motion, frames, connection
-        self.ends = [frame_of(motion.tree, *anchor) for anchor in (connection.first, connection.second)]
+    def __init__(self, kinematics: TreeKinematics, frames: FrameKinematics, connection: Connection) -> None:
+        self.g = kinematics.g
+        self.kinematics, self.frames, self.connection = kinematics, frames, connection
+        self.ends = [frame_of(kinematics.tree, *anchor) for anchor in (connection.first, connection.second)]
         self.d = frames.pose(self.ends[1]).p - frames.pose(self.ends[0]).p
-        self.stiffness = motion.lowering.value(connection.stiffness)
-        self.rest = motion.lowering.value(connection.length)
+        self.stiffness = kinematics.lowering.value(connection.stiffness)
+        self.rest = kinematics.lowering.value(connection.length)
 
     def force(self) -> Vec3:
         """The force on the first frame, in world axes: along the line, towards the second when stretched.
@@ -84,7 +88,7 @@ class _Line:
         where the ends meet.
         """
         g = self.g
-        damping = self.motion.lowering.value(self.connection.damping)
+        damping = self.kinematics.lowering.value(self.connection.damping)
         velocity = Vec3(g)
         if damping != ZERO:
             v = [Vec3(g, *self.frames.velocity(end)[:3]) for end in self.ends]
@@ -106,7 +110,7 @@ class _Line:
         return g.mul(g.mul(g.constant(0.5), self.stiffness), square)
 
 
-def connection_energy(motion: Motion, frames: FrameKinematics) -> Edge:
+def connection_energy(kinematics: TreeKinematics, frames: FrameKinematics) -> Edge:
     """The energy that connections store."""
-    connections = motion.tree.system.connections
-    return motion.g.sum(_Line(motion, frames, connection).energy() for connection in connections)
+    connections = kinematics.tree.system.connections
+    return kinematics.g.sum(_Line(kinematics, frames, connection).energy() for connection in connections)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from symofros.description.forces import Rotor
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.vector import Vec3
-from symofros.mechanics.kinematics.links import Motion
+from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.kinematics.rotations import unit_vector
 from symofros.mechanics.topology.tree import BASE
 
@@ -38,45 +38,45 @@ class MovingRotor:
     inertia: Edge
     ratio: Edge
 
-    def spin(self, motion: Motion) -> Edge:
+    def spin(self, kinematics: TreeKinematics) -> Edge:
         """Angular speed relative to the carrier."""
-        return motion.g.mul(self.ratio, motion.links[self.link].speeds[self.coordinate])
+        return kinematics.g.mul(self.ratio, kinematics.links[self.link].speeds[self.coordinate])
 
-    def rate(self, motion: Motion, v_rate: Sequence[Edge]) -> Edge:
+    def rate(self, kinematics: TreeKinematics, v_rate: Sequence[Edge]) -> Edge:
         """Rate of the driving speed."""
-        return motion.links[self.link].rates_given(v_rate)[self.coordinate]
+        return kinematics.links[self.link].speed_rates(v_rate)[self.coordinate]
 
 
-def rotors_of(motion: Motion) -> list[MovingRotor]:
+def rotors_of(kinematics: TreeKinematics) -> list[MovingRotor]:
     """The rotors and armatures of a tree; an armature is a rotor whose carrier is taken to rest."""
     found = []
-    for i, link in enumerate(motion.tree.links):
-        speeds = len(motion.links[i].columns)
-        free = motion.links[i].rates is None
-        armature = motion.lowering.value(link.joint.armature)
+    for i, link in enumerate(kinematics.tree.links):
+        speeds = len(kinematics.links[i].partial_velocities)
+        free = kinematics.links[i].rates is None
+        armature = kinematics.lowering.value(link.joint.armature)
         if armature != ZERO:
-            still = Vec3.unit(motion.g, 2)
+            still = Vec3.unit(kinematics.g, 2)
             found += [
                 MovingRotor(i, c, link.v[0] + c if free else None, BASE, still, armature, ONE) for c in range(speeds)
             ]
         for rotor in link.joint.rotors:
-            carrier, axis = _bearing(motion, i, rotor)
+            carrier, axis = _bearing(kinematics, i, rotor)
             k = link.v[0] + rotor.coordinate if free else None
-            inertia, ratio = motion.lowering.value(rotor.inertia), motion.lowering.value(rotor.ratio)
+            inertia, ratio = kinematics.lowering.value(rotor.inertia), kinematics.lowering.value(rotor.ratio)
             found.append(MovingRotor(i, rotor.coordinate, k, carrier, axis, inertia, ratio))
     return found
 
 
-def _bearing(motion: Motion, index: int, rotor: Rotor) -> tuple[int, Vec3]:
+def _bearing(kinematics: TreeKinematics, index: int, rotor: Rotor) -> tuple[int, Vec3]:
     """The link that bears a rotor, and the spin axis in that link's frame."""
-    link = motion.links[index]
+    link = kinematics.links[index]
     if rotor.axis is None:
         # A joint's own axis is the same vector in the parent, whatever the angle.
-        return link.parent, unit_vector(link.R_AL.apply(link.columns[rotor.coordinate].w))
-    stated = motion.lowering.vector(rotor.axis)
-    name = rotor.carrier or motion.tree.links[index].joint.parent
-    body = next((frame for frame in motion.tree.frames if frame.qualified == name), None)
+        return link.parent, unit_vector(link.R_AL.apply(link.partial_velocities[rotor.coordinate].w))
+    stated = kinematics.lowering.vector(rotor.axis)
+    name = rotor.carrier or kinematics.tree.links[index].joint.parent
+    body = next((frame for frame in kinematics.tree.frames if frame.qualified == name), None)
     if body is None or body.link == BASE:
         return BASE, unit_vector(stated)  # What rests has no rotation to couple with.
-    R_LB, _ = motion.lowering.placement(body.placement, motion.in_link(body.link))
+    R_LB, _ = kinematics.lowering.placement(body.placement, kinematics.in_link(body.link))
     return body.link, unit_vector(R_LB.times(stated))

@@ -8,7 +8,7 @@ from symofros.description.constraints import Closure, Constraint, Nonholonomic, 
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.constraints import Row
+from symofros.mechanics.dynamics.constraints.rows import Row
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.topology.tree import frame_of
 
@@ -27,10 +27,10 @@ def closure_wrenches(frames: FrameKinematics, rows: Sequence[Row]) -> tuple[list
     The first frame of what binds a single body is the world.
 
     Args:
-        frames: Of the tree.
+        frames: Kinematics of the tree's frames.
         rows: Of all constraints, in order.
     """
-    tree, g = frames.motion.tree, frames.g
+    tree, g = frames.kinematics.tree, frames.g
     on_second, on_first, at = [], [], 0
     for constraint in tree.system.constraints:
         count = len(constraint.conditions)

@@ -11,27 +11,27 @@ from symofros.expr.edges import ZERO
 from symofros.expr.evaluate import interpret
 from symofros.expr.graph import Graph
 from symofros.expr.program import Function, Output, Program
+from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, _stated, link_inertias, no_inertia
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
-from symofros.mechanics.dynamics.inertia import LinkInertia, _stated, link_inertias, no_inertia
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import mass_matrix
-from symofros.mechanics.kinematics.links import set_in_motion
+from symofros.mechanics.kinematics.links import tree_kinematics
 from tests.models import CASES, system
 
 
 def evaluated(case: str, regrouped: bool, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
     """M, h, T, V of a case, with or without regrouping."""
     tree = plan(system(case))
-    motion = set_in_motion(Graph(), tree)
-    g = motion.g
+    kinematics = tree_kinematics(Graph(), tree)
+    g = kinematics.g
     if regrouped:
-        inertias, base = link_inertias(motion)
+        inertias, base = link_inertias(kinematics)
     else:
-        inertias, base = [_stated(motion, i) for i in range(len(motion.links))], no_inertia(g)
-    gravity = motion.lowering.vector(tree.system.gravity)
-    M = mass_matrix(motion, inertias, [])
-    h = inertia_forces(motion, inertias, [], [ZERO] * motion.nv, gravity)
-    T, V = kinetic_energy(motion, inertias, []), potential_energy(motion, inertias, base, gravity)
+        inertias, base = [_stated(kinematics, i) for i in range(len(kinematics.links))], no_inertia(g)
+    gravity = kinematics.lowering.vector(tree.system.gravity)
+    M = mass_matrix(kinematics, inertias, [])
+    h = inertia_forces(kinematics, inertias, [], [ZERO] * kinematics.nv, gravity)
+    T, V = kinetic_energy(kinematics, inertias, []), potential_energy(kinematics, inertias, base, gravity)
     edges = (*(edge for row in M for edge in row), *h, T, V)
     function = Function("all", "", ("q", "v"), (Output("x", (len(edges),), edges),))
     program = Program("p", g, {}, (function,))
@@ -56,14 +56,15 @@ def test_a_revolute_link_keeps_the_minimal_set() -> None:
     tree = plan(
         sf.System("s", [sf.RigidBody("b", body.joint, body.inertia, (), ["nonphysical_inertia"])], stated.parameters)
     )
-    (kept,), base = link_inertias(set_in_motion(Graph(), tree))
-    assert kept.m == ZERO and kept.S.z == ZERO and kept.J.yy == ZERO
-    assert all(edge != ZERO for edge in (kept.S.x, kept.S.y, kept.J.xx, kept.J.zz, kept.J.xy, kept.J.xz, kept.J.yz))
-    assert base.m != ZERO and base.S.z != ZERO
+    (kept,), base = link_inertias(tree_kinematics(Graph(), tree))
+    assert kept.m == ZERO and kept.mp_LLcm.z == ZERO and kept.I_LLo_L.yy == ZERO
+    S, J = kept.mp_LLcm, kept.I_LLo_L
+    assert all(edge != ZERO for edge in (S.x, S.y, J.xx, J.zz, J.xy, J.xz, J.yz))
+    assert base.m != ZERO and base.mp_LLcm.z != ZERO
 
 
 def test_a_sliding_link_keeps_mass_and_first_moment() -> None:
     body = sf.RigidBody("b", sf.Joint("q", "prismatic"), sf.Inertia(2.0, (0.1, 0.2, 0.3), (20, 20, 20), about="body"))
-    (kept,), _ = link_inertias(set_in_motion(Graph(), plan(sf.System("s", [body]))))
-    assert all(edge == ZERO for edge in kept.J)
-    assert isinstance(kept, LinkInertia) and kept.m != ZERO and not kept.S.is_zero
+    (kept,), _ = link_inertias(tree_kinematics(Graph(), plan(sf.System("s", [body]))))
+    assert all(edge == ZERO for edge in kept.I_LLo_L)
+    assert isinstance(kept, LinkInertia) and kept.m != ZERO and not kept.mp_LLcm.is_zero

@@ -19,7 +19,7 @@ from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates, rates_per_speed
 from symofros.mechanics.kinematics.frames import FrameKinematics
-from symofros.mechanics.kinematics.links import Motion
+from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.topology.tree import frame_of
 
 
@@ -40,8 +40,8 @@ class Row:
         phi: Its residual; zero for one that binds speeds only.
         G: Its row of the Jacobian (nv).
         rate: G v - b: the rate of phi, or the residual of the condition on speeds.
-        gamma: What G v' must equal.
-        levers: What G is made of, and what the multiplier acts through.
+        gamma: Right-hand side of G v' = gamma.
+        levers: Terms of G, through which the multiplier acts on bodies.
     """
 
     phi: Edge
@@ -52,8 +52,19 @@ class Row:
 
 
 @dataclass(frozen=True)
-class _Body:
-    """A frame in motion, in world axes: name, pose, velocities, accelerations at v' = 0, Jacobian rows."""
+class FrameState:
+    """Motion of a frame F in the world W, in world axes.
+
+    Attributes:
+        name: Qualified name of the frame.
+        p: p_WF [m].
+        R: R_WF.
+        v: v_WFo_W [m/s].
+        w: w_WF_W [rad/s].
+        a: a_WFo_W at v' = 0 [m/s^2].
+        alpha: alpha_WF_W at v' = 0 [rad/s^2].
+        J: Jacobian, rows of v before those of w (6, nv).
+    """
 
     name: str
     p: Vec3
@@ -69,9 +80,9 @@ class Constraints:
     """The rows of every constraint of a tree, in the order of description."""
 
     def __init__(self, frames: FrameKinematics) -> None:
-        self.frames, self.motion, self.g = frames, frames.motion, frames.g
-        self.nv = self.motion.nv
-        self._bodies: dict[str, _Body] = {}
+        self.frames, self.kinematics, self.g = frames, frames.kinematics, frames.g
+        self.nv = self.kinematics.nv
+        self._states: dict[str, FrameState] = {}
 
     def rows(self) -> list[Row]:
         """All rows."""
@@ -82,30 +93,30 @@ class Constraints:
             Rolling: self._rolling,
             Nonholonomic: self._stated,
         }
-        return [row for item in self.motion.tree.system.constraints for row in make[type(item)](item)]
+        return [row for item in self.kinematics.tree.system.constraints for row in make[type(item)](item)]
 
-    def _body(self, anchor: Anchor) -> _Body:
-        frame = frame_of(self.motion.tree, *anchor)
-        if frame.qualified not in self._bodies:
+    def _state(self, anchor: Anchor) -> FrameState:
+        frame = frame_of(self.kinematics.tree, *anchor)
+        if frame.qualified not in self._states:
             pose = self.frames.pose(frame)
             velocity = self.frames.velocity(frame)
             acceleration = self.frames.acceleration(frame, [ZERO] * self.nv)
             v, w = Vec3(self.g, *velocity[:3]), Vec3(self.g, *velocity[3:])
             a, alpha = Vec3(self.g, *acceleration[:3]), Vec3(self.g, *acceleration[3:])
             J = self.frames.jacobian(frame)
-            self._bodies[frame.qualified] = _Body(frame.qualified, pose.p, pose.R, v, w, a, alpha, J)
-        return self._bodies[frame.qualified]
+            self._states[frame.qualified] = FrameState(frame.qualified, pose.p, pose.R, v, w, a, alpha, J)
+        return self._states[frame.qualified]
 
     # Closures.
 
     def _closure(self, closure: Closure) -> Iterator[Row]:
-        A, B = self._body(closure.first), self._body(closure.second)
+        A, B = self._state(closure.first), self._state(closure.second)
         for axis in closure.translations:
             yield self._offset(A, B, A.R.column(AXES.index(axis)))
         for pairs in _conditions(closure.rotations):
             yield self._between(A, B, pairs)
 
-    def _offset(self, A: _Body, B: _Body, n: Vec3) -> Row:
+    def _offset(self, A: FrameState, B: FrameState, n: Vec3) -> Row:
         """Condition d . n = 0 for d = p_B - p_A and n fixed in A (eq. 3)."""
         d, d_rate = B.p - A.p, B.v - A.v
         n_rate = A.w.cross(n)
@@ -116,7 +127,7 @@ class Constraints:
         drift = g.add(drift, (d_rate + d_rate).dot(n_rate))
         return self._row(d.dot(n), rate, -drift, parts)
 
-    def _between(self, A: _Body, B: _Body, pairs: Sequence[tuple[int, int, float]]) -> Row:
+    def _between(self, A: FrameState, B: FrameState, pairs: Sequence[tuple[int, int, float]]) -> Row:
         """The sum of c a_i . b_j = 0, for axes a_i of A and b_j of B (eqs. 4, 5)."""
         g = self.g
         phi, rate, drift, lever = ZERO, ZERO, ZERO, Vec3(g)
@@ -135,8 +146,8 @@ class Constraints:
     def _rod(self, rod: Rod) -> Iterator[Row]:
         """(d . d - L^2)/(2 L) = 0 (eq. 6): a polynomial, with the unit of a length."""
         g = self.g
-        A, B = self._body(rod.first), self._body(rod.second)
-        length = self.motion.lowering.value(rod.length)
+        A, B = self._state(rod.first), self._state(rod.second)
+        length = self.kinematics.lowering.value(rod.length)
         per_length = g.div(ONE, length)
         d, d_rate = B.p - A.p, B.v - A.v
         n = d.scaled(per_length)
@@ -148,7 +159,7 @@ class Constraints:
 
     def _edge(self, edge: KnifeEdge) -> Iterator[Row]:
         """Condition v . n = 0 for n fixed in the frame (eq. 7)."""
-        B = self._body(edge.anchor)
+        B = self._state(edge.anchor)
         n = B.R.column(AXES.index(edge.axis))
         drift = self.g.add(B.a.dot(n), B.v.dot(B.w.cross(n)))
         yield self._row(ZERO, B.v.dot(n), -drift, [(B, n, None, 1)])
@@ -156,8 +167,8 @@ class Constraints:
     def _rolling(self, rolling: Rolling) -> Iterator[Row]:
         """The contact point's velocity vanishes; so does its height (eqs. 8, 9)."""
         g = self.g
-        B = self._body(rolling.anchor)
-        radius, height = self.motion.lowering.value(rolling.radius), self.motion.lowering.value(rolling.height)
+        B = self._state(rolling.anchor)
+        radius, height = self.kinematics.lowering.value(rolling.radius), self.kinematics.lowering.value(rolling.height)
         up = Vec3.unit(g, 2)
         if rolling.shape == "sphere":
             r, r_rate, drop = -up.scaled(radius), Vec3(g), radius
@@ -179,38 +190,38 @@ class Constraints:
 
     def _stated(self, constraint: Nonholonomic) -> Iterator[Row]:
         """A(q, t) v = b(q, t), differentiated along the motion (eq. 10)."""
-        g, lowering = self.g, self.motion.lowering
+        g, lowering = self.g, self.kinematics.lowering
         G = [ZERO] * self.nv
         for name, formula in constraint.coefficients:
             k = lowering.coordinates.symbols[name].index
             G[k] = g.add(G[k], lowering.value(formula))
         speeds = [g.input("v", k) for k in range(self.nv)]
         rate = g.sub(g.sum(g.mul(a, v) for a, v in zip(G, speeds, strict=True)), lowering.value(constraint.right))
-        seeds = coordinate_rates(self.motion) | {lowering.symbol("t"): ONE}
+        seeds = coordinate_rates(self.kinematics) | {lowering.symbol("t"): ONE}
         yield Row(ZERO, tuple(G), rate, -directional(g, [rate], seeds)[0])
 
     def _row(self, phi: Edge, rate: Edge, gamma: Edge, parts: Sequence[_Part]) -> Row:
-        """A row with its G: the sum of sign (f . J_v + n . J_w) over bodies."""
+        """A row with its G: the sum of sign (f . J_v + n . J_w) over frames."""
         g: Graph = self.g
         row = [ZERO] * self.nv
-        for body, f, n, sign in parts:
+        for frame, f, n, sign in parts:
             for k in range(self.nv):
-                column = [line[k] for line in body.J]
+                column = [line[k] for line in frame.J]
                 for vector, part in ((f, column[:3]), (n, column[3:])):
                     if vector is not None:
                         row[k] = g.add(row[k], sign * vector.dot(Vec3(g, *part)))
-        return Row(phi, tuple(row), rate, gamma, tuple(Lever(body.name, f, n, sign) for body, f, n, sign in parts))
+        return Row(phi, tuple(row), rate, gamma, tuple(Lever(frame.name, f, n, sign) for frame, f, n, sign in parts))
 
 
-def retracted(motion: Motion) -> list[Edge]:
+def retracted(kinematics: TreeKinematics) -> list[Edge]:
     """The coordinates after a small step along the manifold: q + N step, with quaternions normalised (nq).
 
     It leads where `Model.integrate` does but for terms of the second order, which Newton's method does not feel.
     """
-    g, tree = motion.g, motion.tree
+    g, tree = kinematics.g, kinematics.tree
     q = [g.input("q", k) for k in range(len(tree.coordinates.q))]
     coordinates = dict(zip(q, q, strict=True))
-    for k, rates in enumerate(rates_per_speed(motion)):
+    for k, rates in enumerate(rates_per_speed(kinematics)):
         for coordinate, rate in rates.items():
             coordinates[coordinate] = g.add(coordinates[coordinate], g.mul(rate, g.input("step", k)))
     for link in tree.links:
@@ -221,8 +232,8 @@ def retracted(motion: Motion) -> list[Edge]:
     return list(coordinates.values())
 
 
-# A lever with its body.
-_Part = tuple[_Body, Vec3 | None, Vec3 | None, int]
+# A lever with its frame.
+_Part = tuple[FrameState, Vec3 | None, Vec3 | None, int]
 # Pairs (axis of A, axis of B, factor) of one condition.
 _Pairs = tuple[tuple[int, int, float], ...]
 
@@ -230,20 +241,20 @@ _Pairs = tuple[tuple[int, int, float], ...]
 def _conditions(blocked: Sequence[AxisName]) -> tuple[_Pairs, ...]:
     """Conditions whose rates at the closed configuration are the blocked components of the angular velocity."""
     which = [AXES.index(axis) for axis in blocked]
-    found: list[_Pairs] = []
+    conditions: list[_Pairs] = []
     for k in which:
         i, j = (k + 1) % 3, (k + 2) % 3
         if len(which) == 3:
             # 1/2 (R - R^T): regular up to a right angle.
-            found.append(((j, i, 0.5), (i, j, -0.5)))
+            conditions.append(((j, i, 0.5), (i, j, -0.5)))
         elif len(which) == 2:
             # The free axis of B stays along that of A: it has no component along the other blocked axis.
             free = next(m for m in range(3) if m not in which)
             other = next(m for m in which if m != k)
-            found.append(((other, free, 1.0 if (k, free, other) in _CYCLIC else -1.0),))
+            conditions.append(((other, free, 1.0 if (k, free, other) in _CYCLIC else -1.0),))
         else:
-            found.append(((j, i, 1.0),))
-    return tuple(found)
+            conditions.append(((j, i, 1.0),))
+    return tuple(conditions)
 
 
 _CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))

@@ -1,4 +1,4 @@
-"""The inertia of an articulated body: what a link's acceleration takes while the joints beyond it are free."""
+"""The inertia of an articulated body: the wrench per acceleration of a link while the joints beyond it are free."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Sym3, Vec3
 from symofros.mechanics.dynamics.acceleration import Acceleration, Wrench
-from symofros.mechanics.dynamics.inertia import LinkInertia
+from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
 from symofros.mechanics.kinematics.links import MovingLink
 
 Rows = list[list[Edge]]
@@ -24,14 +24,14 @@ class ArticulatedInertia:
 
     @staticmethod
     def none(g: Graph) -> ArticulatedInertia:
-        """The inertia of nothing."""
+        """Zero inertia."""
         return ArticulatedInertia(Sym3(g), Mat3(g, (ZERO,) * 9), Sym3(g))
 
     @staticmethod
     def of(body: LinkInertia) -> ArticulatedInertia:
-        """That of a rigid body: m 1, -[S], J (eq. 40)."""
-        g, m, (x, y, z) = body.S.g, body.m, body.S
-        return ArticulatedInertia(Sym3(g, m, m, m), Mat3(g, (ZERO, z, -y, -z, ZERO, x, y, -x, ZERO)), body.J)
+        """Inertia of a rigid body: A = m 1, B = -[S], C = J (eq. 40)."""
+        g, m, (x, y, z) = body.mp_LLcm.g, body.m, body.mp_LLcm
+        return ArticulatedInertia(Sym3(g, m, m, m), Mat3(g, (ZERO, z, -y, -z, ZERO, x, y, -x, ZERO)), body.I_LLo_L)
 
     @staticmethod
     def of_rows(g: Graph, rows: Rows) -> ArticulatedInertia:
@@ -58,24 +58,24 @@ class ArticulatedInertia:
         """The wrench of an acceleration."""
         return Wrench(self.A.times(x.a) + self.B.times(x.alpha), self.B.T.times(x.a) + self.C.times(x.alpha))
 
-    def carried(self, link: MovingLink, onto: ArticulatedInertia) -> ArticulatedInertia:
-        """Its sum with what is in the parent, about the parent's origin, in the parent's frame (eq. 44).
+    def added_to_parent(self, link: MovingLink, parent: ArticulatedInertia) -> ArticulatedInertia:
+        """The parent's inertia with this one added, about the parent's origin, in the parent's frame (eq. 44).
 
-        Sums end with what is known last, the parts that need the moved B: in a chain each link waits for them.
+        Sums end with what is known last, the parts that need B_A: in a chain each link waits for them.
         """
         g, p, axes = self.B.g, link.p_AL, range(3)
         A, B, C = link.R_AL.conjugate(self.A), link.R_AL.conjugate_any(self.B), link.R_AL.conjugate(self.C)
         # Rows of -A [p] are p x those of A, columns of [p] B are p x those of B.
-        moved = Mat3(g, tuple(edge for i in axes for edge in plus_cross(B.row(i), p, A.matrix().row(i))))
-        turned = Mat3(g, tuple(edge for j in axes for edge in p.cross(B.column(j))))  # The transpose of [p] B.
-        C = onto.C + C
-        x, y, z = (plus_cross(C.matrix().column(j) + turned.column(j), p, moved.column(j)) for j in axes)
-        there = ArticulatedInertia(A, moved, Sym3(g, x.x, y.y, z.z, y.x, z.x, z.y))
-        return there + ArticulatedInertia(onto.A, onto.B, Sym3(g))
+        B_A = Mat3(g, tuple(edge for i in axes for edge in plus_cross(B.row(i), p, A.matrix().row(i))))
+        pB_T = Mat3(g, tuple(edge for j in axes for edge in p.cross(B.column(j))))  # The transpose of [p] B.
+        C = parent.C + C
+        x, y, z = (plus_cross(C.matrix().column(j) + pB_T.column(j), p, B_A.column(j)) for j in axes)
+        shifted = ArticulatedInertia(A, B_A, Sym3(g, x.x, y.y, z.z, y.x, z.x, z.y))
+        return shifted + ArticulatedInertia(parent.A, parent.B, Sym3(g))
 
 
 def plus_cross(start: Vec3, a: Vec3, b: Vec3) -> Vec3:
-    """Start + a x b, product by product: processors multiply and add at once."""
+    """Sum start + a x b, product by product: processors multiply and add at once."""
     g, (x, y, z) = start.g, start
     return Vec3(
         g,
@@ -85,13 +85,13 @@ def plus_cross(start: Vec3, a: Vec3, b: Vec3) -> Vec3:
     )
 
 
-def wrench_carried(link: MovingLink, wrench: Wrench) -> Wrench:
+def wrench_in_parent(link: MovingLink, wrench: Wrench) -> Wrench:
     """A wrench about Lo, in L -> about Ao, in A (eq. 11)."""
     f = link.R_AL.apply(wrench.f)
     return Wrench(f, plus_cross(link.R_AL.apply(wrench.n), link.p_AL, f))
 
 
-def acceleration_carried(link: MovingLink, x: Acceleration) -> Acceleration:
+def acceleration_from_parent(link: MovingLink, x: Acceleration) -> Acceleration:
     """The parent's acceleration -> what the link takes over of it, apart from speeds (eqs. 7, 8)."""
     a = link.R_AL.apply_inverse(plus_cross(x.a, x.alpha, link.p_AL))
     return Acceleration(link.R_AL.apply_inverse(x.alpha), a)

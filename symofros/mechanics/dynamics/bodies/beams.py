@@ -14,8 +14,8 @@ from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.beams.elastic import PAIRS
 from symofros.mechanics.beams.fields import Form
 from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, inertia_wrench
-from symofros.mechanics.dynamics.inertia import deformed
-from symofros.mechanics.kinematics.links import Motion, MovingBeam
+from symofros.mechanics.dynamics.bodies.inertia import deformed
+from symofros.mechanics.kinematics.links import MovingBeam, TreeKinematics
 
 Triple = tuple[Form, Form, Form]
 
@@ -25,33 +25,33 @@ def modal_mass(beam: MovingBeam, i: int, j: int) -> Edge:
     return beam.forms.modal_mass[min(i, j), max(i, j)].value(beam.forms.order)
 
 
-def added_momentum(motion: Motion, beam: MovingBeam, i: int) -> tuple[Vec3, Vec3]:
+def added_momentum(kinematics: TreeKinematics, beam: MovingBeam, i: int) -> tuple[Vec3, Vec3]:
     """Linear momentum and angular momentum about the root, in the link frame, per unit rate of coordinate i."""
-    order, R = beam.forms.order, motion.links[beam.root].R_LB
-    P = Vec3(motion.g, *(form.gradient[i].value(order) for form in beam.forms.first_moment))
-    return R.times(P), R.times(_vector(motion.g, beam.forms.angular[i], order))
+    order, R_LB = beam.forms.order, kinematics.links[beam.root].R_LB
+    linear = Vec3(kinematics.g, *(form.gradient[i].value(order) for form in beam.forms.first_moment))
+    return R_LB.times(linear), R_LB.times(_vector(kinematics.g, beam.forms.angular[i], order))
 
 
 def beam_forces(
-    motion: Motion, beam: MovingBeam, state: LinkMotion, speeds: Sequence[Edge], rates: Sequence[Edge]
+    kinematics: TreeKinematics, beam: MovingBeam, state: LinkMotion, speeds: Sequence[Edge], rates: Sequence[Edge]
 ) -> tuple[Wrench, list[Edge]]:
-    """What a beam's inertia asks for beyond that of the undeformed beam (eqs. 15-17).
+    """Inertia forces that deformation adds to those of the undeformed beam (eqs. 15-17).
 
     Args:
-        motion: The tree.
+        kinematics: Kinematics of the tree.
         beam: The beam.
-        state: Motion of its root.
-        speeds: Rates of its elastic coordinates.
-        rates: Their second derivatives.
+        state: Motion of the beam's root.
+        speeds: Rates of the elastic coordinates.
+        rates: Second derivatives of the elastic coordinates.
 
     Returns:
         The wrench on the root in the link frame, and the force on each elastic coordinate.
     """
-    R = motion.links[beam.root].R_LB
-    w, alpha, a = (R.T.times(x) for x in (state.w, state.alpha, state.a))
+    R_LB = kinematics.links[beam.root].R_LB
+    w, alpha, a = (R_LB.T.times(x) for x in (state.w_WL_L, state.alpha_WL_L, state.a_WLo_L))
     relative = _relative_wrench(beam, w, speeds, rates)
-    straight = inertia_wrench(deformed(motion, beam), state)
-    wrench = straight + Wrench(R.times(relative.f), R.times(relative.n))
+    straight = inertia_wrench(deformed(kinematics, beam), state)
+    wrench = straight + Wrench(R_LB.times(relative.f), R_LB.times(relative.n))
     return wrench, [_modal_force(beam, i, w, alpha, a, speeds, rates) for i in range(len(speeds))]
 
 
@@ -64,12 +64,12 @@ def _relative_wrench(beam: MovingBeam, w: Vec3, speeds: Sequence[Edge], rates: S
     E_rate = [form.rate(speeds, order) for form in forms.second_moment]
     n = _moment_rate(g, E_rate).times(w)
     spin = Vec3(g)
-    for i, (Q, speed, rate) in enumerate(zip(forms.angular, speeds, rates, strict=True)):
-        P = Vec3(g, *(form.gradient[i].value(order) for form in forms.first_moment))
-        f = f + P.scaled(rate)
-        n = n + _vector(g, Q, order).scaled(rate)
-        n = n + Vec3(g, *(form.rate(speeds, order - 1) for form in Q)).scaled(speed)
-        spin = spin + _vector(g, Q, order - 1).scaled(speed)
+    for i, (angular, speed, rate) in enumerate(zip(forms.angular, speeds, rates, strict=True)):
+        linear = Vec3(g, *(form.gradient[i].value(order) for form in forms.first_moment))
+        f = f + linear.scaled(rate)
+        n = n + _vector(g, angular, order).scaled(rate)
+        n = n + Vec3(g, *(form.rate(speeds, order - 1) for form in angular)).scaled(speed)
+        spin = spin + _vector(g, angular, order - 1).scaled(speed)
     return Wrench(f, n + w.cross(spin))
 
 
@@ -78,8 +78,8 @@ def _modal_force(
 ) -> Edge:
     """The inertia force on elastic coordinate i (eq. 17)."""
     g, order, forms = w.g, beam.forms.order, beam.forms
-    P = Vec3(g, *(form.gradient[i].value(order) for form in forms.first_moment))
-    total = g.add(P.dot(a), _vector(g, forms.angular[i], order).dot(alpha))
+    linear = Vec3(g, *(form.gradient[i].value(order) for form in forms.first_moment))
+    total = g.add(linear.dot(a), _vector(g, forms.angular[i], order).dot(alpha))
     total = g.add(total, g.sum(g.mul(modal_mass(beam, i, j), rate) for j, rate in enumerate(rates)))
     total = g.add(total, _centrifugal(g, w, [form.gradient[i].value(order) for form in forms.second_moment]))
     curl = Vec3(g)
@@ -115,32 +115,34 @@ def _convective(beam: MovingBeam, i: int, speeds: Sequence[Edge]) -> Edge:
     return total
 
 
-def kinetic_energy_twice(motion: Motion, beam: MovingBeam, w_L: Vec3, v_L: Vec3, speeds: Sequence[Edge]) -> Edge:
+def kinetic_energy_twice(
+    kinematics: TreeKinematics, beam: MovingBeam, w_WL_L: Vec3, v_WLo_L: Vec3, speeds: Sequence[Edge]
+) -> Edge:
     """Twice what deformation adds to the kinetic energy (eq. 12).
 
     Args:
-        motion: The tree.
+        kinematics: Kinematics of the tree.
         beam: The beam.
-        w_L: Angular velocity of its root, in the link frame.
-        v_L: Velocity of its root, alike.
-        speeds: Rates of its elastic coordinates.
+        w_WL_L: Angular velocity of the root's link [rad/s].
+        v_WLo_L: Velocity of the root [m/s].
+        speeds: Rates of the elastic coordinates.
     """
-    g = motion.g
-    change = deformed(motion, beam)
-    crossed = w_L.cross(change.S)
-    total = g.add(v_L.dot(crossed + crossed), w_L.dot(change.J.times(w_L)))
+    g = kinematics.g
+    change = deformed(kinematics, beam)
+    crossed = w_WL_L.cross(change.mp_LLcm)
+    total = g.add(v_WLo_L.dot(crossed + crossed), w_WL_L.dot(change.I_LLo_L.times(w_WL_L)))
     for i, speed in enumerate(speeds):
-        p, n = added_momentum(motion, beam, i)
-        coupling = g.add(p.dot(v_L), n.dot(w_L))
+        p, n = added_momentum(kinematics, beam, i)
+        coupling = g.add(p.dot(v_WLo_L), n.dot(w_WL_L))
         own = g.sum(g.mul(modal_mass(beam, i, j), other) for j, other in enumerate(speeds))
         total = g.add(total, g.mul(speed, g.add(g.add(coupling, coupling), own)))
     return total
 
 
-def elastic_forces(motion: Motion, beam: MovingBeam) -> list[Edge]:
+def elastic_forces(kinematics: TreeKinematics, beam: MovingBeam) -> list[Edge]:
     """Elastic and damping forces on the elastic coordinates (eqs. 7, 14)."""
-    g, forms = motion.g, beam.forms
-    dissipation = forms.damping_energy(() if beam.tip is None else motion.links[beam.tip].speeds)
+    g, forms = kinematics.g, beam.forms
+    dissipation = forms.damping_energy(() if beam.tip is None else kinematics.links[beam.tip].speeds)
     return [
         -g.add(elastic.value(), viscous.value())
         for elastic, viscous in zip(forms.strain_energy.gradient, dissipation.gradient, strict=True)

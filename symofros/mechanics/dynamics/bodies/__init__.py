@@ -1,0 +1,1 @@
+"""What has inertia: links, beams, rotors."""

@@ -1,0 +1,243 @@
+"""Inertia of links, and its exact regrouping (docs/theory/rigid.md, section 4).
+
+A joint can't tell whose mass it carries: matter at a joint's fixed origin, or spread evenly around a turning axis,
+moves with the parent as well as with the link. Booking it on the parent leaves the motion, the energies and every
+output unchanged, and makes entries of the link's inertia vanish. All of it happens among parameters, before run time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from symofros.description.system import Inertia
+from symofros.expr.edges import ZERO, Edge
+from symofros.expr.graph import Graph
+from symofros.expr.vector import Mat3, Sym3, Vec3
+from symofros.mechanics.beams.fields import Form
+from symofros.mechanics.kinematics.links import MovingBeam, MovingLink, TreeKinematics
+from symofros.mechanics.kinematics.rotations import MatrixRotation
+from symofros.mechanics.topology.tree import BASE
+
+
+@dataclass(frozen=True)
+class LinkInertia:
+    """Inertia of a link L with all that is fixed to it, or of the composite body that it carries, in L.
+
+    Attributes:
+        m: Mass [kg].
+        mp_LLcm: First moment of mass about Lo, S in the theory [kg m].
+        I_LLo_L: Inertia tensor about Lo, J in the theory [kg m^2].
+    """
+
+    m: Edge
+    mp_LLcm: Vec3
+    I_LLo_L: Sym3
+
+    def __add__(self, other: LinkInertia) -> LinkInertia:
+        return LinkInertia(
+            self.mp_LLcm.g.add(self.m, other.m), self.mp_LLcm + other.mp_LLcm, self.I_LLo_L + other.I_LLo_L
+        )
+
+    def second_moment(self) -> Sym3:
+        """Second moment E = int r r^T dm about Lo, in L: 1/2 tr(J) 1 - J."""
+        g, J = self.mp_LLcm.g, self.I_LLo_L
+        half = g.mul(g.constant(0.5), g.add(g.add(J.xx, J.yy), J.zz))
+        return Sym3(g, g.sub(half, J.xx), g.sub(half, J.yy), g.sub(half, J.zz), -J.xy, -J.xz, -J.yz)
+
+
+def no_inertia(g: Graph) -> LinkInertia:
+    """Zero inertia."""
+    return LinkInertia(ZERO, Vec3(g), Sym3(g))
+
+
+def point_inertia(m: Edge, p: Vec3) -> Sym3:
+    """Inertia tensor of a point mass: m (p.p 1 - p p^T)."""
+    mp = p.scaled(m)
+    return _shift_form(mp, p)
+
+
+def _shift_form(a: Vec3, b: Vec3) -> Sym3:
+    """The symmetric matrix (a.b) 1 - a b^T for parallel a, b."""
+    g = a.g
+    xx, yy, zz = (g.mul(i, j) for i, j in zip(a, b, strict=True))
+    return Sym3(g, g.add(yy, zz), g.add(xx, zz), g.add(xx, yy), -g.mul(a.x, b.y), -g.mul(a.x, b.z), -g.mul(a.y, b.z))
+
+
+def shifted(S: Vec3, J: Sym3, p: Vec3) -> Sym3:
+    """Inertia tensor about a new origin, for matter of first moment S and no net mass (eq. 15).
+
+    Args:
+        S: First moment about the old origin.
+        J: Inertia tensor about the old origin.
+        p: From the new origin to the old.
+    """
+    g = S.g
+    twice = p + p
+    xx, yy, zz = (g.mul(a, b) for a, b in zip(twice, S, strict=True))
+
+    def off(a: Edge, Sb: Edge, b: Edge, Sa: Edge) -> Edge:
+        return -g.add(g.mul(a, Sb), g.mul(b, Sa))
+
+    shift = Sym3(
+        g,
+        g.add(yy, zz),
+        g.add(xx, zz),
+        g.add(xx, yy),
+        off(p.x, S.y, p.y, S.x),
+        off(p.x, S.z, p.z, S.x),
+        off(p.y, S.z, p.z, S.y),
+    )
+    return J + shift
+
+
+def inertia_in_parent(link: MovingLink, inertia: LinkInertia) -> LinkInertia:
+    """A link's inertia about its parent's origin, in the parent's frame (eq. 14)."""
+    S = link.R_AL.apply(inertia.mp_LLcm)
+    J = shifted(S, link.R_AL.conjugate(inertia.I_LLo_L), link.p_AL)
+    if inertia.m != ZERO:
+        S = S + link.p_AL.scaled(inertia.m)
+        J = J + point_inertia(inertia.m, link.p_AL)
+    return LinkInertia(inertia.m, S, J)
+
+
+def link_inertias(kinematics: TreeKinematics, regrouped: bool = True) -> tuple[list[LinkInertia], LinkInertia]:
+    """Inertia of each link with all that is fixed to it, regrouped towards the base.
+
+    Args:
+        kinematics: Kinematics of the tree.
+        regrouped: Whether every exact regrouping is made; otherwise clamped links alone are merged with their parents.
+
+    Returns:
+        One inertia a link, and the base's share: it never moves, but its weight counts in the energy.
+    """
+    kept = {i: _stated(kinematics, i) for i in range(len(kinematics.links))}
+    kept[BASE] = no_inertia(kinematics.g)
+    for i, link in reversed(list(enumerate(kinematics.links))):
+        kept[i], share = _split(link, kept[i]) if regrouped else _if_clamped(link, kept[i])
+        if share is not None:
+            kept[link.parent] = kept[link.parent] + _share_in_parent(link, share)
+    for i, link in enumerate(kinematics.links):
+        kept[i].mp_LLcm.named(f"mp_LLcm[{link.name}]")
+        kept[i].I_LLo_L.named(f"I_LLo_L[{link.name}]")
+    base = kept.pop(BASE)
+    return list(kept.values()), base
+
+
+def inertia_inputs(kinematics: TreeKinematics) -> list[LinkInertia]:
+    """Each link's inertia as ten inputs "pi": m, m c (3), then xx, xy, yy, xz, yz, zz about Bo, in the body frame B."""
+    g, inertias = kinematics.g, []
+    for i, link in enumerate(kinematics.links):
+        m, sx, sy, sz, xx, xy, yy, xz, yz, zz = (g.input("pi", 10 * i + k) for k in range(10))
+        S, J = Vec3(g, sx, sy, sz), Sym3(g, xx, yy, zz, xy, xz, yz)
+        inertias.append(LinkInertia(m, link.R_LB.times(S), _rotated(link.R_LB, J)))
+    return inertias
+
+
+def _stated(kinematics: TreeKinematics, index: int) -> LinkInertia:
+    """The sum of the inertias stated for a link's bodies."""
+    total = no_inertia(kinematics.g)
+    for beam in kinematics.beams:
+        if beam.root == index:
+            total = total + undeformed(kinematics, beam)
+    for placement, inertia in kinematics.tree.links[index].inertias:
+        R_LB, p_LB = kinematics.lowering.placement(placement, kinematics.links[index].R_LB)
+        total = total + _one_body(kinematics, inertia, R_LB, p_LB)
+    return total
+
+
+def undeformed(kinematics: TreeKinematics, beam: MovingBeam) -> LinkInertia:
+    """The inertia of a straight beam; what deformation adds changes with time and is not regrouped."""
+    return _from_forms(kinematics, beam, lambda form: form.terms.get((), ZERO), beam.forms.mass)
+
+
+def deformed(kinematics: TreeKinematics, beam: MovingBeam) -> LinkInertia:
+    """What deformation adds to the inertia of a beam, to the beam's order."""
+    order = beam.forms.order
+
+    def change(form: Form) -> Edge:
+        return form.without_constant().value(order)
+
+    return _from_forms(kinematics, beam, change, ZERO)
+
+
+def first_moment_change(kinematics: TreeKinematics, beam: MovingBeam) -> Vec3:
+    """What deformation adds to the first moment, one order further: its gradient is the weight's force."""
+    upto = beam.forms.order + 1
+    S = Vec3(kinematics.g, *(form.without_constant().value(upto) for form in beam.forms.first_moment))
+    return kinematics.links[beam.root].R_LB.times(S)
+
+
+def _from_forms(kinematics: TreeKinematics, beam: MovingBeam, value: Callable[[Form], Edge], m: Edge) -> LinkInertia:
+    """Moments of a beam about its root, from its frame B to the link frame."""
+    g, R = kinematics.g, kinematics.links[beam.root].R_LB
+    S = R.times(Vec3(g, *map(value, beam.forms.first_moment)))
+    xx, yy, zz, xy, xz, yz = map(value, beam.forms.second_moment)
+    J = Sym3(g, g.add(yy, zz), g.add(xx, zz), g.add(xx, yy), -xy, -xz, -yz)
+    return LinkInertia(m, S, _rotated(R, J))
+
+
+def _one_body(kinematics: TreeKinematics, inertia: Inertia, R_LB: Mat3, p_LB: Vec3) -> LinkInertia:
+    """One body's inertia about Lo, from its form in the description."""
+    g, lowering = kinematics.g, kinematics.lowering
+    m = lowering.value(inertia.mass)
+    p_BC = R_LB.times(lowering.vector(inertia.center_of_mass))  # In L.
+    J = Sym3(g, *map(lowering.value, inertia.moments))
+    p_LC = p_LB + p_BC
+    if inertia.about == "body":
+        J = _rotated(R_LB, J)
+        if not p_LB.is_zero:
+            # From Bo to Lo: remove the mass centre's part about Bo, add it about Lo.
+            J = J + -point_inertia(m, p_BC) + point_inertia(m, p_LC)
+    else:
+        J = _rotated(R_LB @ lowering.rotation(inertia.rotation), J) + point_inertia(m, p_LC)
+    return LinkInertia(m, p_LC.scaled(m), J)
+
+
+def _rotated(R: Mat3, J: Sym3) -> Sym3:
+    return MatrixRotation(R).conjugate(R.g, J) if R != Mat3.identity(R.g) else J
+
+
+def _if_clamped(link: MovingLink, inertia: LinkInertia) -> tuple[LinkInertia, LinkInertia | None]:
+    """A clamped link keeps nothing, any other all."""
+    is_clamped = not link.partial_velocities and link.rates is None
+    return (no_inertia(inertia.mp_LLcm.g), inertia) if is_clamped else (inertia, None)
+
+
+def _split(link: MovingLink, inertia: LinkInertia) -> tuple[LinkInertia, LinkInertia | None]:
+    """What a link keeps, and what its parent may carry instead (eqs. 16-18)."""
+    g, S, J = inertia.mp_LLcm.g, inertia.mp_LLcm, inertia.I_LLo_L
+    if not link.partial_velocities and link.rates is None:
+        return _if_clamped(link, inertia)
+    if link.axis is not None:
+        # A rod along the axis: one transverse moment and, if it can't slide, the mass and the moment along it.
+        k, i = link.axis, (link.axis + 1) % 3
+        full = J.matrix()
+        b = full.at((i + 1) % 3, (i + 1) % 3)
+        share_J = [ZERO if axis == k else b for axis in range(3)]
+        share = replace(no_inertia(g), I_LLo_L=Sym3(g, *share_J))
+        if link.fixed_origin:
+            along = [edge if axis == k else ZERO for axis, edge in enumerate(S)]
+            share = replace(share, m=inertia.m, mp_LLcm=Vec3(g, *along))
+        return LinkInertia(g.sub(inertia.m, share.m), S - share.mp_LLcm, J + -share.I_LLo_L), share
+    if link.fixed_origin:
+        return replace(inertia, m=ZERO), replace(no_inertia(g), m=inertia.m)
+    if not any(not partial.w.is_zero for partial in link.partial_velocities):
+        # A joint that does not turn: the inertia tensor turns with the parent.
+        return replace(inertia, I_LLo_L=Sym3(g)), replace(no_inertia(g), I_LLo_L=J)
+    return inertia, None
+
+
+def _share_in_parent(link: MovingLink, share: LinkInertia) -> LinkInertia:
+    """The parent's share of a link's inertia in the parent's frame.
+
+    The joint's own rotation leaves it unchanged, so only constants act.
+    """
+    g = share.mp_LLcm.g
+    factors = link.R_AL.factors
+    constant = type(link.R_AL)(g, factors[:-1], link.R_AL.tensor_factors[:-1]) if link.axis is not None else link.R_AL
+    p = link.p_AL if link.fixed_origin else Vec3(g)
+    R = constant.matrix()
+    S = R.times(share.mp_LLcm)
+    J = shifted(S, _rotated(R, share.I_LLo_L), p)
+    return LinkInertia(share.m, S + p.scaled(share.m), J + point_inertia(share.m, p))

@@ -1,0 +1,1 @@
+"""Conditions on configuration and speeds, and the wrenches that keep them."""

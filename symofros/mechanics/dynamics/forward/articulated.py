@@ -1,0 +1,262 @@
+"""Forward dynamics by articulated bodies: from the tips to the base, and back (docs/theory/rigid.md, section 7).
+
+Operations grow with the number of links. M is never formed: what a heavy load and light links exchange cancels link by
+link, not among sums over all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
+from symofros.expr.vector import Vec3
+from symofros.mechanics.dynamics.acceleration import Acceleration, Wrench, no_wrench, velocities
+from symofros.mechanics.dynamics.bodies.beams import added_momentum, modal_mass
+from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, deformed
+from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
+from symofros.mechanics.dynamics.forward.articulated_inertia import (
+    ArticulatedInertia,
+    Rows,
+    acceleration_from_parent,
+    wrench_in_parent,
+)
+from symofros.mechanics.dynamics.forward.factors import SingularMassMatrixError
+from symofros.mechanics.dynamics.jourdain import link_wrenches
+from symofros.mechanics.kinematics.joint import PartialVelocity
+from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics
+from symofros.mechanics.topology.tree import BASE
+
+
+def is_local(kinematics: TreeKinematics, rotor: MovingRotor) -> bool:
+    """Whether a rotor couples no third body with the joint that drives it: the carrier is the parent, or rests."""
+    return rotor.k is None or rotor.carrier in (BASE, kinematics.links[rotor.link].parent)
+
+
+def articulated_acceleration(
+    kinematics: TreeKinematics, inertias: list[LinkInertia], rotors: list[MovingRotor], gravity: Vec3, Q: Sequence[Edge]
+) -> list[Edge]:
+    """Solution v' of M v' + h = Q (eqs. 39-46).
+
+    Args:
+        kinematics: Kinematics of the tree.
+        inertias: Inertia of each link, not regrouped: light links would bear the moments of a heavy load.
+        rotors: Rotors that spin in links; each `is_local`.
+        gravity: Acceleration of gravity in the world.
+        Q: Generalized forces (nv).
+
+    Returns:
+        v', one edge a speed (nv).
+
+    Raises:
+        SingularMassMatrixError: A pivot is the number zero.
+    """
+    motions, biases = velocities(kinematics)
+    wrenches, direct = link_wrenches(kinematics, inertias, rotors, motions, [ZERO] * kinematics.nv)
+    forces = [kinematics.g.sub(inertial, applied) for inertial, applied in zip(direct, Q, strict=True)]
+    links = [*map(_ArticulatedBody, _inertias(kinematics, inertias), wrenches)]
+    joints = _tip_to_base(kinematics, links, rotors, biases, forces)
+    v_rate = [ZERO] * kinematics.nv
+    base = Acceleration(Vec3(kinematics.g), -gravity)
+    accelerations: list[Acceleration] = []
+    for i, (link, joint) in enumerate(zip(kinematics.links, joints, strict=True)):
+        parent = base if link.parent == BASE else accelerations[link.parent]
+        x = acceleration_from_parent(link, parent) + biases[i]
+        rates = joint.rates(parent if joint.in_parent else x)
+        v_rate[link.v : link.v + len(rates)] = rates
+        for partial, rate in zip(link.free_partial_velocities, rates, strict=True):
+            x = x + Acceleration(partial.w.scaled(rate), partial.v.scaled(rate))
+        accelerations.append(x)
+    return v_rate
+
+
+class _ArticulatedBody(NamedTuple):
+    """A body and all it carries, the joints beyond it free: the wrench inertia * (acceleration) + bias on it (eq. 39).
+
+    Attributes:
+        inertia: Articulated inertia about Lo, in L.
+        bias: Wrench at zero acceleration, about Lo, in L.
+    """
+
+    inertia: ArticulatedInertia
+    bias: Wrench
+
+    def with_acceleration(self, x: Acceleration) -> _ArticulatedBody:
+        """The body with a known part of its acceleration made part of the bias (eq. 43)."""
+        return _ArticulatedBody(self.inertia, self.bias + self.inertia.times(x))
+
+    def added_to_parent(self, link: MovingLink, parent: _ArticulatedBody) -> _ArticulatedBody:
+        """The parent, about its own origin, with this body fixed to it at the joint's position (eqs. 11, 44)."""
+        inertia = self.inertia.added_to_parent(link, parent.inertia)
+        return _ArticulatedBody(inertia, parent.bias + wrench_in_parent(link, self.bias))
+
+
+def _inertias(kinematics: TreeKinematics, inertias: list[LinkInertia]) -> list[ArticulatedInertia]:
+    """Inertia of the links by themselves, beams as they are bent."""
+    articulated = [ArticulatedInertia.of(inertia) for inertia in inertias]
+    for beam in kinematics.beams:
+        if beam.tip is not None:
+            articulated[beam.root] = articulated[beam.root] + ArticulatedInertia.of(deformed(kinematics, beam))
+    return articulated
+
+
+def _tip_to_base(
+    kinematics: TreeKinematics,
+    links: list[_ArticulatedBody],
+    rotors: list[MovingRotor],
+    biases: Sequence[Acceleration],
+    forces: Sequence[Edge],
+) -> list[_FreeJoint]:
+    """Each joint with everything beyond it articulated, base to tip.
+
+    Args:
+        kinematics: Kinematics of the tree.
+        links: Links by themselves, with their wrenches at v' = 0.
+        rotors: Rotors that spin in links.
+        biases: Bias acceleration of each joint: what it adds to that of its parent at v' = 0.
+        forces: Inertia forces that act on speeds directly, less generalized forces (nv).
+    """
+    g = kinematics.g
+    bodies = dict(enumerate(links)) | {BASE: _ArticulatedBody(ArticulatedInertia.none(g), no_wrench(g))}
+    joints: list[_FreeJoint] = []
+    for i, link in reversed(list(enumerate(kinematics.links))):
+        body, parent, coupling = bodies[i], bodies[link.parent], _coupling(kinematics, rotors, i)
+        partials = link.free_partial_velocities
+        U = [body.inertia.times(Acceleration(partial.w, partial.v)) for partial in partials]
+        D = [
+            [g.add(_power(partial, U_k), direct) for U_k, direct in zip(U, row, strict=True)]
+            for partial, row in zip(partials, coupling.direct, strict=True)
+        ]
+        if coupling.in_parent:
+            body = body.with_acceleration(biases[i])
+        d = [g.add(forces[k], _power(partial, body.bias)) for k, partial in enumerate(partials, start=link.v)]
+        if coupling.in_parent:
+            U = [wrench_in_parent(link, U_k) + on_parent for U_k, on_parent in zip(U, coupling.wrenches, strict=True)]
+            joint = _FreeJoint(g, body.added_to_parent(link, parent), U, D, d, True, link.v)
+            bodies[link.parent] = joint.body
+        else:
+            joint = _FreeJoint(g, body, U, D, d, False, link.v)
+            bodies[link.parent] = joint.body.with_acceleration(biases[i]).added_to_parent(link, parent)
+        joints.insert(0, joint)
+    return joints
+
+
+class _FreeJoint:
+    """One joint's speeds, eliminated from the equations of the bodies beyond it (eqs. 41, 42).
+
+    Args:
+        g: The graph.
+        body: Body whose acceleration x' all rows refer to, with the joint locked.
+        U: Wrench on that body per rate of each speed (n).
+        D: Generalized inertia of the speeds (n x n).
+        d: Forces on the speeds at v' = 0, less generalized forces (n).
+        in_parent: Whether that body is the parent; otherwise the link itself, as it moves at v' = 0.
+        v: Index of the first speed.
+
+    Attributes:
+        body: That body with the joint free.
+        in_parent: Whether that body is the parent.
+
+    Raises:
+        SingularMassMatrixError: A pivot is the number zero.
+    """
+
+    def __init__(
+        self,
+        g: Graph,
+        body: _ArticulatedBody,
+        U: Sequence[Wrench],
+        D: Rows,
+        d: Sequence[Edge],
+        in_parent: bool,
+        v: int,
+    ) -> None:
+        self.in_parent = in_parent
+        self._g = g
+        self._ratios: list[list[Edge]] = []
+        self._free: list[Edge] = []
+        rows = body.inertia.rows() + [[*U_k.f, *U_k.n, *D[k]] for k, U_k in enumerate(U)]
+        right = [*body.bias.f, *body.bias.n, *d]
+        for k in reversed(range(6, len(rows))):
+            row, pivot = rows[k], rows[k][k]
+            if pivot == ZERO:
+                raise SingularMassMatrixError(v + k - 6)
+            inverse = g.div(ONE, pivot)
+            ratios = [_quotient(g, edge, pivot, inverse) for edge in row[:k]]
+            for i in range(k):
+                for j in range(i + 1):
+                    rows[i][j] = g.sub(rows[i][j], _product(g, (row[i], ratios[i]), (row[j], ratios[j])))
+                right[i] = g.sub(right[i], g.mul(ratios[i], right[k]))
+            self._ratios.insert(0, ratios)
+            self._free.insert(0, -g.mul(right[k], inverse))
+        wrench = Wrench(Vec3(g, *right[:3]), Vec3(g, *right[3:6]))
+        self.body = _ArticulatedBody(ArticulatedInertia.of_rows(g, rows), wrench)
+
+    def rates(self, x: Acceleration) -> list[Edge]:
+        """Rates v' of the joint's speeds at an acceleration x' of the body (eq. 45)."""
+        known = [*x.a, *x.alpha]
+        for ratios, free in zip(self._ratios, self._free, strict=True):
+            products = [-self._g.mul(a, b) for a, b in zip(ratios, known, strict=True)]
+            known.append(_sum_in_pairs(self._g, [free, *products]))
+        return known[6:]
+
+
+def _quotient(g: Graph, edge: Edge, pivot: Edge, inverse: Edge) -> Edge:
+    """Quotient edge / pivot: exactly 1 for the pivot, so that entries which a free joint makes vanish fold to zero."""
+    return g.div(edge, pivot) if abs(edge) == abs(pivot) else g.mul(edge, inverse)
+
+
+def _product(g: Graph, x: tuple[Edge, Edge], y: tuple[Edge, Edge]) -> Edge:
+    """Product x y / pivot of two entries, each with its quotient; the same node whichever comes first."""
+    if abs(x[1]) == ONE or (abs(y[1]) != ONE and abs(x[0]) > abs(y[0])):
+        return g.mul(x[1], y[0])
+    return g.mul(x[0], y[1])
+
+
+def _sum_in_pairs(g: Graph, terms: Sequence[Edge]) -> Edge:
+    """A sum that waits for fewer additions in a row: along a chain all links wait for it."""
+    while len(terms) > 1:
+        terms = [g.sum(terms[i : i + 2]) for i in range(0, len(terms), 2)]
+    return terms[0]
+
+
+@dataclass(frozen=True)
+class _Coupling:
+    """Inertia that couples a joint's speeds apart from the acceleration of its link (eq. 46).
+
+    Attributes:
+        direct: Forces on the speeds per rate of each (n x n).
+        wrenches: Wrenches on the parent per rate of each speed (n).
+    """
+
+    direct: Rows
+    wrenches: list[Wrench]
+
+    @property
+    def in_parent(self) -> bool:
+        """Whether any wrench acts on the parent."""
+        return not all(wrench.f.is_zero and wrench.n.is_zero for wrench in self.wrenches)
+
+
+def _coupling(kinematics: TreeKinematics, rotors: Sequence[MovingRotor], index: int) -> _Coupling:
+    """Coupling by the beam that ends in a link, and by rotors that its joint drives."""
+    g = kinematics.g
+    n = range(len(kinematics.links[index].free_partial_velocities))
+    direct, wrenches = [[ZERO for _ in n] for _ in n], [no_wrench(g) for _ in n]
+    for beam in kinematics.beams:
+        if beam.tip == index:
+            direct = [[modal_mass(beam, i, j) for j in n] for i in n]
+            wrenches = [Wrench(*added_momentum(kinematics, beam, i)) for i in n]
+    for rotor in rotors:
+        if rotor.link == index and rotor.k is not None:
+            c, per_spin = rotor.coordinate, g.mul(rotor.inertia, rotor.ratio)
+            direct[c][c] = g.add(direct[c][c], g.mul(per_spin, rotor.ratio))
+            if rotor.carrier != BASE:
+                wrenches[c] = wrenches[c] + Wrench(Vec3(g), rotor.axis.scaled(per_spin))
+    return _Coupling(direct, wrenches)
+
+
+def _power(partial: PartialVelocity, wrench: Wrench) -> Edge:
+    return wrench.f.g.add(partial.w.dot(wrench.n), partial.v.dot(wrench.f))
