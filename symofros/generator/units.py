@@ -61,7 +61,7 @@ class UnitCompiler:
         values = [(as_value(rate.formula, what), rate.order) for rate in rates]
 
         def program() -> Program:
-            return run_passes(formula_program(self._programs.equations().motion, values, derivatives))
+            return run_passes(formula_program(self._programs.equations().kinematics, values, derivatives))
 
         return self._unit((values, derivatives), program)
 

@@ -1,6 +1,6 @@
 """Constraints for engines that know trees: phi, G and gamma from an engine's own frames, and the solve in NumPy.
 
-Written apart from `symofros.mechanics.dynamics.constraints.rows`: conditions are stated by relative rotation matrices and
+Written apart from `symofros.mechanics.dynamics.constraints`: conditions are stated by relative rotation matrices and
 their derivatives rather than by pairs of axes, and multipliers come from a pseudo-inverse.
 """
 

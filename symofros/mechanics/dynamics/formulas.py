@@ -16,10 +16,10 @@ from symofros.mechanics.kinematics.links import TreeKinematics
 def formula_program(
     kinematics: TreeKinematics, values: Sequence[tuple[Value, int]], derivatives: bool = True
 ) -> Program:
-    """One function, "formulas", of q, v, u and t: the values, and their derivatives along the manifold of q and by v.
+    """One function, "formulas", of q, v, u and t: the values, and their derivatives by q (along its manifold) and v.
 
     Args:
-        motion: Kinematics of the tree, in whose graph the formulas are formed; its names are what they may use.
+        kinematics: Kinematics of the tree, in whose graph the formulas are formed; its names are what they may use.
         values: Numbers and formulas, and how often each is differentiated by t.
         derivatives: Whether to form those by q and v.
 
