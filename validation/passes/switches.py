@@ -71,11 +71,11 @@ def _without_regrouping() -> AbstractContextManager[None]:
 def _without_turns() -> Iterator[None]:
     """Vectors and tensors are multiplied by whole rotation matrices."""
 
-    def apply(self: RotationProduct, v_B: Vec3) -> Vec3:
-        return self.matrix().times(v_B)
+    def apply(self: RotationProduct, x_B: Vec3) -> Vec3:
+        return self.matrix().times(x_B)
 
-    def apply_inverse(self: RotationProduct, v_A: Vec3) -> Vec3:
-        return self.matrix().T.times(v_A)
+    def apply_inverse(self: RotationProduct, x_A: Vec3) -> Vec3:
+        return self.matrix().T.times(x_A)
 
     def conjugate(self: RotationProduct, S_B: Sym3) -> Sym3:
         return MatrixRotation(self.matrix()).conjugate(self.g, S_B)

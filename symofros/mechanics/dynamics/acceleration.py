@@ -93,15 +93,17 @@ def velocities(kinematics: TreeKinematics) -> tuple[list[LinkMotion], list[Accel
 
 def _across(g: Graph, link: MovingLink, parent: LinkMotion, rates: Sequence[Edge]) -> tuple[Vec3, Vec3, Vec3]:
     """From the parent's motion to the link's w, alpha, a."""
-    w_AL_L, v_ALo_L, w_AL_rate, v_AL_rate = Vec3(g), Vec3(g), Vec3(g), Vec3(g)
+    w_AL_L, v_ALo_L, w_AL_L_rate, v_ALo_L_rate = Vec3(g), Vec3(g), Vec3(g), Vec3(g)
     for partial, speed, rate in zip(link.partial_velocities, link.speeds, rates, strict=True):
         w_AL_L, v_ALo_L = w_AL_L + partial.w.scaled(speed), v_ALo_L + partial.v.scaled(speed)
-        w_AL_rate = w_AL_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
-        v_AL_rate = v_AL_rate + (partial.v.scaled(rate) + partial.v_rate.scaled(speed))
+        w_AL_L_rate = w_AL_L_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
+        v_ALo_L_rate = v_ALo_L_rate + (partial.v.scaled(rate) + partial.v_rate.scaled(speed))
     w_WA_L = link.R_AL.apply_inverse(parent.w_WL_L)
     w = (w_WA_L + w_AL_L).named(f"w_WL_L[{link.name}]")
-    alpha = link.R_AL.apply_inverse(parent.alpha_WL_L) + (w_AL_rate + w_WA_L.cross(w_AL_L))
-    a = link.R_AL.apply_inverse(parent.a_WLo_L + parent.U.times(link.p_AL)) + (v_AL_rate + (w_WA_L + w).cross(v_ALo_L))
+    alpha = link.R_AL.apply_inverse(parent.alpha_WL_L) + (w_AL_L_rate + w_WA_L.cross(w_AL_L))
+    a = link.R_AL.apply_inverse(parent.a_WLo_L + parent.U.times(link.p_AL)) + (
+        v_ALo_L_rate + (w_WA_L + w).cross(v_ALo_L)
+    )
     return w, alpha, a
 
 

@@ -224,12 +224,12 @@ class Equations:
         """Inverse dynamics tau = M a + h - Q(q, v, 0): the inputs' share of the forces for an acceleration a (nv)."""
         total = inertia_forces(self.kinematics, self._inertias[0], self.rotors, self.v_rate, self.gravity)
         passive = substitute(self.g, self.Q, {self.g.input("u", i): ZERO for i in range(self.efforts)})
-        return [self.g.sub(needed, given) for needed, given in zip(total, passive, strict=True)]
+        return [self.g.sub(inertial, applied) for inertial, applied in zip(total, passive, strict=True)]
 
     def unconstrained_residual(self, a: Sequence[Edge]) -> list[Edge]:
         """Residual M a + h - Q at an acceleration a, without constraints (nv)."""
         total = inertia_forces(self.kinematics, self._inertias[0], self.rotors, a, self.gravity)
-        return [self.g.sub(needed, given) for needed, given in zip(total, self.Q, strict=True)]
+        return [self.g.sub(inertial, applied) for inertial, applied in zip(total, self.Q, strict=True)]
 
     @cached_property
     def residual(self) -> list[Edge]:

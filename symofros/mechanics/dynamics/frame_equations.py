@@ -30,12 +30,12 @@ class FrameEquations:
     @property
     def p(self) -> Vec3:
         """Position p_WF of the frame's origin (3)."""
-        return self._pose.p
+        return self._pose.p_WF
 
     @property
     def R(self) -> tuple[Edge, ...]:
         """Rotation R_WF, row by row (9)."""
-        return self._pose.R.entries
+        return self._pose.R_WF.entries
 
     @cached_property
     def velocity(self) -> list[Edge]:
@@ -66,12 +66,12 @@ class FrameEquations:
     @cached_property
     def pose_by_q(self) -> Matrix:
         """Change of the origin and small rotation, by q (6 x nv)."""
-        return _small_motion(self._pose.R, self._equations.by_q(self._placement), self._equations.nv)
+        return _small_motion(self._pose.R_WF, self._equations.by_q(self._placement), self._equations.nv)
 
     @cached_property
     def pose_by_u(self) -> Matrix:
         """Change of the origin and small rotation, by u (6 x nu)."""
-        return _small_motion(self._pose.R, self._equations.by_u(self._placement), self._equations.nu)
+        return _small_motion(self._pose.R_WF, self._equations.by_u(self._placement), self._equations.nu)
 
     @cached_property
     def velocity_by_q(self) -> Matrix:

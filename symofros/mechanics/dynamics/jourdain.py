@@ -68,7 +68,7 @@ def link_wrenches(
             tip = kinematics.links[beam.tip]
             deformation, modal = beam_forces(kinematics, beam, motions[beam.root], tip.speeds, tip.speed_rates(v_rate))
             wrenches[beam.root] = wrenches[beam.root] + deformation
-            total[tip.v : tip.v + len(modal)] = modal
+            total[tip.first_speed : tip.first_speed + len(modal)] = modal
     for rotor in rotors:
         rate = rotor.rate(kinematics, v_rate)
         spin_rate = g.mul(rotor.ratio, rate)
@@ -101,7 +101,7 @@ def virtual_power(kinematics: TreeKinematics, wrenches: Sequence[Wrench]) -> lis
         f_Lo_L = subtree_wrench[i].f.named(f"f_Lo_L[{link.name}]")
         n_Lo_L = subtree_wrench[i].n.named(f"n_Lo_L[{link.name}]")
         for k, partial in enumerate(link.free_partial_velocities):
-            total[link.v + k] = g.add(partial.w.dot(n_Lo_L), partial.v.dot(f_Lo_L))
+            total[link.first_speed + k] = g.add(partial.w.dot(n_Lo_L), partial.v.dot(f_Lo_L))
         if link.parent != BASE:
             f_Lo_A = link.R_AL.apply(f_Lo_L)
             about_Ao = Wrench(f_Lo_A, link.R_AL.apply(n_Lo_L) + link.p_AL.cross(f_Lo_A))

@@ -80,10 +80,13 @@ def _own_blocks(kinematics: TreeKinematics, M: Matrix, inertias: list[LinkInerti
             for j in range(k + 1):
                 modal = modal_mass(beam_at_tip[i], j, k) if i in beam_at_tip else ZERO
                 _set(
-                    M, link.v + j, link.v + k, kinematics.g.add(_virtual_power(link.partial_velocities[j], f, n), modal)
+                    M,
+                    link.first_speed + j,
+                    link.first_speed + k,
+                    kinematics.g.add(_virtual_power(link.partial_velocities[j], f, n), modal),
                 )
             added = added_momentum(kinematics, beam_at_tip[i], k) if i in beam_at_tip else None
-            momenta[link.v + k] = _Momentum(i, link.v + k, f, n, added)
+            momenta[link.first_speed + k] = _Momentum(i, link.first_speed + k, f, n, added)
         if link.parent != BASE:
             composite[link.parent] = composite[link.parent] + inertia_in_parent(link, body)
     return momenta
@@ -117,7 +120,7 @@ def _carry_to_base(kinematics: TreeKinematics, M: Matrix, momenta: list[_Momentu
             sign, power = combined(kinematics.g, list(zip((*partial.v, *partial.w), wrench, strict=True)))
             for k, at in lane.items():
                 if power.lanes[at] != ZERO:
-                    _set(M, link.v + j, k, kinematics.g.mul(sign, power.lanes[at]))
+                    _set(M, link.first_speed + j, k, kinematics.g.mul(sign, power.lanes[at]))
 
 
 def _with_momentum(wrench: list[Signed], lane: int, f: Vec3, n: Vec3) -> list[Signed]:
@@ -159,7 +162,7 @@ def _add_rotor(kinematics: TreeKinematics, M: Matrix, rotor: MovingRotor, k: int
     while i != BASE:
         link = kinematics.links[i]
         for j, partial in enumerate(link.free_partial_velocities):
-            row, power = link.v + j, partial.w.dot(n)
+            row, power = link.first_speed + j, partial.w.dot(n)
             if row == k:  # The driven speed turns its own carrier: both halves of the product fall on one entry.
                 power = g.add(power, power)
             _set(M, row, k, g.add(M[row][k], power))

@@ -17,23 +17,23 @@ def momentum_rate(kinematics: TreeKinematics, momentum: Sequence[Edge]) -> list[
 
 
 def coadjoint(kinematics: TreeKinematics, momentum: Sequence[Edge]) -> list[Edge]:
-    """ad_v^T p (nv): how the momenta of balls and free joints change because their axes turn; zero elsewhere."""
+    """Term ad_v^T p of p' (nv): change of the momenta of ball and free joints as their axes turn; zero elsewhere."""
     g = kinematics.g
-    found = [ZERO] * kinematics.nv
+    rate = [ZERO] * kinematics.nv
     for link in kinematics.tree.links:
         if link.joint.prescribed or not link.joint.traits.quasi_velocities:
             continue
         start, size = link.v
         w = _three(kinematics, [g.input("v", k) for k in range(start + size - 3, start + size)])
         n = _three(kinematics, momentum[start + size - 3 : start + size])
-        turned = n.cross(w)
+        rate_of_n = n.cross(w)
         if size == 6:
             f = _three(kinematics, momentum[start : start + 3])
             velocity = _three(kinematics, [g.input("v", k) for k in range(start, start + 3)])
-            turned = turned + f.cross(velocity)
-            found[start : start + 3] = list(f.cross(w))
-        found[start + size - 3 : start + size] = list(turned)
-    return found
+            rate_of_n = rate_of_n + f.cross(velocity)
+            rate[start : start + 3] = list(f.cross(w))
+        rate[start + size - 3 : start + size] = list(rate_of_n)
+    return rate
 
 
 def _three(kinematics: TreeKinematics, edges: Sequence[Edge]) -> Vec3:

@@ -125,11 +125,11 @@ class JointRotation:
 
 
 def rotation_about(n: Vec3, angle: Edge, k: int | None, negative: bool) -> JointRotation:
-    """A turn about a unit axis.
+    """Rotation about a unit axis.
 
     Args:
-        n: The axis.
-        angle: Of the rotation.
+        n: Unit axis.
+        angle: Angle of the rotation [rad].
         k: The coordinate axis that n lies along; None if along none.
         negative: Whether n points against it.
     """
@@ -140,7 +140,7 @@ def rotation_about(n: Vec3, angle: Edge, k: int | None, negative: bool) -> Joint
 
 
 def _rotation_about_any(n: Vec3, angle: Edge) -> JointRotation:
-    """A turn about any unit axis, cheap if it is a coordinate axis."""
+    """Rotation about any unit axis, cheap if it is a coordinate axis."""
     along = [i for i, edge in enumerate(n) if abs(edge) == ONE]
     return (
         rotation_about(n, angle, along[0], tuple(n)[along[0]] < 0) if along else rotation_about(n, angle, None, False)

@@ -39,7 +39,7 @@ class MovingLink:
         partial_velocities: Partial velocities of L in A, in L, one a speed.
         speeds: Edges of those speeds.
         rates: Edge of each speed's rate where the motion is prescribed; None where it is free.
-        v: Index of the first speed, where the motion is free.
+        first_speed: Index of the first speed in v, where the motion is free.
         R_LB: The body frame in the link frame.
         fixed_origin: Whether Lo is fixed in A, so that mass at Lo may be booked on A.
         axis: The coordinate axis of L that the joint turns about; None if it is not a turn about one.
@@ -52,7 +52,7 @@ class MovingLink:
     partial_velocities: tuple[PartialVelocity, ...]
     speeds: tuple[Edge, ...]
     rates: tuple[Edge, ...] | None
-    v: int
+    first_speed: int
     R_LB: Mat3
     fixed_origin: bool
     axis: int | None
@@ -64,7 +64,11 @@ class MovingLink:
 
     def speed_rates(self, v_rate: Sequence[Edge]) -> Sequence[Edge]:
         """Rates of the speeds: prescribed, or this link's part of v'."""
-        return v_rate[self.v : self.v + len(self.partial_velocities)] if self.rates is None else self.rates
+        return (
+            v_rate[self.first_speed : self.first_speed + len(self.partial_velocities)]
+            if self.rates is None
+            else self.rates
+        )
 
 
 @dataclass(frozen=True)
@@ -125,7 +129,7 @@ def speeds_by_path(kinematics: TreeKinematics) -> list[list[int]]:
         while i != BASE and i not in visited:
             visited.add(i)
             link = kinematics.links[i]
-            path += range(link.v + len(link.free_partial_velocities) - 1, link.v - 1, -1)
+            path += range(link.first_speed + len(link.free_partial_velocities) - 1, link.first_speed - 1, -1)
             i = link.parent
         if path:
             paths.append(path)
@@ -170,7 +174,7 @@ def tree_kinematics(g: Graph, tree: SpanningTree, as_seen: bool = False) -> Tree
                 partial_velocities=across.partial_velocities,
                 speeds=speeds,
                 rates=rates,
-                v=link.v[0],
+                first_speed=link.v[0],
                 R_LB=R_BL.T,
                 fixed_origin=across.p_PD.is_zero,
                 axis=axis.k if link.joint.traits.turns_about else None,

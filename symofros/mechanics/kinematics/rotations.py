@@ -1,6 +1,6 @@
 """Rotations as products of elementary factors, so that vectors and tensors turn with the fewest operations.
 
-A turn about a coordinate axis costs a vector 4 multiplications and 2 additions, a symmetric tensor 8 and 8
+A rotation about a coordinate axis costs a vector 4 multiplications and 2 additions, a symmetric tensor 8 and 8
 (docs/theory/rigid.md, eq. 12); a matrix with no zeros costs 9 + 6 and 45 + 30.
 """
 
@@ -25,14 +25,14 @@ EXACT = 1e-15
 
 @dataclass(frozen=True, slots=True)
 class AxisRotation:
-    """A turn about coordinate axis k with the given cosine and sine."""
+    """Rotation about coordinate axis k, by its cosine and sine."""
 
     k: int
     c: Edge
     s: Edge
 
     def matrix(self, g: Graph) -> Mat3:
-        """Its matrix."""
+        """Matrix of the rotation (3 x 3)."""
         i, j = (self.k + 1) % 3, (self.k + 2) % 3
         entries = list(Mat3.identity(g).entries)
         entries[3 * i + i] = entries[3 * j + j] = self.c
@@ -82,7 +82,7 @@ class MatrixRotation:
     R: Mat3
 
     def matrix(self, g: Graph) -> Mat3:
-        """Its matrix."""
+        """Matrix of the rotation (3 x 3)."""
         return self.R
 
     def conjugate(self, g: Graph, S: Sym3) -> Sym3:
@@ -106,8 +106,8 @@ class RotationProduct:
     """R_AB as a product of factors, left to right.
 
     Attributes:
-        factors: The factors that vectors turn through.
-        tensor_factors: The factors that tensors turn through; more of them, but cheaper, for a general constant.
+        factors: Factors that vectors are multiplied by.
+        tensor_factors: Factors that tensors are conjugated by; more of them, but cheaper, for a general constant.
     """
 
     def __init__(self, g: Graph, factors: tuple[Factor, ...], tensor_factors: tuple[Factor, ...] | None = None) -> None:
@@ -119,17 +119,17 @@ class RotationProduct:
         """R_AB R_BC = R_AC."""
         return RotationProduct(self.g, self.factors + other.factors, self.tensor_factors + other.tensor_factors)
 
-    def apply(self, v_B: Vec3) -> Vec3:
-        """R_AB v_B."""
+    def apply(self, x_B: Vec3) -> Vec3:
+        """R_AB x_B."""
         for factor in reversed(self.factors):
-            v_B = factor.matrix(self.g).times(v_B)
-        return v_B
+            x_B = factor.matrix(self.g).times(x_B)
+        return x_B
 
-    def apply_inverse(self, v_A: Vec3) -> Vec3:
-        """R_AB^T v_A."""
+    def apply_inverse(self, x_A: Vec3) -> Vec3:
+        """R_AB^T x_A."""
         for factor in self.factors:
-            v_A = factor.matrix(self.g).T.times(v_A)
-        return v_A
+            x_A = factor.matrix(self.g).T.times(x_A)
+        return x_A
 
     def conjugate(self, S_B: Sym3) -> Sym3:
         """R_AB S_B R_AB^T."""
@@ -157,8 +157,9 @@ class RotationProduct:
 def constant_rotation(R: Mat3) -> RotationProduct:
     """A rotation that does not change with q, in its cheapest factors.
 
-    A number matrix with an entry +-1 is an axis permutation times one elementary turn; any other number matrix is
-    three elementary turns for tensors. A matrix of parameters stays as it is: it is worked on once, not per call.
+    A number matrix with an entry +-1 is an axis permutation times one elementary rotation; any other number matrix is
+    three elementary rotations for tensors. A matrix of parameters stays as it is: operations on it are done once, not
+    per call.
     """
     g = R.g
     if not R.is_constant:
@@ -231,8 +232,8 @@ def stated_rotation(rotation: Rotation, g: Graph, bindings: Mapping[str, Edge]) 
     if rotation.kind == "matrix":
         return snapped(Mat3(g, tuple(x)))
     if rotation.kind == "rpy":
-        turns = [AxisRotation(k, g.call("cos", x[k]), g.call("sin", x[k])).matrix(g) for k in (2, 1, 0)]
-        return snapped(snapped(turns[0]) @ snapped(turns[1]) @ snapped(turns[2]))
+        factors = [AxisRotation(k, g.call("cos", x[k]), g.call("sin", x[k])).matrix(g) for k in (2, 1, 0)]
+        return snapped(snapped(factors[0]) @ snapped(factors[1]) @ snapped(factors[2]))
     if rotation.kind == "quaternion":
         return snapped(Quaternion.of(g, *x).normalized.matrix)
     axis = unit_vector(Vec3(g, *x[:3]))
@@ -240,7 +241,7 @@ def stated_rotation(rotation: Rotation, g: Graph, bindings: Mapping[str, Edge]) 
 
 
 def unit_vector(v: Vec3) -> Vec3:
-    """V divided by its length; exact along a coordinate axis."""
+    """Vector v divided by its length; exact along a coordinate axis."""
     g = v.g
     along = [i for i, edge in enumerate(v) if edge]
     if len(along) == 1 and v.is_constant:

@@ -50,7 +50,7 @@ def _directions(kinematics: TreeKinematics, frames: FrameKinematics, beam: Movin
     """The axes that a load's components are along, in B."""
     if load.axes == "body":
         return [Vec3.unit(kinematics.g, k) for k in range(3)]
-    R_WL, R_LB = frames.link_pose(beam.root).R, kinematics.links[beam.root].R_LB
+    R_WL, R_LB = frames.link_pose(beam.root).R_WF, kinematics.links[beam.root].R_LB
     return [R_LB.T.times(R_WL.row(k)) for k in range(3)]
 
 

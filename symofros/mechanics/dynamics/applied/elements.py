@@ -42,31 +42,31 @@ def element_energy(lowering: Lowering, element: JointElement, q: Edge) -> Edge:
         return g.mul(g.mul(g.constant(0.5), g.add(lowering.value(element.stiffness), quartic)), x2)
     if isinstance(element, Stop):
         total = ZERO
-        for beyond, _ in _beyond(lowering, element, q):
-            total = g.add(total, g.mul(beyond, beyond))
+        for excess, _ in _excess(lowering, element, q):
+            total = g.add(total, g.mul(excess, excess))
         return g.mul(g.mul(g.constant(0.5), lowering.value(element.stiffness)), total)
     return ZERO
 
 
-def _beyond(lowering: Lowering, stop: Stop, q: Edge) -> list[tuple[Edge, int]]:
-    """How far q is beyond each limit, and the direction that leads further."""
+def _excess(lowering: Lowering, stop: Stop, q: Edge) -> list[tuple[Edge, int]]:
+    """How far q is beyond each limit, and the sign of the direction that leads further."""
     g = lowering.g
-    found = []
+    excesses = []
     if stop.upper is not None:
-        found.append((g.call("max", g.sub(q, lowering.value(stop.upper)), ZERO), 1))
+        excesses.append((g.call("max", g.sub(q, lowering.value(stop.upper)), ZERO), 1))
     if stop.lower is not None:
-        found.append((g.call("max", g.sub(lowering.value(stop.lower), q), ZERO), -1))
-    return found
+        excesses.append((g.call("max", g.sub(lowering.value(stop.lower), q), ZERO), -1))
+    return excesses
 
 
 def _stop_force(lowering: Lowering, stop: Stop, q: Edge, v: Edge) -> Edge:
     g = lowering.g
     total = ZERO
-    for beyond, outward in _beyond(lowering, stop, q):
+    for excess, outward in _excess(lowering, stop, q):
         # The damper acts beyond the limit, and on motion further out only: a stop pushes, it never pulls.
         inward = g.call("max", outward * v, ZERO)
-        push = g.mul(lowering.value(stop.stiffness), beyond)
-        push = g.add(push, g.mul(g.mul(lowering.value(stop.damping), inward), g.call("sign", beyond)))
+        push = g.mul(lowering.value(stop.stiffness), excess)
+        push = g.add(push, g.mul(g.mul(lowering.value(stop.damping), inward), g.call("sign", excess)))
         total = g.add(total, -outward * push)
     return total
 

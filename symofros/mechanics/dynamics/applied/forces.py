@@ -57,7 +57,7 @@ def generalized_forces(kinematics: TreeKinematics, frames: FrameKinematics) -> l
 
 def _add_modal(kinematics: TreeKinematics, beam: MovingBeam, total: list[Edge], forces: list[Edge]) -> None:
     if beam.tip is not None:
-        for k, force in enumerate(forces, start=kinematics.links[beam.tip].v):
+        for k, force in enumerate(forces, start=kinematics.links[beam.tip].first_speed):
             total[k] = kinematics.g.add(total[k], force)
 
 

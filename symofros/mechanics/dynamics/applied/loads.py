@@ -60,7 +60,7 @@ def _at_frame(
     kinematics: TreeKinematics, frames: FrameKinematics, frame: NamedFrame, force: Vec3, torque: Vec3
 ) -> Wrench:
     """The wrench of a force and torque in world axes."""
-    R_WL: Mat3 = frames.link_pose(frame.link).R
+    R_WL: Mat3 = frames.link_pose(frame.link).R_WF
     return _in_link(kinematics, frame, R_WL.T.times(force), R_WL.T.times(torque))
 
 
@@ -77,7 +77,7 @@ class _Line:
         self.g = kinematics.g
         self.kinematics, self.frames, self.connection = kinematics, frames, connection
         self.ends = [frame_of(kinematics.tree, *anchor) for anchor in (connection.first, connection.second)]
-        self.d = frames.pose(self.ends[1]).p - frames.pose(self.ends[0]).p
+        self.d = frames.pose(self.ends[1]).p_WF - frames.pose(self.ends[0]).p_WF
         self.stiffness = kinematics.lowering.value(connection.stiffness)
         self.rest = kinematics.lowering.value(connection.length)
 

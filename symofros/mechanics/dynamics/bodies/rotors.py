@@ -49,22 +49,22 @@ class MovingRotor:
 
 def rotors_of(kinematics: TreeKinematics) -> list[MovingRotor]:
     """The rotors and armatures of a tree; an armature is a rotor whose carrier is taken to rest."""
-    found = []
+    rotors = []
     for i, link in enumerate(kinematics.tree.links):
         speeds = len(kinematics.links[i].partial_velocities)
         free = kinematics.links[i].rates is None
         armature = kinematics.lowering.value(link.joint.armature)
         if armature != ZERO:
             still = Vec3.unit(kinematics.g, 2)
-            found += [
+            rotors += [
                 MovingRotor(i, c, link.v[0] + c if free else None, BASE, still, armature, ONE) for c in range(speeds)
             ]
         for rotor in link.joint.rotors:
             carrier, axis = _bearing(kinematics, i, rotor)
             k = link.v[0] + rotor.coordinate if free else None
             inertia, ratio = kinematics.lowering.value(rotor.inertia), kinematics.lowering.value(rotor.ratio)
-            found.append(MovingRotor(i, rotor.coordinate, k, carrier, axis, inertia, ratio))
-    return found
+            rotors.append(MovingRotor(i, rotor.coordinate, k, carrier, axis, inertia, ratio))
+    return rotors
 
 
 def _bearing(kinematics: TreeKinematics, index: int, rotor: Rotor) -> tuple[int, Vec3]:

@@ -104,7 +104,7 @@ class Constraints:
             v, w = Vec3(self.g, *velocity[:3]), Vec3(self.g, *velocity[3:])
             a, alpha = Vec3(self.g, *acceleration[:3]), Vec3(self.g, *acceleration[3:])
             J = self.frames.jacobian(frame)
-            self._states[frame.qualified] = FrameState(frame.qualified, pose.p, pose.R, v, w, a, alpha, J)
+            self._states[frame.qualified] = FrameState(frame.qualified, pose.p_WF, pose.R_WF, v, w, a, alpha, J)
         return self._states[frame.qualified]
 
     # Closures.

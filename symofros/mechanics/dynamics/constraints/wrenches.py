@@ -12,8 +12,8 @@ from symofros.mechanics.dynamics.constraints.rows import Row
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.topology.tree import frame_of
 
-# Force and moment, in world axes.
-Wrench = tuple[Edge, ...]
+# Force and moment about a frame's origin, in world axes (6).
+FrameWrench = tuple[Edge, ...]
 
 
 def acts_on_bodies(constraints: Iterable[Constraint]) -> list[str]:
@@ -21,7 +21,7 @@ def acts_on_bodies(constraints: Iterable[Constraint]) -> list[str]:
     return [constraint.name for constraint in constraints if not isinstance(constraint, Nonholonomic)]
 
 
-def closure_wrenches(frames: FrameKinematics, rows: Sequence[Row]) -> tuple[list[Wrench], list[Wrench]]:
+def closure_wrenches(frames: FrameKinematics, rows: Sequence[Row]) -> tuple[list[FrameWrench], list[FrameWrench]]:
     """The wrench of each constraint on its second frame and on its first, each about that frame's origin.
 
     The first frame of what binds a single body is the world.
@@ -43,12 +43,12 @@ def closure_wrenches(frames: FrameKinematics, rows: Sequence[Row]) -> tuple[list
             on_first.append(_sum(g, own, first.qualified))
         else:
             second = frame_of(tree, *constraint.anchor)
-            on_first.append(_on_ground(g, _sum(g, own, second.qualified), frames.pose(second).p))
+            on_first.append(_on_ground(g, _sum(g, own, second.qualified), frames.pose(second).p_WF))
         on_second.append(_sum(g, own, second.qualified))
     return on_second, on_first
 
 
-def _sum(g: Graph, own: Sequence[tuple[Edge, Row]], frame: str) -> Wrench:
+def _sum(g: Graph, own: Sequence[tuple[Edge, Row]], frame: str) -> FrameWrench:
     """The levers on one frame, by their multipliers."""
     force, moment = Vec3(g), Vec3(g)
     for lam, row in own:
@@ -60,7 +60,7 @@ def _sum(g: Graph, own: Sequence[tuple[Edge, Row]], frame: str) -> Wrench:
     return (*force, *moment)
 
 
-def _on_ground(g: Graph, wrench: Wrench, p: Vec3) -> Wrench:
+def _on_ground(g: Graph, wrench: FrameWrench, p: Vec3) -> FrameWrench:
     """The reaction of a wrench at p, about the origin of the world."""
     force, moment = Vec3(g, *wrench[:3]), Vec3(g, *wrench[3:])
     return (*-force, *-(moment + p.cross(force)))

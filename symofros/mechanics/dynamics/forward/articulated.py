@@ -65,7 +65,7 @@ def articulated_acceleration(
         parent = base if link.parent == BASE else accelerations[link.parent]
         x = acceleration_from_parent(link, parent) + biases[i]
         rates = joint.rates(parent if joint.in_parent else x)
-        v_rate[link.v : link.v + len(rates)] = rates
+        v_rate[link.first_speed : link.first_speed + len(rates)] = rates
         for partial, rate in zip(link.free_partial_velocities, rates, strict=True):
             x = x + Acceleration(partial.w.scaled(rate), partial.v.scaled(rate))
         accelerations.append(x)
@@ -131,13 +131,13 @@ def _tip_to_base(
         ]
         if coupling.in_parent:
             body = body.with_acceleration(biases[i])
-        d = [g.add(forces[k], _power(partial, body.bias)) for k, partial in enumerate(partials, start=link.v)]
+        d = [g.add(forces[k], _power(partial, body.bias)) for k, partial in enumerate(partials, start=link.first_speed)]
         if coupling.in_parent:
             U = [wrench_in_parent(link, U_k) + on_parent for U_k, on_parent in zip(U, coupling.wrenches, strict=True)]
-            joint = _FreeJoint(g, body.added_to_parent(link, parent), U, D, d, True, link.v)
+            joint = _FreeJoint(g, body.added_to_parent(link, parent), U, D, d, True, link.first_speed)
             bodies[link.parent] = joint.body
         else:
-            joint = _FreeJoint(g, body, U, D, d, False, link.v)
+            joint = _FreeJoint(g, body, U, D, d, False, link.first_speed)
             bodies[link.parent] = joint.body.with_acceleration(biases[i]).added_to_parent(link, parent)
         joints.insert(0, joint)
     return joints

@@ -125,8 +125,8 @@ class _Row:
         return self._made([[(ONE, mine), (-factor, theirs)] for mine, theirs in pairs], size)
 
     def _made(self, terms: list[list[tuple[Edge, Signed]]], size: int) -> _Row:
-        found = [combined(self.g, terms[c], of, self.least) for c, of in _chunks(size)]
-        return _Row(self.g, found, self.least)
+        packs = [combined(self.g, terms[c], of, self.least) for c, of in _chunks(size)]
+        return _Row(self.g, packs, self.least)
 
 
 def _chunks(size: int) -> Iterator[tuple[int, range]]:
