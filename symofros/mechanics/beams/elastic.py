@@ -98,7 +98,7 @@ class BeamForms:
 
     @cached_property
     def angular(self) -> tuple[Vector, ...]:
-        """Q_i, the angular momentum about the root per unit rate of each coordinate (eqs. 10, 13)."""
+        """K_i, the angular momentum about the root per unit rate of each coordinate (eqs. 10, 13)."""
         r, found = self.shape.position, []
         for i in range(self.beam.modes):
             d = [field.by(i) for field in r]
