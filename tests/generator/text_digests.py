@@ -11,7 +11,7 @@ import sys
 
 import reference_models
 import symofros as sf
-from symofros.compiler import describe, generate, plan, requested
+from symofros.compiler import Compilation
 from symofros.options import Options
 from tests.mechanics.beams.cases import CASES
 
@@ -47,10 +47,8 @@ def systems(choice: str) -> dict[str, sf.System]:
 
 def digest(system: sf.System, functions: tuple[str, ...]) -> str:
     """The digest of a system's description, record and C text."""
-    tree, options = plan(system), Options(functions)
-    record = describe(tree, options)
-    _, text = generate(tree, requested(tree, options), record)
-    return hashlib.sha256(f"{system!r}{record!r}{text()}".encode()).hexdigest()
+    compilation = Compilation(system, Options(functions))
+    return hashlib.sha256(f"{system!r}{compilation.record!r}{compilation.source()}".encode()).hexdigest()
 
 
 def digests(choice: str) -> dict[str, str]:
