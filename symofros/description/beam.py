@@ -27,8 +27,8 @@ class Samples:
     """A shape function by its values at stations; a cubic spline goes through them.
 
     Attributes:
-        xi: x/L of the samples, rising from 0 to 1.
-        values: Of the function.
+        xi: Stations x/L of the samples, rising from 0 to 1.
+        values: Values of the function at the stations.
     """
 
     xi: tuple[float, ...]
@@ -58,10 +58,10 @@ class BeamLoad:
     """A force and a moment on the centroid axis, at one station or spread over the length.
 
     Attributes:
-        force: [N], or [N/m] if spread: formulas as for a Load, and also of the station x [m] if spread.
-        torque: [N m], or [N m/m], likewise.
-        at: x/L of the station, from 0 (root) to 1 (tip); None if spread over the length.
-        axes: Of the components: "body" (the axes of the undeformed beam) or "world".
+        force: Force [N], or [N/m] if spread; formulas as for a Load, and of the station x [m] if spread.
+        torque: Moment [N m], or [N m/m] if spread; formulas as for the force.
+        at: Station x/L, from 0 (root) to 1 (tip); spread over the length if not given.
+        axes: Axes of the components: "body" (those of the undeformed beam) or "world".
     """
 
     force: Vector = ORIGIN
@@ -102,27 +102,27 @@ class Beam:
     Attributes:
         name: Unique; also the name of its body frame, at the root.
         joint: How the root moves on its parent; kind "fixed" clamps it there.
-        length: [m].
+        length: Length [m].
         rhoA: Mass per length [kg/m].
         EI_z: Stiffness against bending in the x-y plane [N m^2].
         EI_y: Stiffness against bending in the x-z plane [N m^2].
         GJ: Stiffness against twist [N m^2].
         rhoJ: Polar moment of inertia per length, about x [kg m].
         rhoI_y: Moment of inertia per length about y, counted with rotary_inertia [kg m].
-        rhoI_z: Likewise about z.
-        bend_y: Number of shape functions for the displacement along y; zero is rigid.
-        bend_z: Likewise along z.
-        twist: Likewise for the rotation about x.
-        family: Of the shape functions (FAMILIES).
-        shapes: The user's own functions of xi = x/L, or samples, for family "user": direction -> functions.
+        rhoI_z: Moment of inertia per length about z, counted with rotary_inertia [kg m].
+        bend_y: Number of shape functions for the displacement along y; 0 is rigid.
+        bend_z: Number of shape functions for the displacement along z; 0 is rigid.
+        twist: Number of shape functions for the rotation about x; 0 is rigid.
+        family: Family of the shape functions (docs/theory/beams.md, section 2).
+        shapes: User-defined functions for family "user": direction -> formulas of xi = x/L, or samples.
         damping: Voigt-Kelvin retardation time: stress is E (strain + damping strain rate) [s].
-        foreshortening: Whether bending pulls the axis back, which is what stiffens a beam that spins.
+        foreshortening: Whether bending pulls the axis back, which is what stiffens a spinning beam.
         rotary_inertia: Whether sections resist being turned by bending.
         retain: How far elastic terms are kept: "zeroth_order" (linear elastic terms only, no stiffening or softening
             by motion), "first_order" (consistent to first order) or "all" (everything the second-order field gives).
-        frames: Its one extremity frame, at the tip and turned with it.
-        loads: Along the axis.
-        waive: Names of checks it is allowed to fail.
+        frames: The one extremity frame, at the tip and turning with it.
+        loads: Loads along the axis.
+        waive: Names of checks that the beam is allowed to fail.
     """
 
     name: str

@@ -33,9 +33,9 @@ class Closure:
     """Two frames that stay together in some directions: it closes a loop of the tree.
 
     Attributes:
-        name: Unique.
-        first: (body, frame) of the reference, frame None for the body frame; "world" for the ground.
-        second: The other, likewise.
+        name: Unique name.
+        first: Reference frame: (body, frame), frame None for the body frame; "world" for the ground.
+        second: Other frame: (body, frame).
         translations: Blocked directions of the second origin, along axes of the first frame.
         rotations: Blocked rotations about axes of the first frame. All three: the frames stay parallel; two: their
             third axes do; one: the two free axes stay at right angles, as in a universal joint.
@@ -78,10 +78,10 @@ class Rod:
     """A massless rod: the distance between two frames' origins stays the same.
 
     Attributes:
-        name: Unique.
-        first: (body, frame), frame None for the body frame; "world" for the ground.
-        second: Likewise.
-        length: [m].
+        name: Unique name.
+        first: First end: (body, frame), frame None for the body frame; "world" for the ground.
+        second: Second end: (body, frame).
+        length: Length [m].
     """
 
     name: str
@@ -109,9 +109,9 @@ class KnifeEdge:
     """A frame that moves along its own axes, but for one: an edge, or a thin wheel that may slip along.
 
     Attributes:
-        name: Unique.
-        anchor: (body, frame) of the edge.
-        axis: The direction of the frame that its origin does not move in.
+        name: Unique name.
+        anchor: Frame of the edge: (body, frame).
+        axis: Axis of the frame along which its origin does not move.
     """
 
     name: str
@@ -140,11 +140,11 @@ class Rolling:
     The first two conditions bind speeds; the third keeps the contact on the plane, and binds coordinates.
 
     Attributes:
-        name: Unique.
-        anchor: (body, frame) at the centre; a disc's axis is the frame's z axis.
-        radius: [m].
-        shape: "disc" (thin, at any tilt but flat) or "sphere".
-        height: Of the plane [m].
+        name: Unique name.
+        anchor: Frame at the centre: (body, frame); a disc's axis is its z axis.
+        radius: Radius [m].
+        shape: Shape: "disc" (thin, at any tilt but flat) or "sphere".
+        height: Height of the plane [m].
     """
 
     name: str

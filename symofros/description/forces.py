@@ -25,10 +25,10 @@ class Spring(_Values):
     """F = -(stiffness x + cubic x^3), x = q - rest; its energy is potential energy.
 
     Attributes:
-        stiffness: [N m/rad or N/m].
-        rest: Coordinate at rest.
-        cubic: Of a spring that hardens (positive) or softens.
-        coordinate: Which coordinate of the joint.
+        stiffness: Stiffness [N m/rad or N/m].
+        rest: Coordinate at rest [rad or m].
+        cubic: Cubic stiffness: positive hardens, negative softens [N m/rad^3 or N/m^3].
+        coordinate: Index of the coordinate of the joint, from 0.
     """
 
     stiffness: Value
@@ -39,7 +39,13 @@ class Spring(_Values):
 
 @dataclass(frozen=True)
 class Damper(_Values):
-    """F = -(coefficient v + quadratic v |v|)."""
+    """F = -(coefficient v + quadratic v |v|).
+
+    Attributes:
+        coefficient: Viscous coefficient [N m s/rad or N s/m].
+        quadratic: Coefficient of v |v| [N m s^2/rad^2 or N s^2/m^2].
+        coordinate: Index of the speed of the joint, from 0.
+    """
 
     coefficient: Value
     quadratic: Value = 0.0
@@ -51,11 +57,11 @@ class Stop(_Values):
     """A limit as penalty: a spring and damper that act only beyond it; the spring's energy is potential energy.
 
     Attributes:
-        stiffness: Beyond the limit [N m/rad or N/m].
-        damping: Of motion further into the limit; motion out of it is not held back.
-        lower: None for no lower limit.
-        upper: None for no upper limit.
-        coordinate: Which coordinate of the joint.
+        stiffness: Stiffness beyond the limit [N m/rad or N/m].
+        damping: Damping of motion further into the limit; motion out of it is not held back [N m s/rad or N s/m].
+        lower: Lower limit; no lower limit if not given [rad or m].
+        upper: Upper limit; no upper limit if not given [rad or m].
+        coordinate: Index of the coordinate of the joint, from 0.
     """
 
     stiffness: Value
@@ -73,11 +79,11 @@ class Friction(_Values):
 
     Attributes:
         dynamic: Coulomb friction at speed [N m or N].
-        static: At the onset of motion; equal to dynamic if not given.
+        static: Friction at the onset of motion; equal to dynamic if not given [N m or N].
         minimum_velocity: Speed below which the sign of the speed is smoothed [rad/s or m/s].
-        viscous: [N m s/rad or N s/m].
+        viscous: Viscous coefficient [N m s/rad or N s/m].
         stribeck_velocity: Speed over which static falls to dynamic; ten times the minimum velocity if not given.
-        coordinate: Which speed of the joint.
+        coordinate: Index of the speed of the joint, from 0.
     """
 
     dynamic: Value
@@ -99,11 +105,12 @@ class Rotor:
     inertia on the joint, coupling to the carrier's rotation, and the gyroscopic moments.
 
     Attributes:
-        inertia: About the spin axis [kg m^2].
+        inertia: Inertia about the spin axis [kg m^2].
         ratio: Spin relative to the carrier per joint speed.
-        axis: In the carrier's body frame; None for the joint's own axis, which then needs the default carrier.
-        carrier: Body that bears the rotor; None for the joint's parent.
-        coordinate: Which speed of the joint drives it.
+        axis: Spin axis in the carrier's body frame; the joint's own axis if not given, which then needs the default
+            carrier.
+        carrier: Body that bears the rotor; the joint's parent if not given.
+        coordinate: Index of the speed of the joint that drives it, from 0.
     """
 
     inertia: Value
@@ -125,10 +132,10 @@ class Load:
     """A force and a torque on a body, by formulas of inputs, parameters, coordinates, speeds and t.
 
     Attributes:
-        force: [N].
-        torque: [N m].
-        at: Where the force acts: "body" (the body frame's origin), "center_of_mass", or a frame of the body.
-        axes: The axes of the components: "body" (those of that frame for an extremity frame), or "world".
+        force: Force [N].
+        torque: Moment [N m].
+        at: Point of application: "body" (the body frame's origin), "center_of_mass", or a frame of the body.
+        axes: Axes of the components: "body" (those of that frame for an extremity frame), or "world".
     """
 
     force: Vector = ORIGIN
@@ -154,12 +161,12 @@ class Connection:
     """A spring and damper along the line between two frames.
 
     Attributes:
-        name: Unique.
-        first: (body, frame), frame None for the body frame; "world" for the ground.
-        second: Likewise.
-        stiffness: [N/m].
-        length: At rest [m]. With a length of zero the direction does not matter, and the ends may meet.
-        damping: [N s/m].
+        name: Unique name.
+        first: First end: (body, frame), frame None for the body frame; "world" for the ground.
+        second: Second end: (body, frame).
+        stiffness: Stiffness [N/m].
+        length: Length at rest [m]. With a length of zero the direction does not matter, and the ends may meet.
+        damping: Damping coefficient [N s/m].
     """
 
     name: str

@@ -12,9 +12,9 @@ class Frame:
     """An extremity frame E fixed on a body B.
 
     Attributes:
-        name: Unique on its body.
-        position: p_BE, from Bo to Eo, in B [m].
-        rotation: R_BE.
+        name: Name, unique on its body.
+        position: Position p_BE of the frame's origin, in the body frame [m].
+        rotation: Rotation R_BE from the body frame to this one.
     """
 
     name: str

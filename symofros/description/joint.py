@@ -14,7 +14,14 @@ WORLD = "world"
 
 @dataclass(frozen=True)
 class Limits:
-    """Bounds of a one-coordinate joint; data for sampling and inverse kinematics, not a force."""
+    """Bounds of a one-coordinate joint; data for sampling and inverse kinematics, not a force.
+
+    Attributes:
+        lower: Least coordinate [rad or m].
+        upper: Greatest coordinate [rad or m].
+        velocity: Greatest speed [rad/s or m/s].
+        effort: Greatest effort [N m or N].
+    """
 
     lower: float | None = None
     upper: float | None = None
@@ -27,25 +34,26 @@ class Joint:
     """How a body B moves on its parent A: proximal frame P fixed on A, distal frame D = body frame B.
 
     Attributes:
-        name: Unique; the coordinate and speed of a one-coordinate joint bear it.
+        name: Unique name, borne by the coordinate of a one-coordinate joint; in files `q_` and the body's name if not
+            given.
         kind: Name of a row of the table of joint kinds (joint_kinds.py). All but ball and free have v = q'.
-        parent: The parent body; "world" for the ground.
-        frame: The parent's extremity frame that P is placed in; None for its body frame.
-        position: From that frame's origin to Po, in that frame [m].
-        rotation: From that frame to P.
+        parent: Body that carries this one; "world" for the ground.
+        frame: Frame of the parent that P is placed in; the parent's body frame if not given.
+        position: Position of Po from that frame's origin, in that frame [m].
+        rotation: Rotation from that frame to P.
         axis: Main axis of a kind that has one, in P, of any length.
-        actuated: Adds one input a speed, named like the speed: an effort on the joint [N m or N].
-        effort: Formulas, one a speed, of inputs, parameters, coordinates, speeds (d + coordinate name) and t.
+        actuated: Whether an input is added for each speed, named like the speed: an effort on the joint [N m or N].
+        effort: Formulas, one a speed, of inputs, parameters, coordinates, speeds (`dq1`) and `t` [N m or N].
         limits: Bounds of the coordinate, if any.
         axis2: Second axis of a universal joint, in the frame after the first turn.
-        pitch: Of a screw joint [m/rad].
+        pitch: Pitch of a screw joint [m/rad].
         coordinates: Names of the coordinates of a general joint, one to six.
-        moving_position: p_PD of a general joint: formulas of its coordinates and of parameters.
-        moving_rotation: R_PD of a general joint, by formulas of the same.
-        prescribed: The motion is given: coordinates, speeds and their rates are inputs (q1, dq1, ddq1).
+        moving_position: Position p_PD of a general joint, by formulas of its coordinates and of parameters [m].
+        moving_rotation: Rotation R_PD of a general joint, by formulas of its coordinates and of parameters.
+        prescribed: Whether the motion is given: coordinates, speeds and their rates are inputs (q1, dq1, ddq1).
         elements: Springs, dampers, stops and friction on its coordinates.
-        armature: Inertia added to each speed, of a rotor whose gyroscopic effect is neglected.
-        rotors: Rotors that its speeds drive, with their full effect.
+        armature: Inertia added to each speed, of a rotor whose gyroscopic effect is neglected [kg m^2 or kg].
+        rotors: Rotors that its speeds drive, with their gyroscopic effect.
     """
 
     name: str

@@ -32,11 +32,11 @@ class Parameter:
     """A named number: given at run time, or hard-coded in the C code if constant.
 
     Attributes:
-        name: An identifier, used in formulas.
-        value: Its (default) value.
-        unit: For people, such as "kg m^2".
-        constant: Hard-coded rather than given at run time.
-        description: For people.
+        name: Identifier, used in formulas.
+        value: Value, the default one of a run-time parameter.
+        unit: Unit, such as "kg m^2", shown to people.
+        constant: Whether the value is hard-coded in the C code rather than given at run time.
+        description: Text for people.
     """
 
     name: str
@@ -48,7 +48,13 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Input:
-    """A named input u, used in formulas of efforts and forces."""
+    """A named input u, used in formulas of efforts and forces.
+
+    Attributes:
+        name: Identifier, used in formulas.
+        unit: Unit, such as "N m", shown to people.
+        description: Text for people.
+    """
 
     name: str
     unit: str = ""
@@ -60,11 +66,11 @@ class Inertia:
     """Mass, mass centre and inertia matrix of a rigid body.
 
     Attributes:
-        mass: [kg].
-        center_of_mass: p_BC, from Bo to the mass centre, in B [m].
-        moments: Ixx, Iyy, Izz and, if not zero, Ixy, Ixz, Iyz [kg m^2]; products as they stand in the matrix.
-        about: "center_of_mass": about C, along the axes of frame C; "body": about Bo, along the axes of B.
-        rotation: R_BC, axes of the mass-centre frame; only with about="center_of_mass".
+        mass: Mass [kg].
+        center_of_mass: Position p_BC of the mass centre in the body frame [m].
+        moments: Ixx, Iyy, Izz and, if not zero, Ixy, Ixz, Iyz [kg m^2]; products with the sign they have in the matrix.
+        about: Reference point: "center_of_mass", along the axes of frame C; or "body", about Bo along the axes of B.
+        rotation: Rotation R_BC from the body frame to the axes of the moments; only about the center_of_mass.
     """
 
     mass: Value = 0.0

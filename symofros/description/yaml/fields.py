@@ -9,11 +9,13 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PlainValidato
 from pydantic_core import PydanticCustomError
 from typing_extensions import TypeAliasType
 
+from symofros.description.forces import Anchor
 from symofros.description.parser import MAX_LENGTH
 from symofros.description.system import WAIVERS
-from symofros.description.values import Value, Vector, as_value
+from symofros.description.values import Rotation, RotationKind, Value, as_value
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
+ROTATIONS: tuple[RotationKind, ...] = ("rpy", "axis_angle", "quaternion", "matrix")
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
@@ -23,26 +25,12 @@ class Entry(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True)
 
 
-class CheckedEntry(Entry, ABC):
-    """One whose noun checks itself when it is made."""
-
-    @model_validator(mode="after")
-    def _possible(self) -> Self:
-        try:
-            self.build()
-        except DescriptionError as error:
-            raise fault(error.problems[0]) from None
-        return self
+class PartEntry(Entry, ABC):
+    """An entry that is a part of a noun, and knows how to become it."""
 
     @abstractmethod
-    def build(self) -> object:
-        """The noun."""
-
-
-def three(values: list[Value]) -> Vector:
-    """A list of three as a vector."""
-    x, y, z = values
-    return x, y, z
+    def build(self) -> Any:
+        """The part."""
 
 
 def fault(problem: Problem) -> PydanticCustomError:
@@ -123,3 +111,45 @@ Waiver = Annotated[str, AfterValidator(_waiver), WithJsonSchema({"type": "string
 Reserved = Annotated[
     None, PlainValidator(_reserved), WithJsonSchema({"description": "Reserved.", "enum": [None, [], {}]})
 ]
+
+
+class RotationEntry(PartEntry):
+    """A constant rotation, in exactly one of four forms."""
+
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
+
+    rpy: Three | None = None
+    """Roll, pitch, yaw about fixed axes [rad]: Rz(yaw) Ry(pitch) Rx(roll), as in URDF."""
+    axis_angle: Four | None = None
+    """Axis x, y, z and the angle [rad]."""
+    quaternion: Four | None = None
+    """x, y, z, w: scalar last."""
+    matrix: Matrix | None = None
+    """Three rows of three."""
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Self:
+        given = [kind for kind in ROTATIONS if getattr(self, kind) is not None]
+        if len(given) != 1:
+            found = ", ".join(given) or "none of them"
+            raise fault(Problem("not exactly one form", found, f"exactly one of {', '.join(ROTATIONS)}", "keep one"))
+        return self
+
+    def build(self) -> Rotation:
+        """The Rotation."""
+        if self.matrix is not None:
+            return Rotation.matrix(self.matrix)
+        kind, values = next((kind, values) for kind in ROTATIONS if (values := getattr(self, kind)) is not None)
+        return Rotation(kind, tuple(values))
+
+
+class AnchorEntry(PartEntry):
+    """A frame of a body."""
+
+    body: Name
+    frame: Name | None = None
+    """The body frame if not given."""
+
+    def build(self) -> Anchor:
+        """The pair that nouns hold."""
+        return self.body, self.frame

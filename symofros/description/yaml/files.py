@@ -203,17 +203,17 @@ class _Merger:
             self.origin["system",] = system_line
         for name, parameter in (file.parameters or {}).items():
             if self.is_new("parameters", name, root, shown):
-                self.parameters.append(parameter.build(name))
+                self.parameters.append(parameter.build(name=name))
         for name, entry in (file.inputs or {}).items():
             if self.is_new("inputs", name, root, shown):
-                self.inputs.append((entry or InputEntry()).build(name))
+                self.inputs.append((entry or InputEntry()).build(name=name))
         for name, body in (file.bodies or {}).items():
             if self.is_new("bodies", name, root, shown):
                 self.bodies.append((body or BodyEntry()).build(name))
                 self.origin |= dict(_body_origin(self.bodies[-1], root, shown))
         for name, connection in (file.connections or {}).items():
             if self.is_new("connections", name, root, shown):
-                self.connections.append(connection.build(name))
+                self.connections.append(connection.build(name=name))
         for name, forces in (file.virtual_power or {}).items():
             if self.is_new("virtual_power", name, root, shown):
                 self.virtual_power.append(VirtualPower(name, tuple(forces.items())))

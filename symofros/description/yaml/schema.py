@@ -1,7 +1,8 @@
 """The native file's shape as pydantic models: the reader validates with them, the JSON Schema is made from them.
 
-Each entry knows how to become its noun (`build`), so that a new field is added in one file. After a change, rewrite
-the published schema: `python -m symofros.description.yaml.schema`.
+Entries are derived from the dataclasses of the description (derived.py): a new field is added there, in one place, with
+its default and its line of documentation. After a change, rewrite the published schema:
+`python -m symofros.description.yaml.schema`.
 """
 
 from __future__ import annotations
@@ -11,32 +12,30 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
+from symofros.description.beam import Beam
 from symofros.description.frames import Frame
-from symofros.description.joint import WORLD, Joint, Limits
+from symofros.description.joint import Joint, Limits
 from symofros.description.joint_kinds import JointKindName
 from symofros.description.system import Body, Inertia, Input, Parameter, RigidBody
-from symofros.description.values import IDENTITY, Rotation, RotationKind
+from symofros.description.values import Value
+from symofros.description.yaml.derived import NounEntry
 from symofros.description.yaml.fields import (
     MOMENTS,
-    CheckedEntry,
     Entry,
     Formula,
-    Four,
-    Matrix,
     Name,
     Number,
+    PartEntry,
     Reserved,
     Six,
-    Text,
     Three,
     Waiver,
     fault,
     listed,
     moments_mapping,
     parameter_mapping,
-    three,
 )
 from symofros.description.yaml.schema_beam import BeamEntry
 from symofros.description.yaml.schema_constraints import ClosureEntry, NonholonomicEntry
@@ -45,7 +44,6 @@ from symofros.errors import Problem
 
 VERSION = 1
 SCHEMA_FILE = Path(__file__).with_name("schema.json")
-ROTATIONS: tuple[RotationKind, ...] = ("rpy", "axis_angle", "quaternion", "matrix")
 
 
 def default_joint_name(body: str) -> str:
@@ -53,41 +51,7 @@ def default_joint_name(body: str) -> str:
     return f"q_{body}"
 
 
-class RotationEntry(Entry):
-    """A constant rotation, in exactly one of four forms."""
-
-    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
-
-    rpy: Three | None = None
-    """Roll, pitch, yaw about fixed axes [rad]: Rz(yaw) Ry(pitch) Rx(roll), as in URDF."""
-    axis_angle: Four | None = None
-    """Axis x, y, z and the angle [rad]."""
-    quaternion: Four | None = None
-    """x, y, z, w: scalar last."""
-    matrix: Matrix | None = None
-    """Three rows of three."""
-
-    @model_validator(mode="after")
-    def _one_form(self) -> Self:
-        given = [kind for kind in ROTATIONS if getattr(self, kind) is not None]
-        if len(given) != 1:
-            found = ", ".join(given) or "none of them"
-            raise fault(Problem("not exactly one form", found, f"exactly one of {', '.join(ROTATIONS)}", "keep one"))
-        return self
-
-    def build(self) -> Rotation:
-        """The Rotation."""
-        if self.matrix is not None:
-            return Rotation.matrix(self.matrix)
-        kind, values = next((kind, values) for kind in ROTATIONS if (values := getattr(self, kind)) is not None)
-        return Rotation(kind, tuple(values))
-
-
-def _rotation(entry: RotationEntry | None) -> Rotation:
-    return entry.build() if entry else IDENTITY
-
-
-class MomentsEntry(Entry):
+class MomentsEntry(PartEntry):
     """Moments and products of inertia [kg m^2]; products with the sign they have in the matrix."""
 
     ixx: Formula
@@ -97,124 +61,42 @@ class MomentsEntry(Entry):
     ixz: Formula = 0.0
     iyz: Formula = 0.0
 
+    def build(self) -> tuple[Value, ...]:
+        """The six, in the order of an Inertia."""
+        return tuple(getattr(self, name) for name in MOMENTS)
 
-class InertiaEntry(CheckedEntry):
-    """Mass, mass centre and inertia matrix of a rigid body."""
 
+class InertiaEntry(NounEntry, noun=Inertia, checked=True):
     mass: Formula
-    """[kg]"""
-    center_of_mass: Three = [0.0, 0.0, 0.0]
-    """From the body's origin, in the body frame [m]."""
     moments: (
         Annotated[MomentsEntry, BeforeValidator(moments_mapping, json_schema_input_type=Three | Six | MomentsEntry)]
         | None
     ) = None
-    """Ixx, Iyy, Izz and, if not zero, Ixy, Ixz, Iyz [kg m^2]."""
-    about: Literal["center_of_mass", "body"] = "center_of_mass"
-    """The point the moments are about; with `body`, they are along the body's axes."""
-    rotation: RotationEntry | None = None
-    """From the body frame to the axes of the moments; only with about: center_of_mass."""
-
-    def build(self) -> Inertia:
-        """The Inertia."""
-        moments = [getattr(self.moments, name) for name in MOMENTS] if self.moments else [0.0] * 6
-        x, y, z = self.center_of_mass
-        xx, yy, zz, xy, xz, yz = moments
-        return Inertia(self.mass, (x, y, z), (xx, yy, zz, xy, xz, yz), self.about, _rotation(self.rotation))
 
 
-class LimitsEntry(Entry):
-    """Bounds of a one-coordinate joint: data, not forces."""
-
-    lower: Number | None = None
-    upper: Number | None = None
-    velocity: Number | None = None
-    effort: Number | None = None
-
-    def build(self) -> Limits:
-        """The Limits."""
-        return Limits(self.lower, self.upper, self.velocity, self.effort)
+class LimitsEntry(NounEntry, noun=Limits):
+    pass
 
 
-class JointEntry(Entry):
-    """How a body moves on its parent."""
-
+class JointEntry(NounEntry, noun=Joint):
     name: Name | None = None
-    """Also the name of the coordinate; `q_` and the body's name if not given."""
     kind: JointKindName
-    parent: Name = WORLD
-    """The body that carries this one; `world` is the ground."""
-    frame: Name | None = None
-    """The parent's frame that the joint sits in; its body frame if not given."""
-    position: Three = [0.0, 0.0, 0.0]
-    """From that frame's origin, in that frame [m]."""
-    rotation: RotationEntry | None = None
-    """From that frame to the joint's."""
-    axis: Three = [0.0, 0.0, 1.0]
-    """Of a joint that turns about or slides along one, in the joint's frame; first axis of a universal joint."""
-    actuated: bool = False
-    """Adds an input for each speed: an effort on the joint."""
     effort: Annotated[
         list[Formula], Field(max_length=6), BeforeValidator(listed, json_schema_input_type=list[Formula] | Formula)
     ] = []
-    """One formula a speed, of inputs, parameters, coordinates, speeds (`dq1`) and `t` [N m or N]."""
     limits: LimitsEntry | None = None
-    axis2: Three = [0.0, 1.0, 0.0]
-    """Second axis of a universal joint, in the frame after the first turn."""
-    pitch: Formula = 0.0
-    """Of a screw joint [m/rad]."""
     coordinates: Annotated[list[Name], Field(max_length=6)] = []
-    """Names of the coordinates of a general joint."""
-    moving_position: Three = [0.0, 0.0, 0.0]
-    """Of a general joint: where it moves to, by formulas of its coordinates [m]."""
-    moving_rotation: RotationEntry | None = None
-    """Of a general joint: how it turns, likewise."""
-    prescribed: bool = False
-    """The motion is given: coordinates, speeds and their rates are inputs."""
     elements: Annotated[list[ElementEntry], Field(max_length=100)] = []
-    """Springs, dampers, stops and friction."""
-    armature: Formula = 0.0
-    """Inertia added to each speed [kg m^2 or kg]."""
     rotors: Annotated[list[RotorEntry], Field(max_length=100)] = []
-    """Rotors that its speeds drive, with their gyroscopic effect."""
 
-    def build(self, body: str) -> Joint:
+    def of_body(self, body: str) -> Joint:
         """The Joint of that body."""
-        return Joint(
-            name=default_joint_name(body) if self.name is None else self.name,
-            kind=self.kind,
-            parent=self.parent,
-            frame=self.frame,
-            position=three(self.position),
-            rotation=_rotation(self.rotation),
-            axis=three(self.axis),
-            actuated=self.actuated,
-            effort=tuple(self.effort),
-            limits=self.limits.build() if self.limits else None,
-            axis2=three(self.axis2),
-            pitch=self.pitch,
-            coordinates=tuple(self.coordinates),
-            moving_position=three(self.moving_position),
-            moving_rotation=_rotation(self.moving_rotation),
-            prescribed=self.prescribed,
-            elements=tuple(element.build() for element in self.elements),
-            armature=self.armature,
-            rotors=tuple(rotor.build() for rotor in self.rotors),
-        )
+        joint: Joint = self.build(name=default_joint_name(body) if self.name is None else self.name)
+        return joint
 
 
-class FrameEntry(Entry):
-    """A frame fixed on a body."""
-
-    position: Three = [0.0, 0.0, 0.0]
-    """From the body's origin, in the body frame [m]."""
-    rotation: RotationEntry | None = None
-    """From the body frame to this one."""
-
-    def build(self, name: str) -> Frame:
-        """The Frame of that name."""
-        x, y, z = self.position
-        return Frame(name, (x, y, z), _rotation(self.rotation))
+class FrameEntry(NounEntry, noun=Frame, without=("name",)):
+    pass
 
 
 class BodyEntry(Entry):
@@ -243,42 +125,21 @@ class BodyEntry(Entry):
 
     def build(self, name: str) -> Body:
         """The body of that name."""
-        frames = {frame: (entry or FrameEntry()).build(frame) for frame, entry in (self.frames or {}).items()}
-        if self.beam is not None and self.joint is not None:
-            return self.beam.build(name, self.joint.build(name), frames, tuple(self.waive))
-        return RigidBody(
-            name,
-            self.joint.build(name) if self.joint else None,
-            self.inertia.build() if self.inertia else None,
-            tuple(frames.values()),
-            tuple(self.waive),
-            tuple(load.build() for load in self.loads),
-        )
+        frames = tuple((entry or FrameEntry()).build(name=frame) for frame, entry in (self.frames or {}).items())
+        joint, waive = self.joint.of_body(name) if self.joint else None, tuple(self.waive)
+        if self.beam is not None:
+            beam: Beam = self.beam.build(name=name, joint=joint, frames=frames or None, waive=waive)
+            return beam
+        inertia = self.inertia.build() if self.inertia else None
+        return RigidBody(name, joint, inertia, frames, waive, tuple(load.build() for load in self.loads))
 
 
-class ParameterEntry(Entry):
-    """A named number, given at run time unless constant."""
-
-    value: Number
-    unit: Text = ""
-    constant: bool = False
-    """Hard-coded in the C code."""
-    description: Text = ""
-
-    def build(self, name: str) -> Parameter:
-        """The Parameter of that name."""
-        return Parameter(name, float(self.value), self.unit, self.constant, self.description)
+class ParameterEntry(NounEntry, noun=Parameter, without=("name",)):
+    pass
 
 
-class InputEntry(Entry):
-    """A named input, for formulas of efforts."""
-
-    unit: Text = ""
-    description: Text = ""
-
-    def build(self, name: str) -> Input:
-        """The Input of that name."""
-        return Input(name, self.unit, self.description)
+class InputEntry(NounEntry, noun=Input, without=("name",)):
+    pass
 
 
 class SystemEntry(Entry):

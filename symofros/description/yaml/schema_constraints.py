@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -15,8 +15,8 @@ from symofros.description.constraints import (
     Rod,
     Rolling,
 )
-from symofros.description.yaml.fields import Entry, Formula, Name, fault
-from symofros.description.yaml.schema_forces import AnchorEntry
+from symofros.description.yaml.derived import NounEntry
+from symofros.description.yaml.fields import AnchorEntry, Entry, Formula, Name, fault
 from symofros.errors import Problem
 
 Directions = Annotated[list[AxisName], Field(max_length=3)]
@@ -53,26 +53,33 @@ class ClosureEntry(Entry):
 
     def build(self, name: str) -> Closure | Rod:
         """The Closure or the Rod of that name."""
-        first, second = ((anchor.body, anchor.frame) for anchor in (self.first, self.second))
+        first, second = self.first.build(), self.second.build()
         if self.length is not None:
             return Rod(name, first, second, self.length)
         blocked = AXES if self.translations is None else tuple(self.translations)
         return Closure(name, first, second, blocked, tuple(self.rotations or ()))
 
 
-class KnifeEdgeEntry(AnchorEntry):
-    """A frame whose origin does not move along one of its axes."""
+class _AtAnchor(NounEntry):
+    """A condition of one frame, whose body and frame stand beside its other entries."""
 
-    axis: AxisName = "y"
+    body: Name
+    frame: Name | None = None
+    """The body frame if not given."""
+
+    def build(self, **given: Any) -> Any:
+        """The noun, with its anchor."""
+        values = self.stated() | given
+        anchor = values.pop("body"), values.pop("frame")
+        return self.noun(anchor=anchor, **values)
 
 
-class RollingEntry(AnchorEntry):
-    """A disc or sphere that rolls on a horizontal plane; the frame is at its centre, a disc's axis is z."""
+class KnifeEdgeEntry(_AtAnchor, noun=KnifeEdge, without=("name", "anchor")):
+    pass
 
-    radius: Formula
-    shape: Literal["disc", "sphere"] = "disc"
-    height: Formula = 0.0
-    """Of the plane [m]."""
+
+class RollingEntry(_AtAnchor, noun=Rolling, without=("name", "anchor")):
+    pass
 
 
 class NonholonomicEntry(Entry):
@@ -97,11 +104,9 @@ class NonholonomicEntry(Entry):
 
     def build(self, name: str) -> KnifeEdge | Rolling | Nonholonomic:
         """The constraint of that name."""
-        if self.knife_edge is not None:
-            edge = self.knife_edge
-            return KnifeEdge(name, (edge.body, edge.frame), edge.axis)
-        if self.rolling is not None:
-            wheel = self.rolling
-            return Rolling(name, (wheel.body, wheel.frame), wheel.radius, wheel.shape, wheel.height)
+        contact = self.knife_edge or self.rolling
+        if contact is not None:
+            condition: KnifeEdge | Rolling = contact.build(name=name)
+            return condition
         pairs = tuple((self.coefficients or {}).items())
         return Nonholonomic(name, pairs, 0.0 if self.right is None else self.right)

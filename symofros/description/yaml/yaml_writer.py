@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import fields
 from io import StringIO
 from typing import Any
@@ -12,15 +12,34 @@ from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
-from symofros.description.beam import Beam, BeamLoad, Samples, UserShape
+from symofros.description.beam import Beam
 from symofros.description.constraints import AXES, Closure, KnifeEdge, Nonholonomic, Rod, Rolling
-from symofros.description.forces import Anchor, Connection, JointElement, Load, Rotor
+from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
-from symofros.description.joint import WORLD, Joint, Limits
-from symofros.description.system import Body, Inertia, Parameter, System
-from symofros.description.values import ORIGIN, Rotation, Value
+from symofros.description.system import Body, Inertia, System
+from symofros.description.values import Rotation, Value
+from symofros.description.yaml.derived import NounEntry
 from symofros.description.yaml.faults import problem_of
-from symofros.description.yaml.schema import VERSION, NativeFile, default_joint_name
+from symofros.description.yaml.fields import AnchorEntry
+from symofros.description.yaml.schema import (
+    VERSION,
+    FrameEntry,
+    InertiaEntry,
+    InputEntry,
+    JointEntry,
+    LimitsEntry,
+    NativeFile,
+    ParameterEntry,
+    default_joint_name,
+)
+from symofros.description.yaml.schema_beam import BeamEntry, BeamLoadEntry, SamplesEntry
+from symofros.description.yaml.schema_constraints import KnifeEdgeEntry, RollingEntry
+from symofros.description.yaml.schema_forces import (
+    ELEMENTS,
+    ConnectionEntry,
+    LoadEntry,
+    RotorEntry,
+)
 from symofros.errors import DescriptionError, Problem
 
 LINE_WIDTH = 120
@@ -50,6 +69,10 @@ _OPEN = frozenset(
 )
 
 Plain = dict[str, Any]
+
+_ENTRIES: dict[type, type[NounEntry]] = {
+    entry.noun: entry for entry in (BeamLoadEntry, LimitsEntry, LoadEntry, RotorEntry, SamplesEntry)
+}
 
 
 def write_yaml(system: System) -> str:
@@ -94,12 +117,12 @@ def _duplicates(system: System) -> Iterator[Problem]:
 def _document(system: System) -> Plain:
     head: Plain = {"name": system.name}
     if system.gravity != System("").gravity:
-        head["gravity"] = _list(system.gravity)
+        head["gravity"] = _plain(system.gravity)
     document: Plain = {"symofros": VERSION, "system": head}
-    document["parameters"] = {item.name: _parameter(item) for item in system.parameters}
-    document["inputs"] = {item.name: _texts(item) for item in system.inputs}
+    document["parameters"] = {item.name: _entry(ParameterEntry, item) for item in system.parameters}
+    document["inputs"] = {item.name: _entry(InputEntry, item) for item in system.inputs}
     document["bodies"] = {item.name: _body(item) for item in system.bodies}
-    document["connections"] = {item.name: _connection(item) for item in system.connections}
+    document["connections"] = {item.name: _entry(ConnectionEntry, item) for item in system.connections}
     document["virtual_power"] = {
         item.name: {speed: _number(force) for speed, force in item.forces} for item in system.virtual_power
     }
@@ -112,45 +135,62 @@ def _document(system: System) -> Plain:
     return {section: entries for section, entries in document.items() if entries}
 
 
-def _texts(item: Any) -> Plain:
-    return {key: text for key in ("unit", "description") if (text := getattr(item, key))}
+def _entry(entry: type[NounEntry], noun: Any) -> Plain:
+    """The entries of a noun that the file requires, and those that differ from their defaults."""
+    defaults = {item.name: item.default for item in fields(noun)}
+    entries: Plain = {}
+    for name, stated in entry.model_fields.items():
+        if name in defaults and (stated.is_required() or getattr(noun, name) != defaults[name]):
+            value = getattr(noun, name)
+            entries[name] = _anchor(value) if stated.annotation is AnchorEntry else _plain(value)
+    return entries
 
 
-def _parameter(parameter: Parameter) -> Plain:
-    constant = {"constant": True} if parameter.constant else {}
-    return {"value": _number(float(parameter.value)), **constant, **_texts(parameter)}
+def _plain(value: Any) -> Any:
+    """A field of a noun as data of the file."""
+    if isinstance(value, Rotation):
+        values = [_number(number) for number in value.values]
+        return {value.kind: [values[:3], values[3:6], values[6:]] if value.kind == "matrix" else values}
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    for name, entry in ELEMENTS.items():
+        if isinstance(value, entry.noun):
+            return {name: _entry(entry, value)}
+    if type(value) in _ENTRIES:
+        return _entry(_ENTRIES[type(value)], value)
+    return value if isinstance(value, (str, int)) else _number(value)
 
 
 def _body(body: Body) -> Plain:
     entries: Plain = {}
     if body.joint is not None:
-        entries["joint"] = _joint(body.joint, body.name)
-    if body.inertia is not None:
-        entries["inertia"] = _inertia(body.inertia)
+        joint = _entry(JointEntry, body.joint)
+        if body.joint.name == default_joint_name(body.name):
+            del joint["name"]
+        entries["joint"] = joint
     if isinstance(body, Beam):
-        entries["beam"] = _beam(body)
+        entries["beam"] = _entry(BeamEntry, body)
+        if body.shapes:
+            entries["beam"]["shapes"] = {
+                direction: [_plain(shape) for shape in given] for direction, given in body.shapes
+            }
+    elif body.inertia is not None:
+        entries["inertia"] = _inertia(body.inertia)
     if body.frames != (() if not isinstance(body, Beam) else (Frame("tip"),)):
-        entries["frames"] = {frame.name: _placement(frame) for frame in body.frames}
+        entries["frames"] = {frame.name: _entry(FrameEntry, frame) for frame in body.frames}
     if body.waive:
         entries["waive"] = [*body.waive]
     if body.loads and not isinstance(body, Beam):
-        entries["loads"] = [_changed(load, Load()) for load in body.loads]
+        entries["loads"] = _plain(body.loads)
     return entries
 
 
-def _beam(beam: Beam) -> Plain:
-    required = {"length": _number(beam.length), "rhoA": _number(beam.rhoA)}
-    plain = Beam("", beam.joint, 0.0, 0.0)
-    entries = required | _changed(beam, plain, "name", "joint", "length", "rhoA", "frames", "loads", "waive", "shapes")
-    if beam.shapes:
-        entries["shapes"] = {direction: [_shape(shape) for shape in given] for direction, given in beam.shapes}
-    if beam.loads:
-        entries["loads"] = [_changed(load, BeamLoad()) for load in beam.loads]
+def _inertia(inertia: Inertia) -> Plain:
+    """Products of inertia that are all zero are left out."""
+    entries = _entry(InertiaEntry, inertia)
+    if "moments" in entries and not any(inertia.moments[3:]):
+        entries["moments"] = entries["moments"][:3]
     return entries
-
-
-def _shape(shape: UserShape) -> Any:
-    return {"xi": [*shape.xi], "values": [*shape.values]} if isinstance(shape, Samples) else _number(shape)
 
 
 def _anchor(anchor: Anchor) -> Plain:
@@ -170,119 +210,8 @@ def _condition(item: KnifeEdge | Rolling | Nonholonomic) -> Plain:
     if isinstance(item, Nonholonomic):
         right = {"right": _number(item.right)} if item.right != 0.0 else {}
         return {"coefficients": {speed: _number(value) for speed, value in item.coefficients}, **right}
-    if isinstance(item, KnifeEdge):
-        return {"knife_edge": _anchor(item.anchor) | ({"axis": item.axis} if item.axis != "y" else {})}
-    plain = Rolling("", item.anchor, 0.0)
-    return {
-        "rolling": _anchor(item.anchor)
-        | {"radius": _number(item.radius)}
-        | _changed(item, plain, "name", "anchor", "radius")
-    }
-
-
-def _connection(connection: Connection) -> Plain:
-    ends = {"first": _anchor(connection.first), "second": _anchor(connection.second)}
-    numbers = {key: getattr(connection, key) for key in ("stiffness", "length", "damping")}
-    return {**ends, **{key: _number(value) for key, value in numbers.items() if value != 0.0}}
-
-
-def _element(element: JointElement) -> Plain:
-    """An element under its kind's name; what has no default is always written."""
-    kind = type(element).__name__.lower()
-    first = fields(element)[0].name
-    default = type(element)(0.0)
-    return {kind: {first: _number(getattr(element, first)), **_changed(element, default, first)}}
-
-
-def _changed(stated: Any, default: Any, *without: str) -> Plain:
-    """The fields of a dataclass that differ from a default one's."""
-    entries: Plain = {}
-    for item in fields(stated):
-        value = getattr(stated, item.name)
-        if item.name not in without and value != getattr(default, item.name):
-            entries[item.name] = _plain(value)
-    return entries
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return [_plain(item) for item in value]
-    return value if isinstance(value, (str, int)) else _number(value)
-
-
-def _joint(joint: Joint, body: str) -> Plain:
-    entries: Plain = {} if joint.name == default_joint_name(body) else {"name": joint.name}
-    entries["kind"] = joint.kind
-    if joint.parent != WORLD:
-        entries["parent"] = joint.parent
-    if joint.frame is not None:
-        entries["frame"] = joint.frame
-    entries |= _placement(joint)
-    if joint.axis != Joint("").axis:
-        entries["axis"] = _list(joint.axis)
-    if joint.actuated:
-        entries["actuated"] = True
-    if joint.effort:
-        entries["effort"] = _list(joint.effort)
-    if joint.limits is not None:
-        entries["limits"] = _limits(joint.limits)
-    plain = Joint("")
-    for key in ("axis2", "moving_position"):
-        if getattr(joint, key) != getattr(plain, key):
-            entries[key] = _list(getattr(joint, key))
-    for key in ("pitch", "armature"):
-        if getattr(joint, key) != 0.0:
-            entries[key] = _number(getattr(joint, key))
-    if joint.coordinates:
-        entries["coordinates"] = [*joint.coordinates]
-    if not joint.moving_rotation.is_identity:
-        entries["moving_rotation"] = _rotation(joint.moving_rotation)
-    if joint.prescribed:
-        entries["prescribed"] = True
-    if joint.elements:
-        entries["elements"] = [_element(element) for element in joint.elements]
-    if joint.rotors:
-        entries["rotors"] = [
-            {"inertia": _number(rotor.inertia), **_changed(rotor, Rotor(0.0), "inertia")} for rotor in joint.rotors
-        ]
-    return entries
-
-
-def _placement(placed: Joint | Frame) -> Plain:
-    entries: Plain = {}
-    if placed.position != ORIGIN:
-        entries["position"] = _list(placed.position)
-    if not placed.rotation.is_identity:
-        entries["rotation"] = _rotation(placed.rotation)
-    return entries
-
-
-def _limits(limits: Limits) -> Plain:
-    bounds = {"lower": limits.lower, "upper": limits.upper, "velocity": limits.velocity, "effort": limits.effort}
-    return {name: _number(float(bound)) for name, bound in bounds.items() if bound is not None}
-
-
-def _inertia(inertia: Inertia) -> Plain:
-    entries: Plain = {"mass": _number(inertia.mass)}
-    if inertia.center_of_mass != ORIGIN:
-        entries["center_of_mass"] = _list(inertia.center_of_mass)
-    moments = inertia.moments if any(inertia.moments[3:]) else inertia.moments[:3]
-    if any(moments):
-        entries["moments"] = _list(moments)
-    if inertia.about != "center_of_mass":
-        entries["about"] = inertia.about
-    if not inertia.rotation.is_identity:
-        entries["rotation"] = _rotation(inertia.rotation)
-    return entries
-
-
-def _rotation(rotation: Rotation) -> Plain:
-    values = _list(rotation.values)
-    return {rotation.kind: [values[:3], values[3:6], values[6:]] if rotation.kind == "matrix" else values}
-
-
-def _list(values: Iterable[Value]) -> list[Any]:
-    return [_number(value) for value in values]
+    kind, entry = ("knife_edge", KnifeEdgeEntry) if isinstance(item, KnifeEdge) else ("rolling", RollingEntry)
+    return {kind: _anchor(item.anchor) | _entry(entry, item)}
 
 
 def _number(value: Value) -> Any:
