@@ -42,7 +42,8 @@ ALLOWED = table("""
     mechanics.dynamics: errors functions expr description mechanics.beams mechanics.topology
         mechanics.kinematics
     generator.passes: options expr
-    runtime: errors atomic options functions rotations
+    # Declarations and constants are read from the headers of native.
+    runtime: errors atomic options functions native rotations
     generator.codegen: options native expr generator.passes runtime
     # The stages of the pipeline between mechanics and the model, which the compiler puts together.
     generator.record: options expr description mechanics.beams mechanics.topology mechanics.kinematics

@@ -195,7 +195,7 @@ def unit_of(
     header = native_text("model/symofros_model.h")
     text = model_source(program, record, GENERATOR, packs=options.packs if options else False)
     path = build_library(text, header, toolchain, options.flags if options else None)
-    return CompiledUnit(path, f"{identifier(record.name)}_model", header, record.hash), text
+    return CompiledUnit(path, f"{identifier(record.name)}_model", record.hash), text
 
 
 def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:

@@ -1,9 +1,9 @@
-"""The loop of native/ in Python's hands: a compiled diagram bound to memory, advanced in spells."""
+"""One run of a compiled diagram by native/diagrams/diagram.c: memory, tasks of instants, records."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,66 +11,51 @@ import numpy as np
 from symofros.diagrams.layout import Layout, Place
 from symofros.diagrams.rates import Schedule
 from symofros.errors import CompileError
-from symofros.native import native_text
+from symofros.runtime.binding import NativeMemory, native_library
+from symofros.runtime.declarations import interface
 from symofros.runtime.kernel import Array
 from symofros.runtime.library import CompiledKernel
-from symofros.simulation.stepper import Stepper, bound, native_headers, native_source
+from symofros.simulation.stepper import Stepper
 
-# What a schedule calls the recording of an instant.
+# Name of the recording of an instant in a schedule.
 RECORD = "(record)"
-_HEADER, _PROGRAM_HEADER = "symofros_diagram.h", "symofros_program.h"
-_PARTS, _PROGRAM_PARTS = ("gang_api.c", "diagram.c", "gang.c"), ("diagram.c", "program.c")
-_PORTION = 4096
+# Rows of records and of crossings in C, which are taken between two calls.
+_ROWS = 4096
+_BLOCK_CALLBACK = "int32_t(void *, int32_t, double, const double *, double *)"
 
 
-def _native(name: str) -> str:
-    return native_text(f"diagrams/{name}")
+@dataclass(frozen=True)
+class Task:
+    """A function that is evaluated at an instant.
 
-
-def loop_headers() -> dict[str, str]:
-    """File name -> text of the headers of loop and programs, besides those of the stepper."""
-    return {name: _native(name) for name in (_HEADER, _PROGRAM_HEADER)}
-
-
-def program_source() -> str:
-    """Stepper, loop and programs as one C file, without threads: C99, and POSIX or Windows for the clock."""
-    own = (f'#include "{_PROGRAM_HEADER}"', "#include <stdio.h>", _native("alone.c"), *map(_native, _PROGRAM_PARTS))
-    return "\n".join([native_source(), *own])
-
-
-@cache
-def library() -> tuple[Any, Any]:
-    """The cffi interface and the loaded library, compiled at first use and cached.
-
-    Raises:
-        CompileError: There is no C compiler.
+    Attributes:
+        kernel: The function.
+        callback: Index of the Python block that takes its output; -1: the outputs are the new u (and q, v).
     """
-    source = "\n".join([native_source(), f'#include "{_HEADER}"', *map(_native, _PARTS)])
-    return bound(source, native_headers() | {_HEADER: _native(_HEADER)}, "-pthread")
 
-
-class Stage:
-    """A function that is evaluated at an instant, and the block of Python's that hears it."""
-
-    def __init__(self, kernel: CompiledKernel, opaque: int = -1) -> None:
-        self.kernel, self.opaque = kernel, opaque
+    kernel: CompiledKernel
+    callback: int = -1
 
 
 class Loop:
     """One run of one diagram.
 
     Args:
-        layout: Of its vectors.
+        layout: Layout of the diagram's vectors.
         parts: A stepper for each part, started.
-        schedule: Of its instants; RECORD among them.
-        stages: For each set of the schedule what is evaluated.
-        crossings: For each crossing what it changes.
-        par: Run-time parameters.
-        u0: First inputs.
-        opaque: (block of Python's, time, what it hears) -> its outputs, one after the other.
-        places: Where those outputs lie in u.
-        heard: Length of what each hears.
-        looks_back: Whether stages read accelerations and multipliers of the instant.
+        schedule: Its instants; RECORD among the sets' members.
+        tasks: Tasks of each set of the schedule.
+        crossings: Task of each crossing.
+        par: Run-time parameters (npar).
+        u0: Initial inputs (nu).
+        opaque: Python's blocks: (index, time [s], inputs) -> outputs, one after the other.
+        places: Places in u of each Python block's outputs.
+        heard: Number of inputs of each Python block.
+        looks_back: Whether tasks read accelerations and multipliers of the instant.
+
+    Attributes:
+        diagram: The sym_diagram: state, counters, records.
+        failure: Exception that a Python block raised; it ended the run.
     """
 
     def __init__(
@@ -78,8 +63,8 @@ class Loop:
         layout: Layout,
         parts: Sequence[Stepper],
         schedule: Schedule,
-        stages: Sequence[Sequence[Stage]],
-        crossings: Sequence[Stage],
+        tasks: Sequence[Sequence[Task]],
+        crossings: Sequence[Task],
         par: Array,
         u0: Array,
         opaque: Callable[[int, float, Array], Array],
@@ -87,152 +72,115 @@ class Loop:
         heard: Sequence[int],
         looks_back: bool,
     ) -> None:
-        self.ffi, self.native = library()
-        self._keep: list[Any] = [parts]
-        self._opaque, self._places, self._heard = opaque, places, heard
+        self.native, self.parts = native_library(), parts
+        self._ffi, self._memory = interface(), NativeMemory()
+        self._block, self._places, self._block_inputs, self._par = opaque, places, heard, par
         self.failure: BaseException | None = None
-        self.parts = parts
-        self.d = self.ffi.new("sym_diagram *")
-        d, ffi = self.d, self.ffi
+        self.diagram = self._ffi.new("sym_diagram *")
+        self.diagram.reads_accelerations = int(looks_back)
+        self._fill_point(layout, u0)
+        self._fill_parts(layout)
+        self._fill_schedule(schedule, tasks)
+        self.diagram.n_crossings, self.diagram.crossing_tasks = len(crossings), self._tasks(crossings)
+        self._fill_records()
+        self.diagram.callback = self._memory.callback(_BLOCK_CALLBACK, self._call_block)
+
+    def _fill_point(self, layout: Layout, u0: Array) -> None:
+        """The point at which tasks are evaluated, the signals and the locks."""
+        d, memory = self.diagram, self._memory
         d.nq, d.nv, d.nu, d.nc = len(layout.q0), len(layout.v0), len(layout.u0), len(layout.condition_names)
-        for name, values in (
-            ("q", layout.q0),
-            ("v", layout.v0),
-            ("t", [0.0]),
-            ("a", [0.0] * d.nv),
-            ("lam", [0.0] * d.nc),
-        ):
-            setattr(d, name, self._numbers(values)[0])
-        d.u, self._u = self._numbers(u0)
-        self._join(layout, parts)
-        d.looks_back = int(looks_back)
-        self._sample(layout)
-        d.n_engaging, d.engaging = len(layout.engaging), self._own("int32_t[]", layout.engaging)
-        d.engaged = self._numbers(u0[layout.engaging])[0]
-        self._plan(schedule, stages, par)
-        d.n_crossings, d.crossings = len(crossings), self._stages(crossings, par)
-        self._make_room()
-        handle = ffi.callback("int32_t(void *, int32_t, double, const double *, double *)", self._call)
-        self._keep.append(handle)
-        d.opaque, d.data, d.gang = handle, ffi.NULL, ffi.NULL
-
-    def _numbers(self, values: Any) -> tuple[Any, Array]:
-        array = np.array(values, dtype=np.float64).reshape(-1)
-        whole = array if array.size else np.zeros(1)
-        self._keep.append(whole)
-        return self.ffi.cast("double *", self.ffi.from_buffer(whole)), array
-
-    def _own(self, kind: str, values: Sequence[Any]) -> Any:
-        array = self.ffi.new(kind, list(values) or 1)
-        self._keep.append(array)
-        return array
-
-    def _join(self, layout: Layout, parts: Sequence[Stepper]) -> None:
-        """The parts read the inputs of the diagram, which hold between instants."""
-        d, ffi = self.d, self.ffi
-        runs = []
-        inputs = int(ffi.cast("uintptr_t", d.u))
-        for stepper in parts:
-            stepper.scene.constant = stepper.ffi.cast("double *", inputs)
-            runs.append(ffi.cast("sym_run *", int(stepper.ffi.cast("uintptr_t", stepper.run))))
-        d.n_parts, d.parts = len(parts), self._own("sym_run *[]", runs)
-        for name, places in (
-            ("q_at", [part.q for part in layout.parts]),
-            ("v_at", [part.v for part in layout.parts]),
-            ("c_at", [part.conditions for part in layout.parts]),
-        ):
-            setattr(d, name, self._own("int32_t[]", [place.start for place in places]))
-
-    def _sample(self, layout: Layout) -> None:
-        rows = [
-            (i, int(linear), len(t), self._numbers(t)[0], self._numbers(values)[0])
+        d.q, d.v, d.t = memory.doubles(layout.q0), memory.doubles(layout.v0), memory.zeros(1)
+        d.u, d.a, d.lam = memory.doubles(u0), memory.zeros(d.nv), memory.zeros(d.nc)
+        signals = [
+            (i, int(linear), len(t), memory.doubles(t), memory.doubles(values))
             for i, t, values, linear in layout.signals
         ]
-        self.d.n_signals, self.d.signals = len(rows), self._own("sym_signal[]", rows)
+        d.n_signals, d.signals = len(signals), memory.own("sym_signal[]", signals)
+        d.n_locks, d.lock_inputs = len(layout.engaging), memory.own("int32_t[]", layout.engaging)
+        d.lock_values = memory.doubles(u0[layout.engaging])
 
-    def _plan(self, schedule: Schedule, stages: Sequence[Sequence[Stage]], par: Array) -> None:
-        d = self.d
-        d.base_n, d.base_d = float(schedule.base.numerator), float(schedule.base.denominator)
-        d.cycle, d.n_instants = schedule.cycle, len(schedule.instants)
-        d.instant = self._own("int64_t[]", [k for k, _ in schedule.instants])
-        d.set = self._own("int32_t[]", [which for _, which in schedule.instants])
-        rows = [
-            (len(of), int(RECORD in due), self._stages(of, par)) for due, of in zip(schedule.sets, stages, strict=True)
+    def _fill_parts(self, layout: Layout) -> None:
+        """The parts, which read the inputs of the diagram: these are held between instants."""
+        d, memory = self.diagram, self._memory
+        for stepper in self.parts:
+            stepper.system.u_constant = d.u
+        d.n_parts, d.parts = len(self.parts), memory.own("sym_run *[]", [stepper.run for stepper in self.parts])
+        d.q_offset = memory.own("int32_t[]", [part.q.start for part in layout.parts])
+        d.v_offset = memory.own("int32_t[]", [part.v.start for part in layout.parts])
+        d.c_offset = memory.own("int32_t[]", [part.conditions.start for part in layout.parts])
+
+    def _fill_schedule(self, schedule: Schedule, tasks: Sequence[Sequence[Task]]) -> None:
+        d, memory = self.diagram, self._memory
+        d.base_numerator, d.base_denominator = float(schedule.base.numerator), float(schedule.base.denominator)
+        d.cycle_ticks, d.n_instants = schedule.cycle, len(schedule.instants)
+        d.instant_tick = memory.own("int64_t[]", [tick for tick, _ in schedule.instants])
+        d.instant_set = memory.own("int32_t[]", [index for _, index in schedule.instants])
+        sets = [
+            (len(of_set), int(RECORD in due), self._tasks(of_set))
+            for due, of_set in zip(schedule.sets, tasks, strict=True)
         ]
-        d.sets = self._own("sym_instant[]", rows)
+        d.task_sets = memory.own("sym_task_set[]", sets)
 
-    def _stages(self, stages: Sequence[Stage], par: Array) -> Any:
-        found = self._own("sym_stage[]", [{} for _ in stages])
-        for i, stage in enumerate(stages):
-            kernel, call = stage.kernel, found[i].call
-            call.function = self.ffi.cast("sym_function *", kernel.address)
-            call.pre = self._numbers(kernel.prepare(par.reshape(1, -1)))[0]
-            call.work = self._numbers(np.zeros(max(1, kernel.work)))[0]
-            for k, (_, shape) in enumerate(kernel.signature.outputs):
-                call.out[k] = self._numbers(np.zeros(shape))[0]
-            found[i].opaque = stage.opaque
-            self._keep.append(kernel)
-            if not self.native.sym_diagram_bind(self.d, self.ffi.addressof(found[i], "call")):
-                raise CompileError(f"the loop knows not every input of '{kernel.signature.name}'")
-        return found
+    def _tasks(self, tasks: Sequence[Task]) -> Any:
+        """A C array of tasks, bound to the diagram's point."""
+        array = self._memory.own("sym_task[]", len(tasks))
+        for i, task in enumerate(tasks):
+            array[i].callback = task.callback
+            self._memory.bind(array[i].call, task.kernel, self._par)
+            if not self.native.sym_diagram_bind(self.diagram, self._ffi.addressof(array[i], "call")):
+                raise CompileError(f"the diagram does not know every input of '{task.kernel.signature.name}'")
+        return array
 
-    def _make_room(self) -> None:
-        d = self.d
-        d.capacity = d.found_capacity = _PORTION
-        self._records = []
-        for name, width in (("t", 1), ("q", d.nq), ("v", d.nv), ("u", d.nu)):
-            pointer, array = self._numbers(np.zeros((_PORTION, max(1, width))))
-            setattr(d, f"record_{name}", pointer)
-            self._records.append(array.reshape(_PORTION, -1)[:, :width])
-        d.found_t, self._found_t = self._numbers(np.zeros(_PORTION))
-        self._which = np.zeros(_PORTION, dtype=np.int32)
-        d.found_which = self.ffi.cast("int32_t *", self.ffi.from_buffer(self._which))
+    def _fill_records(self) -> None:
+        d, memory = self.diagram, self._memory
+        d.capacity = d.event_capacity = _ROWS
+        self._records = memory.table(d, "record_", _ROWS, t=1, q=d.nq, v=d.nv, u=d.nu)
+        self._event_t, self._event_index = np.zeros(_ROWS), np.zeros(_ROWS, dtype=np.int32)
+        d.event_t, d.event_index = memory.shared(self._event_t), memory.shared(self._event_index)
 
-    def _call(self, _data: Any, which: int, t: float, heard: Any, _u: Any) -> int:
-        """A block of Python's; what it raises is kept and ends the run."""
+    def _call_block(self, _data: Any, block: int, t: float, inputs: Any, u: Any) -> int:
+        """Call a Python block, and write its outputs into u; what it raises is kept and ends the run."""
         try:
-            places = self._places[which]
-            size = int(self._heard[which])
-            found = self._opaque(which, t, self._copy(heard, size))
-            at = 0
-            for place in places:
-                self._u[place.slice] = found[at : at + place.size]
-                at += place.size
+            outputs = self._block(block, t, self._memory.view(inputs, int(self._block_inputs[block])).copy())
+            into, first = self._memory.view(u, self.diagram.nu), 0
+            for place in self._places[block]:
+                into[place.slice] = outputs[first : first + place.size]
+                first += place.size
         except BaseException as error:  # It may not pass through C.
             self.failure = error
             return 1
         return 0
 
-    def _copy(self, pointer: Any, size: int) -> Array:
-        return np.frombuffer(self.ffi.buffer(pointer, 8 * size), dtype=np.float64).copy() if size else np.zeros(0)
-
     def start(self, t0: float, t_end: float, realtime: float, threads: int, instants: int) -> None:
-        """Place the run at its start."""
-        d = self.d
+        """Place the run at its start, with room for the lateness of `instants` instants in real time."""
+        d = self.diagram
         d.t0, d.t_end = t0, t_end
-        d.pace = 1.0 / realtime if realtime else 0.0
-        d.late_capacity = instants if realtime else 0
-        d.late, self._late = self._numbers(np.zeros(max(1, d.late_capacity)))
+        d.realtime_scale = 1.0 / realtime if realtime else 0.0
+        d.lateness_capacity = instants if realtime else 0
+        self._lateness = np.zeros(max(1, d.lateness_capacity))
+        d.lateness = self._memory.shared(self._lateness)
         if threads > 1 and d.n_parts > 1 and not d.n_crossings:
-            self.native.sym_diagram_hire(d, min(threads, d.n_parts))
+            self.native.sym_diagram_start_threads(d, min(threads, d.n_parts))
         self.native.sym_diagram_start(d)
 
     def close(self) -> None:
-        """Send the threads home."""
-        self.native.sym_diagram_dismiss(self.d)
+        """Stop the threads."""
+        self.native.sym_diagram_stop_threads(self.diagram)
 
     def advance(self, instants: int) -> int:
-        """At most so many instants further; returns a status."""
-        return int(self.native.sym_diagram_advance(self.d, instants))
+        """At most `instants` instants further; returns a Status."""
+        return int(self.native.sym_diagram_advance(self.diagram, instants))
 
     def take(self) -> tuple[list[Array], list[tuple[float, int]]]:
-        """What was recorded since, t (n), q, v, u, and the crossings met; the room is free again."""
-        n, m = int(self.d.n_records), int(self.d.n_found)
-        self.d.n_records = self.d.n_found = 0
+        """The records since the last call, t (n), q, v, u, and the crossings, (t, index); their rows are free again."""
+        d = self.diagram
+        n, n_events = int(d.n_records), int(d.n_event_records)
+        d.n_records = d.n_event_records = 0
         t, q, v, u = (array[:n].copy() for array in self._records)
-        return [t[:, 0], q, v, u], [(float(self._found_t[i]), int(self._which[i])) for i in range(m)]
+        crossings = [(float(self._event_t[i]), int(self._event_index[i])) for i in range(n_events)]
+        return [t[:, 0], q, v, u], crossings
 
     @property
-    def late(self) -> Array:
-        """How late each instant began (n) [s], where pace was kept."""
-        return self._late[: int(self.d.n_late)].copy()
+    def lateness(self) -> Array:
+        """How late each instant began (n) [s], in real time."""
+        return self._lateness[: int(self.diagram.n_lateness)].copy()

@@ -67,7 +67,7 @@ def place_parts(compiled: CompiledDiagram, settings_of: Callable[[Model], Settin
             )
         stepper = Stepper(model, settings.method, InputPlan(u0.copy(), list(layout.signals)), events, par)
         settings.apply(stepper)
-        stepper.run.every = 0  # Instants are recorded by the diagram's own loop.
+        stepper.run.record_every = 0  # Instants are recorded by the diagram's own loop.
         found.append(Placed(stepper, *_first(layout.q0, layout.v0, part)))
         if model.nc and settings.stabilisation != "baumgarte":
             found[-1] = Placed(stepper, *_close(model, name, settings.t0, found[-1], u0, par))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from symofros.diagrams.compiled import CompiledDiagram, rates_of
-from symofros.diagrams.loop import RECORD, Loop, Stage
+from symofros.diagrams.loop import RECORD, Loop, Task
 from symofros.diagrams.opaque import Opaque, begun
 from symofros.diagrams.parts import place_parts, start
 from symofros.diagrams.pieces import watched
@@ -22,14 +22,12 @@ from symofros.diagrams.values import parameter_values, record_interval
 from symofros.runtime.kernel import Array
 from symofros.runtime.library import CompiledKernel
 from symofros.runtime.model import Model
-from symofros.simulation import stepper as native
 from symofros.simulation.options import SimulationOptions, Stabilisation
 from symofros.simulation.outcome import Outcome
 from symofros.simulation.progress import bar
 from symofros.simulation.settings import Settings
-
-# Seconds that C may run before Python looks up, for progress and Ctrl-C.
-_SPELL = 0.05
+from symofros.simulation.status import Status
+from symofros.simulation.time_slice import TimeSlice
 
 
 def run_compiled(
@@ -87,8 +85,8 @@ def run_compiled(
             resolved.layout,
             [part.stepper for part in parts],
             plan,
-            _stages(compiled, plan, opaque),
-            [Stage(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
+            _tasks(compiled, plan, opaque),
+            [Task(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
             par,
             np.array(resolved.layout.u0, dtype=np.float64),
             opaque.call,
@@ -108,22 +106,22 @@ def _kernel(compiled: CompiledDiagram, name: str) -> CompiledKernel:
     return kernel
 
 
-def _stages(compiled: CompiledDiagram, plan: Schedule, opaque: Opaque) -> list[list[Stage]]:
-    """For each set of the plan: blocks of Python's in order, then all others at once."""
-    known = {due: i for i, due in enumerate(compiled.resolved.schedule.sets)}
-    found: list[list[Stage]] = []
+def _tasks(compiled: CompiledDiagram, plan: Schedule, opaque: Opaque) -> list[list[Task]]:
+    """Tasks of each set of the plan: Python's blocks in order, then all others at once."""
+    index_of = {due: i for i, due in enumerate(compiled.resolved.schedule.sets)}
+    tasks: list[list[Task]] = []
     for due in plan.sets:
         own = due - {RECORD}
         if not own:
-            found.append([])
+            tasks.append([])
             continue
-        i = known[own]
-        stages = [
-            Stage(_kernel(compiled, f"heard_{i}_{j}"), opaque.names.index(name))
+        i = index_of[own]
+        callbacks = [
+            Task(_kernel(compiled, f"heard_{i}_{j}"), opaque.names.index(name))
             for j, name in enumerate(opaque.due(own))
         ]
-        found.append([*stages, Stage(_kernel(compiled, f"due_{i}"))])
-    return found
+        tasks.append([*callbacks, Task(_kernel(compiled, f"due_{i}"))])
+    return tasks
 
 
 def _drive(
@@ -142,19 +140,17 @@ def _drive(
     loop.start(t0, t_end, realtime, threads, instants)
     portions: list[list[Array]] = []
     met: list[tuple[float, int]] = []
-    status, spell, interrupted = native.GOING, 64, False
+    status, interrupted = int(Status.RUNNING), False
+    time_slice = TimeSlice()
     began, worked = time.perf_counter(), time.thread_time()
     with bar(progress, t0, t_end) as show:
         try:
-            while status in (native.GOING, native.FULL):
-                before = time.perf_counter()
-                status = loop.advance(spell)
-                took = time.perf_counter() - before
-                spell = max(1, spell // 2) if took > _SPELL else min(2 * spell, 1 << 20) if took < _SPELL / 4 else spell
+            while status in (Status.RUNNING, Status.RECORDS_FULL):
+                status = time_slice.measure(loop.advance, time_slice.steps)
                 states, crossed = loop.take()
                 portions.append(states)
                 met += crossed
-                show(float(loop.d.t[0]))
+                show(float(loop.diagram.t[0]))
         except KeyboardInterrupt:
             interrupted = True
             portions.append(loop.take()[0])
@@ -165,26 +161,36 @@ def _drive(
     outcome = _outcome(loop, status, interrupted, t_end)
     looked_for = watched(compiled.resolved.pieces)
     crossings = tuple(Crossed(*looked_for[which], when) for when, which in met)
-    d = loop.d
+    d = loop.diagram
     cost = Cost(
-        int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, loop.late, plan.spacing / (realtime or 1.0)
+        int(d.steps),
+        int(d.rejected),
+        int(d.evaluations),
+        seconds,
+        worked,
+        loop.lateness,
+        plan.spacing / (realtime or 1.0),
     )
     return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost)
 
 
 def _outcome(loop: Loop, status: int, interrupted: bool, t_end: float) -> Outcome:
-    t = float(loop.d.t[0])
+    t = float(loop.diagram.t[0])
     if interrupted:
         return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept")
-    if status == native.DONE:
-        return Outcome("finished", t_end, f"{int(loop.d.steps)} steps")
-    if status == native.CALLBACK:
+    if status == Status.FINISHED:
+        return Outcome("finished", t_end, f"{int(loop.diagram.steps)} steps")
+    if status == Status.CALLBACK_FAILED:
         return Outcome("input failed", t, f"a block of Python's raised {loop.failure!r}", "call it by itself")
     kinds = {
-        native.DIVERGED: ("diverged", "a state is no longer finite", "a smaller dt; look for gains that are too high"),
-        native.NO_MOTION: ("singular", "no accelerations exist", "give every speed an inertia or a constraint"),
-        native.TINY_STEP: ("step too small", "the tolerances ask for steps below rounding", "loosen rtol"),
-        native.OFF: ("constraints lost", "projection does not meet the constraints again", "a smaller step"),
+        Status.DIVERGED: ("diverged", "a state is no longer finite", "a smaller dt; look for gains that are too high"),
+        Status.SINGULAR: ("singular", "no accelerations exist", "give every speed an inertia or a constraint"),
+        Status.STEP_TOO_SMALL: ("step too small", "the tolerances ask for steps below rounding", "loosen rtol"),
+        Status.PROJECTION_FAILED: (
+            "constraints lost",
+            "projection does not meet the constraints again",
+            "a smaller step",
+        ),
     }
-    kind, reason, advice = kinds[status]
+    kind, reason, advice = kinds[Status(status)]
     return Outcome(kind, t, reason, advice)  # type: ignore[arg-type]

@@ -9,11 +9,15 @@ from symofros.exports.c_text import comment
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material
 from symofros.exports.plant import header_text, plant_text, selftest_text
-from symofros.native import native_text
-from symofros.simulation.stepper import native_headers, native_source
+from symofros.native import amalgamated, header_files, native_text
 
 # Two back ends, two compilers, and the conditioning of a robot's mass matrix lie between the points and the C code.
 SELFTEST_TOLERANCE = "1e-9"
+INTEGRATOR_HEADERS = (
+    "model/symofros_model.h",
+    "stepping/symofros_stepper.h",
+    "stepping/symofros_instance.h",
+)
 
 
 def model_files(material: Material) -> dict[str, str]:
@@ -23,9 +27,8 @@ def model_files(material: Material) -> dict[str, str]:
         f"{name}.c": material.source,
         f"{name}.h": header_text(material),
         f"{name}_plant.c": plant_text(material),
-        "symofros_model.h": native_text("model/symofros_model.h"),
-        **native_headers(),
-        "symofros_stepper.c": native_source(),
+        **header_files(*INTEGRATOR_HEADERS),
+        "symofros_stepper.c": amalgamated("stepping/symofros_stepper.c"),
     }
 
 

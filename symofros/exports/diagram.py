@@ -11,12 +11,12 @@ from string import Template
 import numpy as np
 
 from symofros.diagrams.compiled import Resolved, compile_diagram, fuser, looks_back, record_of
-from symofros.diagrams.loop import loop_headers, program_source
 from symofros.diagrams.opaque_block import OpaqueBlock
 from symofros.diagrams.pieces import watched
 from symofros.diagrams.simulate import run_compiled
 from symofros.diagrams.wiring import Source
 from symofros.errors import ExportError, Problem
+from symofros.exports.c_package import INTEGRATOR_HEADERS
 from symofros.exports.c_text import comment, doubles, integers, strings
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Stepping
@@ -24,10 +24,9 @@ from symofros.exports.plant import plant_text
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.names import c_string, identifier
 from symofros.generator.passes import run_passes
-from symofros.native import native_text
+from symofros.native import amalgamated, header_files, native_text
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.methods import METHODS
-from symofros.simulation.stepper import native_headers
 
 _DIRECTIONS = {"rising": 1, "falling": -1, "both": 0}
 # Instants and steps of the self-test: its signals are those of the same run from Python.
@@ -113,8 +112,8 @@ def write_diagram(
     }
     files["main.c"] = Template(native_text("exports/diagram_main.c.in")).substitute(words)
     files["CMakeLists.txt"] = Template(native_text("exports/diagram_CMakeLists.txt.in")).substitute(words)
-    files |= {"symofros_model.h": native_text("model/symofros_model.h"), **native_headers(), **loop_headers()}
-    files["symofros_loop.c"] = program_source()
+    files |= header_files(*INTEGRATOR_HEADERS, "diagrams/symofros_diagram.h", "diagrams/symofros_program.h")
+    files["symofros_diagram.c"] = amalgamated("diagrams/symofros_diagram.c")
     notes = () if layout.condition_names else ("no constraints: accelerations are in closed form",)
     return write_folder(folder, "c", name, files, generator, notes)
 
@@ -185,28 +184,30 @@ def _program(resolved: Resolved, name: str, sources: Sequence[Source], back: boo
             ", ".join(f"{name}_part{i}_plant" for i in range(len(parts))) or "NULL",
         ),
         *(
-            _array("const int32_t", f"{key}_at", integers(places))
+            _array("const int32_t", key, integers(places))
             for key, places in (
-                ("q", [part.q.start for part in parts]),
-                ("v", [part.v.start for part in parts]),
-                ("c", [part.conditions.start for part in parts]),
-                ("u", layout.engaging),
+                ("q_offset", [part.q.start for part in parts]),
+                ("v_offset", [part.v.start for part in parts]),
+                ("c_offset", [part.conditions.start for part in parts]),
+                ("lock_inputs", layout.engaging),
             )
         ),
         _array("const double", "u_start", doubles(layout.u0)),
         *_signals(layout.signals),
         _array("const int32_t", "directions", integers(directions)),
-        _array("const int32_t", "all_end", integers([1] * len(directions))),
-        _array("const int64_t", "instant", integers(k for k, _ in plan.instants)),
-        _array("const int32_t", "set", integers(which for _, which in plan.instants)),
-        _array("const char *const", "due", strings(f"due_{i}" for i in range(len(plan.sets)))),
+        _array("const int32_t", "terminal", integers([1] * len(directions))),
+        _array("const int64_t", "instant_tick", integers(k for k, _ in plan.instants)),
+        _array("const int32_t", "instant_set", integers(which for _, which in plan.instants)),
+        _array("const char *const", "set_functions", strings(f"due_{i}" for i in range(len(plan.sets)))),
         _array("const char *const", "output_names", strings(_entries(resolved, sources))),
         f"static const sym_program {name}_program_struct = {{",
-        f"    {c_string(wired.name)}, {name}_instants_model, {len(parts)}, parts, q_at, v_at, c_at, u_start,",
+        f"    {c_string(wired.name)}, {name}_instants_model,",
+        f"    {len(parts)}, parts, q_offset, v_offset, c_offset, u_start,",
         f"    {len(layout.signals)}, {len(layout.engaging)}, {len(directions)}, {int(back)},",
-        "    signals, u_at, directions, all_end,",
+        "    signals, lock_inputs, directions, terminal,",
         f"    {float(plan.base.numerator)!r}, {float(plan.base.denominator)!r}, {plan.cycle}, {len(plan.instants)},",
-        f"    instant, set, {len(plan.sets)}, {len(list(_entries(resolved, sources)))}, due, output_names",
+        f"    instant_tick, instant_set, {len(plan.sets)}, {len(_entries(resolved, sources))},",
+        "    set_functions, output_names",
         "};",
         "",
         f"const sym_program *{name}_program(void) {{ return &{name}_program_struct; }}",

@@ -160,7 +160,7 @@ def _material(
 ) -> Material:
     """What an export is made of; `differentiated`: with the derivatives of outputs by prescribed motions, if any."""
     _refuse_variational(system, stepping)
-    needs = stepping.method.family.functions.values()
+    needs = stepping.method.family.functions
     functions = tuple(dict.fromkeys((*exported(bool(system.constraints)), *needs)))
     compilation = Compilation(system, Options(functions, None if frames is None else tuple(frames)))
     record = compilation.record

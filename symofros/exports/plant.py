@@ -9,10 +9,7 @@ from symofros.exports.c_text import comment, doubles, integers, strings
 from symofros.exports.material import Material, Stepping
 from symofros.generator.codegen.names import c_string
 from symofros.runtime.record import ModelRecord
-from symofros.simulation.methods import KIND_CODES
 from symofros.simulation.tableaus import Tableau
-
-_SEGMENTS = {"linear": 0, "quaternion": 1, "pose": 2}
 
 
 def header_text(material: Material) -> str:
@@ -96,7 +93,7 @@ class Moving(Protocol):
 def plant_text(material: Moving) -> str:
     """NAME_plant.c."""
     name, record, step = material.c_name, material.record, material.stepping
-    segments = ", ".join(f"{{{_SEGMENTS[s.kind]}, {s.q}, {s.v}, {s.size}}}" for s in record.segments)
+    segments = ", ".join(f"{{{s.constant}, {s.q}, {s.v}, {s.size}}}" for s in record.segments)
     on_speeds = [int(condition in record.speed_conditions) for condition in record.constraint_names]
     frames = material.frames
     lines = [
@@ -115,7 +112,7 @@ def plant_text(material: Moving) -> str:
         f"static const sym_plant {name}_plant_struct = {{",
         f"    {name}_model, {len(record.segments)}, {name}_segments, {name}_on_speeds, {name}_constraint_names,",
         f"    {name}_q_start, {name}_v_start, {name}_u_start, {len(frames)}, {name}_frame_names,",
-        f"    {c_string(step.method.name)}, {KIND_CODES[step.method.kind]}, {int(step.method.adaptive)},",
+        f"    {c_string(step.method.name)}, {step.method.constant}, {int(step.method.adaptive)},",
         f"    &{name}_tableau, {step.dt!r}, {step.rtol!r}, {step.atol!r}",
         "};",
         "",

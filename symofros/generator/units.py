@@ -118,7 +118,7 @@ class UnitCompiler:
             )
 
         path = self._build(recall_one, toolchain, lanes)
-        return CompiledUnit(path, self.symbol, _header(), self._record.hash, in_lanes)
+        return CompiledUnit(path, self.symbol, self._record.hash, in_lanes)
 
     def _in_lanes(
         self, request: object, program: Callable[[], Program]
@@ -144,7 +144,7 @@ class UnitCompiler:
         for build in others:
             with suppress(CompileError):  # It was only worth a try.
                 libraries.append(build_one(build))
-        return fastest(libraries, lambda path: CompiledUnit(path, self.symbol, _header(), self._record.hash))
+        return fastest(libraries, lambda path: CompiledUnit(path, self.symbol, self._record.hash))
 
 
 def _header() -> str:

@@ -2,11 +2,43 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from importlib.resources import files
+from pathlib import PurePosixPath
+
+# Headers of native/, later ones including earlier ones.
+HEADERS = (
+    "model/symofros_model.h",
+    "stepping/symofros_stepper.h",
+    "stepping/symofros_instance.h",
+    "stepping/symofros_batch.h",
+    "diagrams/symofros_diagram.h",
+    "diagrams/symofros_program.h",
+)
+_C_INCLUDE = re.compile(r'^#include "(?P<file>[^"]+\.c)"\n', re.MULTILINE)
 
 
 @cache
 def native_text(name: str) -> str:
     """Text of a file of this folder, such as "model/symofros_model.h"."""
     return (files(__name__) / name).read_text(encoding="utf-8")
+
+
+@cache
+def amalgamated(name: str) -> str:
+    """Text of a C file with the C files that it includes in their places; headers stay included."""
+    folder = PurePosixPath(name).parent
+
+    def included(match: re.Match[str]) -> str:
+        parts: list[str] = []
+        for part in (folder / match["file"]).parts:
+            parts = parts[:-1] if part == ".." else [*parts, part]
+        return amalgamated("/".join(parts))
+
+    return _C_INCLUDE.sub(included, native_text(name))
+
+
+def header_files(*names: str) -> dict[str, str]:
+    """File name -> text of headers, as an exported package carries them."""
+    return {PurePosixPath(name).name: native_text(name) for name in names}

@@ -4,36 +4,23 @@ from __future__ import annotations
 
 import ctypes
 import math
-import re
 import threading
 from collections.abc import Callable
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import cffi
 import numpy as np
 
 from symofros.errors import CompileError, Problem
+from symofros.runtime.declarations import interface, model_abi
 from symofros.runtime.kernel import PLAIN, SHARED, Array, Kernel, Lanes, Manner, Numbers, Precision, Signature
 from symofros.runtime.layout import Strided
 from symofros.runtime.sharing import parts, share, together
 
-_ABI = 1
 # From here on a batch runs by vectors. What decides is the batch alone, so that no result depends on earlier calls;
 # below, a call from Python costs about as much as vectors would save.
 MANY = 512
-
-
-@cache
-def _interface(header: str) -> Any:
-    """The cffi interface of symofros_model.h: the part between its cdef marks."""
-    match = re.search(r"/\* cdef begin.*?\*/(.*?)/\* cdef end \*/", header, re.DOTALL)
-    if match is None:
-        raise CompileError("symofros_model.h has lost its cdef marks")
-    ffi = cffi.FFI()
-    ffi.cdef(match.group(1))
-    return ffi
 
 
 class CompiledUnit:
@@ -42,7 +29,6 @@ class CompiledUnit:
     Args:
         path: Of the library.
         symbol: Its exported function, `NAME_model`.
-        header: Text of symofros_model.h.
         expected_hash: What the struct must say.
         in_lanes: Function, and how to use vectors -> the same by vectors, or None; asked for once, at the first large
             batch.
@@ -55,12 +41,11 @@ class CompiledUnit:
         self,
         path: Path,
         symbol: str,
-        header: str,
         expected_hash: str,
         in_lanes: Callable[[tuple[str, str], Lanes], CompiledKernel | None] | None = None,
     ) -> None:
         self.in_lanes = in_lanes
-        self.ffi = _interface(header)
+        self.ffi = interface()
         self.nowhere = self.ffi.cast("char *", 0)
         try:
             # ctypes finds the symbol, whose name differs from model to model; cffi makes the calls, by one interface.
@@ -77,12 +62,12 @@ class CompiledUnit:
                 )
             ) from error
         found = self.ffi.string(self.model.hash).decode()
-        if self.model.abi != _ABI or found != expected_hash:
+        if self.model.abi != model_abi() or found != expected_hash:
             raise CompileError(
                 Problem(
                     "the compiled model is another one",
                     f"abi {self.model.abi}, hash {found}",
-                    f"abi {_ABI}, hash {expected_hash}",
+                    f"abi {model_abi()}, hash {expected_hash}",
                     f"delete {path.name} from the cache folder",
                 )
             )
@@ -145,9 +130,9 @@ class CompiledKernel:
         )
 
     @property
-    def address(self) -> int:
-        """Of its sym_function, for loops in C. The library stays loaded as long as this object lives."""
-        return int(self._unit.ffi.cast("uintptr_t", self._unit.ffi.addressof(self._function)))
+    def function(self) -> Any:
+        """Pointer to the sym_function, for calls from C. The library stays loaded as long as this object lives."""
+        return self._unit.ffi.addressof(self._function)
 
     @property
     def work(self) -> int:

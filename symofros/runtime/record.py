@@ -25,6 +25,11 @@ class Segment(NamedTuple):
     size: int
 
     @property
+    def constant(self) -> str:
+        """The kind's constant in native/stepping/symofros_stepper.h."""
+        return f"SYM_SEGMENT_{self.kind.upper()}"
+
+    @property
     def speeds(self) -> int:
         """Number of speeds."""
         return {"linear": self.size, "quaternion": 3, "pose": 6}[self.kind]

@@ -9,11 +9,11 @@ import numpy as np
 
 from symofros.errors import SymofrosError
 from symofros.runtime.kernel import Array
-from symofros.simulation import stepper as native
 from symofros.simulation.loops import Recorded
 from symofros.simulation.outcome import Kind, Outcome
 from symofros.simulation.postures import nearest_to_singular
 from symofros.simulation.settings import Settings
+from symofros.simulation.status import Status
 from symofros.simulation.stepper import Stepper
 
 _ROUNDING = float(np.finfo(np.float64).eps)
@@ -38,34 +38,34 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
     failure = stepper.failure
     if interrupted or isinstance(failure, KeyboardInterrupt):
         return outcome("interrupted", "Ctrl-C; the part up to here is kept")
-    if status == native.EVENT:
-        return outcome("event", f"event '{stepper.events[run.stopped_by].name}'")
-    if status == native.CALLBACK:
+    if status == Status.TERMINAL_EVENT:
+        return outcome("event", f"event '{stepper.events[run.terminal_event].name}'")
+    if status == Status.CALLBACK_FAILED:
         return outcome("input failed", f"the input function raised {failure!r}", "call it by itself at this state")
-    if status == native.DIVERGED and _immobile(stepper, q):
+    if status == Status.DIVERGED and _immobile(stepper, q):
         return outcome(
             "singular",
             "the mass matrix is singular: a speed moves no mass",
             "give every speed an inertia; look for a mass that a parameter sets to zero",
         )
-    if status == native.DIVERGED:
+    if status == Status.DIVERGED:
         return outcome("diverged", f"a state is no longer finite; {_largest(stepper, q, v)}", _steady(settings))
-    if status == native.NO_MOTION:
+    if status == Status.SINGULAR:
         return outcome(
             "singular",
             "the mass matrix is singular beyond what the constraints bind",
             "give every speed an inertia or a constraint",
         )
-    if status == native.TINY_STEP:
+    if status == Status.STEP_TOO_SMALL:
         return outcome(
             "step too small",
             f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below"
             f" rounding; {_largest(stepper, q, v)}",
             "look for a force that jumps or a singular posture here; loosen rtol",
         )
-    if status == native.NO_CONVERGENCE:
+    if status == Status.NO_CONVERGENCE:
         return outcome("not converged", "the equations of an implicit step were not solved", "a smaller dt")
-    if status == native.OFF:
+    if status == Status.PROJECTION_FAILED:
         phi = stepper.model.constraint(q, u=stepper.inputs_now, par=stepper.par, t=t)
         worst = int(np.argmax(np.abs(phi)))
         name = stepper.model.names.constraints[worst]
@@ -74,7 +74,7 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
             f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it",
             "a smaller step; the loop may be stretched to its end",
         )
-    if status == native.GOING and t < float(run.t_end):
+    if status == Status.RUNNING and t < float(run.t_end):
         return outcome("interrupted", f"max_steps: {int(run.steps)} steps are done")
     return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")
 
@@ -114,7 +114,7 @@ def _notes(stepper: Stepper, states: Sequence[Array]) -> tuple[str, ...]:
     notes = []
     if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
         notes.append(
-            f"a singular posture was passed at t = {run.t_rank:.6g} s: the constraints' rank fell from"
+            f"a singular posture was passed at t = {run.t_rank_min:.6g} s: the constraints' rank fell from"
             f" {run.rank_max} to {run.rank_min}"
         )
     elif stepper.model.nc:

@@ -2,70 +2,62 @@
 
 from __future__ import annotations
 
-import time
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from symofros.runtime.kernel import Array
-from symofros.simulation import stepper as native
 from symofros.simulation.settings import Settings
+from symofros.simulation.status import Status
 from symofros.simulation.stepper import Stepper
 from symofros.simulation.sundials import Cvode, Ida
+from symofros.simulation.time_slice import TimeSlice
 
-# Records are taken from C in portions of this many states.
-_PORTION = 4096
-# Seconds that C may step before Python looks up.
-_SPELL = 0.05
-_LONGEST = 1 << 20  # Steps in a spell.
+# Rows of records in C, which are taken between two calls.
+_ROWS = 4096
 
 Show = Callable[[float], None]
 
 
 @dataclass
 class Recorded:
-    """What a run left.
+    """The results of a run.
 
     Attributes:
-        status: C's last word.
-        states: Portions of t, q, v, u.
-        events: Which, when, q, v.
-        interrupted: Whether by Ctrl-C.
+        status: The last Status.
+        states: Portions of the records: t (n), q (n, nq), v (n, nv), u (n, nu) each.
+        events: Index, t, q, v of the events located.
+        interrupted: Whether Ctrl-C ended the run.
     """
 
-    status: int = native.GOING
+    status: int = Status.RUNNING
     states: list[list[Array]] = field(default_factory=list)
     events: list[tuple[int, float, Array, Array]] = field(default_factory=list)
     interrupted: bool = False
 
     def take(self, stepper: Stepper) -> None:
-        """What C has recorded since."""
+        """Take the records and events since the last call."""
         self.states.append(stepper.take_records())
         self.events += stepper.take_events()
 
     def arrays(self) -> list[Array]:
-        """All t (n), q, v, u."""
+        """All records: t (n), q (n, nq), v (n, nv), u (n, nu)."""
         return [np.concatenate(parts) for parts in zip(*self.states, strict=True)]
 
 
 def run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
-    """The loop in C, spell by spell."""
-    recorded = Recorded(stepper.start(q, v, max(_PORTION, len(settings.grid))))
+    """Run our own integrator to its end, or to `max_steps`."""
+    recorded = Recorded(stepper.start(q, v, max(_ROWS, len(settings.grid))))
     recorded.take(stepper)
-    spell = 64
+    time_slice = TimeSlice()
     try:
-        while recorded.status in (native.GOING, native.FULL):
-            left = spell if settings.max_steps is None else min(spell, settings.max_steps - int(stepper.run.steps))
+        while recorded.status in (Status.RUNNING, Status.RECORDS_FULL):
+            left = math.inf if settings.max_steps is None else settings.max_steps - int(stepper.run.steps)
             if left <= 0:
                 break
-            before = time.perf_counter()
-            recorded.status = stepper.advance(left)
-            took = time.perf_counter() - before
-            if took > _SPELL:
-                spell = max(1, spell // 2)
-            elif took < _SPELL / 4:
-                spell = min(2 * spell, _LONGEST)
+            recorded.status = time_slice.measure(stepper.advance, int(min(time_slice.steps, left)))
             recorded.take(stepper)
             show(float(stepper.run.t))
     except KeyboardInterrupt:
@@ -75,16 +67,16 @@ def run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show
 
 
 def run_sundials(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
-    """CVODE or IDA, from one record to the next."""
+    """Run CVODE or IDA from one record to the next."""
     run, recorded = stepper.run, Recorded()
     solver = Ida(stepper) if settings.method.kind == "ida" else Cvode(stepper)
     grid = list(settings.grid) if not settings.every else None
     try:
         recorded.status = solver.start(q, v)
-        if recorded.status == native.GOING and (grid is None or (grid and grid[0] <= run.t)):
+        if recorded.status == Status.RUNNING and (grid is None or (grid and grid[0] <= run.t)):
             recorded.states.append(_now(stepper))
         grid = grid[1:] if grid and grid[0] <= run.t else grid
-        while recorded.status == native.GOING and (settings.max_steps is None or solver.steps < settings.max_steps):
+        while recorded.status == Status.RUNNING and (settings.max_steps is None or solver.steps < settings.max_steps):
             wanted = grid[0] if grid else (None if grid is None else float(run.t_end))
             recorded.status, met = solver.advance(wanted)
             run.steps = solver.steps
@@ -94,11 +86,11 @@ def run_sundials(stepper: Stepper, q: Array, v: Array, settings: Settings, show:
             recorded.events += [(which, t, q_now, v_now) for which in met]
             final = [which for which in met if stepper.events[which].terminal]
             if final:
-                recorded.status, run.stopped_by = native.EVENT, final[0]
+                recorded.status, run.terminal_event = Status.TERMINAL_EVENT, final[0]
             elif t >= float(run.t_end):
-                recorded.status = native.DONE
+                recorded.status = Status.FINISHED
             if grid is None:
-                if run.steps % settings.every == 0 or recorded.status != native.GOING:
+                if run.steps % settings.every == 0 or recorded.status != Status.RUNNING:
                     recorded.states.append(_now(stepper))
             elif (grid and t >= grid[0]) or final:
                 recorded.states.append(_now(stepper))

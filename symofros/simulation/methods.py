@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 from symofros.simulation.tableaus import (
@@ -24,7 +23,7 @@ class Family:
     """What methods of one kind have in common.
 
     Attributes:
-        functions: Model functions called besides forward_dynamics: slot of the C system -> name of the function.
+        functions: Model functions called besides forward_dynamics.
         implicit: Whether each step solves equations with derivatives of the model and of its inputs.
         batched: Whether many trajectories can be stepped at once in the lanes of vectors.
         multistep: Whether past steps are kept, so that a state must not be changed between steps.
@@ -32,7 +31,7 @@ class Family:
         trees_only: Whether constraints and prescribed joints are out of its reach.
     """
 
-    functions: Mapping[str, str] = field(default_factory=dict)
+    functions: tuple[str, ...] = ()
     implicit: bool = False
     batched: bool = False
     multistep: bool = False
@@ -43,9 +42,9 @@ class Family:
 FAMILIES: dict[Kind, Family] = {
     "explicit": Family(batched=True),
     "semi_implicit": Family(batched=True),
-    "rosenbrock": Family({"terms": "implicit_terms"}, implicit=True),
-    "alpha": Family({"terms": "implicit_terms", "residual": "residual"}, implicit=True),
-    "variational": Family({"terms": "implicit_terms", "momentum": "momentum"}, implicit=True, trees_only=True),
+    "rosenbrock": Family(("implicit_terms",), implicit=True),
+    "alpha": Family(("implicit_terms", "residual"), implicit=True),
+    "variational": Family(("implicit_terms", "momentum"), implicit=True, trees_only=True),
     "cvode": Family(multistep=True),
     "ida": Family(multistep=True, keeps_constraints=True),
 }
@@ -72,6 +71,11 @@ class Method:
     summary: str
 
     @property
+    def constant(self) -> str:
+        """The method's constant in native/stepping/symofros_stepper.h; to C, runs of SUNDIALS are explicit ones."""
+        return "SYM_METHOD_EXPLICIT" if self.family.multistep else f"SYM_METHOD_{self.kind.upper()}"
+
+    @property
     def family(self) -> Family:
         """What it has in common with methods of its kind."""
         return FAMILIES[self.kind]
@@ -93,15 +97,4 @@ METHODS: dict[str, Method] = {
         Method("cvode_adams", "cvode", 12, True, EXPLICIT_EULER, "SUNDIALS, Adams of order 1 to 12; smooth"),
         Method("ida", "ida", 5, True, EXPLICIT_EULER, "SUNDIALS, BDF of order 1 to 5; constraints in its equations"),
     )
-}
-
-# Which loop of native/, as C numbers them.
-KIND_CODES: dict[Kind, int] = {
-    "explicit": 0,
-    "semi_implicit": 1,
-    "rosenbrock": 2,
-    "alpha": 3,
-    "variational": 4,
-    "cvode": 0,
-    "ida": 0,
 }

@@ -118,9 +118,9 @@ class Settings:
         run.t0 = run.t = self.t0
         run.adaptive = int(self.adaptive)
         run.t_end, run.h, run.rtol, run.atol = self.t_end, self.dt, self.rtol, self.atol
-        run.h_max, run.every, run.project = self.max_step, self.every, int(self.project)
-        run.grid, run.n_grid = stepper.numbers(self.grid), len(self.grid)
-        run.pace = 1.0 / self.realtime if self.realtime else 0.0
+        run.max_step, run.record_every, run.project = self.max_step, self.every, int(self.project)
+        run.grid, run.n_grid = stepper.memory.doubles(self.grid), len(self.grid)
+        run.realtime_scale = 1.0 / self.realtime if self.realtime else 0.0
         stepper.set_gains(self.gains)
 
 

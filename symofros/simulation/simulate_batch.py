@@ -14,13 +14,13 @@ from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.kernel import Array
 from symofros.runtime.layout import flat
 from symofros.runtime.model import Given, Model
-from symofros.simulation import stepper as native
 from symofros.simulation.batch_inputs import Shape, sort_inputs
-from symofros.simulation.crew import Crew, Ends, Starts, run_crews
+from symofros.simulation.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
 from symofros.simulation.inputs import Inputs
 from symofros.simulation.methods import METHODS
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.settings import CLOSED, Settings
+from symofros.simulation.status import Status
 from symofros.simulation.trajectories import Trajectories
 
 
@@ -86,17 +86,17 @@ def simulate_batch(
     n = math.prod(shape)
     inputs = given.spread(model, shape)
     q, v, values = (flat(array, shape) for array in rows.values())
-    starts = Starts(q, v, values, inputs, n, settings.t0)
-    ends = Ends.of(model, n, len(settings.grid))
+    initial = InitialStates(q, v, values, inputs, n, settings.t0)
+    results = BatchResults.empty(model, n, len(settings.grid))
     began = time.perf_counter(), time.process_time()
-    crews = [Crew(model, settings, starts, ends, i, count) for i in range(min(count, n))]
-    if crews:
-        ends.status[_off(model, settings, starts, crews[0])] = native.OFF
+    steppers = [BatchStepper(model, settings, initial, results, i, count) for i in range(min(count, n))]
+    if steppers:
+        results.status[_off(model, settings, initial, steppers[0])] = Status.PROJECTION_FAILED
         began = time.perf_counter(), time.process_time()
-        run_crews(crews)
+        run_batch_steppers(steppers)
     seconds = time.perf_counter() - began[0], time.process_time() - began[1]
     shared = rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar))
-    q, v, u_samples = (_shaped(array, shape) for array in (ends.q_samples, ends.v_samples, ends.u_samples))
+    q, v, u_samples = (_shaped(array, shape) for array in (results.q_samples, results.v_samples, results.u_samples))
     return Trajectories(
         model,
         settings.grid,
@@ -104,12 +104,12 @@ def simulate_batch(
         v,
         u_samples,
         shared,
-        _shaped(ends.t, shape),
-        _shaped(ends.q, shape),
-        _shaped(ends.v, shape),
-        ends.status.reshape(shape),
-        ends.steps.reshape(shape),
-        ends.rejected.reshape(shape),
+        _shaped(results.t, shape),
+        _shaped(results.q, shape),
+        _shaped(results.v, shape),
+        results.status.reshape(shape),
+        results.steps.reshape(shape),
+        results.rejected.reshape(shape),
         settings.method.name,
         *seconds,
     )
@@ -161,19 +161,19 @@ def _shaped(rows: Array, shape: Shape) -> Array:
     return rows.reshape(shape + rows.shape[1:])
 
 
-def _off(model: Model, settings: Settings, starts: Starts, crew: Crew) -> npt.NDArray[np.bool_]:
+def _off(model: Model, settings: Settings, initial: InitialStates, stepper: BatchStepper) -> npt.NDArray[np.bool_]:
     """Which trajectories start off the constraints (n); as `check_start`, which refuses a single one."""
-    n = starts.n
+    n = initial.n
     off = np.zeros(n, dtype=np.bool_)
     if not model.nc or settings.stabilisation == "baumgarte":
         return off
-    u = starts.inputs.constant
+    u = initial.inputs.constant
     if model.record.driven:  # The motions of joints are inputs, by formulas too.
-        q, v = np.broadcast_to(starts.q, (n, model.nq)), np.broadcast_to(starts.v, (n, model.nv))
-        u = np.array([crew.single.inputs_at(starts.t, q[i], v[i]) for i in range(n)])
+        q, v = np.broadcast_to(initial.q, (n, model.nq)), np.broadcast_to(initial.v, (n, model.nv))
+        u = np.array([stepper.single.inputs_at(initial.t, q[i], v[i]) for i in range(n)])
     exact = model.with_precision("double")  # As states are.
-    phi = exact.constraint(starts.q, u=u, par=starts.par, t=starts.t)
-    rate = exact.constraint_rate(starts.q, starts.v, u=u, par=starts.par, t=starts.t)
+    phi = exact.constraint(initial.q, u=u, par=initial.par, t=initial.t)
+    rate = exact.constraint_rate(initial.q, initial.v, u=u, par=initial.par, t=initial.t)
     for values in (phi, rate):
         off |= ~np.all(np.abs(values) <= CLOSED, axis=-1)
     return off

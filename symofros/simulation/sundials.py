@@ -15,13 +15,13 @@ import numpy as np
 
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array
-from symofros.simulation import stepper as native
+from symofros.simulation.status import Status
 from symofros.simulation.stepper import Stepper
 
 # Values of SUNDIALS' return flags, the same for both solvers: an event was reached; error tests or the accuracy asked
 # for fail at the smallest step; Newton's iterations do not converge.
 _ROOT = 2
-_STATUS = {-1: native.TINY_STEP, -2: native.TINY_STEP, -3: native.TINY_STEP, -4: native.NO_CONVERGENCE}
+_STATUS = {-1: Status.STEP_TOO_SMALL, -2: Status.STEP_TOO_SMALL, -3: Status.STEP_TOO_SMALL, -4: Status.NO_CONVERGENCE}
 # Multipliers are no part of the motion: a bound this large takes them out of the error test.
 _UNTESTED = 1e100
 # Rows of G count as dependent below this share of the largest remaining row; as RANK of assembly.
@@ -73,7 +73,7 @@ class _Run:
         """Place the run at its first state; returns a status."""
         status = self.stepper.start(q, v, 1)
         self.stepper.take_records()
-        if status == native.GOING:
+        if status == Status.RUNNING:
             self._reached = float(self.stepper.run.t0)
             y = np.concatenate([q, v])
             self._begin(y)  # The solver evaluates its functions elsewhere, too.
@@ -89,7 +89,7 @@ class _Run:
         options: dict[str, Any] = {
             "rtol": float(run.rtol),
             "first_step": float(run.h),
-            "max_step": float(run.h_max),
+            "max_step": float(run.max_step),
             "max_num_steps": 100_000_000,
         }
         if events:
@@ -103,7 +103,7 @@ class _Run:
         raise NotImplementedError
 
     def _evaluate_events(self, t: float, y: Array, values: Array) -> None:
-        if self.stepper.event_values(t, y, values) != native.GOING:
+        if self.stepper.event_values(t, y, values) != Status.RUNNING:
             raise _InputFailedError
 
     def advance(self, t: float | None) -> tuple[int, list[int]]:
@@ -116,7 +116,7 @@ class _Run:
                     return self._placed(float(answer.t), answer.y), []
                 answer = self._solver.step(end, "onestep", end)
                 if not answer.success:
-                    return _STATUS.get(int(answer.status), native.DIVERGED), []
+                    return _STATUS.get(int(answer.status), Status.DIVERGED), []
                 self.steps, self._reached = self.steps + 1, float(answer.t)
                 self.stepper.run.evaluations = int(answer.nfev)
                 self.stepper.run.jacobians = int(answer.njev)
@@ -126,12 +126,12 @@ class _Run:
                 if t is None:
                     return self._placed(self._reached, answer.y), []
         except _InputFailedError:
-            return native.CALLBACK, []
+            return Status.CALLBACK_FAILED, []
 
     def _placed(self, t: float, y: Array) -> int:
         """Make a state the run's own; returns a status."""
         state = np.asarray(y, dtype=np.float64).reshape(-1)
-        return self.stepper.place(t, state) if np.all(np.isfinite(state)) else native.DIVERGED
+        return self.stepper.place(t, state) if np.all(np.isfinite(state)) else Status.DIVERGED
 
 
 class Cvode(_Run):
@@ -147,7 +147,7 @@ class Cvode(_Run):
         return lambda t, y, values: self._evaluate_events(t, y, values)
 
     def _slope(self, t: float, y: Array, rate: Array) -> None:
-        if self.stepper.slope(t, y, rate) == native.CALLBACK:
+        if self.stepper.slope(t, y, rate) == Status.CALLBACK_FAILED:
             raise _InputFailedError
 
 
@@ -185,7 +185,7 @@ class Ida(_Run):
     def _residuals(self, t: float, y: Array, rate: Array, residual: Array) -> None:
         """Residual of (10) at a point."""
         model, nq, nv = self.stepper.model, self.stepper.model.nq, self.stepper.model.nv
-        if self.stepper.place(t, y[: self.size]) != native.GOING:
+        if self.stepper.place(t, y[: self.size]) != Status.RUNNING:
             raise _InputFailedError
         t, q, v = self.stepper.state
         n = self.size + len(self._rows)
@@ -201,13 +201,13 @@ class Ida(_Run):
 
     def _placed(self, t: float, y: Array) -> int:
         status = super()._placed(t, np.asarray(y, dtype=np.float64).reshape(-1)[: self.size])
-        if status == native.GOING and len(self._rows) < self.stepper.model.nc:
+        if status == Status.RUNNING and len(self._rows) < self.stepper.model.nc:
             t, q, v = self.stepper.state
             inputs: dict[str, Any] = {"u": self.stepper.inputs_now, "par": self.stepper.par, "t": t}
             phi = self.stepper.model.constraint(q, **inputs)
             rate = self.stepper.model.constraint_rate(q, v, **inputs)
             if max(np.abs(phi).max(), np.abs(rate).max() * _LOST) > _LOST:
-                return native.OFF
+                return Status.PROJECTION_FAILED
         return status
 
 

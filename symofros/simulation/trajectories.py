@@ -10,32 +10,32 @@ import numpy.typing as npt
 
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model
-from symofros.simulation import stepper as native
 from symofros.simulation.outcome import Kind, Outcome
+from symofros.simulation.status import Status
 from symofros.simulation.trajectory import Statistics, Trajectory
 
 Index = int | tuple[int, ...]
 
 # Status of C -> kind, reason, advice.
 _ENDS: dict[int, tuple[Kind, str, str]] = {
-    native.DONE: ("finished", "the end asked for", ""),
-    native.GOING: ("interrupted", "max_steps are done, or Ctrl-C", ""),
-    native.DIVERGED: (
+    Status.FINISHED: ("finished", "the end asked for", ""),
+    Status.RUNNING: ("interrupted", "max_steps are done, or Ctrl-C", ""),
+    Status.DIVERGED: (
         "diverged",
         "a state is no longer finite",
         "a smaller dt or an adaptive method; sf.simulate from this state says more",
     ),
-    native.NO_MOTION: (
+    Status.SINGULAR: (
         "singular",
         "the mass matrix is singular beyond what the constraints bind",
         "give every speed an inertia or a constraint",
     ),
-    native.TINY_STEP: (
+    Status.STEP_TOO_SMALL: (
         "step too small",
         "the error bounds ask for steps below rounding",
         "look for a force that jumps or a singular posture here; loosen rtol",
     ),
-    native.OFF: (
+    Status.PROJECTION_FAILED: (
         "constraints lost",
         "the state is off the constraints and projection does not mend it",
         "start from sf.assemble; a smaller step; the loop may be stretched to its end",
@@ -89,7 +89,7 @@ class Trajectories:
     @property
     def ok(self) -> npt.NDArray[np.bool_]:
         """Which runs came to their end (...)."""
-        return np.asarray(self.status == native.DONE)
+        return np.asarray(self.status == Status.FINISHED)
 
     @property
     def kinds(self) -> npt.NDArray[np.str_]:

@@ -34,7 +34,7 @@ SENDER = f"""
 import sys
 import symofros as sf
 from symofros.blocks import UdpTransmitter, ZenohPublisher
-from symofros.diagrams.loop import library
+from symofros.runtime.binding import native_library
 from tests.blocks.sources import Ramp
 
 d = sf.Diagram("sender")
@@ -42,7 +42,7 @@ d.add(Ramp(name="ramp"))
 d.add({{block}}, signal="ramp.y")
 simulation = sf.Simulation(d)
 simulation.compiled
-library()
+native_library()
 print("ready", flush=True)
 sys.stdin.readline()
 run = simulation.run({(PACKETS - 1) * PERIOD}, dt=1e-3, realtime=True)

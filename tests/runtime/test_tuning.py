@@ -10,7 +10,6 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation
-from symofros.native import native_text
 from symofros.runtime import tuning
 from symofros.runtime.toolchain import find_toolchain
 from symofros.runtime.tuning import builds
@@ -95,7 +94,7 @@ def test_slower_builds_lose() -> None:
 
     def load(path: Path) -> tuning.CompiledUnit:
         symbol, of = stated[path]
-        return tuning.CompiledUnit(path, symbol, native_text("model/symofros_model.h"), of)
+        return tuning.CompiledUnit(path, symbol, of)
 
     slow, fast = stated
     assert tuning.fastest([slow, fast], load) == fast

@@ -42,14 +42,14 @@ int main(int argc, char **argv) {
     const long calls = argc > 1 ? atol(argv[1]) : 1000;
     const size_t size = sym_instance_size(JOIN(NAME, _plant)());
     void *memory = malloc(size);
-    sym_instance *it = sym_instance_in(memory, size, JOIN(NAME, _plant)());
-    const int32_t nv = it == NULL ? 0 : it->model->nv;
+    sym_instance *instance = sym_instance_init(memory, size, JOIN(NAME, _plant)());
+    const int32_t nv = instance == NULL ? 0 : instance->model->nv;
     float *taken = malloc((size_t)calls * sizeof *taken);
     double *M = malloc((size_t)(nv * nv + 2 * nv + 1) * sizeof *M), *out[3], last;
     const sym_function *dynamics;
     long i;
-    if (it == NULL || taken == NULL || M == NULL) return 2;
-    dynamics = sym_find(it->model, "dynamics", NULL);
+    if (instance == NULL || taken == NULL || M == NULL) return 2;
+    dynamics = sym_find(instance->model, "dynamics", NULL);
     out[0] = M, out[1] = M + nv * nv, out[2] = out[1] + nv;
     last = now();
     for (i = 0; i < calls; ++i) {
@@ -59,23 +59,23 @@ int main(int argc, char **argv) {
     tell("clock", taken, calls);
     for (i = 0; i < calls; ++i) {
         const double start = now();
-        it->q[i % it->model->nq] += 1e-6;
-        sym_instance_call(it, dynamics, out);
+        instance->q[i % instance->model->nq] += 1e-6;
+        sym_instance_call(instance, dynamics, out);
         taken[i] = (float)(now() - start);
     }
     tell("dynamics", taken, calls);
     for (i = 0; i < calls; ++i) {
         const double start = now();
-        it->q[i % it->model->nq] += 1e-6;
-        sym_instance_accelerate(it);
+        instance->q[i % instance->model->nq] += 1e-6;
+        sym_instance_accelerate(instance);
         taken[i] = (float)(now() - start);
     }
     tell("forward_dynamics", taken, calls);
-    sym_instance_reset(it);
+    sym_instance_reset(instance);
     for (i = 0; i < calls; ++i) {
         const double start = now();
-        if (sym_instance_advance(it, (double)(i % 1000 + 1) * 1e-3, 1e-3) != SYM_DONE || i % 1000 == 999)
-            sym_instance_reset(it);
+        if (sym_instance_advance(instance, (double)(i % 1000 + 1) * 1e-3, 1e-3) != SYM_FINISHED || i % 1000 == 999)
+            sym_instance_reset(instance);
         taken[i] = (float)(now() - start);
     }
     tell("rk4_step", taken, calls);

@@ -1,53 +1,56 @@
-/* Instants and what lies between them: symofros_diagram.h. */
+/* Instants, and the motion of the parts between them: symofros_diagram.h. */
+
+static sym_point sym_diagram_point(const sym_diagram *d) {
+    static const char *const names[] = {"q", "v", "u", "t", "a", "lam"};
+    sym_point point = {6, NULL, {NULL}};
+    point.names = names;
+    point.arrays[0] = d->q, point.arrays[1] = d->v, point.arrays[2] = d->u;
+    point.arrays[3] = d->t, point.arrays[4] = d->a, point.arrays[5] = d->lam;
+    return point;
+}
 
 SYM_EXPORT int32_t sym_diagram_bind(sym_diagram *d, sym_call *call) {
-    static const char *const names[] = {"q", "v", "u", "t", "a", "lam"};
-    const double *places[6];
-    int32_t k, i;
-    places[0] = d->q, places[1] = d->v, places[2] = d->u, places[3] = d->t, places[4] = d->a, places[5] = d->lam;
-    call->in[0] = call->pre;
-    if (call->function->n_in > 10 || call->function->n_out > 8) return 0;
-    for (k = 1; k < call->function->n_in; ++k) {
-        call->in[k] = NULL;
-        for (i = 0; i < 6; ++i)
-            if (strcmp(call->function->in[k].name, names[i]) == 0) call->in[k] = places[i];
-        if (call->in[k] == NULL) return 0;
-    }
-    return 1;
+    const sym_point point = sym_diagram_point(d);
+    return sym_bind_inputs(call, &point);
 }
 
-static double sym_instant_time(const sym_diagram *d, int64_t round, int64_t at) {
-    return d->t0 + (double)(round * d->cycle + d->instant[at]) * d->base_n / d->base_d;
+static double sym_instant_time(const sym_diagram *d, int64_t cycle, int64_t instant) {
+    const int64_t ticks = cycle * d->cycle_ticks + d->instant_tick[instant];
+    return d->t0 + (double)ticks * d->base_numerator / d->base_denominator;
 }
 
-/* The states of the parts into the point, and what samples give at its time. */
-static void sym_gather(sym_diagram *d, double t) {
+/* The diagram's point <- the states of the parts, and the signals at time t. */
+static void sym_gather_states(sym_diagram *d, double t) {
     int32_t i;
     *d->t = t;
     for (i = 0; i < d->n_parts; ++i) {
         const sym_run *r = d->parts[i];
-        memcpy(d->q + d->q_at[i], r->q, (size_t)r->scene->nq * sizeof(double));
-        memcpy(d->v + d->v_at[i], r->v, (size_t)r->scene->nv * sizeof(double));
+        memcpy(d->q + d->q_offset[i], r->q, (size_t)r->system->nq * sizeof(double));
+        memcpy(d->v + d->v_offset[i], r->v, (size_t)r->system->nv * sizeof(double));
     }
-    for (i = 0; i < d->n_signals; ++i) d->u[d->signals[i].input] = sym_sampled(&d->signals[i], t);
+    for (i = 0; i < d->n_signals; ++i) d->u[d->signals[i].input] = sym_interpolate_signal(&d->signals[i], t);
 }
 
-/* Accelerations and multipliers of the parts at their present states, under the present u. Returns a status. */
-static int32_t sym_look_back(sym_diagram *d) {
+/* a, lam <- accelerations and multipliers of the parts at their present states, under the present u. Returns 0 or a
+ * status. */
+static int32_t sym_evaluate_parts(sym_diagram *d) {
     int32_t i, status;
     for (i = 0; i < d->n_parts; ++i) {
         sym_run *r = d->parts[i];
-        sym_here(r);
-        status = sym_accelerate(r);
+        sym_load_state(r);
+        status = sym_evaluate_acceleration(r);
         if (status != 0) {
-            d->failed = i;
+            d->failed_part = i;
             return status;
         }
-        memcpy(d->a + d->v_at[i], r->scene->a, (size_t)r->scene->nv * sizeof(double));
-        memcpy(d->lam + d->c_at[i], r->scene->lam, (size_t)r->scene->nc * sizeof(double));
+        memcpy(d->a + d->v_offset[i], r->system->a, (size_t)r->system->nv * sizeof(double));
+        memcpy(d->lam + d->c_offset[i], r->system->lam, (size_t)r->system->nc * sizeof(double));
     }
     return 0;
 }
+
+/* Most records between two checks of the capacity: both sides of a crossing, an instant, the end. */
+enum { SYM_RECORDS_PER_INSTANT = 4 };
 
 static int32_t sym_diagram_record(sym_diagram *d) {
     const int64_t n = d->n_records;
@@ -59,169 +62,169 @@ static int32_t sym_diagram_record(sym_diagram *d) {
     return 0;
 }
 
-/* Stages at the point. Returns a status. */
-static int32_t sym_stage_all(sym_diagram *d, const sym_stage *stages, int32_t n) {
+/* Execute tasks at the diagram's point, one after the other. Returns 0 or a status. */
+static int32_t sym_execute_tasks(sym_diagram *d, const sym_task *tasks, int32_t n) {
     int32_t i;
     for (i = 0; i < n; ++i) {
-        const sym_stage *stage = &stages[i];
-        sym_evaluate(&stage->call);
-        if (stage->opaque >= 0) {
-            if (d->opaque(d->data, stage->opaque, *d->t, stage->call.out[0], d->u) != 0) return SYM_CALLBACK;
+        const sym_task *task = &tasks[i];
+        sym_evaluate(&task->call);
+        if (task->callback >= 0) {
+            if (d->callback(d->data, task->callback, *d->t, task->call.out[0], d->u) != 0) return SYM_CALLBACK_FAILED;
             continue;
         }
-        memcpy(d->u, stage->call.out[0], (size_t)d->nu * sizeof(double));
-        if (stage->call.function->n_out == 3) {
-            memcpy(d->q, stage->call.out[1], (size_t)d->nq * sizeof(double));
-            memcpy(d->v, stage->call.out[2], (size_t)d->nv * sizeof(double));
+        memcpy(d->u, task->call.out[0], (size_t)d->nu * sizeof(double));
+        if (task->call.function->n_out == 3) {
+            memcpy(d->q, task->call.out[1], (size_t)d->nq * sizeof(double));
+            memcpy(d->v, task->call.out[2], (size_t)d->nv * sizeof(double));
         }
     }
     return 0;
 }
 
-static void sym_diagram_pace(sym_diagram *d, double t) {
-    const double due = d->clock0 + (t - d->t0) * d->pace, early = due - sym_clock();
-    if (early > 0.0) sym_sleep(early);
-    if (d->n_late < d->late_capacity) d->late[d->n_late++] = sym_clock() - due;
+static void sym_diagram_wait_for_clock(sym_diagram *d, double t) {
+    const double due = d->clock_start + (t - d->t0) * d->realtime_scale, early = due - sym_clock_seconds();
+    if (early > 0.0) sym_sleep_seconds(early);
+    if (d->n_lateness < d->lateness_capacity) d->lateness[d->n_lateness++] = sym_clock_seconds() - due;
 }
 
-/* Whether constraints have engaged or let go since it was asked last. */
-static int32_t sym_engages(sym_diagram *d) {
+/* Whether constraints have engaged or released since the last call. */
+static int32_t sym_locks_changed(sym_diagram *d) {
     int32_t i, changed = 0;
-    for (i = 0; i < d->n_engaging; ++i) {
-        const double now = d->u[d->engaging[i]];
-        if (now != d->engaged[i]) changed = 1;
-        d->engaged[i] = now;
+    for (i = 0; i < d->n_locks; ++i) {
+        const double now = d->u[d->lock_inputs[i]];
+        if (now != d->lock_values[i]) changed = 1;
+        d->lock_values[i] = now;
     }
     return changed;
 }
 
-/* The parts onto their constraints, at once: a plastic impact. Returns a status. */
-static int32_t sym_impact(sym_diagram *d, double t) {
+/* Project the parts onto their constraints at once: a plastic impact. Returns 0 or a status. */
+static int32_t sym_project_parts(sym_diagram *d, double t) {
     int32_t i, status;
     for (i = 0; i < d->n_parts; ++i) {
         if (!d->parts[i]->project) continue;
-        status = sym_return(d->parts[i]);
+        status = sym_project_state(d->parts[i]);
         if (status != 0) {
-            d->failed = i;
+            d->failed_part = i;
             return status;
         }
     }
-    sym_gather(d, t);
+    sym_gather_states(d, t);
     return 0;
 }
 
-/* The instant that is next, at time t. Returns a status. */
-static int32_t sym_instant_now(sym_diagram *d, double t) {
-    const sym_instant *now = &d->sets[d->set[d->at]];
+/* Execute the next instant, at time t. Returns 0 or a status. */
+static int32_t sym_execute_instant(sym_diagram *d, double t) {
+    const sym_task_set *now = &d->task_sets[d->instant_set[d->next_instant]];
     int32_t i, status;
-    if (d->pace > 0.0) sym_diagram_pace(d, t);
-    sym_gather(d, t);
+    if (d->realtime_scale > 0.0) sym_diagram_wait_for_clock(d, t);
+    sym_gather_states(d, t);
     if (now->n > 0) {
-        if (d->looks_back && (status = sym_look_back(d)) != 0) return status;
-        status = sym_stage_all(d, now->stages, now->n);
-        if (status == 0 && sym_engages(d)) status = sym_impact(d, t);
+        if (d->reads_accelerations && (status = sym_evaluate_parts(d)) != 0) return status;
+        status = sym_execute_tasks(d, now->tasks, now->n);
+        if (status == 0 && sym_locks_changed(d)) status = sym_project_parts(d, t);
         if (status != 0) return status;
-        for (i = 0; i < d->n_parts; ++i) d->parts[i]->fresh = 0;
+        for (i = 0; i < d->n_parts; ++i) d->parts[i]->slope_valid = 0;
     }
     if (now->records) sym_diagram_record(d);
-    if (++d->at == d->n_instants) d->at = 0, ++d->round;
+    if (++d->next_instant == d->n_instants) d->next_instant = 0, ++d->cycle;
     return 0;
 }
 
-/* One part up to a time. Returns SYM_DONE or another status. */
-static int32_t sym_part_until(sym_run *r, double t) {
-    int32_t status = SYM_GOING;
-    if (r->t >= t) return SYM_DONE;
+/* Integrate one part to time t. Returns SYM_FINISHED or another status. */
+static int32_t sym_advance_part(sym_run *r, double t) {
+    int32_t status = SYM_RUNNING;
+    if (r->t >= t) return SYM_FINISHED;
     r->steps = 0, r->t0 = r->t, r->t_end = t;
-    while (status == SYM_GOING) status = sym_advance(r, (int64_t)1 << 40);
+    while (status == SYM_RUNNING) status = sym_run_advance(r, (int64_t)1 << 40);
     return status;
 }
 
-/* What a part has done since it was asked last. */
-static void sym_tally(sym_diagram *d, sym_run *r) {
+/* Add a part's counters to the diagram's, and clear them. */
+static void sym_add_counters(sym_diagram *d, sym_run *r) {
     d->steps += r->steps, d->rejected += r->rejected, d->evaluations += r->evaluations;
     r->steps = r->rejected = r->evaluations = 0;
 }
 
-/* A crossing stopped the motion: note it, change what it changes. Returns a status. */
-static int32_t sym_crossing(sym_diagram *d, sym_run *stopped) {
+/* An event stopped a part: record it, and execute its task, which may change inputs and states. Returns 0 or a status. */
+static int32_t sym_handle_crossing(sym_diagram *d, sym_run *stopped) {
     int32_t i, status;
-    sym_gather(d, stopped->t);
+    sym_gather_states(d, stopped->t);
     sym_diagram_record(d);
-    d->found_t[d->n_found] = stopped->t;
-    d->found_which[d->n_found++] = stopped->stopped_by;
-    stopped->n_found = 0;
-    if (d->looks_back && (status = sym_look_back(d)) != 0) return status;
-    status = sym_stage_all(d, &d->crossings[stopped->stopped_by], 1);
+    d->event_t[d->n_event_records] = stopped->t;
+    d->event_index[d->n_event_records++] = stopped->terminal_event;
+    stopped->n_event_records = 0;
+    if (d->reads_accelerations && (status = sym_evaluate_parts(d)) != 0) return status;
+    status = sym_execute_tasks(d, &d->crossing_tasks[stopped->terminal_event], 1);
     if (status != 0) return status;
     for (i = 0; i < d->n_parts; ++i) {
         sym_run *r = d->parts[i];
-        memcpy(r->q, d->q + d->q_at[i], (size_t)r->scene->nq * sizeof(double));
-        memcpy(r->v, d->v + d->v_at[i], (size_t)r->scene->nv * sizeof(double));
-        r->fresh = 0;
-        if (r->project && (status = sym_return(r)) != 0) {
-            d->failed = i;
+        memcpy(r->q, d->q + d->q_offset[i], (size_t)r->system->nq * sizeof(double));
+        memcpy(r->v, d->v + d->v_offset[i], (size_t)r->system->nv * sizeof(double));
+        r->slope_valid = 0;
+        if (r->project && (status = sym_project_state(r)) != 0) {
+            d->failed_part = i;
             return status;
         }
-        sym_here(r);
-        if (r->scene->n_events > 0 && (status = sym_event_values(r, r->event)) != 0) return status;
+        sym_load_state(r);
+        if (r->system->n_events > 0 && (status = sym_event_values(r, r->event_values)) != 0) return status;
     }
-    sym_gather(d, stopped->t);
+    sym_gather_states(d, stopped->t);
     sym_diagram_record(d);
     return 0;
 }
 
-/* All parts up to a time, crossings on the way included. Returns SYM_DONE or another status. */
-static int32_t sym_parts_until(sym_diagram *d, double t) {
-    int32_t i, status = SYM_DONE;
-    if (d->gang != NULL) return sym_gang_until(d, t);
-    for (i = 0; i < d->n_parts && status == SYM_DONE; ++i) {
+/* Integrate all parts to time t, handling crossings on the way. Returns SYM_FINISHED or another status. */
+static int32_t sym_advance_parts(sym_diagram *d, double t) {
+    int32_t i, status = SYM_FINISHED;
+    if (d->advance_parallel != NULL) return d->advance_parallel(d, t);
+    for (i = 0; i < d->n_parts && status == SYM_FINISHED; ++i) {
         sym_run *r = d->parts[i];
         do {
-            if (d->n_found == d->found_capacity || d->capacity - d->n_records < 4) return SYM_FULL;
-            status = sym_part_until(r, t);
-            sym_tally(d, r);
-            if (status == SYM_EVENT) {
-                const int32_t fault = sym_crossing(d, r);
+            if (d->n_event_records == d->event_capacity || d->capacity - d->n_records < SYM_RECORDS_PER_INSTANT) return SYM_RECORDS_FULL;
+            status = sym_advance_part(r, t);
+            sym_add_counters(d, r);
+            if (status == SYM_TERMINAL_EVENT) {
+                const int32_t fault = sym_handle_crossing(d, r);
                 if (fault != 0) return fault;
             }
-        } while (status == SYM_EVENT);
-        if (status != SYM_DONE) d->failed = i;
+        } while (status == SYM_TERMINAL_EVENT);
+        if (status != SYM_FINISHED) d->failed_part = i;
     }
     return status;
 }
 
 SYM_EXPORT int32_t sym_diagram_start(sym_diagram *d) {
-    d->round = d->at = 0;
-    d->ended = d->failed = 0;
+    d->cycle = d->next_instant = 0;
+    d->finished = d->failed_part = 0;
     d->steps = d->rejected = d->evaluations = 0;
-    d->n_records = d->n_found = d->n_late = 0;
-    d->clock0 = d->pace > 0.0 ? sym_clock() : 0.0;
-    sym_gather(d, d->t0);
+    d->n_records = d->n_event_records = d->n_lateness = 0;
+    d->clock_start = d->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;
+    sym_gather_states(d, d->t0);
     return 0;
 }
 
 SYM_EXPORT int32_t sym_diagram_advance(sym_diagram *d, int64_t instants) {
     int64_t i;
     for (i = 0; i < instants; ++i) {
-        const double due = d->n_instants > 0 ? sym_instant_time(d, d->round, d->at) : HUGE_VAL;
-        const double slack = 1e-9 * d->base_n / d->base_d;
+        const double due = d->n_instants > 0 ? sym_instant_time(d, d->cycle, d->next_instant) : HUGE_VAL;
+        const double slack = 1e-9 * d->base_numerator / d->base_denominator; /* of rounding in t_end */
         const int32_t last = due > d->t_end + slack;
         int32_t status;
-        if (d->ended) return SYM_DONE;
-        if (d->capacity - d->n_records < 4) return SYM_FULL;
-        status = sym_parts_until(d, last || due > d->t_end ? d->t_end : due);
-        if (status != SYM_DONE) return status;
+        if (d->finished) return SYM_FINISHED;
+        if (d->capacity - d->n_records < SYM_RECORDS_PER_INSTANT) return SYM_RECORDS_FULL;
+        status = sym_advance_parts(d, last || due > d->t_end ? d->t_end : due);
+        if (status != SYM_FINISHED) return status;
         if (!last) {
-            status = sym_instant_now(d, due > d->t_end ? d->t_end : due);
+            status = sym_execute_instant(d, due > d->t_end ? d->t_end : due);
             if (status != 0) return status;
             if (due < d->t_end - slack) continue;
         }
-        d->ended = 1;
+        d->finished = 1;
         if (d->n_records == 0 || d->record_t[d->n_records - 1] < d->t_end) {
-            sym_gather(d, d->t_end);
+            sym_gather_states(d, d->t_end);
             sym_diagram_record(d);
         }
     }
-    return d->ended ? SYM_DONE : SYM_GOING;
+    return d->finished ? SYM_FINISHED : SYM_RUNNING;
 }

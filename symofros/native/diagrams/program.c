@@ -1,167 +1,179 @@
-/* Programs: symofros_program.h. Memory is one run of doubles; structs lie in it as well, each from a double's boundary. */
+/* Exported diagrams: symofros_program.h. */
 
-static void *sym_place_for(sym_cursor *at, size_t bytes) { return sym_take(at, (bytes + sizeof(double) - 1) / sizeof(double)); }
+/* Rows of records in a program, which nobody reads: they are emptied after each step of the caller's. */
+enum { SYM_PROGRAM_RECORDS = 2 * SYM_RECORDS_PER_INSTANT, SYM_PROGRAM_EVENTS = 4 };
 
-static void sym_program_call(sym_assembly *it, sym_cursor *at, sym_call *call, const char *name) {
-    const sym_model *m = it->program->instants();
-    const sym_function *f = sym_find(m, name, NULL);
-    double *work = sym_take(at, sym_work(m));
-    int32_t i;
-    call->function = f, call->pre = it->pre, call->work = work;
-    for (i = 0; f != NULL && i < f->n_out; ++i)
-        call->out[i] = sym_take(at, (size_t)f->out[i].rows * (size_t)f->out[i].cols);
-    if (at->base != NULL && f != NULL) sym_diagram_bind(&it->diagram, call);
+/* A function of the instants' model as a call at the diagram's point; absent ones stay NULL. */
+static void sym_program_bind(sym_program_instance *instance, sym_arena *arena, sym_call *call, const char *name) {
+    const sym_model *m = instance->program->instants();
+    const sym_point point = sym_diagram_point(&instance->diagram);
+    sym_bind_function(arena, call, sym_find(m, name, NULL), instance->pre, instance->work, &point);
 }
 
-static void sym_program_stages(sym_assembly *it, sym_cursor *at) {
-    const sym_program *p = it->program;
-    sym_stage spare;
+static void sym_program_bind_task(sym_program_instance *instance, sym_arena *arena, sym_task *task, const char *name) {
+    sym_task draft; /* while the arena only counts, there is no task to write to */
+    if (arena->base == NULL) task = &draft;
+    memset(task, 0, sizeof *task);
+    task->callback = -1;
+    sym_program_bind(instance, arena, &task->call, name);
+}
+
+static void sym_program_bind_tasks(sym_program_instance *instance, sym_arena *arena) {
+    const sym_program *p = instance->program;
     char name[32];
     int32_t i;
     for (i = 0; i < p->n_sets; ++i) {
-        sym_stage *stage = at->base == NULL ? &spare : &it->stages[i];
-        stage->opaque = -1;
-        sym_program_call(it, at, &stage->call, p->due[i]);
-        if (at->base != NULL) it->sets[i].n = 1, it->sets[i].records = 0, it->sets[i].stages = stage;
+        sym_program_bind_task(instance, arena, instance->tasks + i, p->set_functions[i]);
+        if (arena->base != NULL) instance->task_sets[i].n = 1, instance->task_sets[i].tasks = &instance->tasks[i];
     }
     for (i = 0; i < p->n_crossings; ++i) {
-        sym_stage *stage = at->base == NULL ? &spare : &it->crossings[i];
         snprintf(name, sizeof name, "crossed_%d", (int)i);
-        stage->opaque = -1;
-        sym_program_call(it, at, &stage->call, name);
+        sym_program_bind_task(instance, arena, instance->crossing_tasks + i, name);
     }
 }
 
-/* Every array and struct. */
-static void sym_program_furnish(sym_assembly *it, sym_cursor *at) {
-    const sym_program *p = it->program;
+/* One part: its instance, which reads the diagram's inputs, and memory for the crossings that stop it. */
+static void sym_program_allocate_part(sym_program_instance *instance, sym_arena *arena, int32_t i) {
+    const sym_program *p = instance->program;
+    const sym_plant *plant = p->parts[i]();
+    const sym_model *model = plant->model();
+    const size_t size = sym_instance_size(plant), n = (size_t)p->n_crossings;
+    void *memory = sym_allocate_bytes(arena, size);
+    sym_instance draft; /* while the arena only counts */
+    sym_instance *part = arena->base == NULL ? &draft : sym_instance_init(memory, size, plant);
+    sym_run *r;
+    sym_system *s;
+    sym_point point;
+    if (arena->base != NULL) instance->parts[i] = part;
+    if (part == NULL) return;
+    if (arena->base == NULL) memset(&draft, 0, sizeof draft);
+    r = &part->run, s = &part->system;
+    if (arena->base != NULL) instance->diagram.parts[i] = r;
+    s->u_constant = instance->diagram.u, s->n_signals = p->n_signals, s->signals = p->signals;
+    r->project = part->project, r->h = plant->h;
+    if (n == 0) return;
+    point = sym_system_point(s);
+    s->n_events = sym_bind_function(arena, &s->events, sym_find(model, "formulas", NULL), part->pre, part->work, &point)
+                      ? p->n_crossings
+                      : 0;
+    s->event_direction = p->directions, s->event_terminal = p->terminal;
+    r->event_values = sym_allocate(arena, 3 * n), r->event_capacity = p->n_crossings;
+    r->event_t = sym_allocate(arena, n), r->event_q = sym_allocate(arena, n * (size_t)model->nq);
+    r->event_v = sym_allocate(arena, n * (size_t)model->nv);
+    r->event_index = sym_allocate_bytes(arena, n * sizeof *r->event_index);
+}
+
+/* Lay out every array and struct. */
+static void sym_program_allocate(sym_program_instance *instance, sym_arena *arena) {
+    const sym_program *p = instance->program;
     const sym_model *m = p->instants();
-    sym_diagram *d = &it->diagram;
-    sym_run **runs = sym_place_for(at, (size_t)p->n_parts * sizeof *runs);
+    const size_t nq = (size_t)m->nq, nv = (size_t)m->nv, nu = (size_t)m->nu, nc = (size_t)m->nc;
+    sym_diagram *d = &instance->diagram;
     int32_t i;
     memset(d, 0, sizeof *d);
-    d->n_parts = p->n_parts, d->parts = runs, d->q_at = p->q_at, d->v_at = p->v_at, d->c_at = p->c_at;
+    d->n_parts = p->n_parts, d->parts = sym_allocate_bytes(arena, (size_t)p->n_parts * sizeof *d->parts);
+    d->q_offset = p->q_offset, d->v_offset = p->v_offset, d->c_offset = p->c_offset;
     d->nq = m->nq, d->nv = m->nv, d->nu = m->nu, d->nc = m->nc;
-    d->n_signals = p->n_signals, d->signals = p->signals, d->looks_back = p->looks_back;
-    d->n_engaging = p->n_engaging, d->engaging = p->engaging, d->engaged = sym_take(at, (size_t)p->n_engaging);
-    d->base_n = p->base_n, d->base_d = p->base_d, d->cycle = p->cycle, d->n_instants = p->n_instants;
-    d->instant = p->instant, d->set = p->set, d->n_crossings = p->n_crossings;
-    d->q = sym_take(at, (size_t)m->nq), d->v = sym_take(at, (size_t)m->nv), d->u = sym_take(at, (size_t)m->nu);
-    d->t = sym_take(at, 1), d->a = sym_take(at, (size_t)m->nv), d->lam = sym_take(at, (size_t)m->nc);
-    it->par = sym_take(at, (size_t)m->npar), it->pre = sym_take(at, (size_t)m->npre);
-    it->parts = sym_place_for(at, (size_t)p->n_parts * sizeof *it->parts);
-    it->stages = sym_place_for(at, (size_t)p->n_sets * sizeof *it->stages);
-    it->sets = sym_place_for(at, (size_t)p->n_sets * sizeof *it->sets);
-    it->crossings = sym_place_for(at, (size_t)p->n_crossings * sizeof *it->crossings);
-    d->sets = it->sets, d->crossings = it->crossings;
-    /* Room for a crossing's two records, which nobody reads; it is emptied after each step of the caller's. */
-    d->capacity = 8, d->found_capacity = 4;
-    d->record_t = sym_take(at, 8), d->record_q = sym_take(at, 8 * (size_t)m->nq);
-    d->record_v = sym_take(at, 8 * (size_t)m->nv), d->record_u = sym_take(at, 8 * (size_t)m->nu);
-    d->found_t = sym_take(at, 4), d->found_which = sym_place_for(at, 4 * sizeof(int32_t));
-    sym_program_stages(it, at);
-    sym_program_call(it, at, &it->outputs, "signals");
-    it->signals = sym_take(at, (size_t)p->n_outputs);
-    for (i = 0; i < p->n_parts; ++i) {
-        const size_t size = sym_instance_size(p->parts[i]());
-        const sym_model *part = p->parts[i]()->model();
-        void *memory = sym_place_for(at, size);
-        double *watched = sym_take(at, 4 * (size_t)p->n_crossings);
-        double *found = sym_take(at, (size_t)p->n_crossings * (2 + (size_t)part->nq + (size_t)part->nv));
-        sym_run *r;
-        sym_scene *s;
-        if (at->base == NULL) continue;
-        it->parts[i] = sym_instance_in(memory, size, p->parts[i]());
-        if (it->parts[i] == NULL) continue;
-        r = runs[i] = &it->parts[i]->run, s = &it->parts[i]->scene;
-        s->constant = d->u, s->n_signals = p->n_signals, s->signals = p->signals;
-        r->project = it->parts[i]->projects, r->h = p->parts[i]()->h;
-        if (p->n_crossings > 0) {
-            const size_t n = (size_t)p->n_crossings;
-            s->events.function = sym_find(part, "formulas", NULL);
-            s->events.pre = it->parts[i]->pre, s->events.work = it->parts[i]->work, s->events.out[0] = watched + 3 * n;
-            s->n_events = s->events.function != NULL ? p->n_crossings : 0;
-            s->event_direction = p->directions, s->event_terminal = p->all_end;
-            r->event = watched, r->event_capacity = p->n_crossings;
-            r->found_t = found, r->found_q = found + n, r->found_v = r->found_q + n * (size_t)part->nq;
-            r->found_which = (int32_t *)(void *)(r->found_v + n * (size_t)part->nv);
-            if (s->n_events > 0) sym_bind(s, &s->events);
-        }
-    }
+    d->n_signals = p->n_signals, d->signals = p->signals, d->reads_accelerations = p->reads_accelerations;
+    d->n_locks = p->n_locks, d->lock_inputs = p->lock_inputs;
+    d->lock_values = sym_allocate(arena, (size_t)p->n_locks);
+    d->base_numerator = p->base_numerator, d->base_denominator = p->base_denominator;
+    d->cycle_ticks = p->cycle_ticks, d->n_instants = p->n_instants;
+    d->instant_tick = p->instant_tick, d->instant_set = p->instant_set, d->n_crossings = p->n_crossings;
+    d->q = sym_allocate(arena, nq), d->v = sym_allocate(arena, nv), d->u = sym_allocate(arena, nu);
+    d->t = sym_allocate(arena, 1), d->a = sym_allocate(arena, nv), d->lam = sym_allocate(arena, nc);
+    instance->par = sym_allocate(arena, (size_t)m->npar), instance->pre = sym_allocate(arena, (size_t)m->npre);
+    instance->work = sym_allocate(arena, sym_work(m));
+    instance->parts = sym_allocate_bytes(arena, (size_t)p->n_parts * sizeof *instance->parts);
+    instance->tasks = sym_allocate_bytes(arena, (size_t)p->n_sets * sizeof *instance->tasks);
+    instance->task_sets = sym_allocate_bytes(arena, (size_t)p->n_sets * sizeof *instance->task_sets);
+    instance->crossing_tasks = sym_allocate_bytes(arena, (size_t)p->n_crossings * sizeof *instance->crossing_tasks);
+    d->task_sets = instance->task_sets, d->crossing_tasks = instance->crossing_tasks;
+    d->capacity = SYM_PROGRAM_RECORDS, d->event_capacity = SYM_PROGRAM_EVENTS;
+    d->record_t = sym_allocate(arena, SYM_PROGRAM_RECORDS), d->record_q = sym_allocate(arena, SYM_PROGRAM_RECORDS * nq);
+    d->record_v = sym_allocate(arena, SYM_PROGRAM_RECORDS * nv);
+    d->record_u = sym_allocate(arena, SYM_PROGRAM_RECORDS * nu);
+    d->event_t = sym_allocate(arena, SYM_PROGRAM_EVENTS);
+    d->event_index = sym_allocate_bytes(arena, SYM_PROGRAM_EVENTS * sizeof *d->event_index);
+    sym_program_bind_tasks(instance, arena);
+    memset(&instance->outputs, 0, sizeof instance->outputs);
+    sym_program_bind(instance, arena, &instance->outputs, "signals");
+    instance->signals = sym_allocate(arena, (size_t)p->n_outputs);
+    for (i = 0; i < p->n_parts; ++i) sym_program_allocate_part(instance, arena, i);
 }
-
-static size_t sym_assembly_head(void) { return (sizeof(sym_assembly) + sizeof(double) - 1) / sizeof(double); }
 
 SYM_EXPORT size_t sym_program_size(const sym_program *program) {
-    sym_assembly draft;
-    sym_cursor at = {NULL, 0};
+    sym_program_instance draft;
+    sym_arena arena = {NULL, 0};
     memset(&draft, 0, sizeof draft);
     draft.program = program;
-    sym_program_furnish(&draft, &at);
-    return (sym_assembly_head() + at.used) * sizeof(double);
+    sym_program_allocate(&draft, &arena);
+    return (sym_doubles(sizeof draft) + arena.used) * sizeof(double);
 }
 
-SYM_EXPORT void sym_program_prepare(sym_assembly *it) {
+SYM_EXPORT void sym_program_prepare(sym_program_instance *instance) {
     int32_t i;
-    it->program->instants()->init(it->par, it->pre);
-    for (i = 0; i < it->program->n_parts; ++i) {
-        sym_instance *part = it->parts[i];
-        memcpy(part->par, it->par, (size_t)part->model->npar * sizeof(double));
+    instance->program->instants()->init(instance->par, instance->pre);
+    for (i = 0; i < instance->program->n_parts; ++i) {
+        sym_instance *part = instance->parts[i];
+        memcpy(part->par, instance->par, (size_t)part->model->npar * sizeof(double));
         sym_instance_prepare(part);
-        part->run.fresh = 0;
+        part->run.slope_valid = 0;
     }
 }
 
-/* The signals of the present time; accelerations and multipliers are those under the inputs held now. */
-static int32_t sym_program_listen(sym_assembly *it) {
-    const sym_function *f = it->outputs.function;
-    double *into = it->signals;
+/* signals <- outputs at the present time; accelerations and multipliers are those under the inputs held now. Returns 0 or
+ * a status. */
+static int32_t sym_program_update_signals(sym_program_instance *instance) {
+    const sym_function *f = instance->outputs.function;
+    double *into = instance->signals;
     int32_t i, status;
-    sym_gather(&it->diagram, *it->diagram.t);
+    sym_gather_states(&instance->diagram, *instance->diagram.t);
     if (f == NULL) return 0;
-    if (it->diagram.looks_back && (status = sym_look_back(&it->diagram)) != 0) return status;
-    sym_evaluate(&it->outputs);
+    if (instance->diagram.reads_accelerations && (status = sym_evaluate_parts(&instance->diagram)) != 0) return status;
+    sym_evaluate(&instance->outputs);
     for (i = 0; i < f->n_out; ++i) {
-        const size_t n = (size_t)f->out[i].rows * (size_t)f->out[i].cols;
-        memcpy(into, it->outputs.out[i], n * sizeof *into);
+        const size_t n = sym_array_size(&f->out[i]);
+        memcpy(into, instance->outputs.out[i], n * sizeof *into);
         into += n;
     }
     return 0;
 }
 
-SYM_EXPORT sym_assembly *sym_program_in(void *memory, size_t size, const sym_program *program) {
-    sym_assembly *it = memory;
-    sym_cursor at = {NULL, 0};
+SYM_EXPORT sym_program_instance *sym_program_init(void *memory, size_t size, const sym_program *program) {
+    sym_program_instance *instance = memory;
+    sym_arena arena = {NULL, 0};
     int32_t i;
     if (memory == NULL || size < sym_program_size(program)) return NULL;
     memset(memory, 0, size);
-    it->program = program;
-    at.base = (double *)memory + sym_assembly_head();
-    sym_program_furnish(it, &at);
-    memcpy(it->diagram.u, program->u_start, (size_t)it->diagram.nu * sizeof(double));
-    for (i = 0; i < program->n_engaging; ++i) it->diagram.engaged[i] = it->diagram.u[program->engaging[i]];
-    memcpy(it->par, program->instants()->par_default, (size_t)program->instants()->npar * sizeof(double));
+    instance->program = program;
+    arena.base = (double *)memory + sym_doubles(sizeof *instance);
+    sym_program_allocate(instance, &arena);
+    memcpy(instance->diagram.u, program->u_start, (size_t)instance->diagram.nu * sizeof(double));
+    for (i = 0; i < program->n_locks; ++i)
+        instance->diagram.lock_values[i] = instance->diagram.u[program->lock_inputs[i]];
+    memcpy(instance->par, program->instants()->par_default, (size_t)program->instants()->npar * sizeof(double));
     for (i = 0; i < program->n_parts; ++i)
-        if (it->parts[i] == NULL) return NULL;
-    sym_program_prepare(it);
+        if (instance->parts[i] == NULL) return NULL;
+    sym_program_prepare(instance);
     for (i = 0; i < program->n_parts; ++i) {
-        if (it->parts[i]->projects && sym_instance_close(it->parts[i]) != 0) return NULL;
-        if (sym_start(&it->parts[i]->run) < 0) return NULL;
+        if (instance->parts[i]->project && sym_instance_project(instance->parts[i]) != 0) return NULL;
+        if (sym_run_start(&instance->parts[i]->run) < 0) return NULL;
     }
-    if (sym_diagram_start(&it->diagram) != 0) return NULL;
-    return it;
+    if (sym_diagram_start(&instance->diagram) != 0) return NULL;
+    return instance;
 }
 
-SYM_EXPORT int32_t sym_program_advance(sym_assembly *it, double t) {
-    sym_diagram *d = &it->diagram;
-    int32_t status = SYM_GOING;
-    d->t_end = t, d->ended = 0;
-    while (status == SYM_GOING || status == SYM_FULL) {
-        d->n_records = d->n_found = 0;
+SYM_EXPORT int32_t sym_program_advance(sym_program_instance *instance, double t) {
+    sym_diagram *d = &instance->diagram;
+    int32_t status = SYM_RUNNING;
+    d->t_end = t, d->finished = 0;
+    while (status == SYM_RUNNING || status == SYM_RECORDS_FULL) {
+        d->n_records = d->n_event_records = 0;
         status = sym_diagram_advance(d, 1);
     }
-    d->n_records = d->n_found = 0;
-    if (status != SYM_DONE) return status;
-    status = sym_program_listen(it);
-    return status == 0 ? SYM_DONE : status;
+    d->n_records = d->n_event_records = 0;
+    if (status != SYM_FINISHED) return status;
+    status = sym_program_update_signals(instance);
+    return status == 0 ? SYM_FINISHED : status;
 }

@@ -1,11 +1,11 @@
-/* symofros_program.h - a diagram as a program of its own: constants that are generated, and memory that the caller owns.
- * Written by hand; C99.
+/* symofros_program.h - an exported block diagram: generated constants, and memory that the caller owns. Written by hand;
+ * C99.
  *
  *     void *memory = malloc(sym_program_size(square_program()));
- *     sym_assembly *square = sym_program_in(memory, size, square_program());
- *     status = sym_program_advance(square, 0.001);   // on to that time; square->signals are those of then
+ *     sym_program_instance *square = sym_program_init(memory, size, square_program());
+ *     status = sym_program_advance(square, 0.001);   // square->signals are those of that time
  *
- * After sym_program_in nothing allocates. Set square->par and call sym_program_prepare to change parameters.
+ * After sym_program_init nothing allocates. Set square->par and call sym_program_prepare to change parameters.
  */
 #ifndef SYMOFROS_PROGRAM_H
 #define SYMOFROS_PROGRAM_H
@@ -22,41 +22,42 @@ typedef struct sym_program {
     const sym_model *(*instants)(void);           /* functions due_i, crossed_i, signals */
     int32_t n_parts;
     const sym_plant *(*const *parts)(void);
-    const int32_t *q_at, *v_at, *c_at;
+    const int32_t *q_offset, *v_offset, *c_offset; /* (n_parts) first index of each part's q, v, lam */
     const double *u_start;
-    int32_t n_signals, n_engaging, n_crossings, looks_back;
+    int32_t n_signals, n_locks, n_crossings, reads_accelerations;
     const sym_signal *signals;                    /* inputs by samples over time */
-    const int32_t *engaging;
-    const int32_t *directions, *all_end;          /* (n_crossings) 1 rising, -1 falling, 0 both; ones */
-    double base_n, base_d;                        /* instants: multiples of base_n / base_d seconds */
-    int64_t cycle, n_instants;
-    const int64_t *instant;
-    const int32_t *set;
+    const int32_t *lock_inputs;                   /* (n_locks) entries of u that engage constraints */
+    const int32_t *directions, *terminal;         /* (n_crossings) 1 rising, -1 falling, 0 both; ones */
+    double base_numerator, base_denominator;      /* instants: multiples of this fraction of a second */
+    int64_t cycle_ticks, n_instants;
+    const int64_t *instant_tick;                  /* (n_instants) from the start of a cycle */
+    const int32_t *instant_set;                   /* (n_instants) index of the set that is due */
     int32_t n_sets, n_outputs;
-    const char *const *due;                       /* (n_sets) the function of each set */
-    const char *const *output_names;              /* (n_outputs) of the entries of `signals` */
+    const char *const *set_functions;             /* (n_sets) name of each set's function */
+    const char *const *output_names;              /* (n_outputs) names of the entries of `signals` */
 } sym_program;
 
-typedef struct sym_assembly {
+typedef struct sym_program_instance {
     const sym_program *program;
     sym_diagram diagram;
     sym_instance **parts;
-    double *par;      /* (npar) */
-    double *pre;      /* what depends on parameters alone, for instants */
-    double *signals;  /* (n_outputs) at the present time */
-    sym_stage *stages, *crossings;
-    sym_instant *sets;
+    double *par;        /* (npar) */
+    double *pre, *work; /* of the instants' model: what depends on parameters alone, and scratch */
+    double *signals;    /* (n_outputs) at the present time */
+    sym_task *tasks, *crossing_tasks;
+    sym_task_set *task_sets;
     sym_call outputs;
-} sym_assembly;
+} sym_program_instance;
 
-/* Bytes that an assembly needs, aligned as doubles and pointers are. */
+/* Bytes that an instance needs, aligned as doubles and pointers are. */
 size_t sym_program_size(const sym_program *program);
-/* An assembly in that memory, at its start; NULL where the memory is too small or a first state closes no loop. */
-sym_assembly *sym_program_in(void *memory, size_t size, const sym_program *program);
-/* What depends on parameters alone. */
-void sym_program_prepare(sym_assembly *it);
-/* On to a time, instants on the way included. Returns SYM_DONE or a status below zero. */
-int32_t sym_program_advance(sym_assembly *it, double t);
+/* An instance in that memory, at its start; NULL where the memory is too small, or an initial state can't be projected onto
+ * the constraints. */
+sym_program_instance *sym_program_init(void *memory, size_t size, const sym_program *program);
+/* Evaluate what depends on parameters alone. */
+void sym_program_prepare(sym_program_instance *instance);
+/* Integrate to time t, executing instants on the way. Returns SYM_FINISHED or a status below zero. */
+int32_t sym_program_advance(sym_program_instance *instance, double t);
 
 #ifdef __cplusplus
 }

@@ -105,20 +105,20 @@ static void mdlStart(SimStruct *S) {
     const sym_plant *plant = chosen(S, &kind);
     const size_t size = sym_instance_size(plant);
     void *memory = malloc(size);
-    sym_instance *it = sym_instance_in(memory, size, plant);
+    sym_instance *instance = sym_instance_init(memory, size, plant);
     const mxArray *par = ssGetSFcnParam(S, 2);
     int32_t i;
-    ssGetPWork(S)[0] = it;
-    if (it == NULL) {
+    ssGetPWork(S)[0] = instance;
+    if (instance == NULL) {
         free(memory);
         ssSetErrorStatus(S, "symoSFunction: no memory");
         return;
     }
     if (mxGetNumberOfElements(par) != 0) {
-        memcpy(it->par, mxGetPr(par), (size_t)it->model->npar * sizeof(double));
-        sym_instance_prepare(it);
+        memcpy(instance->par, mxGetPr(par), (size_t)instance->model->npar * sizeof(double));
+        sym_instance_prepare(instance);
     }
-    for (i = 0; i < 2 * it->model->nc; ++i) it->gains[i] = GAIN;
+    for (i = 0; i < 2 * instance->model->nc; ++i) instance->gains[i] = GAIN;
 }
 
 #define MDL_INITIALIZE_CONDITIONS
@@ -134,74 +134,74 @@ static void mdlInitializeConditions(SimStruct *S) {
 
 /* The instance's point: from the states, and from the ports. */
 static sym_instance *here(SimStruct *S, int *kind) {
-    sym_instance *it = ssGetPWork(S)[0];
-    const sym_model *m = it->model;
+    sym_instance *instance = ssGetPWork(S)[0];
+    const sym_model *m = instance->model;
     int i, n = 0;
     (void)chosen(S, kind);
-    it->t = ssGetT(S);
+    instance->t = ssGetT(S);
     if (*kind == DIRECT) {
         const real_T *x = ssGetContStates(S);
-        memcpy(it->q, x, (size_t)m->nq * sizeof *x);
-        memcpy(it->v, x + m->nq, (size_t)m->nv * sizeof *x);
+        memcpy(instance->q, x, (size_t)m->nq * sizeof *x);
+        memcpy(instance->v, x + m->nq, (size_t)m->nv * sizeof *x);
     }
     for (i = 0; i < 3; ++i) {
         const int what = inputs_of[*kind][i];
         const int32_t w = width(m, what);
         if (w == 0) continue;
-        memcpy(what == OF_Q ? it->q : what == OF_V ? it->v : what == OF_A ? it->a : it->u,
+        memcpy(what == OF_Q ? instance->q : what == OF_V ? instance->v : what == OF_A ? instance->a : instance->u,
                ssGetInputPortRealSignal(S, n++), (size_t)w * sizeof(double));
     }
-    return it;
+    return instance;
 }
 
-static void call(SimStruct *S, sym_instance *it, const char *name, const char *frame, double *const *out) {
-    if (!sym_instance_call(it, sym_find(it->model, name, frame), out))
+static void call(SimStruct *S, sym_instance *instance, const char *name, const char *frame, double *const *out) {
+    if (!sym_instance_call(instance, sym_find(instance->model, name, frame), out))
         ssSetErrorStatus(S, "symoSFunction: the model was exported without this function");
 }
 
 static void mdlOutputs(SimStruct *S, int_T tid) {
     int kind = 0;
-    sym_instance *it = here(S, &kind);
-    const sym_model *m = it->model;
+    sym_instance *instance = here(S, &kind);
+    const sym_model *m = instance->model;
     double *out[3], *y0 = ssGetOutputPortRealSignal(S, 0), rotation[9];
     int32_t i;
     (void)tid;
     if (kind == DIRECT) {
-        if (sym_instance_accelerate(it) != 0) ssSetErrorStatus(S, "symoSFunction: no finite acceleration");
-        memcpy(y0, it->q, (size_t)m->nq * sizeof *y0);
-        memcpy(ssGetOutputPortRealSignal(S, 1), it->v, (size_t)m->nv * sizeof *y0);
-        memcpy(ssGetOutputPortRealSignal(S, 2), it->a, (size_t)m->nv * sizeof *y0);
-        if (m->nc > 0) memcpy(ssGetOutputPortRealSignal(S, 3), it->lam, (size_t)m->nc * sizeof *y0);
+        if (sym_instance_accelerate(instance) != 0) ssSetErrorStatus(S, "symoSFunction: no finite acceleration");
+        memcpy(y0, instance->q, (size_t)m->nq * sizeof *y0);
+        memcpy(ssGetOutputPortRealSignal(S, 1), instance->v, (size_t)m->nv * sizeof *y0);
+        memcpy(ssGetOutputPortRealSignal(S, 2), instance->a, (size_t)m->nv * sizeof *y0);
+        if (m->nc > 0) memcpy(ssGetOutputPortRealSignal(S, 3), instance->lam, (size_t)m->nc * sizeof *y0);
     } else if (kind == INVERSE) {
         out[0] = y0;
-        call(S, it, "inverse_dynamics", NULL, out);
+        call(S, instance, "inverse_dynamics", NULL, out);
     } else if (kind == TERMS) {
         double *gnl = ssGetOutputPortRealSignal(S, 1);
-        out[0] = y0, out[1] = it->a, out[2] = gnl; /* h where accelerations are not needed */
-        call(S, it, "dynamics", NULL, out);
-        for (i = 0; i < m->nv; ++i) gnl[i] -= it->a[i];
+        out[0] = y0, out[1] = instance->a, out[2] = gnl; /* h where accelerations are not needed */
+        call(S, instance, "dynamics", NULL, out);
+        for (i = 0; i < m->nv; ++i) gnl[i] -= instance->a[i];
     } else if (kind == KINEMATICS) {
         double *y1 = ssGetOutputPortRealSignal(S, 1);
-        for (i = 0; i < it->plant->n_frames; ++i) {
-            const char *frame = it->plant->frame_names[i];
+        for (i = 0; i < instance->plant->n_frames; ++i) {
+            const char *frame = instance->plant->frame_names[i];
             out[0] = y0 + (size_t)3 * (size_t)i, out[1] = rotation;
-            call(S, it, "frame_pose", frame, out);
+            call(S, instance, "frame_pose", frame, out);
             out[0] = y1 + (size_t)6 * (size_t)i;
-            call(S, it, "frame_velocity", frame, out);
+            call(S, instance, "frame_velocity", frame, out);
         }
     } else {
         out[0] = y0;
-        call(S, it, "kinetic_energy", NULL, out);
+        call(S, instance, "kinetic_energy", NULL, out);
         out[0] = ssGetOutputPortRealSignal(S, 1);
-        call(S, it, "potential_energy", NULL, out);
+        call(S, instance, "potential_energy", NULL, out);
     }
 }
 
 #define MDL_DERIVATIVES
 static void mdlDerivatives(SimStruct *S) {
     int kind = 0;
-    sym_instance *it = here(S, &kind);
-    if (kind == DIRECT && sym_instance_rates(it, ssGetdX(S)) != 0)
+    sym_instance *instance = here(S, &kind);
+    if (kind == DIRECT && sym_instance_rates(instance, ssGetdX(S)) != 0)
         ssSetErrorStatus(S, "symoSFunction: no finite acceleration");
 }
 

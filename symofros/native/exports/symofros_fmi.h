@@ -3,34 +3,34 @@
  * Each function checks whether the call is allowed in the present mode, and returns FMU_OK or the code of what is wrong.
  */
 
-static const char *fmi_words(int found) {
+static const char *fmi_message(int found) {
     switch (found) {
     case FMU_UNKNOWN: return "no such variable, or not one for this call";
-    case FMU_NO_MOTION: return "no finite acceleration, or constraints that can't be met";
+    case FMU_SINGULAR: return "no finite acceleration, or constraints that can't be met";
     case FMU_WRONG_MODE: return "the call is not allowed in this mode";
-    case FMU_NO_START: return "no state near the start meets the constraints";
+    case FMU_START_NOT_CONSISTENT: return "no state near the start meets the constraints";
     case FMU_STOP_BEFORE_START: return "the stop time is before the start time";
     case FMU_NO_MEMORY: return "no memory";
-    case FMU_FOREIGN: return "the state is of another model or kind";
-    case FMU_TOO_SHORT: return "too few bytes";
+    case FMU_OTHER_MODEL: return "the state is of another model or kind";
+    case FMU_BUFFER_TOO_SMALL: return "too few bytes";
     default: return "not allowed in this mode, or not a legal value";
     }
 }
 
-static int fmi_allow(int condition) { return condition ? FMU_OK : FMU_WRONG_MODE; }
+static int fmi_require(int condition) { return condition ? FMU_OK : FMU_WRONG_MODE; }
 
 /* Times and tolerance of the run to come. */
 static int fmi_prepare(fmu *f, int has_tolerance, double tolerance, double start, int has_stop, double stop) {
     if (f->phase != FMU_INSTANTIATED) return FMU_WRONG_MODE;
     if (has_stop && !(stop >= start)) return FMU_STOP_BEFORE_START;
-    if (has_tolerance && tolerance > 0.0 && f->it->run.adaptive) f->it->run.rtol = tolerance;
-    f->it->t = start, f->stops = has_stop, f->stop = stop;
+    if (has_tolerance && tolerance > 0.0 && f->instance->run.adaptive) f->instance->run.rtol = tolerance;
+    f->instance->t = start, f->has_stop = has_stop, f->stop = stop;
     return FMU_OK;
 }
 
 static int fmi_exit_initialisation(fmu *f) {
     if (f->phase != FMU_INITIALISING) return FMU_WRONG_MODE;
-    return fmu_initialise(f) == FMU_OK ? FMU_OK : FMU_NO_START;
+    return fmu_initialise(f) == FMU_OK ? FMU_OK : FMU_START_NOT_CONSISTENT;
 }
 
 static int fmi_terminate(fmu *f) {
@@ -46,7 +46,7 @@ static int fmi_reset(fmu *f) {
 
 static int fmi_get(fmu *f, const uint32_t *references, size_t n, double *values) {
     size_t i;
-    int found = fmi_allow(f->phase != FMU_INSTANTIATED);
+    int found = fmi_require(f->phase != FMU_INSTANTIATED);
     for (i = 0; i < n && found == FMU_OK; ++i) found = fmu_get(f, references[i], &values[i]);
     return found;
 }
@@ -67,7 +67,7 @@ static int fmi_save(fmu *f, void **state) {
 
 static int fmi_load(fmu *f, const void *state) {
     if (state == NULL) return FMU_WRONG_MODE;
-    return fmu_load(f, state) ? FMU_OK : FMU_FOREIGN;
+    return fmu_load(f, state) ? FMU_OK : FMU_OTHER_MODEL;
 }
 
 static int fmi_forget(void **state) {
@@ -83,13 +83,13 @@ static int fmi_size(const fmu *f, const void *state, size_t *size) {
 
 static int fmi_pack(const fmu *f, const void *state, void *bytes, size_t size) {
     if (state == NULL) return FMU_WRONG_MODE;
-    if (size < fmu_snapshot_size(f)) return FMU_TOO_SHORT;
+    if (size < fmu_snapshot_size(f)) return FMU_BUFFER_TOO_SMALL;
     memcpy(bytes, state, fmu_snapshot_size(f));
     return FMU_OK;
 }
 
 static int fmi_unpack(const fmu *f, const void *bytes, size_t size, void **state) {
-    if (size != fmu_snapshot_size(f)) return FMU_FOREIGN;
+    if (size != fmu_snapshot_size(f)) return FMU_OTHER_MODEL;
     if (*state == NULL) *state = malloc(size);
     if (*state == NULL) return FMU_NO_MEMORY;
     memcpy(*state, bytes, size);
@@ -118,24 +118,24 @@ static int fmi_continuous_mode(fmu *f) {
 
 static int fmi_set_time(fmu *f, double t) {
     if (f->cosim || (f->phase != FMU_CONTINUOUS && f->phase != FMU_EVENT)) return FMU_WRONG_MODE;
-    f->it->t = t, f->fresh = 0;
+    f->instance->t = t, f->rates_valid = 0;
     return FMU_OK;
 }
 
-static size_t fmi_states(const fmu *f) { return (size_t)f->it->model->nq + (size_t)f->it->model->nv; }
+static size_t fmi_states(const fmu *f) { return (size_t)f->instance->model->nq + (size_t)f->instance->model->nv; }
 
 static int fmi_set_states(fmu *f, const double *x, size_t n) {
-    const size_t nq = (size_t)f->it->model->nq;
+    const size_t nq = (size_t)f->instance->model->nq;
     if (f->cosim || f->phase != FMU_CONTINUOUS || n != fmi_states(f)) return FMU_WRONG_MODE;
-    memcpy(f->it->q, x, nq * sizeof *x), memcpy(f->it->v, x + nq, (n - nq) * sizeof *x);
-    f->fresh = 0;
+    memcpy(f->instance->q, x, nq * sizeof *x), memcpy(f->instance->v, x + nq, (n - nq) * sizeof *x);
+    f->rates_valid = 0;
     return FMU_OK;
 }
 
 static int fmi_get_states(const fmu *f, double *x, size_t n) {
-    const size_t nq = (size_t)f->it->model->nq;
+    const size_t nq = (size_t)f->instance->model->nq;
     if (f->cosim || f->phase < FMU_INITIALISING || n != fmi_states(f)) return FMU_WRONG_MODE;
-    memcpy(x, f->it->q, nq * sizeof *x), memcpy(x + nq, f->it->v, (n - nq) * sizeof *x);
+    memcpy(x, f->instance->q, nq * sizeof *x), memcpy(x + nq, f->instance->v, (n - nq) * sizeof *x);
     return FMU_OK;
 }
 

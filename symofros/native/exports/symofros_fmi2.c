@@ -11,7 +11,7 @@ static fmi2Status say(const fmu *f, fmi2Status status, const char *message) {
 
 static fmi2Status outcome(const fmu *f, int found) {
     if (found == FMU_OK) return fmi2OK;
-    return say(f, found == FMU_NO_MOTION ? fmi2Discard : fmi2Error, fmi_words(found));
+    return say(f, found == FMU_SINGULAR ? fmi2Discard : fmi2Error, fmi_message(found));
 }
 
 #define ANSWER(found) \
@@ -227,7 +227,7 @@ fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
     fmu *f = c;
     ALLOWED(f->cosim && kind == fmi2LastSuccessfulTime);
-    *value = f->it->t;
+    *value = f->instance->t;
     return fmi2OK;
 }
 

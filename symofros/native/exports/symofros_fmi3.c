@@ -9,7 +9,7 @@ static fmi3Status say(const fmu *f, fmi3Status status, const char *message) {
 
 static fmi3Status outcome(const fmu *f, int found) {
     if (found == FMU_OK) return fmi3OK;
-    return say(f, found == FMU_NO_MOTION ? fmi3Discard : fmi3Error, fmi_words(found));
+    return say(f, found == FMU_SINGULAR ? fmi3Discard : fmi3Error, fmi_message(found));
 }
 
 #define ANSWER(found) \
@@ -250,6 +250,6 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean 
     ALLOWED(f->cosim && f->phase == FMU_STEPPING);
     *event = *terminate = *early = fmi3False;
     found = fmu_step(f, t, h);
-    *last = f->it->t;
+    *last = f->instance->t;
     return outcome(f, found);
 }

@@ -1,11 +1,11 @@
 /* A model as a function of Matlab or Octave. Written by hand. Included by the file that names the model: it defines
  * SYM_MEX_PLANT, SYM_MEX_NAME (a string), sym_mex_help, and the beams: SYM_MEX_BEAMS, sym_mex_beams[]. */
 
-static sym_instance *it;
+static sym_instance *instance;
 
 static void forget(void) {
-    free(it);
-    it = NULL;
+    free(instance);
+    instance = NULL;
 }
 
 static void refuse(const char *id, const char *what, const char *rule) {
@@ -61,25 +61,25 @@ static void take(int count, const mxArray *const *given, int which, const char *
 
 /* X, then what follows from `from` on: U, Parameters and, but for a simulation, t. */
 static void place(int count, const mxArray *const *given, int from, int with_time) {
-    const sym_model *m = it->model;
+    const sym_model *m = instance->model;
     const int32_t nx = m->nq + m->nv;
     double *x = mxMalloc((size_t)(nx + m->npar + 1) * sizeof *x), *par = x + nx;
     take(count, given, 1, "X = [q; v]", nx, x, NULL);
-    memcpy(it->q, x, (size_t)m->nq * sizeof *x);
-    memcpy(it->v, x + m->nq, (size_t)m->nv * sizeof *x);
-    take(count, given, from, "U", m->nu, it->u, it->plant->u_start);
+    memcpy(instance->q, x, (size_t)m->nq * sizeof *x);
+    memcpy(instance->v, x + m->nq, (size_t)m->nv * sizeof *x);
+    take(count, given, from, "U", m->nu, instance->u, instance->plant->u_start);
     take(count, given, from + 1, "Parameters", m->npar, par, m->par_default);
-    if (memcmp(par, it->par, (size_t)m->npar * sizeof *par) != 0) {
-        memcpy(it->par, par, (size_t)m->npar * sizeof *par);
-        sym_instance_prepare(it);
+    if (memcmp(par, instance->par, (size_t)m->npar * sizeof *par) != 0) {
+        memcpy(instance->par, par, (size_t)m->npar * sizeof *par);
+        sym_instance_prepare(instance);
     }
-    it->t = 0.0;
-    if (with_time) take(count, given, from + 2, "t", 1, &it->t, &it->t);
+    instance->t = 0.0;
+    if (with_time) take(count, given, from + 2, "t", 1, &instance->t, &instance->t);
     mxFree(x);
 }
 
 static const sym_function *function(const char *name, const char *frame) {
-    const sym_function *f = sym_find(it->model, name, frame);
+    const sym_function *f = sym_find(instance->model, name, frame);
     if (f == NULL) refuse("absent", name, "the model was exported without this function");
     return f;
 }
@@ -93,7 +93,7 @@ static double *evaluate(const sym_function *f, double **out) {
     memory = mxMalloc(total * sizeof *memory);
     out[0] = memory;
     for (k = 1; k < f->n_out; ++k) out[k] = out[k - 1] + (size_t)f->out[k - 1].rows * (size_t)f->out[k - 1].cols;
-    if (!sym_instance_call(it, f, out)) refuse("absent", f->name, "it needs what an instance does not hold");
+    if (!sym_instance_call(instance, f, out)) refuse("absent", f->name, "it needs what an instance does not hold");
     return memory;
 }
 
@@ -109,8 +109,8 @@ static void describe(int nlhs, mxArray **plhs) {
     static const char *parameter[] = {"names", "values"};
     static const char *frame[] = {"names"};
     static const char *info[] = {"name", "hash", "generator", "functions"};
-    const sym_model *m = it->model;
-    const sym_plant *p = it->plant;
+    const sym_model *m = instance->model;
+    const sym_plant *p = instance->plant;
     const int32_t numbers[7] = {m->nq, m->nv, m->nu, m->npar, m->nc, m->nq + m->nv, p->n_frames};
     mxArray *made[6];
     double *x;
@@ -154,27 +154,27 @@ static void dynamics(int nlhs, mxArray **plhs) {
     double *out[8];
     int32_t i;
     evaluate(f, out);
-    for (i = 0; i < it->model->nv; ++i) out[2][i] -= out[1][i];
+    for (i = 0; i < instance->model->nv; ++i) out[2][i] -= out[1][i];
     plhs[0] = as_array(f, 0, out[0]);
-    if (nlhs > 1) plhs[1] = column(it->model->nv, out[2]);
+    if (nlhs > 1) plhs[1] = column(instance->model->nv, out[2]);
 }
 
 static void motion(int nlhs, mxArray **plhs) {
-    sym_instance_accelerate(it); /* NaN where there is none */
-    plhs[0] = column(it->model->nv, it->a);
-    if (nlhs > 1) plhs[1] = column(it->model->nc, it->lam);
+    sym_instance_accelerate(instance); /* NaN where there is none */
+    plhs[0] = column(instance->model->nv, instance->a);
+    if (nlhs > 1) plhs[1] = column(instance->model->nc, instance->lam);
 }
 
 static void inverse(int count, const mxArray *const *given, mxArray **plhs) {
     const sym_function *f = function("inverse_dynamics", NULL);
     double *out[8];
-    take(count, given, 2, "A, the accelerations", it->model->nv, it->a, NULL);
+    take(count, given, 2, "A, the accelerations", instance->model->nv, instance->a, NULL);
     evaluate(f, out);
-    plhs[0] = column(it->model->nv, out[0]);
+    plhs[0] = column(instance->model->nv, out[0]);
 }
 
 static const char *frame_of(const mxArray *array) {
-    const sym_plant *p = it->plant;
+    const sym_plant *p = instance->plant;
     char *name;
     int32_t i;
     if (array != NULL && mxIsChar(array)) {
@@ -210,9 +210,9 @@ static void kinematics(int nlhs, mxArray **plhs, const char *frame) {
 /* 5, 6: [residual, G, gamma] of the conditions on coordinates, or of those on speeds alone. */
 static void constraints(int nlhs, mxArray **plhs, int on_speeds) {
     static const char *const names[3] = {"constraint", "constraint_jacobian", "constraint_bias"};
-    const sym_model *m = it->model;
+    const sym_model *m = instance->model;
     int32_t i, j, k, rows = 0;
-    for (i = 0; i < m->nc; ++i) rows += it->plant->on_speeds[i] == on_speeds;
+    for (i = 0; i < m->nc; ++i) rows += instance->plant->on_speeds[i] == on_speeds;
     for (k = 0; k < 3 && (k < nlhs || k == 0); ++k) {
         const int32_t columns = k == 1 ? m->nv : 1;
         mxArray *found = mxCreateDoubleMatrix((mwSize)rows, (mwSize)columns, mxREAL);
@@ -221,7 +221,7 @@ static void constraints(int nlhs, mxArray **plhs, int on_speeds) {
             int32_t row = 0;
             evaluate(function(k == 0 && on_speeds ? "constraint_rate" : names[k], NULL), out);
             for (i = 0; i < m->nc; ++i) {
-                if (it->plant->on_speeds[i] != on_speeds) continue;
+                if (instance->plant->on_speeds[i] != on_speeds) continue;
                 for (j = 0; j < columns; ++j) into[(size_t)j * (size_t)rows + (size_t)row] = out[0][(size_t)i * (size_t)columns + (size_t)j];
                 ++row;
             }
@@ -241,7 +241,7 @@ static void energy(int nlhs, mxArray **plhs) {
 
 /* 8: [A, B] of x' = A x + B u, x = (change of q along the manifold, change of v). */
 static void linearisation(int nlhs, mxArray **plhs) {
-    const sym_model *m = it->model;
+    const sym_model *m = instance->model;
     const size_t nv = (size_t)m->nv, nu = (size_t)m->nu;
     double *out[8], *A, *B, *change = mxCalloc(2 * nv + 1, sizeof *change), *x = change + nv;
     size_t i, j;
@@ -251,7 +251,7 @@ static void linearisation(int nlhs, mxArray **plhs) {
     for (j = 0; j < nv; ++j) {
         memset(change, 0, 2 * nv * sizeof *change);
         x[j] = 1.0;
-        sym_chart_rate_by_theta(&it->scene, it->v, x, 1.0, change);
+        sym_chart_rate_jacobian(&instance->system, instance->v, x, 1.0, change);
         for (i = 0; i < nv; ++i) {
             A[j * 2 * nv + i] = change[i];
             A[(nv + j) * 2 * nv + i] = i == j ? 1.0 : 0.0;
@@ -268,7 +268,7 @@ static void linearisation(int nlhs, mxArray **plhs) {
 
 /* 9: [T, X] = model(9, X, U, Parameters, [t0 t_end dt]): steps with inputs held. */
 static void simulate(int nlhs, mxArray **plhs, int count, const mxArray *const *given) {
-    const sym_model *m = it->model;
+    const sym_model *m = instance->model;
     const size_t nq = (size_t)m->nq, nv = (size_t)m->nv;
     double span[3], *t, *x;
     size_t n, i, k;
@@ -279,16 +279,16 @@ static void simulate(int nlhs, mxArray **plhs, int count, const mxArray *const *
     plhs[0] = mxCreateDoubleMatrix(n, 1, mxREAL);
     t = mxGetPr(plhs[0]);
     x = mxMalloc(n * (nq + nv + 1) * sizeof *x);
-    it->t = span[0], it->run.h = 0.0;
+    instance->t = span[0], instance->run.h = 0.0;
     for (k = 0; k < n; ++k) {
         if (k > 0) {
             const double next = span[0] + (double)k * span[2];
-            if (sym_instance_advance(it, next < span[1] ? next : span[1], span[2]) != SYM_DONE)
+            if (sym_instance_advance(instance, next < span[1] ? next : span[1], span[2]) != SYM_FINISHED)
                 refuse("motion", "the motion ends early", "accelerations exist and are finite, and loops can be closed");
         }
-        t[k] = it->t;
-        for (i = 0; i < nq; ++i) x[i * n + k] = it->q[i];
-        for (i = 0; i < nv; ++i) x[(nq + i) * n + k] = it->v[i];
+        t[k] = instance->t;
+        for (i = 0; i < nq; ++i) x[i * n + k] = instance->q[i];
+        for (i = 0; i < nv; ++i) x[(nq + i) * n + k] = instance->v[i];
     }
     if (nlhs < 2) return;
     plhs[1] = mxCreateDoubleMatrix(n, nq + nv, mxREAL);
@@ -303,11 +303,11 @@ SYM_MEX_EXPORT void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArr
         mexPrintf("%s", sym_mex_help);
         return;
     }
-    if (it == NULL) {
+    if (instance == NULL) {
         const size_t size = sym_instance_size(SYM_MEX_PLANT());
         void *memory = malloc(size);
-        it = sym_instance_in(memory, size, SYM_MEX_PLANT());
-        if (it == NULL) {
+        instance = sym_instance_init(memory, size, SYM_MEX_PLANT());
+        if (instance == NULL) {
             free(memory);
             refuse("memory", "no memory", "a model needs some");
         }

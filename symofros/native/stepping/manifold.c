@@ -1,12 +1,14 @@
-/* The configuration manifold: q = q0 + theta, and how theta changes. docs/theory/simulation.md, (1) to (3). */
+/* The configuration manifold: retraction q = q0 (+) theta and the rate of theta. docs/theory/simulation.md, (1), (2). */
 
-static void sym_turn(const double *w, double *quaternion) {
+/* Quaternion (x, y, z, w) of the rotation vector w. */
+static void sym_quaternion_exp(const double *w, double *quaternion) {
     const double angle2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2], angle = sqrt(angle2);
     /* Below 1e-4 the series is exact to rounding and the closed form loses digits. */
     const double f = angle < 1e-4 ? 0.5 - angle2 / 48.0 : sin(0.5 * angle) / angle;
     quaternion[0] = f * w[0], quaternion[1] = f * w[1], quaternion[2] = f * w[2], quaternion[3] = cos(0.5 * angle);
 }
 
+/* c = a b, normalised. */
 static void sym_quaternion_product(const double *a, const double *b, double *c) {
     const double x = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1];
     const double y = a[3] * b[1] + a[1] * b[3] + a[2] * b[0] - a[0] * b[2];
@@ -21,7 +23,7 @@ static void sym_cross(const double *a, const double *b, double *c) {
     c[0] = x, c[1] = y, c[2] = z;
 }
 
-/* R(quaternion) x */
+/* y = R(quaternion) x */
 static void sym_rotate(const double *quaternion, const double *x, double *y) {
     double t[3], s[3];
     int i;
@@ -31,87 +33,89 @@ static void sym_rotate(const double *quaternion, const double *x, double *y) {
     for (i = 0; i < 3; ++i) y[i] = x[i] + quaternion[3] * t[i] + s[i];
 }
 
-/* q = q0 moved by theta: of a pose, theta = (shift in the axes of q0; rotation vector). */
-static void sym_retract(const sym_scene *scene, const double *q0, const double *theta, double *q) {
+/* q = q0 (+) theta, (1). Of a pose, theta = (displacement in the axes of q0; rotation vector). */
+static void sym_retract(const sym_system *system, const double *q0, const double *theta, double *q) {
     int s, i;
-    for (s = 0; s < scene->n_segments; ++s) {
-        const sym_segment *seg = &scene->segments[s];
+    for (s = 0; s < system->n_segments; ++s) {
+        const sym_segment *seg = &system->segments[s];
         const double *a = q0 + seg->q, *x = theta + seg->v;
-        double *b = q + seg->q, turn[4], shift[3];
-        if (seg->kind == 0) {
+        double *b = q + seg->q, rotation[4], displacement[3];
+        if (seg->kind == SYM_SEGMENT_LINEAR) {
             for (i = 0; i < seg->size; ++i) b[i] = a[i] + x[i];
-        } else if (seg->kind == 1) {
-            sym_turn(x, turn);
-            sym_quaternion_product(a, turn, b);
+        } else if (seg->kind == SYM_SEGMENT_QUATERNION) {
+            sym_quaternion_exp(x, rotation);
+            sym_quaternion_product(a, rotation, b);
         } else {
-            sym_rotate(a + 3, x, shift);
-            for (i = 0; i < 3; ++i) b[i] = a[i] + shift[i];
-            sym_turn(x + 3, turn);
-            sym_quaternion_product(a + 3, turn, b + 3);
+            sym_rotate(a + 3, x, displacement);
+            for (i = 0; i < 3; ++i) b[i] = a[i] + displacement[i];
+            sym_quaternion_exp(x + 3, rotation);
+            sym_quaternion_product(a + 3, rotation, b + 3);
         }
     }
 }
 
-/* Twists of poses in theta become shifts, in place: what the constant velocity theta moves in unit time,
- * v + A w x v + B w x (w x v). */
-static void sym_unroll(const sym_scene *scene, double *theta) {
+/* Twists (v, w) of poses in theta become displacements in place: those of the screw motion with constant twist in unit
+ * time, v + A w x v + B w x (w x v). */
+static void sym_twist_to_displacement(const sym_system *system, double *theta) {
     int k, i;
-    for (k = 0; k < scene->n_segments; ++k) {
-        const sym_segment *seg = &scene->segments[k];
-        double *v = theta + seg->v, once[3], twice[3];
+    for (k = 0; k < system->n_segments; ++k) {
+        const sym_segment *seg = &system->segments[k];
+        double *v = theta + seg->v, cross[3], cross_cross[3];
         const double *w = v + 3;
         double angle2, angle, A, B;
-        if (seg->kind != 2) continue;
+        if (seg->kind != SYM_SEGMENT_POSE) continue;
         angle2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2], angle = sqrt(angle2);
         A = angle < 1e-4 ? 0.5 - angle2 / 24.0 : (1.0 - cos(angle)) / angle2;
-        B = angle < 1e-2 ? 1.0 / 6.0 - angle2 / 120.0 + angle2 * angle2 / 5040.0 : (angle - sin(angle)) / (angle2 * angle);
-        sym_cross(w, v, once);
-        sym_cross(w, once, twice);
-        for (i = 0; i < 3; ++i) v[i] += A * once[i] + B * twice[i];
+        B = angle < 1e-2 ? 1.0 / 6.0 - angle2 / 120.0 + angle2 * angle2 / 5040.0
+                         : (angle - sin(angle)) / (angle2 * angle);
+        sym_cross(w, v, cross);
+        sym_cross(w, cross, cross_cross);
+        for (i = 0; i < 3; ++i) v[i] += A * cross[i] + B * cross_cross[i];
     }
 }
 
-/* w -> the rate of the rotation vector theta: w + theta x w / 2 + c theta x (theta x w). */
-static void sym_vector_rate(const double *theta, const double *w, double *rate) {
+/* Rate of the rotation vector theta at angular velocity w, (2): w + theta x w / 2 + c theta x (theta x w). */
+static void sym_rotation_vector_rate(const double *theta, const double *w, double *rate) {
     const double angle2 = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2], angle = sqrt(angle2);
     const double c = angle < 1e-3 ? 1.0 / 12.0 + angle2 / 720.0 : (1.0 - 0.5 * angle / tan(0.5 * angle)) / angle2;
-    double once[3], twice[3];
+    double cross[3], cross_cross[3];
     int i;
-    sym_cross(theta, w, once);
-    sym_cross(theta, once, twice);
-    for (i = 0; i < 3; ++i) rate[i] = w[i] + 0.5 * once[i] + c * twice[i];
+    sym_cross(theta, w, cross);
+    sym_cross(theta, cross, cross_cross);
+    for (i = 0; i < 3; ++i) rate[i] = w[i] + 0.5 * cross[i] + c * cross_cross[i];
 }
 
-/* The rate of theta where the speeds are v. */
-static void sym_chart_rate(const sym_scene *scene, const double *theta, const double *v, double *rate) {
+/* Rate of theta at speeds v, (2). */
+static void sym_chart_rate(const sym_system *system, const double *theta, const double *v, double *rate) {
     int s;
-    for (s = 0; s < scene->n_segments; ++s) {
-        const sym_segment *seg = &scene->segments[s];
+    for (s = 0; s < system->n_segments; ++s) {
+        const sym_segment *seg = &system->segments[s];
         const int k = seg->v;
-        double turn[4];
-        if (seg->kind == 0) {
+        double rotation[4];
+        if (seg->kind == SYM_SEGMENT_LINEAR) {
             memcpy(rate + k, v + k, (size_t)seg->size * sizeof *rate);
-        } else if (seg->kind == 1) {
-            sym_vector_rate(theta + k, v + k, rate + k);
+        } else if (seg->kind == SYM_SEGMENT_QUATERNION) {
+            sym_rotation_vector_rate(theta + k, v + k, rate + k);
         } else {
-            sym_turn(theta + k + 3, turn);
-            sym_rotate(turn, v + k, rate + k);
-            sym_vector_rate(theta + k + 3, v + k + 3, rate + k + 3);
+            sym_quaternion_exp(theta + k + 3, rotation);
+            sym_rotate(rotation, v + k, rate + k);
+            sym_rotation_vector_rate(theta + k + 3, v + k + 3, rate + k + 3);
         }
     }
 }
 
-/* The derivative of that rate by theta at theta = 0, times x: -w x_rotation / 2 and so on. Adds s times it to out. */
-static void sym_chart_rate_by_theta(const sym_scene *scene, const double *v, const double *x, double s, double *out) {
+/* out += s T x, where T is the derivative of that rate by theta at theta = 0: -[w]/2 for rotations, -[v] beside it for
+ * positions. */
+static void sym_chart_rate_jacobian(const sym_system *system, const double *v, const double *x, double s, double *out) {
     int k, i;
-    for (k = 0; k < scene->n_segments; ++k) {
-        const sym_segment *seg = &scene->segments[k];
-        const int w = seg->kind == 2 ? seg->v + 3 : seg->v;
+    for (k = 0; k < system->n_segments; ++k) {
+        const sym_segment *seg = &system->segments[k];
+        const int w = seg->kind == SYM_SEGMENT_POSE ? seg->v + 3 : seg->v;
         double c[3];
-        if (seg->kind == 0) continue;
+        if (seg->kind == SYM_SEGMENT_LINEAR) continue;
         sym_cross(x + w, v + w, c);
         for (i = 0; i < 3; ++i) out[w + i] += 0.5 * s * c[i];
-        if (seg->kind == 2) {
+        if (seg->kind == SYM_SEGMENT_POSE) {
             sym_cross(x + w, v + seg->v, c);
             for (i = 0; i < 3; ++i) out[seg->v + i] += s * c[i];
         }

@@ -1,13 +1,13 @@
-/* symofros_instance.h - one model in motion: its parameters, state and stepping in memory that the caller owns.
- * Written by hand; C99.
+/* symofros_instance.h - one simulated model with its parameters, state and integrator, in memory that the caller owns.
+ * Written by hand; C99. The contract with exported packages.
  *
  *     void *memory = malloc(sym_instance_size(arm_plant()));   // or a static array of that many bytes
- *     sym_instance *arm = sym_instance_in(memory, size, arm_plant());
+ *     sym_instance *arm = sym_instance_init(memory, size, arm_plant());
  *     arm->u[0] = 1.5;                                         // inputs, held until they are changed
  *     status = sym_instance_advance(arm, t_end, 1e-3);         // arm->t, arm->q, arm->v move on
  *
- * After sym_instance_in nothing allocates, and nothing is shared between instances: each may live in a thread of its
- * own. A status below zero is one of SYM_DIVERGED ... SYM_OFF (symofros_stepper.h).
+ * After sym_instance_init nothing allocates, and nothing is shared between instances: each may live in a thread of its
+ * own. A status below zero is one of SYM_DIVERGED ... SYM_PROJECTION_FAILED (symofros_stepper.h).
  */
 #ifndef SYMOFROS_INSTANCE_H
 #define SYMOFROS_INSTANCE_H
@@ -18,7 +18,7 @@
 extern "C" {
 #endif
 
-typedef struct sym_plant { /* what stepping needs to know of a model besides its functions */
+typedef struct sym_plant { /* constants that a package generates besides the model's functions */
     const sym_model *(*model)(void);
     int32_t n_segments;
     const sym_segment *segments;
@@ -41,43 +41,44 @@ typedef struct sym_instance {
     double *par;        /* (npar) parameters: call sym_instance_prepare after a change */
     double *a, *lam;    /* (nv), (nc) of sym_instance_accelerate */
     double *gains;      /* (2 nc) Baumgarte's: alpha of each, then beta of each [1/s]; zero by default */
-    int32_t projects;   /* 1: steps end on the constraints; the default of models that have some */
-    double *pre, *work; /* for calls of the model's functions: (npre), and scratch that suffices for any of them */
-    sym_scene scene;
+    int32_t project;    /* 1: project onto the constraints after each step; the default of models that have some */
+    double *pre, *work; /* for calls of the model's functions: (npre), and scratch for any of them */
+    sym_system system;
     sym_run run;
 } sym_instance;
 
 /* Bytes that an instance needs, aligned as doubles and pointers are. */
 size_t sym_instance_size(const sym_plant *plant);
 /* An instance in that memory, reset; NULL where the memory is too small or the model of another ABI. */
-sym_instance *sym_instance_in(void *memory, size_t size, const sym_plant *plant);
+sym_instance *sym_instance_init(void *memory, size_t size, const sym_plant *plant);
 /* Parameters, state and inputs as at the start. */
-void sym_instance_reset(sym_instance *it);
-/* What depends on parameters alone. */
-void sym_instance_prepare(sym_instance *it);
-/* The state onto the constraints. Returns 0 or a status. */
-int32_t sym_instance_close(sym_instance *it);
+void sym_instance_reset(sym_instance *instance);
+/* Evaluate what depends on parameters alone. */
+void sym_instance_prepare(sym_instance *instance);
+/* Project the state onto the constraints. Returns 0 or a status. */
+int32_t sym_instance_project(sym_instance *instance);
 /* Accelerations and multipliers at the present state. Returns 0 or a status. */
-int32_t sym_instance_accelerate(sym_instance *it);
-/* On to t_end by steps of at most h (0: of the plant). Returns SYM_DONE or a status below zero. */
-int32_t sym_instance_advance(sym_instance *it, double t_end, double h);
-/* One function of the model at the present state; out in the order of its outputs. Returns 0 where it is absent, or
+int32_t sym_instance_accelerate(sym_instance *instance);
+/* Integrate to t_end by steps of at most h (0: the plant's). Returns SYM_FINISHED or a status below zero. */
+int32_t sym_instance_advance(sym_instance *instance, double t_end, double h);
+/* Evaluate one function of the model at the present state; out: its outputs in order. Returns 0 where it is absent, or
  * asks for an input that an instance does not hold. */
-int32_t sym_instance_call(sym_instance *it, const sym_function *function, double *const *out);
+int32_t sym_instance_call(sym_instance *instance, const sym_function *function, double *const *out);
 /* Rates of q and v (nq + nv) at the present state. Returns 0 or a status. */
-int32_t sym_instance_rates(sym_instance *it, double *rates);
-/* Exact small changes at the present state, after sym_instance_rates: by dq (nq), dv (nv), du (nu) those of the rates
- * (nq + nv) and of lam (nc). matrix: (nv + nc)^2 + 3 (nv + nc) + nv doubles. Returns 0 or a status. */
-int32_t sym_instance_changes(sym_instance *it, const double *dq, const double *dv, const double *du, double *rates,
-                             double *lam, double *matrix);
-/* dq, a change of q, as a change along the manifold (nv). */
-void sym_instance_tangent(const sym_instance *it, const double *dq, double *tangent);
-/* The worst error of a model at reference points, relative to the largest entry of each output: of each function in
+int32_t sym_instance_rates(sym_instance *instance, double *rates);
+/* Exact directional derivatives at the present state, after sym_instance_rates: along dq (nq), dv (nv), du (nu) those of
+ * the rates (nq + nv) and of lam (nc). work: sym_instance_differentiate_size doubles. Returns 0 or a status. */
+size_t sym_instance_differentiate_size(const sym_instance *instance);
+int32_t sym_instance_differentiate(sym_instance *instance, const double *dq, const double *dv, const double *du,
+                                   double *rates, double *lam, double *work);
+/* The tangent vector (nv) of the configuration manifold that a change dq (nq) stands for. */
+void sym_instance_tangent(const sym_instance *instance, const double *dq, double *tangent);
+/* The largest error of a model at reference points, relative to the largest entry of each output: of each function in
  * turn and each point, inputs and then outputs. memory: sym_selftest_size doubles. Infinite where the points are of
  * another model. */
 size_t sym_selftest_size(const sym_model *model);
 double sym_selftest(const sym_model *model, int32_t points, const double *reference, size_t count, double *memory);
-/* Seconds of a clock that never jumps; and a sleep. */
+/* A monotonic clock [s], and a sleep. */
 double sym_seconds(void);
 void sym_wait(double seconds);
 

@@ -107,7 +107,7 @@ class Bench:
 
     def functions(self, system: System, method: str) -> tuple[str, ...]:
         """What a run by a method calls of a model; poses of the scene's frames come to it."""
-        needed = ["forward_dynamics", *METHODS[method].family.functions.values()]
+        needed = ["forward_dynamics", *METHODS[method].family.functions]
         if system.constraints:
             needed += ["project", "constraint", "constraint_rate", "constraint_jacobian"]
         return (*needed, "frame_pose") if self.scene.frames else tuple(needed)

@@ -17,7 +17,6 @@ from reference_models import MODELS
 from symofros.compiler import Compilation, compile_library
 from symofros.functions import MODEL_FUNCTIONS
 from symofros.generator.codegen.model import model_source
-from symofros.native import native_text
 from symofros.runtime import library
 from symofros.runtime.kernel import Array, Kernel, Lanes, Manner
 from symofros.runtime.library import CompiledUnit
@@ -50,7 +49,7 @@ def unit(case: str, batch: str, flags: tuple[str, ...], functions: tuple[str, ..
     system = stated(case)
     options = sf.Options(functions=functions, flags=flags, batch=batch)  # type: ignore[arg-type]
     path, symbol = compile_library(system, options)
-    return CompiledUnit(path, symbol, native_text("model/symofros_model.h"), Compilation(system, options).record.hash)
+    return CompiledUnit(path, symbol, Compilation(system, options).record.hash)
 
 
 def given(kernel: Kernel, n: int, shared: tuple[str, ...] = ()) -> list[Array]:
@@ -231,9 +230,7 @@ def test_sines_of_sines_wait() -> None:
     path, symbol = compile_library(system, options)
     first, _, others = path.with_suffix(".c").read_text(encoding="utf-8").partition("_v_0(")[2].partition("_v_1(")
     assert "sym_sincos_v(2," in first and "sym_sincos_v(1," not in first and "sym_sincos_v(1," in others
-    kernel = CompiledUnit(
-        path, symbol, native_text("model/symofros_model.h"), Compilation(system, options).record.hash
-    ).kernels["generalized_force", ""]
+    kernel = CompiledUnit(path, symbol, Compilation(system, options).record.hash).kernels["generalized_force", ""]
     x = np.linspace(-3.0, 3.0, 999)[:, None]
     inputs = [x if name == "q" else np.zeros((1, size)) for name, size in kernel.signature.inputs]
     (found,) = kernel.run(len(x), kernel.prepare(np.zeros((1, 0))), inputs)

@@ -16,7 +16,6 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation, compile_library, program_of
 from symofros.expr.trigonometry import FAR
-from symofros.native import native_text
 from symofros.runtime.kernel import Lanes
 from symofros.runtime.library import CompiledUnit
 from symofros.runtime.toolchain import DEFAULT_FLAGS, cpu_identity
@@ -185,6 +184,6 @@ def test_batches_of_motions_take_accelerations_in_floats() -> None:
 def test_a_library_of_floats_for_c(tmp_path: Path) -> None:
     system, options = MODELS["chain7"], sf.Options(("mass_matrix",))
     path, symbol = compile_library(system, options, precision="single")
-    unit = CompiledUnit(path, symbol, native_text("model/symofros_model.h"), Compilation(system, options).record.hash)
+    unit = CompiledUnit(path, symbol, Compilation(system, options).record.hash)
     kernel = unit.compiled["mass_matrix", ""]
     assert unit.model.lanes[0].bytes == 4 and kernel.has(Lanes(precision="single")) and not kernel.has(Lanes())

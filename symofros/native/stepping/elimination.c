@@ -1,9 +1,9 @@
 /* Linear systems of any rank: Gaussian elimination with complete pivoting. */
 
-/* What is left of a pivot, of the largest one, below which a system is taken as of lower rank. */
-#define SYM_LEFT 1e-13
+/* Relative to the largest pivot: smaller ones count as zero, and the system as of lower rank. */
+#define SYM_PIVOT_TOLERANCE 1e-13
 
-/* Factors A (n x n, row by row) in place; p and c take the orders of rows and columns. Returns the rank. */
+/* Factors A (n x n, row by row) in place; p and c become the permutations of rows and columns. Returns the rank. */
 static int32_t sym_eliminate(int32_t n, double *A, int32_t *p, int32_t *c) {
     int32_t i, j, k, rank = 0;
     double largest = 0.0;
@@ -15,7 +15,7 @@ static int32_t sym_eliminate(int32_t n, double *A, int32_t *p, int32_t *c) {
             for (j = k; j < n; ++j)
                 if (fabs(A[(size_t)i * n + j]) > best) best = fabs(A[(size_t)i * n + j]), row = i, column = j;
         if (k == 0) largest = best;
-        if (!(best > SYM_LEFT * largest)) break;
+        if (!(best > SYM_PIVOT_TOLERANCE * largest)) break;
         ++rank;
         if (row != k) {
             for (j = 0; j < n; ++j) {
@@ -42,7 +42,7 @@ static int32_t sym_eliminate(int32_t n, double *A, int32_t *p, int32_t *c) {
     return rank;
 }
 
-/* x with A x = b, zero in what the rank leaves free; work: n doubles. */
+/* x with A x = b, zero in the components that the rank leaves free; work: n doubles. */
 static void sym_solve(int32_t n, int32_t rank, const double *A, const int32_t *p, const int32_t *c, const double *b,
                       double *x, double *work) {
     int32_t i, j;

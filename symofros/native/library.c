@@ -1,0 +1,7 @@
+/* What Python loads: integrator, batches, diagrams and their threads, as one library. */
+#include "stepping/symofros_stepper.c"
+#include "symofros_batch.h"
+#include "stepping/batch_stepper.c"
+#include "symofros_diagram.h"
+#include "diagrams/diagram.c"
+#include "diagrams/thread_pool.c"

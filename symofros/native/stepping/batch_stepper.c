@@ -1,0 +1,303 @@
+/* Many trajectories, whose accelerations are evaluated by one call: symofros_batch.h. */
+
+/* Outputs and inputs of a function for all slots. Returns 0 where an input is unknown. */
+static int32_t sym_batch_bind(sym_batch *b, sym_arena *arena, sym_batch_function *f) {
+    const sym_system *s = b->prototype->system;
+    const sym_function *function = f->function;
+    sym_point point = sym_system_point(s);
+    size_t strides[5];
+    int32_t i, k;
+    if (function == NULL) return 1;
+    f->pre_active = sym_allocate(arena, (size_t)b->slots * (size_t)f->pre.stride);
+    f->work = sym_allocate(arena, function->work);
+    for (i = 0; i < function->n_out; ++i)
+        f->out[i] = sym_allocate(arena, (size_t)b->slots * sym_array_size(&function->out[i]));
+    point.n = 5; /* q, v, u, t, gains */
+    point.arrays[0] = b->q, point.arrays[1] = b->v, point.arrays[2] = b->u, point.arrays[3] = b->t;
+    strides[0] = (size_t)s->nq, strides[1] = (size_t)s->nv, strides[2] = (size_t)s->nu, strides[3] = 1, strides[4] = 0;
+    f->in[0] = f->pre.stride == 0 ? f->pre.at : f->pre_active, f->in_stride[0] = (size_t)f->pre.stride;
+    for (k = 1; k < function->n_in; ++k) {
+        i = sym_point_index(&point, function->in[k].name);
+        if (i < 0) return 0;
+        f->in[k] = point.arrays[i], f->in_stride[k] = strides[i];
+    }
+    return 1;
+}
+
+/* Lay out every array of the slots. Returns 0 where a function asks for an unknown input. */
+static int32_t sym_batch_allocate(sym_batch *b, sym_arena *arena) {
+    const sym_system *s = b->prototype->system;
+    const size_t slots = (size_t)b->slots, nq = (size_t)s->nq, nv = (size_t)s->nv, m = 2 * nv;
+    const size_t slopes = b->prototype->tableau.dense_stages > 1 ? (size_t)b->prototype->tableau.dense_stages : 1;
+    b->systems = sym_allocate_bytes(arena, slots * sizeof *b->systems);
+    b->runs = sym_allocate_bytes(arena, slots * sizeof *b->runs);
+    b->signals = sym_allocate_bytes(arena, slots * (size_t)s->n_signals * sizeof *b->signals);
+    b->trajectory_of_slot = sym_allocate_bytes(arena, slots * sizeof *b->trajectory_of_slot);
+    b->status = sym_allocate_bytes(arena, slots * sizeof *b->status);
+    b->h = sym_allocate(arena, slots), b->t1 = sym_allocate(arena, slots);
+    b->q = sym_allocate(arena, slots * nq), b->v = sym_allocate(arena, slots * nv);
+    b->u = sym_allocate(arena, slots * (size_t)s->nu), b->t = sym_allocate(arena, slots);
+    b->states = sym_allocate(arena, slots * (nq + nv));
+    b->y1 = sym_allocate(arena, slots * m), b->stage = sym_allocate(arena, slots * m);
+    b->magnitude = sym_allocate(arena, slots * m), b->end_slope = sym_allocate(arena, slots * m);
+    b->k = sym_allocate(arena, slopes * slots * m);
+    b->y0 = sym_allocate(arena, slots * m), b->length = sym_allocate(arena, slots * m);
+    return sym_batch_bind(b, arena, &b->forward_dynamics) && sym_batch_bind(b, arena, &b->law);
+}
+
+SYM_EXPORT size_t sym_batch_size(const sym_batch *batch) {
+    sym_batch draft = *batch;
+    sym_arena arena = {NULL, 0};
+    sym_batch_allocate(&draft, &arena);
+    return arena.used;
+}
+
+SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory) {
+    const sym_system *prototype = b->prototype->system;
+    sym_arena arena = {NULL, 0};
+    int32_t i;
+    arena.base = memory;
+    if (!sym_batch_allocate(b, &arena)) return 0;
+    for (i = 0; i < b->slots; ++i) {
+        sym_system *s = b->systems + i;
+        sym_run *r = b->runs + i;
+        *s = *prototype;
+        *r = *b->prototype;
+        s->q = b->q + (size_t)i * s->nq, s->v = b->v + (size_t)i * s->nv;
+        s->u = b->u + (size_t)i * s->nu, s->t = b->t + i;
+        s->a = b->forward_dynamics.out[0] + (size_t)i * s->nv;
+        s->lam = b->forward_dynamics.out[1] + (size_t)i * s->nc, s->rank = b->forward_dynamics.out[2] + i;
+        s->forward_dynamics.out[0] = s->a, s->forward_dynamics.out[1] = s->lam, s->forward_dynamics.out[2] = s->rank;
+        s->signals = b->signals + (size_t)i * s->n_signals;
+        memcpy(b->signals + (size_t)i * s->n_signals, prototype->signals, (size_t)s->n_signals * sizeof *b->signals);
+        r->system = s;
+        r->q = b->states + (size_t)i * ((size_t)s->nq + (size_t)s->nv), r->v = r->q + s->nq;
+    }
+    b->n_active = 0;
+    return 1;
+}
+
+/* Working memory of one slot. */
+static sym_workspace sym_batch_workspace(const sym_batch *b, int32_t slot) {
+    const size_t m = 2 * (size_t)b->prototype->system->nv, at = (size_t)slot * m;
+    sym_workspace w;
+    w.y1 = b->y1 + at, w.stage = b->stage + at, w.magnitude = b->magnitude + at, w.end_slope = b->end_slope + at;
+    w.k = b->k + at, w.stage_stride = (size_t)b->slots * m;
+    memset(&w.implicit, 0, sizeof w.implicit);
+    return w;
+}
+
+/* A function of one slot takes the parameters of a trajectory: for its own calls, and for those of all slots. */
+static void sym_batch_set_parameters(sym_batch_function *f, sym_system *system, sym_call *call, int32_t slot,
+                                     int64_t trajectory) {
+    if (call->function == NULL) return;
+    call->pre = f->pre.at + trajectory * f->pre.stride;
+    sym_system_bind(system, call);
+    if (f->pre.stride != 0 && f->pre_active != NULL)
+        memcpy(f->pre_active + slot * f->pre.stride, call->pre, (size_t)f->pre.stride * sizeof(double));
+}
+
+/* A slot takes the inputs and parameters of a trajectory. */
+static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory) {
+    const sym_system *prototype = b->prototype->system;
+    sym_system *s = b->systems + slot;
+    sym_signal *signals = b->signals + (size_t)slot * prototype->n_signals;
+    int32_t k;
+    b->trajectory_of_slot[slot] = trajectory;
+    s->u_constant = b->u_constant.at + trajectory * b->u_constant.stride;
+    for (k = 0; k < prototype->n_signals; ++k)
+        signals[k].value = prototype->signals[k].value + trajectory * b->signal_stride[k];
+    sym_batch_set_parameters(&b->forward_dynamics, s, &s->forward_dynamics, slot, trajectory);
+    sym_batch_set_parameters(&b->law, s, &s->law, slot, trajectory);
+    sym_batch_set_parameters(&b->project, s, &s->project, slot, trajectory);
+}
+
+static void sym_batch_store_result(sym_batch *b, int64_t trajectory, int32_t status, double t, const double *q,
+                                   const double *v) {
+    const sym_system *s = b->prototype->system;
+    b->final_status[trajectory] = status;
+    b->final_t[trajectory] = t;
+    memcpy(b->final_q + trajectory * s->nq, q, (size_t)s->nq * sizeof *q);
+    memcpy(b->final_v + trajectory * s->nv, v, (size_t)s->nv * sizeof *v);
+}
+
+/* Move the trajectory of the last active slot to another slot. */
+static void sym_batch_move_last(sym_batch *b, int32_t to) {
+    const int32_t from = b->n_active - 1;
+    sym_run *r = b->runs + to, *last = b->runs + from;
+    const sym_run slot = *r; /* keeps the slot's arrays */
+    const sym_system *s = slot.system, *last_system = last->system;
+    const sym_workspace w = sym_batch_workspace(b, to), last_w = sym_batch_workspace(b, from);
+    *r = *last;
+    r->system = slot.system, r->q = slot.q, r->v = slot.v;
+    memcpy(r->q, last->q, ((size_t)s->nq + (size_t)s->nv) * sizeof *r->q);
+    memcpy(w.magnitude, last_w.magnitude, 2 * (size_t)s->nv * sizeof *w.magnitude);
+    memcpy(w.k, last_w.k, 2 * (size_t)s->nv * sizeof *w.k);
+    memcpy(s->q, last_system->q, (size_t)s->nq * sizeof *s->q);
+    memcpy(s->v, last_system->v, (size_t)s->nv * sizeof *s->v);
+    memcpy(s->u, last_system->u, (size_t)s->nu * sizeof *s->u);
+    *s->t = *last_system->t;
+    sym_batch_assign(b, to, b->trajectory_of_slot[from]);
+    b->h[to] = b->h[from], b->t1[to] = b->t1[from], b->status[to] = b->status[from];
+}
+
+/* End the trajectory of a slot; the last active one takes the slot. */
+static void sym_batch_retire(sym_batch *b, int32_t slot, int32_t status) {
+    const sym_run *r = b->runs + slot;
+    const int64_t trajectory = b->trajectory_of_slot[slot];
+    sym_batch_store_result(b, trajectory, status, r->t, r->q, r->v);
+    b->steps[trajectory] = r->steps;
+    b->rejected[trajectory] = r->rejected;
+    if (slot != b->n_active - 1) sym_batch_move_last(b, slot);
+    --b->n_active;
+}
+
+/* Activate the next trajectory; its first slope and step size are evaluated alone, in the prototype's memory. */
+static void sym_batch_activate_next(sym_batch *b) {
+    const int32_t slot = b->n_active++;
+    const int64_t trajectory = b->next;
+    sym_run *r = b->runs + slot;
+    const sym_system *s = r->system;
+    int32_t status = b->final_status[trajectory];
+    b->next += b->stride;
+    sym_batch_assign(b, slot, trajectory);
+    memcpy(r->q, b->q0.at + trajectory * b->q0.stride, (size_t)s->nq * sizeof *r->q);
+    memcpy(r->v, b->v0.at + trajectory * b->v0.stride, (size_t)s->nv * sizeof *r->v);
+    r->t = r->t0;
+    r->steps = r->rejected = 0;
+    r->record_q = b->record_q + trajectory * r->capacity * s->nq;
+    r->record_v = b->record_v + trajectory * r->capacity * s->nv;
+    r->record_u = b->record_u + trajectory * r->capacity * s->nu;
+    if (status == 0 && !(sym_all_finite(s->nq, r->q) && sym_all_finite(s->nv, r->v))) status = SYM_DIVERGED;
+    if (status == 0) status = sym_run_start(r);
+    if (status == 0 && r->t >= r->t_end) status = SYM_FINISHED;
+    memcpy(sym_batch_workspace(b, slot).k, sym_workspace_of(r).k, 2 * (size_t)s->nv * sizeof(double));
+    if (status != 0) sym_batch_retire(b, slot, status);
+}
+
+/* Evaluate a function at the states of all active trajectories. A single one is padded to two: a batch of one would be
+ * evaluated by other code, and the bits of a trajectory would depend on when the others end. */
+static void sym_batch_evaluate(const sym_batch *b, const sym_batch_function *f) {
+    const size_t n = b->n_active > 1 ? (size_t)b->n_active : 2;
+    f->function->batch(n, (const double *const *)f->in, f->in_stride, (double *const *)f->out, f->work);
+}
+
+/* Inputs and accelerations at all active evaluation points. Constant inputs are there since a trajectory was activated. */
+static void sym_batch_evaluate_acceleration(sym_batch *b) {
+    int32_t i, k;
+    if (b->prototype->system->n_signals > 0)
+        for (i = 0; i < b->n_active; ++i) sym_evaluate_signals(b->systems + i);
+    if (b->law.function != NULL) {
+        const int32_t n = b->systems->n_law;
+        sym_batch_evaluate(b, &b->law);
+        for (i = 0; i < b->n_active; ++i)
+            for (k = 0; k < n; ++k) b->systems[i].u[b->systems->law_inputs[k]] = b->law.out[0][(size_t)i * n + k];
+    }
+    sym_batch_evaluate(b, &b->forward_dynamics);
+}
+
+/* k[0] of all active trajectories whose slope is not valid. */
+static void sym_batch_first_slopes(sym_batch *b) {
+    int32_t i, missing = 0;
+    for (i = 0; i < b->n_active; ++i) {
+        if (b->runs[i].slope_valid) continue;
+        sym_load_state(b->runs + i);
+        ++missing;
+    }
+    if (missing > 0) sym_batch_evaluate_acceleration(b);
+    for (i = 0; i < b->n_active; ++i) {
+        sym_run *r = b->runs + i;
+        const sym_workspace w = sym_batch_workspace(b, i);
+        int32_t status = 0;
+        if (!r->slope_valid) {
+            status = sym_check_acceleration(r);
+            sym_store_first_slope(r, w.k);
+        }
+        b->status[i] = status != 0 ? status : sym_first_slope(r, w.k);
+    }
+}
+
+/* y0 = (0, v) and the step length, as often as y has entries, of all active trajectories. */
+static void sym_batch_begin_step(sym_batch *b) {
+    const int32_t nv = b->prototype->system->nv, m = 2 * nv;
+    int32_t i, l;
+    for (i = 0; i < b->n_active; ++i) {
+        double *y0 = b->y0 + (size_t)i * m, *length = b->length + (size_t)i * m;
+        for (l = 0; l < nv; ++l) y0[l] = 0.0, y0[nv + l] = b->runs[i].v[l];
+        for (l = 0; l < m; ++l) length[l] = b->h[i];
+    }
+}
+
+/* y = (0, v) + h times the weighted sum of slopes, of all active trajectories: sym_combine_slopes. */
+static void sym_batch_combine_slopes(const sym_batch *b, int32_t stages, const double *weights, double *restrict y) {
+    const size_t m = 2 * (size_t)b->prototype->system->nv, size = (size_t)b->n_active * m;
+    const double *restrict y0 = b->y0, *restrict length = b->length;
+    size_t l;
+    sym_weighted_sum(size, stages, weights, b->k, (size_t)b->slots * m, y);
+    for (l = 0; l < size; ++l) y[l] = length[l] * y[l] + y0[l];
+}
+
+/* One stage of all active trajectories. One that has failed is evaluated on, to no effect, until the step ends. */
+static void sym_batch_evaluate_stage(sym_batch *b, int32_t stage) {
+    const sym_tableau *method = &b->prototype->tableau;
+    int32_t i;
+    sym_batch_combine_slopes(b, stage, method->a + (size_t)stage * method->dense_stages, b->stage);
+    for (i = 0; i < b->n_active; ++i) {
+        sym_run *r = b->runs + i;
+        sym_load_chart_state(r, r->t + method->c[stage] * b->h[i], sym_batch_workspace(b, i).stage);
+    }
+    sym_batch_evaluate_acceleration(b);
+    for (i = 0; i < b->n_active; ++i) {
+        sym_run *r = b->runs + i;
+        const sym_workspace w = sym_batch_workspace(b, i);
+        const int32_t status = sym_check_acceleration(r);
+        if (b->status[i] == 0) b->status[i] = status;
+        sym_slope_of_acceleration(r->system, w.stage, w.k + (size_t)stage * w.stage_stride);
+    }
+}
+
+/* One step of all active trajectories: proposed, tried, accepted or rejected. Those that end are retired, from the last
+ * slot to the first, so that the trajectory that moves into a slot has been treated. */
+static void sym_batch_step(sym_batch *b) {
+    const sym_tableau *method = &b->prototype->tableau;
+    int32_t i, stage;
+    sym_batch_first_slopes(b);
+    for (i = b->n_active - 1; i >= 0; --i) {
+        sym_workspace w = sym_batch_workspace(b, i);
+        if (b->status[i] == 0) b->status[i] = sym_propose_step(b->runs + i, &w, b->h + i, b->t1 + i);
+        if (b->status[i] != 0) sym_batch_retire(b, i, b->status[i]);
+    }
+    if (b->n_active == 0) return;
+    sym_batch_begin_step(b);
+    for (stage = 1; stage < method->stages; ++stage) sym_batch_evaluate_stage(b, stage);
+    if (b->prototype->method == SYM_METHOD_EXPLICIT) sym_batch_combine_slopes(b, method->stages, method->b, b->y1);
+    for (i = b->n_active - 1; i >= 0; --i) {
+        sym_run *r = b->runs + i;
+        sym_workspace w = sym_batch_workspace(b, i);
+        int32_t status = b->status[i];
+        double error = 0.0;
+        if (r->method == SYM_METHOD_SEMI_IMPLICIT) sym_semi_implicit_step(r, b->h[i], w.k, w.y1);
+        if (status == 0) status = sym_estimate_error(r, &w, b->h[i], &error);
+        status = sym_accept_or_reject(r, &w, b->h[i], b->t1[i], status, error);
+        if (status == 0 && r->t >= r->t_end) status = SYM_FINISHED;
+        if (status != 0 || (b->max_steps > 0 && r->steps >= b->max_steps)) sym_batch_retire(b, i, status);
+    }
+}
+
+SYM_EXPORT int32_t sym_batch_advance(sym_batch *b, int64_t max_steps) {
+    int64_t done;
+    for (done = 0; done < max_steps; ++done) {
+        while (b->n_active < b->slots && b->next < b->n) sym_batch_activate_next(b);
+        if (b->n_active == 0) return 0;
+        sym_batch_step(b);
+    }
+    return b->n_active > 0 || b->next < b->n;
+}
+
+SYM_EXPORT void sym_batch_stop(sym_batch *b) {
+    while (b->n_active > 0) sym_batch_retire(b, b->n_active - 1, SYM_RUNNING);
+    for (; b->next < b->n; b->next += b->stride) {
+        const double *q = b->q0.at + b->next * b->q0.stride, *v = b->v0.at + b->next * b->v0.stride;
+        sym_batch_store_result(b, b->next, SYM_RUNNING, b->prototype->t0, q, v);
+    }
+}

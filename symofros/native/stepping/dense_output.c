@@ -1,0 +1,70 @@
+/* States between the ends of a step: dense output, and records at given times. */
+
+/* y at x in [0, 1] of the step that has just been made, of length h. *dense_ready: whether what the polynomial needs besides
+ * the step has been evaluated. Returns 0 or a status. */
+static int32_t sym_dense_output(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double x, double *y) {
+    const sym_tableau *tableau = &r->tableau;
+    const int32_t nv = r->system->nv, n = 2 * nv;
+    int32_t i, j, l, status;
+    if (r->method == SYM_METHOD_EXPLICIT && tableau->dense_degree > 0) {
+        if (!*dense_ready) {
+            status = sym_evaluate_stages(r, w, h, tableau->stages, tableau->dense_stages);
+            if (status != 0) return status;
+            *dense_ready = 1;
+        }
+        memset(y, 0, (size_t)n * sizeof *y);
+        for (i = 0; i < tableau->dense_stages; ++i) {
+            const double *p = tableau->dense + (size_t)i * tableau->dense_degree;
+            double s = 0.0;
+            for (j = tableau->dense_degree - 1; j >= 0; --j) s = (s + p[j]) * x;
+            if (s != 0.0)
+                for (l = 0; l < n; ++l) y[l] += h * s * w->k[(size_t)i * w->stage_stride + l];
+        }
+        for (l = 0; l < nv; ++l) y[nv + l] += r->v[l];
+        return 0;
+    }
+    if (!*dense_ready) { /* cubic Hermite interpolation needs the slope at the end */
+        status = sym_evaluate_slope(r, r->t + h, w->y1, w->end_slope);
+        if (status != 0) return status;
+        *dense_ready = 1;
+    }
+    for (l = 0; l < n; ++l) {
+        const double y0 = l < nv ? 0.0 : r->v[l - nv], d = w->y1[l] - y0;
+        const double f0 = h * w->k[l], f1 = h * w->end_slope[l];
+        y[l] = y0 + x * (f0 + x * ((3.0 * d - 2.0 * f0 - f1) + x * (f0 + f1 - 2.0 * d)));
+    }
+    return 0;
+}
+
+/* Record the evaluation point. Returns 0 or a status. */
+static int32_t sym_record(sym_run *r) {
+    const sym_system *s = r->system;
+    const int64_t i = r->n_records;
+    if (sym_evaluate_inputs(r->system) != 0) return SYM_CALLBACK_FAILED;
+    r->record_t[i] = *s->t;
+    memcpy(r->record_q + i * s->nq, s->q, (size_t)s->nq * sizeof(double));
+    memcpy(r->record_v + i * s->nv, s->v, (size_t)s->nv * sizeof(double));
+    memcpy(r->record_u + i * s->nu, s->u, (size_t)s->nu * sizeof(double));
+    ++r->n_records;
+    return 0;
+}
+
+/* Record the times of the grid within the step, up to x. A time within rounding of the end is recorded there.
+ * Returns 0 or a status. */
+static int32_t sym_record_grid(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double x_max) {
+    while (r->next_grid < r->n_grid && r->grid[r->next_grid] <= r->t + x_max * h * (1.0 + 1e-12)) {
+        const double x = (r->grid[r->next_grid] - r->t) / h;
+        int32_t status;
+        if (x > 1.0 - 1e-9) {
+            sym_load_chart_state(r, r->grid[r->next_grid], w->y1);
+        } else {
+            status = sym_dense_output(r, w, h, dense_ready, x, w->stage);
+            if (status != 0) return status;
+            sym_load_chart_state(r, r->grid[r->next_grid], w->stage);
+        }
+        status = sym_record(r);
+        if (status != 0) return status;
+        ++r->next_grid;
+    }
+    return 0;
+}

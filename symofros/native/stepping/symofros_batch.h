@@ -1,0 +1,68 @@
+/* symofros_batch.h - many trajectories of one model, some of them active at a time. Written by hand; C99.
+ *
+ * Active trajectories step together, each by its own step size; the accelerations at one stage of all of them are one
+ * call of the model's batch function, by vectors. A trajectory that ends frees its slot for the next. Apart from that call
+ * everything is the code of a single run (run.c), so that no trajectory depends on the others.
+ */
+#ifndef SYMOFROS_BATCH_H
+#define SYMOFROS_BATCH_H
+
+#include "symofros_stepper.h"
+
+/* cdef begin: what bindings read */
+typedef struct sym_batch_rows { /* one row per trajectory */
+    const double *at;
+    int64_t stride; /* doubles from one row to the next; 0: one row for all */
+} sym_batch_rows;
+
+typedef struct sym_batch_function { /* a model function that is evaluated for all active trajectories at once */
+    const sym_function *function; /* NULL: absent, or evaluated one by one */
+    sym_batch_rows pre;           /* the parameters' part, of all trajectories */
+    /* By sym_batch_start: memory, and where the inputs of all slots lie. */
+    double *pre_active; /* (slots, npre) where trajectories have parameters of their own */
+    double *work;
+    const double *in[SYM_MAX_INPUTS];
+    size_t in_stride[SYM_MAX_INPUTS];
+    double *out[SYM_MAX_OUTPUTS]; /* (slots, ...) each */
+} sym_batch_function;
+
+typedef struct sym_batch {
+    /* By the caller. */
+    const sym_run *prototype; /* settings, and the system of a single run, which only this batch uses */
+    sym_batch_function forward_dynamics, law, project;
+    int32_t slots;            /* most trajectories active at once; 2 at least */
+    sym_batch_rows q0, v0, u_constant; /* initial states and constant inputs of all trajectories */
+    const int64_t *signal_stride; /* (n_signals) doubles from the samples of one trajectory to those of the next */
+    int64_t next, stride, n;  /* trajectories of this batch: next, next + stride, ... below n */
+    int64_t max_steps;        /* of each trajectory; 0: any number */
+    /* Results, one row per trajectory: final status, time, state; steps; what the prototype's grid records. */
+    int32_t *final_status;    /* below zero beforehand: the trajectory can't start */
+    double *final_t, *final_q, *final_v;
+    int64_t *steps, *rejected;
+    double *record_q, *record_v, *record_u;
+    /* By sym_batch_start: the slots. The active trajectories occupy the first ones. */
+    int32_t n_active;
+    sym_system *systems;          /* (slots) */
+    sym_run *runs;                /* (slots) */
+    sym_signal *signals;          /* (slots, n_signals) */
+    int64_t *trajectory_of_slot;  /* (slots) */
+    int32_t *status;              /* (slots) of the present step */
+    double *h, *t1;               /* (slots) length of the present step, time at its end */
+    double *q, *v, *u, *t;        /* (slots, ...) evaluation points */
+    double *states;               /* (slots, nq + nv) present states of the runs */
+    /* Working memory as in a single run, with m = 2 nv entries of y: (slots, m), slopes k (dense_stages, slots, m).
+     * Row by row: y0 = (0, v), and the step length m times, so that sums of stages are loops over all slots. */
+    double *y1, *stage, *magnitude, *end_slope, *k, *y0, *length;
+} sym_batch;
+
+/* Doubles of memory that the slots take. */
+size_t sym_batch_size(const sym_batch *batch);
+/* Lay the slots out in memory, none of them active. Returns 0 where a function asks for an unknown input. */
+int32_t sym_batch_start(sym_batch *batch, double *memory);
+/* At most max_steps further steps of each active trajectory. Returns 0 when all trajectories have ended. */
+int32_t sym_batch_advance(sym_batch *batch, int64_t max_steps);
+/* End all active trajectories where they are, and the others at their initial states. */
+void sym_batch_stop(sym_batch *batch);
+/* cdef end */
+
+#endif

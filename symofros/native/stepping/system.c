@@ -1,0 +1,170 @@
+/* Binding and evaluating a model's functions; the inputs; the right-hand side y' = f(t, y). */
+
+typedef struct sym_point { /* the arrays at which functions are evaluated, by the names of functions' inputs */
+    int32_t n;
+    const char *const *names;
+    const double *arrays[SYM_MAX_INPUTS];
+} sym_point;
+
+static sym_point sym_system_point(const sym_system *s) {
+    static const char *const names[] = {"q", "v", "u", "t", "gains", "a", "lam"};
+    sym_point point = {7, NULL, {NULL}};
+    point.names = names;
+    point.arrays[0] = s->q, point.arrays[1] = s->v, point.arrays[2] = s->u, point.arrays[3] = s->t;
+    point.arrays[4] = s->gains, point.arrays[5] = s->a, point.arrays[6] = s->lam;
+    return point;
+}
+
+/* Index of an input of that name; -1 where the point has none. */
+static int32_t sym_point_index(const sym_point *point, const char *name) {
+    int32_t i;
+    for (i = 0; i < point->n; ++i)
+        if (strcmp(name, point->names[i]) == 0) return i;
+    return -1;
+}
+
+/* Point a call's inputs at arrays. Returns 0 where one is unknown or there are too many inputs or outputs. */
+static int32_t sym_bind_inputs(sym_call *call, const sym_point *point) {
+    int32_t k;
+    if (call->function->n_in > SYM_MAX_INPUTS || call->function->n_out > SYM_MAX_OUTPUTS) return 0;
+    call->in[0] = call->pre;
+    for (k = 1; k < call->function->n_in; ++k) {
+        const int32_t i = sym_point_index(point, call->function->in[k].name);
+        if (i < 0) return 0;
+        call->in[k] = point->arrays[i];
+    }
+    return 1;
+}
+
+SYM_EXPORT int32_t sym_system_bind(sym_system *s, sym_call *call) {
+    const sym_point point = sym_system_point(s);
+    return sym_bind_inputs(call, &point);
+}
+
+/* Make a call of a model function: inputs at the point, outputs in memory of the arena. Returns 0 where the function is
+ * absent (NULL) or asks for what the point does not hold. */
+static int32_t sym_bind_function(sym_arena *arena, sym_call *call, const sym_function *function, const double *pre,
+                                 double *work, const sym_point *point) {
+    int32_t i;
+    call->function = function, call->pre = pre, call->work = work;
+    if (function == NULL || function->n_out > SYM_MAX_OUTPUTS) return 0;
+    for (i = 0; i < function->n_out; ++i) call->out[i] = sym_allocate(arena, sym_array_size(&function->out[i]));
+    return arena->base == NULL || sym_bind_inputs(call, point);
+}
+
+static void sym_evaluate(const sym_call *call) {
+    call->function->eval((const double *const *)call->in, (double *const *)call->out, call->work);
+}
+
+/* The value of a signal at time t: the first one before its samples, the last one after them. */
+static double sym_interpolate_signal(const sym_signal *signal, double t) {
+    int32_t low = 0, high = signal->n - 1;
+    double x;
+    if (t <= signal->t[0]) return signal->value[0];
+    if (t >= signal->t[high]) return signal->value[high];
+    while (high - low > 1) {
+        const int32_t middle = low + (high - low) / 2;
+        if (signal->t[middle] <= t) low = middle;
+        else high = middle;
+    }
+    if (!signal->linear) return signal->value[low];
+    x = (t - signal->t[low]) / (signal->t[high] - signal->t[low]);
+    return signal->value[low] + x * (signal->value[high] - signal->value[low]);
+}
+
+/* The inputs that depend on time alone, at the evaluation point. */
+static void sym_evaluate_signals(sym_system *s) {
+    int32_t i;
+    memcpy(s->u, s->u_constant, (size_t)s->nu * sizeof *s->u);
+    for (i = 0; i < s->n_signals; ++i) s->u[s->signals[i].input] = sym_interpolate_signal(&s->signals[i], *s->t);
+}
+
+/* All inputs at the evaluation point. Not 0: the caller's function failed. */
+static int32_t sym_evaluate_inputs(sym_system *s) {
+    int32_t i;
+    if (s->callback != NULL) return s->callback(s->data, *s->t, s->q, s->v, s->u);
+    sym_evaluate_signals(s);
+    if (s->law.function != NULL) {
+        sym_evaluate(&s->law);
+        for (i = 0; i < s->n_law; ++i) s->u[s->law_inputs[i]] = s->law.out[0][i];
+    }
+    return 0;
+}
+
+static int32_t sym_all_finite(int32_t n, const double *x) {
+    double s = 0.0;
+    int32_t i;
+    for (i = 0; i < n; ++i) s += x[i] * 0.0;
+    return s == 0.0;
+}
+
+/* Count and check the accelerations just evaluated. Returns 0 or a status. */
+static int32_t sym_check_acceleration(sym_run *r) {
+    const sym_system *s = r->system;
+    ++r->evaluations;
+    if (s->nc > 0 && *s->rank < 0.0) return SYM_SINGULAR;
+    return sym_all_finite(s->nv, s->a) ? 0 : SYM_DIVERGED;
+}
+
+/* Accelerations and multipliers at the evaluation point, inputs included. Returns 0 or a status. */
+static int32_t sym_evaluate_acceleration(sym_run *r) {
+    sym_system *s = r->system;
+    if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
+    sym_evaluate(&s->forward_dynamics);
+    return sym_check_acceleration(r);
+}
+
+/* Evaluation point <- the present state. */
+static void sym_load_state(sym_run *r) {
+    sym_system *s = r->system;
+    memcpy(s->q, r->q, (size_t)s->nq * sizeof *s->q);
+    memcpy(s->v, r->v, (size_t)s->nv * sizeof *s->v);
+    *s->t = r->t;
+}
+
+/* Evaluation point <- y = (theta, v) in the chart about r->q, at time t. */
+static void sym_load_chart_state(sym_run *r, double t, const double *y) {
+    sym_retract(r->system, r->q, y, r->system->q);
+    memcpy(r->system->v, y + r->system->nv, (size_t)r->system->nv * sizeof *y);
+    *r->system->t = t;
+}
+
+/* The present state <- y = (theta, v) in the chart about r->q, at time t. */
+static void sym_set_chart_state(sym_run *r, double t, const double *y) {
+    sym_load_chart_state(r, t, y);
+    memcpy(r->q, r->system->q, (size_t)r->system->nq * sizeof *r->q);
+    memcpy(r->v, r->system->v, (size_t)r->system->nv * sizeof *r->v);
+    r->t = t;
+}
+
+/* dy = f(t, y), the accelerations at the evaluation point being those of y. */
+static void sym_slope_of_acceleration(const sym_system *s, const double *y, double *dy) {
+    sym_chart_rate(s, y, y + s->nv, dy);
+    memcpy(dy + s->nv, s->a, (size_t)s->nv * sizeof *dy);
+}
+
+/* dy = f(t, y), in the chart about r->q. Returns 0 or a status. */
+static int32_t sym_evaluate_slope(sym_run *r, double t, const double *y, double *dy) {
+    int32_t status;
+    sym_load_chart_state(r, t, y);
+    status = sym_evaluate_acceleration(r);
+    sym_slope_of_acceleration(r->system, y, dy);
+    return status;
+}
+
+/* Largest |phi| after a projection that counts as closed. */
+#define SYM_CLOSURE_TOLERANCE 1e-6
+
+/* Project the present state onto the constraints. Returns 0 or a status. */
+static int32_t sym_project_state(sym_run *r) {
+    sym_system *s = r->system;
+    const sym_call *project = &s->project; /* q, v, |phi|, rank */
+    sym_load_state(r);
+    if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
+    sym_evaluate(project);
+    if (!(project->out[3][0] >= 0.0)) return SYM_SINGULAR;
+    if (!(project->out[2][0] < SYM_CLOSURE_TOLERANCE)) return SYM_PROJECTION_FAILED;
+    memcpy(r->q, project->out[0], (size_t)s->nq * sizeof *r->q);
+    memcpy(r->v, project->out[1], (size_t)s->nv * sizeof *r->v);
+    return 0;
+}
