@@ -11,7 +11,7 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     """Write a file so that a reader, or a crash, sees the old file or the new one, never a part.
 
     Args:
-        path: Where; its folder exists.
+        path: Path of the file, in a folder that exists.
         content: The whole of it; text is written as UTF-8.
     """
     descriptor, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)

@@ -21,9 +21,9 @@ class Problem:
 
     Attributes:
         what: The object and its fault, as in "joint 'q1': parent body 'bas' does not exist".
-        found: What is there instead.
-        rule: What must hold.
-        remedy: What to do.
+        found: State found instead.
+        rule: Rule that must hold.
+        remedy: Remedy: the change to make.
         where: "file:line", or "" for an object built in Python.
     """
 
@@ -130,8 +130,8 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     """The remedy for a misspelt name: the nearest known one, or the list of them.
 
     Args:
-        name: What was written.
-        known: What exists.
+        name: Name as it was written.
+        known: Names that exist.
 
     Returns:
         "did you mean 'tip'?", or "use one of: …", or "" when nothing is known.

@@ -101,7 +101,7 @@ class Beam:
 
     Attributes:
         name: Unique; also the name of its body frame, at the root.
-        joint: How the root moves on its parent; kind "fixed" clamps it there.
+        joint: Joint between the root and its parent; kind "fixed" clamps it there.
         length: Length [m].
         rhoA: Mass per length [kg/m].
         EI_z: Stiffness against bending in the x-y plane [N m^2].

@@ -15,7 +15,7 @@ class Reading:
     """The outcome of reading a file: what could be read, and everything that could not.
 
     Attributes:
-        system: What was read, faulty parts left out; None if there is nothing to go on with.
+        system: System as read, faulty parts left out; None if there is nothing to go on with.
         problems: Every fault of the file.
         broken: Names that the file states but that could not be read; later checks don't report references to them.
     """
@@ -39,7 +39,7 @@ def read_bytes(path: Path, limit: int) -> bytes:
     """The content of a regular file.
 
     Args:
-        path: Where it is.
+        path: Path of the file.
         limit: The most bytes that are accepted.
 
     Raises:

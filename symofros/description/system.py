@@ -119,9 +119,9 @@ class RigidBody:
 
     Attributes:
         name: Unique; also the name of its body frame.
-        joint: How it moves on its parent; None for the base.
-        inertia: None for a massless body.
-        frames: Its extremity frames.
+        joint: Joint between the body and its parent; None for the base.
+        inertia: Inertia; None for a massless body.
+        frames: Extremity frames.
         loads: Forces and torques on it.
         waive: Names of checks this body is allowed to fail (see WAIVERS).
     """
@@ -157,8 +157,8 @@ class System:
     """A mechanism as the user stated it.
 
     Attributes:
-        name: Of the model; the C functions are named after it.
-        bodies: In the order of description.
+        name: Name of the model, from which C functions take theirs.
+        bodies: Bodies in the order of description.
         parameters: Run-time parameters and constants.
         inputs: Named inputs, in order; actuated joints add theirs after these.
         gravity: Acceleration of gravity in the world frame [m/s^2].
@@ -166,7 +166,7 @@ class System:
         virtual_power: Internal forces by their virtual power.
         potentials: Potential energies by formula.
         constraints: Closures of loops and rods; after them, conditions on speeds.
-        notes: What an importer dropped or changed, in words.
+        notes: Remarks of an importer on what it ignored or changed.
         origin: "file:line" of objects, keyed by ("body", name), ("joint", name), …; not part of equality.
         visuals: Body -> how it looks, as an importer read it; not part of equality, nor of what is compiled.
     """

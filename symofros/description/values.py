@@ -23,7 +23,7 @@ def as_value(value: Any, what: str = "value") -> Value:
     """A user's number, formula text or SymPy expression as a Value.
 
     Args:
-        value: What the user wrote.
+        value: Number, formula text or SymPy expression.
         what: The thing it belongs to, for the error.
 
     Raises:
@@ -107,7 +107,7 @@ class Rotation:
     Attributes:
         kind: "rpy" (URDF's fixed-axis roll, pitch, yaw: Rz(y) Ry(p) Rx(r)) [rad], "axis_angle" (x, y, z, angle)
             [rad], "quaternion" (x, y, z, w), or "matrix" (nine entries, row by row).
-        values: Its numbers or formulas.
+        values: Numbers or formulas, in the order of the kind.
     """
 
     kind: RotationKind = "rpy"

@@ -17,13 +17,13 @@ class Visual:
     """A shape S that moves with a body B.
 
     Attributes:
-        kind: What it is.
+        kind: Kind of shape.
         size: Of a box its edges, of an ellipsoid its half-axes, of a sphere (radius,), of a cylinder or a capsule along
             z (radius, length), the capsule's without its caps [m]; of a mesh the factors along its axes.
         position: p_BS [m].
         rotation: R_BS.
         color: Red, green, blue, 0 to 255; None where it is not stated.
-        file: Of a mesh: where it is.
+        file: Path of a mesh.
     """
 
     kind: VisualKind

@@ -16,11 +16,11 @@ class Element:
     """One element; its text is of no interest to the formats that are read here.
 
     Attributes:
-        tag: Its name, as written.
+        tag: Name of the element, as written.
         attributes: Name -> text.
-        line: Of its start, counted from 1.
-        children: In order.
-        file: It stands in.
+        line: Line of the start tag, counted from 1.
+        children: Child elements in order.
+        file: Name of the file.
     """
 
     tag: str
@@ -52,7 +52,7 @@ def parse_xml(data: bytes, file: str) -> Element:
 
     Args:
         data: The file's content.
-        file: Its name, for the problem.
+        file: File name, for the problem.
 
     Raises:
         XmlFault: Not well-formed, too deep, or with a document type (the only way to define entities).

@@ -18,7 +18,7 @@ def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path])
 
     Args:
         files: File name -> text.
-        main: Which of them to compile.
+        main: Name of the source file to compile.
         include: Folders of further headers.
 
     Raises:

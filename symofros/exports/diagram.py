@@ -54,9 +54,9 @@ def write_diagram(
 
     Args:
         resolved: The diagram.
-        folder: Ours, or new.
+        folder: Target folder: a new one, or one that an export wrote.
         outputs: Signals that the program tells.
-        method: How parts step: explicit.
+        method: Explicit stepping method of the parts.
         dt: Step [s].
         generator: Name and version.
 

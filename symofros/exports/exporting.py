@@ -72,14 +72,14 @@ def export(
             "sfunction" (Simulink), "fmu2", "fmu3" (FMI, Model Exchange and Co-Simulation), "urdf" or "mjcf" (what
             these can hold; the notes say what they can't).
         folder: A new one, an empty one, or one of an earlier export.
-        name: Of files and functions; made of the system's name by default.
+        name: Name of files and functions; made of the system's name by default.
         frames: Frames to generate kinematics for; all by default.
         outputs: Of those, frames whose positions are outputs of FMUs; the last one by default. Of a diagram, the
             signals that its program tells; by default what moves.
         start: Names of coordinates, and d + names of speeds -> first values; the neutral state at rest by default.
             A model with constraints starts at the nearest state that meets them.
-        method: How it steps by itself, as in `simulate`; not CVODE.
-        dt: Its step [s]; of an adaptive method the first.
+        method: Stepping method of Co-Simulation, as in `simulate`; not those of SUNDIALS.
+        dt: Step of that method [s]; of an adaptive one the first.
         rtol: Relative error of an adaptive method's step.
         atol: Absolute error, alike.
 

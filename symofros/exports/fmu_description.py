@@ -28,7 +28,7 @@ def description_xml(material: Material, found: Sequence[Variable], version: int,
 
     Args:
         material: The model.
-        found: Its variables.
+        found: Variables of the model.
         version: 2 or 3.
         token: GUID, or instantiation token.
         created: Date and time, ISO.

@@ -18,15 +18,15 @@ class Variable:
     """One scalar variable.
 
     Attributes:
-        reference: Its value reference.
-        name: By FMI's structured naming.
-        causality: Of FMI; so is variability.
-        initial: Of FMI; "" where it must not be stated.
-        start: None where there is none.
+        reference: Value reference.
+        name: Name by FMI's structured naming.
+        causality: Causality as FMI defines it.
+        initial: Initial attribute of FMI; "" where it must not be stated.
+        start: Start value; None where there is none.
         unit: "" for none.
         derivative: Reference of the state that it is the derivative of.
         depends: References that it depends on; None for all states and inputs. Only of outputs and derivatives.
-        about: For people.
+        about: Description for people.
     """
 
     reference: int

@@ -20,11 +20,11 @@ class Exported:
     """What an export wrote.
 
     Attributes:
-        folder: Where.
-        target: Which kind.
-        name: Of the model in C.
+        folder: Folder of the export.
+        target: Kind of export.
+        name: Name of the model in C.
         files: Paths, the main one first.
-        notes: What the format could not hold, and what else there is to know.
+        notes: Remarks on what the format could not hold, and on what else there is to know.
     """
 
     folder: Path
@@ -78,11 +78,11 @@ def write_folder(
 
     Args:
         folder: Checked again here; made if it does not exist.
-        target: Of the export.
+        target: Kind of export.
         name: Of the model in C.
         files: File name -> content, the main one first.
         generator: Name and version of what wrote it.
-        notes: For the user.
+        notes: Remarks for the user.
 
     Raises:
         ExportError: The folder is not ours, a file in it was changed by hand, or it can't be written.

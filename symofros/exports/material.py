@@ -14,9 +14,9 @@ class Stepping:
     """How an export steps by itself.
 
     Attributes:
-        method: Of sf.simulate.
+        method: Method of sf.simulate.
         dt: Step, or longest step within a communication interval [s].
-        rtol: Of adaptive methods, as `atol`.
+        rtol: Relative bound of the local error of adaptive methods.
         atol: Absolute.
     """
 
@@ -44,19 +44,19 @@ class Material:
     """One model, ready to be wrapped.
 
     Attributes:
-        system: What the user stated.
+        system: System as the user stated it.
         record: Names, sizes, defaults.
-        c_name: What files and symbols are called.
+        c_name: Name of files and symbols in C.
         source: C text of the model.
         functions: Keys of the functions in it, in order.
         checks: Reference points of each function, in that order.
-        points: How many each has.
+        points: Number of values of each.
         q_start: First configuration (nq).
         v_start: First speeds (nv).
-        stepping: How it steps.
+        stepping: Stepping method and its settings.
         outputs: Frames whose positions are outputs of blocks and FMUs.
         generator: Name and version of what wrote it.
-        notes: For the user.
+        notes: Remarks for the user.
     """
 
     system: System

@@ -25,7 +25,7 @@ def checks(
     Args:
         record: Names, sizes, defaults.
         kernels: Interpreted.
-        order: Of the functions.
+        order: Order of the functions.
         closed: A configuration on the constraints (nq), near which `project` starts.
     """
     rng = np.random.default_rng(_SEED)

@@ -29,7 +29,7 @@ class Axis:
     """One single joint of a chain that makes up a joint.
 
     Attributes:
-        name: Of its coordinate.
+        name: Name of the coordinate.
         turns: Whether it turns rather than slides.
         direction: Unit vector in the frame at zero.
     """
@@ -44,14 +44,14 @@ class RigidLink:
     """A body in numbers.
 
     Attributes:
-        name: Of the body.
-        parent: Of its parent; None for the base.
-        joint: What carries it; None for the base.
+        name: Name of the body.
+        parent: Name of the parent; None for the base.
+        joint: Joint that carries the body; None for the base.
         axes: The single joints that `joint` is made of; empty for fixed, ball and free ones.
-        position: From the parent's frame to the body's at zero (3) [m].
+        position: Position of the body's frame in the parent's at zero coordinates (3) [m].
         rotation: R (3, 3).
-        mass: [kg].
-        center: Of mass, in the body's frame (3) [m].
+        mass: Mass [kg].
+        center: Mass centre in the body's frame (3) [m].
         inertia: About the centre, along the body's axes (3, 3) [kg m^2].
         frames: Name, position, rotation of each extremity frame.
         damping: Viscous, of each axis or speed.

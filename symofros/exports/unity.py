@@ -11,11 +11,11 @@ def unity(name: str, title: str, before: Sequence[str], after: Sequence[str], mo
     """The text of such a file.
 
     Args:
-        name: Of the model in C.
-        title: What it is, for its first line.
+        name: Name of the model in C.
+        title: Title, for the first line.
         before: Lines between the model and the visible part.
         after: Lines of the visible part.
-        more_headers: Of the environment, in the form `"mex.h"`.
+        more_headers: Headers of the environment, in the form `"mex.h"`.
     """
     lines = [
         f"/* {title} */",

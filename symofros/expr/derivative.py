@@ -20,8 +20,8 @@ def directional(graph: Graph, edges: Sequence[Edge], seeds: Mapping[Edge, Edge])
     """The derivative of some edges along a direction.
 
     Args:
-        graph: Where the edges live and the derivatives go.
-        edges: What to differentiate.
+        graph: Graph of the edges, which receives the derivatives.
+        edges: Edges to differentiate.
         seeds: Rate of each varying input, keyed by the input's edge; all other inputs are constant.
 
     Returns:

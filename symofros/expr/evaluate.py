@@ -17,7 +17,7 @@ def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = (
 
     Args:
         graph: The graph.
-        edges: What is wanted.
+        edges: Edges to evaluate.
         given: Nodes whose values are at hand.
     """
     args, slot, value = graph.args, graph.slot, graph.value
@@ -63,7 +63,7 @@ def evaluate_edges(
     """The values of some edges, each (n,) or a number.
 
     Args:
-        program: For its graph.
+        program: Program whose graph is evaluated.
         edges: What is wanted.
         inputs: Each group as (n or 1, size).
         given: Nodes to read from an input group instead of computing them.

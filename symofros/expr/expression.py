@@ -73,7 +73,7 @@ def lower(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) ->
 
     Args:
         expression: The formula.
-        graph: Where its operations go.
+        graph: Graph that receives the operations.
         bindings: The edge of each symbol.
 
     Raises:

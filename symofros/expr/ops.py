@@ -28,13 +28,13 @@ class Op:
     """One operation.
 
     Attributes:
-        name: Its name in graphs, text dumps and, for functions, in expressions.
+        name: Name in graphs, text dumps and, for functions, in expressions.
         arity: Number of operands.
         rule: NumPy arrays in, NumPy array out; IEEE semantics, no exceptions.
         c: C text with holes {0}, {1}.
         derivative: (graph, operands, result, i) -> partial derivative by operand i, as edges.
-        cost: What the operation counter books it as.
-        parity: How a sign on the only operand moves outside: f(-x) = -f(x) or f(x).
+        cost: Category under which the operation counter books it.
+        parity: Rule by which a sign on the only operand moves outside: f(-x) = -f(x) or f(x).
         is_function: Callable by this name in expressions.
     """
 

@@ -46,7 +46,7 @@ class Function:
         name: Such as "mass_matrix".
         frame: The frame it is about, or "".
         inputs: Groups it takes, in order; "pre" is added where parameter-only work is hoisted.
-        outputs: What it computes.
+        outputs: Outputs of the function.
         solver: What the outputs are handed to, where the function is not done with them: forward dynamics under
             constraints computes M, r, G, c and returns a, lam and the rank.
     """
@@ -76,10 +76,10 @@ class Program:
     """All functions of one compilation unit.
 
     Attributes:
-        name: Of the model.
+        name: Name of the model.
         graph: Shared by the functions.
         sizes: Length of each input group.
-        functions: What is computed.
+        functions: Functions that the program computes.
         init: After staging, what `pre` holds: parameter-only values, computed once per parameter set.
     """
 

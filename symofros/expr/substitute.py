@@ -15,8 +15,8 @@ def substitute(graph: Graph, edges: Sequence[Edge], replacement: Mapping[Edge, E
     """The edges with some inputs replaced.
 
     Args:
-        graph: Where all of it lives.
-        edges: What to rewrite.
+        graph: Graph of all edges.
+        edges: Edges to rewrite.
         replacement: New edge of an input, keyed by the input's edge.
     """
     new: dict[int, Edge] = dict(replacement)
@@ -31,8 +31,8 @@ def transplant(graph: Graph, edges: Sequence[Edge], replacement: Mapping[Edge, E
     """The edges in another graph.
 
     Args:
-        graph: Where they live.
-        edges: What to build again.
+        graph: Graph of the edges.
+        edges: Edges to build again.
         replacement: Edge in the other graph of each input that they depend on, keyed by the input's edge.
         into: The other graph; labels come along, and packs as far as their lanes do.
 
@@ -59,7 +59,7 @@ class _Packs:
 
     Args:
         graph: Where they live.
-        nodes: What moves.
+        nodes: Nodes to carry over.
         new: Node -> edge in the other graph, as far as it is there.
         into: The other graph.
     """

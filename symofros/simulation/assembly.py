@@ -26,8 +26,8 @@ class Assembled:
         q: Configuration (nq).
         v: Speeds (nv).
         residual: Largest |phi|.
-        iterations: How many steps it took.
-        rank: Of G; fewer than nc conditions are independent where it is smaller.
+        iterations: Number of iterations.
+        rank: Rank of G; where it is below nc, some conditions depend on others.
     """
 
     q: Array
@@ -52,14 +52,14 @@ def assemble(
     """Solve phi(q) = 0 and G v = b by damped Gauss-Newton steps of least norm.
 
     Args:
-        model: With constraints.
+        model: Model with constraints.
         q: Guess (nq); the neutral configuration if not given.
         v: Wished speeds (nv), changed as little as possible; zeros if not given.
         held: Names of speeds (`model.names.v`) whose coordinates and values stay as they are.
         u: Inputs, for prescribed motions.
         par: Run-time parameters.
         t: Time.
-        tolerance: Of the largest |phi| [m, rad].
+        tolerance: Bound of the largest |phi| [m, rad].
         iterations: Most steps to take.
 
     Raises:

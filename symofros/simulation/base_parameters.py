@@ -32,9 +32,9 @@ def base_parameters(model: Model, samples: int | None = None, seed: int = 0) -> 
     """Find the base parameters of a rigid tree by a pivoted factorisation of its regressor at random states.
 
     Args:
-        model: With `regressor`.
+        model: Model that has the function `regressor`.
         samples: Random states; by default three equations for each parameter.
-        seed: Of the states.
+        seed: Seed of the random states.
     """
     model = model.with_precision("double")
     rng = np.random.default_rng(seed)

@@ -21,9 +21,10 @@ class BatchInputs:
     """Inputs of a batch.
 
     Attributes:
-        plan: Those of the first trajectory; samples that differ hold those of all, one trajectory after the other.
+        plan: Inputs of the first trajectory; samples that differ hold those of all, one trajectory after the other.
         constant: (n or 1, nu).
-        strides: Of each signal, numbers from the samples of one trajectory to those of the next; 0: one for all.
+        strides: For each signal, the numbers between the samples of one trajectory and those of the next; 0: one for
+            all.
     """
 
     plan: InputPlan
@@ -78,7 +79,7 @@ def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
 
     Args:
         model: Names the inputs.
-        u: As `simulate_batch` takes them.
+        u: Inputs as `simulate_batch` takes them.
 
     Raises:
         ShapeError: An array does not fit.

@@ -23,10 +23,10 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
     """How a run ended.
 
     Args:
-        stepper: At its last state.
-        recorded: What it left.
+        stepper: Stepper at its last state.
+        recorded: Record of the run.
         states: All that it recorded: t (n), q, v, u.
-        settings: Of the run.
+        settings: Settings of the run.
     """
     status, interrupted = recorded.status, recorded.interrupted
     t, q, v = stepper.state

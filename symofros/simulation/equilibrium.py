@@ -25,7 +25,7 @@ class Equilibrium:
         v: Speeds (nv).
         u: Inputs (nu).
         lam: Multipliers (nc).
-        effort: What the coordinates that were held need besides (nv); zero for the others.
+        effort: Effort that holds the held coordinates (nv); zero for the others [N m or N].
         residual: Largest imbalance, relative to the largest force.
         iterations: Steps taken.
     """
@@ -54,14 +54,14 @@ def equilibrium(
     """Solve M 0 + h - Q - G^T lam = 0, phi = 0 for the configuration, by Newton's method with exact derivatives.
 
     Args:
-        model: Any.
+        model: Model, with or without constraints.
         q: Guess (nq); the neutral configuration if not given.
         v: Speeds that stay (nv), zero if not given: a spin makes it a steady motion.
         u: Inputs (nu).
         held: Names of speeds whose coordinates stay; what they need is returned as their effort.
         par: Run-time parameters.
         t: Time.
-        tolerance: Of the imbalance, relative to the largest force.
+        tolerance: Bound of the imbalance, relative to the largest force.
         iterations: Most steps.
 
     Raises:

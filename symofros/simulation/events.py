@@ -16,8 +16,8 @@ class Event:
     """A zero crossing.
 
     Attributes:
-        formula: Of coordinates, speeds, inputs, parameters and t: text or SymPy expression.
-        direction: Which crossings count.
+        formula: Formula of coordinates, speeds, inputs, parameters and t: text or SymPy expression.
+        direction: Direction of the crossings that count.
         terminal: Whether the first one ends the run.
         name: Given by the mapping it stands in.
     """

@@ -66,14 +66,14 @@ def inverse_kinematics(
     """Damped least squares on the targets and, for mechanisms with loops, on their constraints.
 
     Args:
-        model: Any; its joints' limits are kept.
+        model: Model, whose joint limits are kept.
         targets: Frame -> where it is wanted.
         q: Guess (nq); the neutral configuration if not given.
         rest: Configuration to stay near with the freedom that is left (nq).
         held: Names of speeds whose coordinates stay.
         u: Inputs, for prescribed motions.
         par: Run-time parameters.
-        tolerance: Of the largest error.
+        tolerance: Bound of the largest error.
         iterations: Most steps.
 
     Raises:
@@ -122,7 +122,7 @@ def joint_motion(
 
     Args:
         model: A tree.
-        frame: Whose motion is given.
+        frame: Frame whose motion is given.
         positions: p_WF (n, 3) [m].
         velocities: Linear, then angular velocity in world axes (n, 6); (n, 3) if rotations do not matter.
         accelerations: Their rates, likewise.

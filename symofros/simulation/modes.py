@@ -37,7 +37,7 @@ def modes(
     """Modes of small motions about a state, which should be an equilibrium or a steady motion (`equilibrium`).
 
     Args:
-        model: Any.
+        model: Model, with or without constraints.
         q: Configuration (nq).
         v: Speeds (nv); zero if not given.
         u: Inputs (nu); the defaults if not given.

@@ -24,10 +24,10 @@ class Outcome:
 
     Attributes:
         kind: "finished" at the end asked for, "event" at a terminal one, or what went wrong.
-        t: When [s].
+        t: Time of the end [s].
         reason: One sentence.
-        advice: What to try; empty where nothing is wrong.
-        notes: What was met on the way without ending the run, such as a singular posture.
+        advice: Remedy to try; empty where nothing is wrong.
+        notes: Remarks on what was met without ending the run, such as a singular posture.
     """
 
     kind: Kind

@@ -20,12 +20,12 @@ def nearest_to_singular(
     """Where the conditions were closest to repeating each other.
 
     Args:
-        model: With constraints.
+        model: Model with constraints.
         t: Recorded times (n).
         q: States (n, nq).
         u: Inputs (n, nu).
         par: Run-time parameters (npar).
-        rank: Of the constraints where they are regular.
+        rank: Rank of the constraints at regular postures.
 
     Returns:
         When, and the smallest singular value of G there over its largest in the run; None where it stayed above NEAR.

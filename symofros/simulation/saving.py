@@ -46,10 +46,11 @@ def write_columns(path: Path, columns: Mapping[str, Array], what: str, units: Ma
     """Columns (n) by name as .csv or .parquet.
 
     Args:
-        path: Where; its suffix says which.
-        columns: Of one length.
+        path: Path of the file; its suffix chooses the format.
+        columns: Columns of one length.
         what: Is saved, for messages.
-        units: Of columns: in CSV after the name, "pd.effort[0] [N m]"; in Parquet the field's metadata "unit".
+        units: Units of the columns: in CSV after the name, "pd.effort[0] [N m]"; in Parquet the field's metadata
+            "unit".
 
     Raises:
         SymofrosError: Parquet without pyarrow.

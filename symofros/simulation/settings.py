@@ -50,7 +50,7 @@ class Settings:
     Attributes:
         method: Stepping method.
         adaptive: Whether it chooses its steps.
-        stabilisation: How constraints are kept.
+        stabilisation: Method of keeping constraints.
         t0: Start time [s].
         t_end: End time [s].
         dt: Step [s]; 0: an adaptive method finds its first.

@@ -45,7 +45,7 @@ def simulate(
             and hence slow. Those not given are zero, but for the rates of a prescribed motion that is a formula of t.
         par: Run-time parameters (npar); the model's own by default.
         events: Name -> formula or Event.
-        options: How to step, keep constraints and record; the defaults of SimulationOptions by default.
+        options: Options of stepping, stabilisation and recording; those of `SimulationOptions()` by default.
         progress: Show a progress bar; or a function that is told the time reached [s], now and then.
         changes: Fields of SimulationOptions by name, which replace those of `options`: method="dopri5", dt=1e-4, ...
 

@@ -54,7 +54,8 @@ def simulate_batch(
             a mapping from names to numbers, arrays (...), formulas, and Signals of values (n) or (..., n, 1).
         par: Run-time parameters (..., npar); the model's own by default.
         threads: Number of threads; by default that of the model (`Model.with_threads`).
-        options: As of `simulate`; methods are explicit: "rk4", "semi_implicit_euler", "euler", "dopri5", "dop853".
+        options: Options as of `simulate`; methods are explicit: "rk4", "semi_implicit_euler", "euler", "dopri5",
+            "dop853".
             `output` is the last state alone by default.
         changes: Fields of SimulationOptions by name, which replace those of `options`.
 

@@ -47,11 +47,11 @@ def state_space(
     leave; inputs must not move the constraints (as a prescribed joint inside a loop would).
 
     Args:
-        model: Any.
+        model: Model, with or without constraints.
         q: Configuration (nq), on the constraints.
         v: Speeds (nv); zero if not given.
         u: Inputs (nu); the defaults if not given.
-        outputs: What y stacks, as in `Model.linearize`.
+        outputs: Outputs that y stacks, as in `Model.linearize`.
         par: Run-time parameters.
         t: Time.
 

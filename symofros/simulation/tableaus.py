@@ -18,16 +18,17 @@ class Tableau:
     """A one-step method of several stages.
 
     Attributes:
-        order: Of the solution that is kept.
+        order: Order of the solution that is kept.
         stages: Computed at each step.
         a: Stage weights (m, m), strictly lower; the rows beyond `stages` serve dense output only.
         b: Weights of the step (m).
         c: Nodes (m).
         last: The stage at the end of the step, whose slope the next step starts with; 0: none.
         errors: Weights of the error estimates, (0 to 2, stages).
-        error_order: Of the embedded solution.
+        error_order: Order of the embedded solution.
         dense: Coefficient of x^(j+1) for each stage (m, degree); degree 0: a cubic through ends and slopes.
-        gamma: Of a Rosenbrock method, in whose terms a, b and errors weigh the solutions of the stages' systems.
+        gamma: Diagonal coefficient of a Rosenbrock method, whose a, b and errors weigh the solutions of the stages'
+            systems.
         coupling: Weights of earlier solutions in a stage's right side, over h (stages, stages).
         d: Weights of the derivative by time (stages).
     """

@@ -48,21 +48,21 @@ class Trajectories:
     """States over time of many runs of one model, whose batch dimensions are written (...).
 
     Attributes:
-        model: What moved.
+        model: Model that was simulated.
         t: Times of the samples (m) [s], the same for all.
         q: Configurations (..., m, nq); NaN where a run ended before.
         v: Speeds (..., m, nv), as q.
         u: Inputs (..., m, nu), as q.
         par: Run-time parameters (..., npar), or (npar) where all runs share them.
-        t_last: When each run ended (...) [s].
-        q_last: Its last good configuration (..., nq).
-        v_last: Its last good speeds (..., nv).
+        t_last: End time of each run (...) [s].
+        q_last: Last good configuration of each (..., nq).
+        v_last: Last good speeds of each (..., nv).
         status: C's last word for each (...); `kinds` and `outcome` put it in words.
         steps: Steps taken (...).
         rejected: Steps tried in vain (...).
         method: Name of the method.
-        seconds: On the clock, for all.
-        processor_seconds: That the process used meanwhile, all threads together: other programs do not lengthen them.
+        seconds: Wall time of all runs together [s].
+        processor_seconds: Processor time of all threads together [s]; other programs do not lengthen it.
     """
 
     model: Model

@@ -30,14 +30,14 @@ class Statistics:
     """What a run cost.
 
     Attributes:
-        method: Its name.
+        method: Name of the method.
         steps: Accepted; `rejected` were tried in vain.
         evaluations: Of the accelerations; `jacobians` of their derivatives.
-        seconds: On the clock, in the stepping loop.
+        seconds: Wall time in the stepping loop [s].
         late_steps: With a pace: steps that began after their time; `late_max` and `late_mean` [s] are how late the
             clock was, sleeping included.
         rank_min: Lowest rank of the constraints' Jacobian met, `rank_max` the highest; -1 without constraints.
-        worked: Of the processor in that loop, by this thread; NaN of a batch, which has several [s].
+        worked: Processor time of this thread in that loop [s]; NaN of a batch, which has several threads.
     """
 
     method: str
@@ -81,15 +81,15 @@ class Trajectory:
     """States over time, of one run.
 
     Attributes:
-        model: What moved.
+        model: Model that was simulated.
         t: Times (n) [s].
         q: Configurations (n, nq).
         v: Speeds (n, nv).
         u: Inputs (n, nu).
         par: Run-time parameters (npar).
-        outcome: How the run ended.
+        outcome: Outcome: how the run ended.
         events: Events met, in the order of time.
-        statistics: What it cost.
+        statistics: Cost of the run: steps, evaluations, time.
     """
 
     model: Model

@@ -43,7 +43,7 @@ class Folder:
         """The content of a mesh file; None after a fault.
 
         Args:
-            file: As the model states it.
+            file: File name as the model states it.
             user: The element that states it.
             what: The mesh and what needs it, for the problem.
         """

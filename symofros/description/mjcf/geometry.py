@@ -29,7 +29,7 @@ class Exact:
 
     Attributes:
         tolerance: Largest distance.
-        changed: How many numbers were replaced.
+        changed: Number of values replaced so far.
     """
 
     def __init__(self, tolerance: float) -> None:

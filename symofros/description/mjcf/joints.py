@@ -57,9 +57,9 @@ class JointReader:
 
     Args:
         model: An MjModel.
-        names: Of its joints.
+        names: Names of the joints.
         driven: Names of those that an actuator acts on.
-        remarks: On what is ignored.
+        remarks: Remarks on what is ignored.
         exact: Makes numbers exact.
     """
 

@@ -20,10 +20,10 @@ class Meshes:
     """Cuts shapes with files out of a document, and reads the files that are needed.
 
     Args:
-        folder: Of the model.
-        document: With everything in it that is kept.
+        folder: Folder of the model.
+        document: Document with everything in it that is kept.
         stated: The document as it was written, which says where meshes lie.
-        remarks: On what is ignored.
+        remarks: Remarks on what is ignored.
 
     Attributes:
         assets: Content of the files that MuJoCo needs, by the names that the document now has for them.

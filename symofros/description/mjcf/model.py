@@ -28,10 +28,10 @@ class Stated:
     """What a compiled model does not say.
 
     Attributes:
-        name: Of the model.
-        file: Its main file.
+        name: Name of the model.
+        file: Main file of the model.
         driven: Joints that an actuator acts on.
-        places: Where bodies and joints are stated, as in System.origin.
+        places: Lines of bodies and joints, as in System.origin.
     """
 
     name: str
@@ -45,9 +45,9 @@ class Importer:
 
     Args:
         model: An MjModel.
-        stated: What it does not say.
-        remarks: On what is ignored or changed.
-        snap_tol: As in `read_mjcf`.
+        stated: Entries of the document that the compiled model does not keep.
+        remarks: Remarks on what is ignored or changed.
+        snap_tol: Tolerance of snapping, as in `read_mjcf`.
     """
 
     def __init__(self, model: Any, stated: Stated, remarks: Remarks, snap_tol: float) -> None:

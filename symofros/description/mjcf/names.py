@@ -9,8 +9,8 @@ class Names:
     """The names of all things of a kind.
 
     Args:
-        kind: What a nameless one is called, before its index.
-        stated: As in the model, "" for none.
+        kind: Prefix of the names of nameless elements, before the index.
+        stated: Names as in the model, "" for none.
     """
 
     def __init__(self, kind: str, stated: Sequence[str]) -> None:

@@ -39,10 +39,10 @@ def infinite_numbers(
     Args:
         model: An MjModel.
         bodies: Names, like the next two.
-        joints: Of its joints.
-        sites: Of its sites.
-        places: Where bodies and joints are stated.
-        file: Where everything else is.
+        joints: Names of the joints.
+        sites: Names of the sites.
+        places: Lines of bodies and joints.
+        file: File of everything else.
     """
     coordinates = np.searchsorted(model.jnt_qposadr, np.arange(model.nq), side="right") - 1
     for kind, names, owner, arrays in (

@@ -65,7 +65,7 @@ class Document:
         text: MJCF of nothing but a tree of bodies.
         lines: The element that each line of the text came from.
         assets: Content of mesh files by name.
-        stated: What the compiled model does not say.
+        stated: Entries of the document that the compiled model does not keep.
     """
 
     text: str

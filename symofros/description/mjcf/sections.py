@@ -57,8 +57,8 @@ class Sections:
     """Cuts a document down to what describes a rigid tree.
 
     Attributes:
-        folder: Of the model; its faults are collected there.
-        remarks: On what is ignored.
+        folder: Folder of the model, which collects its faults.
+        remarks: Remarks on what is ignored.
         driven: Joints that an actuator acts on.
     """
 

@@ -27,7 +27,7 @@ def visuals_of(model: Any, name: Callable[[int], str]) -> dict[str, tuple[Visual
 
     Args:
         model: An MjModel.
-        name: Of a body, by its index.
+        name: Name of a body by its index.
     """
     found: dict[str, tuple[Visual, ...]] = {}
     for i in range(min(model.ngeom, MOST_VISUALS)):

@@ -30,11 +30,11 @@ class Values:
     """Reads attributes of elements.
 
     Attributes:
-        file: Its name, for the problems.
+        file: File name, for the problems.
         snap_tol: Angles this close to a multiple of pi/2, lengths this close to 0 and entries of an axis this close
             to 0 or +-1 become exact.
         problems: Every fault met.
-        remarks: What was ignored or changed.
+        remarks: Remarks on what was ignored or changed.
     """
 
     file: str

@@ -43,8 +43,8 @@ class Visuals:
 
     Args:
         file: The URDF.
-        robot: Its root, for materials that links share.
-        remarks: On what is left out.
+        robot: Root element, for materials that links share.
+        remarks: Remarks on what is left out.
     """
 
     def __init__(self, file: Path, robot: Element, remarks: Remarks) -> None:

@@ -49,7 +49,7 @@ def problem_of(error: ErrorDetails, where: str) -> Problem:
     """One of pydantic's errors as a Problem.
 
     Args:
-        error: From ValidationError.errors().
+        error: One of ValidationError.errors().
         where: "file:line" of it.
     """
     path = path_of(error)

@@ -44,7 +44,7 @@ def read_yaml(path: str | os.PathLike[str], text: str | None = None) -> Reading:
 
     Args:
         path: The main file. Files that it includes lie in its folder or below.
-        text: What the main file holds, where that is not written yet; then only its name and folder are used.
+        text: Content of the main file, where that is not written yet; then only its name and folder are used.
 
     Returns:
         The system without the entries that could not be read, and every problem. No system where names are missing

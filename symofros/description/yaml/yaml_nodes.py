@@ -46,12 +46,12 @@ class Node:
     """A value of the file and where it stands.
 
     Attributes:
-        line: Of the value, counted from 1.
+        line: Line of the value, counted from 1.
         value: A scalar, a mapping or a sequence of nodes.
-        key_line: Of its key in a mapping; otherwise `line`.
-        start: Of the value, as a position in the text, its byte order mark left out.
+        key_line: Line of the key in a mapping; otherwise `line`.
+        start: Position of the value in the text, its byte order mark left out.
         end: After the value; of what is in block style, wherever the scanner noticed that it had ended.
-        key_start: Of its key; -1 outside of mappings.
+        key_start: Position of the key; -1 outside of mappings.
         key_end: After its key.
         style: "block" or "flow" of a mapping or sequence; of a scalar "plain", or the sign that it begins with.
     """
@@ -96,7 +96,7 @@ def compose(data: bytes, file: str) -> tuple[Node, list[Problem]]:
 
     Args:
         data: The file's content.
-        file: Its name, for the problems.
+        file: File name, for the problems.
 
     Returns:
         The root, and the duplicate keys that were found (the first of each counts).

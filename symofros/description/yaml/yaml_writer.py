@@ -79,7 +79,7 @@ def write_yaml(system: System) -> str:
     """The text of the native file; `read_yaml` gives an equal system from it.
 
     Args:
-        system: What to write. Fields at their defaults are left out; numbers are exact.
+        system: System to write. Fields at their defaults are left out; numbers are exact.
 
     Raises:
         DescriptionError: The format can't hold it: two things of one name, or a formula that is too long.
