@@ -70,7 +70,7 @@ GUESSES = {
 }
 
 
-def sampled(cases: Sequence[str], chosen: Sequence[str] = SAMPLE) -> list[Any]:
+def sampled(cases: Sequence[Any], chosen: Sequence[Any] = SAMPLE) -> list[Any]:
     """The cases of a parametrisation: those that are chosen in every run, the others with --slow."""
     assert set(chosen) <= set(cases), "chosen from elsewhere"
     return [case if case in chosen else pytest.param(case, marks=pytest.mark.slow) for case in cases]

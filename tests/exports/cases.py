@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.models import sampled
 from validation.inputs.cases import named
 
 # The planar robot has a mode of 1e4/s: a Runge-Kutta step of 1e-3 s would enlarge rounding.
@@ -22,6 +23,8 @@ STARTS: dict[str, dict[str, float]] = {
 }
 STEP = {"planar_robot": 1e-4, "panda": 1e-3, "four_bar": 1e-3}
 MODELS = tuple(STARTS)
+# In every run beams with inputs and a loop; an arm of nine joints, which compiles as long as both, with --slow.
+SAMPLED = sampled(MODELS, ("planar_robot", "four_bar"))
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
 
 

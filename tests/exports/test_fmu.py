@@ -18,7 +18,7 @@ from fmpy.validation import validate_fmu
 
 import symofros as sf
 from reference_models import MODELS as REFERENCE
-from tests.exports.cases import MODELS, STARTS, STEP, first_state, relative, run, system_of, trajectory
+from tests.exports.cases import SAMPLED, STARTS, STEP, first_state, relative, run, system_of, trajectory
 
 SAME = 1e-12
 # CVODE's own tolerance, over the run.
@@ -97,12 +97,12 @@ def columns(result: Any, prefix: str) -> np.ndarray:
     return np.array([result[name][-1] for name in result.dtype.names if name.startswith(prefix)])
 
 
-@pytest.mark.parametrize("name", [*MODELS, *OWN])
+@pytest.mark.parametrize("name", [*SAMPLED, *OWN])
 def test_valid(made: Any, name: str, version: int) -> None:
     assert validate_fmu(str(made(name, version))) == []
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", SAMPLED)
 def test_co_simulation_moves_as_python_does(made: Any, name: str, version: int) -> None:
     found = fmpy.simulate_fmu(str(made(name, version)), fmi_type="CoSimulation", stop_time=0.2, output_interval=0.01)
     wanted = trajectory(name, 0.2)
@@ -110,7 +110,7 @@ def test_co_simulation_moves_as_python_does(made: Any, name: str, version: int) 
     assert relative(columns(found, "v."), wanted.v[-1]) < SAME
 
 
-@pytest.mark.parametrize("name", [*MODELS, *OWN])
+@pytest.mark.parametrize("name", [*SAMPLED, *OWN])
 def test_model_exchange_moves_as_python_does(made: Any, name: str, version: int) -> None:
     found = fmpy.simulate_fmu(
         str(made(name, version)), fmi_type="ModelExchange", stop_time=0.2, output_interval=0.01, relative_tolerance=1e-9
@@ -212,7 +212,7 @@ def unit(made: Any, version: int, tmp_path: Path) -> Iterator[Any]:
         shutil.rmtree(tmp_path, ignore_errors=True)
 
 
-@pytest.mark.parametrize("name", [*MODELS, *OWN])
+@pytest.mark.parametrize("name", [*SAMPLED, *OWN])
 def test_directional_derivatives_are_those_of_the_functions(unit: Any, name: str, rng: np.random.Generator) -> None:
     it = unit(name, cosim=False)
     it.start()

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.exports.cases import MODELS, STARTS, STEP, STRICT, first_state, relative, run, system_of, trajectory
+from tests.exports.cases import SAMPLED, STARTS, STEP, STRICT, first_state, relative, run, system_of, trajectory
 
 HEADERS = Path(__file__).parent / "simulink"
 SAME = 1e-12
 
 
-@pytest.fixture(scope="module", params=MODELS)
+@pytest.fixture(scope="module", params=SAMPLED)
 def block(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     name = request.param
     folder = tmp_path_factory.mktemp("block") / name
@@ -22,7 +22,7 @@ def block(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     run(
         "gcc",
         *STRICT,
-        "-O2",
+        "-O1",
         f"-I{HEADERS}",
         "-I.",
         "-o",
@@ -86,7 +86,7 @@ def test_parameters_of_the_model(tmp_path: Path) -> None:
     run(
         "gcc",
         *STRICT,
-        "-O2",
+        "-O1",
         f"-I{HEADERS}",
         "-I.",
         "-o",

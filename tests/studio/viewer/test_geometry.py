@@ -103,7 +103,9 @@ def test_a_beam_that_is_stiffer_one_way_is_drawn_wider_that_way() -> None:
     assert np.allclose(outline(rhoI_y=1e-4, rhoI_z=1e-4), 0.04)
 
 
-@pytest.mark.parametrize("name", ["planar_robot", "puma560", "flexible_mss", "joint_zoo"])
+@pytest.mark.parametrize(
+    "name", ["planar_robot", "puma560", pytest.param("flexible_mss", marks=pytest.mark.slow), "joint_zoo"]
+)
 def test_links_are_where_the_whole_model_has_them(name: str, rng: np.random.Generator) -> None:
     it, model = mechanism(name), sf.compile(MODELS[name])
     q, _ = model.random_state(rng)

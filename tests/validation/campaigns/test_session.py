@@ -2,8 +2,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +9,7 @@ import pyarrow as pa
 import pytest
 from typer.testing import CliRunner
 
+from tests.validation.campaigns.scripted import Scripted
 from validation.__main__ import app
 from validation.campaigns.plan import as_text, cases, identities, plan_hash, read
 from validation.campaigns.report import compose
@@ -21,23 +20,6 @@ from validation.campaigns.sweep import DONE
 from validation.campaigns.tasks import CHECKED
 
 MANIFEST: dict[str, Any] = {"hash": "abc", "plan": {}, "models": {}, "versions": {}, "begun": ""}
-
-
-@dataclass(frozen=True)
-class Scripted:
-    """A batch that does as told."""
-
-    number: int
-    deed: str = "work"
-    size: int = 1
-    title: str = "scripted"
-
-    def run(self) -> pa.Table:
-        if self.deed == "die":
-            os.kill(os.getpid(), signal.SIGKILL)
-        if self.deed == "raise":
-            raise ZeroDivisionError("a fault\nof ours")
-        return pa.table({"batch": [self.number]})
 
 
 @pytest.fixture
