@@ -24,11 +24,11 @@ class Request(NamedTuple):
 
 
 class Methods(NamedTuple):
-    """How forward dynamics is formed.
+    """Methods of forward dynamics.
 
     Attributes:
-        constraints: Under constraints: "multipliers" or "null_space".
-        trees: Of trees: "articulated" or "factors".
+        constraints: Method under constraints: "multipliers" or "null_space".
+        trees: Method for trees: "articulated" or "factors".
     """
 
     constraints: str = "multipliers"
@@ -46,7 +46,7 @@ def form_program(equations: Equations, requests: Sequence[Request], methods: Met
     Args:
         equations: Equations of one tree; what they have formed already is shared.
         requests: Functions to form, in order.
-        methods: How forward dynamics is formed.
+        methods: Methods of forward dynamics.
 
     Returns:
         A program that reads the groups q, v, a, u, par, t, lam, gains and step.
@@ -118,7 +118,7 @@ def _returns(row: ModelFunction, known: Mapping[str, int]) -> tuple[tuple[str, t
 
 
 def _forward_dynamics(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
-    """Of a tree the accelerations; under constraints the terms, for a solver that copes with any rank."""
+    """Forward dynamics: accelerations of a tree; under constraints the terms, for a solver that copes with any rank."""
     if not e.tree.system.constraints:
         a = e.articulated if methods.trees == "articulated" else e.acceleration
         return Function(row.name, "", tuple(group for group in row.inputs if group != "gains"), (_vector("a", a),))

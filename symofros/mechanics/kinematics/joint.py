@@ -80,11 +80,11 @@ def across_joint(
     """The motion of D in P.
 
     Args:
-        lowering: For the formulas and numbers of the joint.
-        joint: What the user stated.
+        lowering: Edges of the joint's formulas and numbers.
+        joint: The joint as described.
         q: Coordinates of the joint (nq_j).
-        speeds: Its speeds (nv_j), for the rates of partial velocities that depend on q.
-        axis: Its main axis.
+        speeds: Speeds of the joint (nv_j), for the rates of partial velocities that depend on q.
+        axis: Main axis of the joint.
 
     """
     g = lowering.g

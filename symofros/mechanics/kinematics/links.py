@@ -78,7 +78,7 @@ class MovingBeam:
     Attributes:
         root: Index of the link at its root.
         tip: Index of the link at its tip, which its elastic coordinates move; None for a rigid beam.
-        forms: Its inertia, strain energy and displacements, by those coordinates.
+        forms: Inertia, strain energy and displacements of the beam as functions of the elastic coordinates.
     """
 
     root: int

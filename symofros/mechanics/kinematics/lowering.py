@@ -17,7 +17,7 @@ class Lowering:
 
     Attributes:
         g: The graph.
-        coordinates: Which symbol is which input.
+        coordinates: Index map, by which a symbol is an input of the graph.
     """
 
     def __init__(self, g: Graph, coordinates: CoordinateMap) -> None:

@@ -1,4 +1,4 @@
-"""Whether a beam can exist, and whether its shape functions can carry it."""
+"""Checks of beams: section properties, and conditioning of the shape functions."""
 
 from __future__ import annotations
 
@@ -62,8 +62,8 @@ def beam_number_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
     for beam in system.bodies:
         if isinstance(beam, Beam):
             where = system.origin.get(("body", beam.name), "")
-            found = list(_Section(beam, numbers, where).problems())
-            yield from found or _conditioning(beam, where)
+            section_problems = list(_Section(beam, numbers, where).problems())
+            yield from section_problems or _conditioning(beam, where)
 
 
 class _Section:
@@ -160,7 +160,7 @@ def _conditioning(beam: Beam, where: str) -> Iterator[Problem]:
 
 @lru_cache(maxsize=256)
 def _condition(functions: tuple[Shape, ...]) -> float:
-    """Of the mass matrix of some shape functions; an editor asks for that of the same ones again and again."""
+    """Condition of the mass matrix of some shape functions; cached, because an editor checks the same ones often."""
     M = np.array([[float((a.phi * b.phi).integral()) for b in functions] for a in functions])
     scale = 1.0 / np.sqrt(np.diag(M))
     return float(np.linalg.cond(M * np.outer(scale, scale)))

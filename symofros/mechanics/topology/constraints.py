@@ -1,4 +1,4 @@
-"""Whether constraints refer to what exists, and bind what can be bound."""
+"""Checks of constraints: their frames, bodies and speeds exist, and can be bound."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ def joint_sizes(joint: Joint) -> tuple[int, int]:
 
 
 def angles(joint: Joint) -> tuple[bool, ...]:
-    """Which coordinates of a joint are periodic; those that a user defines are taken for none."""
+    """Whether each coordinate of a joint is periodic; those that a user defines are taken for not periodic."""
     return (False,) * len(joint.coordinates) if joint.traits.user_defined else joint.traits.angles
 
 
@@ -51,14 +51,14 @@ def rate_symbols(joint: Joint) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class CoordinateMap:
-    """Which name has which index.
+    """Index map: names to indices of q, v, u, par.
 
     Attributes:
         q: Coordinate names, in order; likewise the speeds v, the inputs u and the run-time parameters par.
-        efforts: How many of the inputs are forces; the rest prescribe motion.
+        efforts: Number of inputs that are forces; the rest prescribe motion.
         par_default: Values of the run-time parameters.
         constants: Values of the constant parameters, by name.
-        symbols: What formulas may use -> its slot; constants are not among them.
+        symbols: Slots by the names that formulas use; constants are not among them.
     """
 
     q: tuple[str, ...]
@@ -75,7 +75,7 @@ def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
     """Assign the indices.
 
     Args:
-        system: For its parameters and inputs.
+        system: The system, with its parameters and inputs.
         joints: The moving joints, in the order of the links.
     """
     free = [joint for joint in joints if not joint.prescribed]

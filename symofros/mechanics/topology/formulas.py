@@ -26,8 +26,8 @@ class Stated(NamedTuple):
     Attributes:
         what: The object it belongs to, for messages.
         value: The number or formula.
-        key: Of System.origin.
-        scope: What it may depend on.
+        key: Key in System.origin.
+        scope: Names that the value may depend on.
         joint: The joint whose coordinates it may use, with scope "joint".
     """
 
@@ -133,7 +133,7 @@ def _beam_values(beam: Beam) -> Iterator[Stated]:
 
 
 @dataclass(frozen=True)
-class _Known:
+class _Scopes:
     """The names that exist, by what they are."""
 
     parameters: frozenset[str]
@@ -153,7 +153,7 @@ class _Known:
         return frozenset(getattr(self, stated.scope))
 
 
-def _known(system: System) -> _Known:
+def _known(system: System) -> _Scopes:
     parameters = frozenset(item.name for item in system.parameters)
     configuration, motion = set(parameters) | {TIME}, {item.name for item in system.inputs}
     for body in system.bodies:
@@ -161,7 +161,7 @@ def _known(system: System) -> _Known:
             configuration.update(coordinate_names(body.joint))
             motion.update(speed_symbols(body.joint))
             motion.update(rate_symbols(body.joint) if body.joint.prescribed else ())
-    return _Known(parameters, frozenset(configuration), frozenset(configuration | motion))
+    return _Scopes(parameters, frozenset(configuration), frozenset(configuration | motion))
 
 
 _RULES: dict[Scope, str] = {

@@ -11,19 +11,19 @@ _SHOWN = 12
 
 
 def frames_of(body: Body) -> str:
-    """What frames a body has, in words."""
+    """The frames of a body, as a message lists them."""
     names = [frame.name for frame in body.frames]
     return f"frames of '{body.name}': {', '.join(names[:_SHOWN])}" if names else f"'{body.name}' has no frames"
 
 
 def frame_remedy(bodies: Iterable[Body], body: Body, frame: str, entry: str) -> str:
-    """What to do about a frame that is not on a body.
+    """Remedy for a frame that is not on a body.
 
     Args:
         bodies: All of them: one of the others may have the frame.
         body: The body that was named.
         frame: The frame that it does not have.
-        entry: What the file calls the body's entry, such as "parent: ".
+        entry: Key of the body's entry in the file, such as "parent: ".
     """
     owners = [other.name for other in bodies if frame in {item.name for item in other.frames}]
     if len(owners) == 1:

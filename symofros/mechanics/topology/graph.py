@@ -1,4 +1,4 @@
-"""Everything that can be wrong with a description, found in one go and reported together."""
+"""All problems of a description, collected and reported together."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]
     """Every problem of a description.
 
     Args:
-        system: What the user stated.
+        system: The system as described.
         broken: Names of bodies, parameters and inputs that exist but could not be read; that something refers to
             them is not reported again.
 

@@ -1,4 +1,4 @@
-"""Whether a joint's own statements make sense: efforts, limits, general joints, rotors, prescribed motion."""
+"""Checks of joints: efforts, limits, general joints, rotors, prescribed motion."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def joint_problems(joint: Joint, bodies: Collection[str], where: str) -> Iterato
     """Faults that need no numbers.
 
     Args:
-        joint: What the user stated.
+        joint: The joint as described.
         bodies: Names of all bodies.
         where: "file:line".
     """

@@ -23,7 +23,7 @@ class Numbers:
     """Evaluates values of a system at its parameters' defaults.
 
     Args:
-        system: For its parameters.
+        system: The system, whose parameters have default values.
         more: Values of further symbols.
     """
 
@@ -32,7 +32,7 @@ class Numbers:
         self.parameters = {**system.parameter_values(), **(more or {})}
 
     def extended(self, more: Mapping[str, float]) -> Numbers:
-        """The same with values of further symbols, such as coordinates."""
+        """Numbers of the system with values of further symbols, such as coordinates."""
         return Numbers(self.system, more)
 
     def value(self, value: Value) -> float:

@@ -1,4 +1,4 @@
-"""Whether inertias can exist, and whether every joint has something to move."""
+"""Checks of inertia: each is physical, and every joint moves some mass."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def moments_about_center(body: RigidBody, numbers: Numbers) -> Array:
 
 
 def _weight(body: Body, numbers: Numbers) -> tuple[float, float]:
-    """How much mass and moment of inertia a body has, in size."""
+    """Absolute mass [kg] and largest moment of inertia [kg m^2] of a body."""
     if isinstance(body, Beam):
         middle = numbers.extended({STATION: 0.5 * numbers.value(body.length)})
         return abs(middle.value(body.rhoA) * middle.value(body.length)), 0.0

@@ -29,13 +29,13 @@ class Link:
     """A body that moves, with everything rigidly attached to it.
 
     Attributes:
-        name: Of the body whose frame is the link's.
-        joint: What carries it.
+        name: Name of the body whose frame is the link's.
+        joint: Joint between the link and its parent.
         parent: Index of the parent link, or BASE.
         placement: From the parent's frame to the joint's proximal frame P.
-        inertias: Of the body and of the bodies fixed to it, each with where it sits.
-        q: Its slice of q, as (start, size); empty where the motion is prescribed.
-        v: Its slice of v, alike.
+        inertias: Inertias of the body and of the bodies fixed to it, each with its placement on the link.
+        q: Slice of q as (start, size); empty where the motion is prescribed.
+        v: Slice of v as (start, size); empty where the motion is prescribed.
         beam: The beam whose root this link is.
         tip_of: The beam whose tip this link is: its joint stands for the beam's deformation.
     """
@@ -56,7 +56,7 @@ class NamedFrame:
     """A frame that can be asked for.
 
     Attributes:
-        name: Its public name: its own where that is unique in the system, otherwise "body.frame".
+        name: Public name: the frame's own where that is unique in the system, otherwise "body.frame".
         qualified: "body.frame", or the body's name for a body frame.
         link: Index of the link it is on, or BASE.
         placement: From the link's frame to it.
@@ -73,10 +73,10 @@ class SpanningTree:
     """The mechanism as it is computed with.
 
     Attributes:
-        system: What the user stated.
+        system: The system as described.
         links: Moving bodies, depth first in the order of description; parents precede children.
         frames: Every named frame.
-        coordinates: Which name has which index of q, v, u, par.
+        coordinates: Index map: names to indices of q, v, u, par.
     """
 
     system: System
@@ -108,15 +108,15 @@ def frame_of(tree: SpanningTree, body: str, frame: str | None = None) -> NamedFr
     """The frame of a body, or its body frame; the base answers to "world" too.
 
     Args:
-        tree: Of a checked system, whose names exist.
+        tree: Spanning tree of a checked system, in which the names exist.
         body: Name of the body.
-        frame: Of one of its extremity frames.
+        frame: Name of one of the body's extremity frames.
     """
     if frame is None:
-        return next((found for found in tree.frames if found.qualified == body), tree.frames[0])
-    known = next((found for found in tree.frames if found.qualified == f"{body}.{frame}"), None)
+        return next((one for one in tree.frames if one.qualified == body), tree.frames[0])
+    stated = next((one for one in tree.frames if one.qualified == f"{body}.{frame}"), None)
     # Frames of a base that goes by another name than "world".
-    return known or tree.frame(f"{tree.frames[0].qualified}.{frame}")
+    return stated or tree.frame(f"{tree.frames[0].qualified}.{frame}")
 
 
 def build_tree(system: System) -> SpanningTree:
@@ -215,12 +215,12 @@ class _Builder:
         return self._add_link(f"{beam.name}.tip", elastic, root, (), tip_of=beam), ()
 
 
-def _public_names(found: list[tuple[str, str, int, Placement]]) -> tuple[NamedFrame, ...]:
+def _public_names(frames: list[tuple[str, str, int, Placement]]) -> tuple[NamedFrame, ...]:
     count: dict[str, int] = {}
-    for own, _, _, _ in found:
+    for own, _, _, _ in frames:
         count[own] = count.get(own, 0) + 1
     # A body frame keeps the body's name; an extremity frame of that name is then the qualified one.
     return tuple(
         NamedFrame(own if count[own] == 1 or own == qualified else qualified, qualified, link, placement)
-        for own, qualified, link, placement in found
+        for own, qualified, link, placement in frames
     )

@@ -1,1 +1,1 @@
-"""What acts: generalized forces of elements, loads, connections, potentials and beams."""
+"""Applied forces: generalized forces of elements, loads, connections, potentials and beams."""

@@ -19,11 +19,11 @@ Weighted = Callable[[Field, Value], Form]
 
 
 def beam_loads(kinematics: TreeKinematics, frames: FrameKinematics, beam: MovingBeam) -> tuple[Wrench, list[Edge]]:
-    """What the loads along a beam do (eqs. 18, 19).
+    """Wrench and generalized forces of the loads along a beam (eqs. 18, 19).
 
     Args:
         kinematics: Kinematics of the tree.
-        frames: For components in world axes.
+        frames: Kinematics of frames, for components in world axes.
         beam: The beam.
 
     Returns:
@@ -83,7 +83,7 @@ def _along(
 
 
 def _turned(beam: MovingBeam, at: float | None, d: Vec3, torque: Value) -> list[Edge]:
-    """What a moment along d does to the elastic coordinates, its sections turned exactly, as the tip is (eq. 19)."""
+    """Generalized forces of a moment along d on sections that are turned exactly, as the tip is (eq. 19)."""
     g, along = d.g, beam.forms.along
     modal = [ZERO] * beam.forms.beam.modes
     for xi, share in along.shares(torque) if at is None else [(at, along.lower(torque))]:

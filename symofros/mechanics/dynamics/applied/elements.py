@@ -14,8 +14,8 @@ def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge) -
     """The force of an element on its own speed.
 
     Args:
-        lowering: For its numbers.
-        element: What the user stated.
+        lowering: Edges of the element's numbers.
+        element: The element as described.
         q: The coordinate it acts on; unused by dampers and friction.
         v: The speed.
     """
@@ -49,7 +49,7 @@ def element_energy(lowering: Lowering, element: JointElement, q: Edge) -> Edge:
 
 
 def _excess(lowering: Lowering, stop: Stop, q: Edge) -> list[tuple[Edge, int]]:
-    """How far q is beyond each limit, and the sign of the direction that leads further."""
+    """Excess of q over each limit, and the sign of the direction that leads further."""
     g = lowering.g
     excesses = []
     if stop.upper is not None:

@@ -26,7 +26,7 @@ def generalized_forces(kinematics: TreeKinematics, frames: FrameKinematics) -> l
 
     Args:
         kinematics: Kinematics of the tree.
-        frames: Its frames, where loads and connections act.
+        frames: Kinematics of the frames where loads and connections act.
 
     Returns:
         One edge a speed.

@@ -14,7 +14,7 @@ from symofros.mechanics.topology.tree import BASE, NamedFrame, Step, frame_of
 
 
 def wrenches(kinematics: TreeKinematics, frames: FrameKinematics) -> list[Wrench] | None:
-    """What acts on each link; None if nothing does."""
+    """Wrench of loads and connections on each link; None if nothing acts."""
     total = [no_wrench(kinematics.g) for _ in kinematics.links]
     acting = False
     for body in kinematics.tree.system.bodies:

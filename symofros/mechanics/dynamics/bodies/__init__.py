@@ -1,1 +1,1 @@
-"""What has inertia: links, beams, rotors."""
+"""Inertia of links, beams and rotors."""

@@ -1,4 +1,4 @@
-"""What the deformation of beams adds to the equations of motion (docs/theory/beams.md, section 4).
+"""Terms that the deformation of beams adds to the equations of motion (docs/theory/beams.md, section 4).
 
 A beam is one body in the recursion: a wrench on its root, and one force for each elastic coordinate. Everything
 follows from its kinetic energy by Boltzmann and Hamel's equations, so the same forms give M, h and T.

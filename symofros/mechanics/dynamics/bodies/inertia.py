@@ -152,7 +152,7 @@ def undeformed(kinematics: TreeKinematics, beam: MovingBeam) -> LinkInertia:
 
 
 def deformed(kinematics: TreeKinematics, beam: MovingBeam) -> LinkInertia:
-    """What deformation adds to the inertia of a beam, to the beam's order."""
+    """Change of a beam's inertia by deformation, to the beam's order."""
     order = beam.forms.order
 
     def change(form: Form) -> Edge:
@@ -162,7 +162,7 @@ def deformed(kinematics: TreeKinematics, beam: MovingBeam) -> LinkInertia:
 
 
 def first_moment_change(kinematics: TreeKinematics, beam: MovingBeam) -> Vec3:
-    """What deformation adds to the first moment, one order further: its gradient is the weight's force."""
+    """Change of a beam's first moment by deformation, one order further: its gradient is the weight's force."""
     upto = beam.forms.order + 1
     S = Vec3(kinematics.g, *(form.without_constant().value(upto) for form in beam.forms.first_moment))
     return kinematics.links[beam.root].R_LB.times(S)
@@ -205,7 +205,7 @@ def _if_clamped(link: MovingLink, inertia: LinkInertia) -> tuple[LinkInertia, Li
 
 
 def _split(link: MovingLink, inertia: LinkInertia) -> tuple[LinkInertia, LinkInertia | None]:
-    """What a link keeps, and what its parent may carry instead (eqs. 16-18)."""
+    """The inertia that a link keeps, and the share that its parent may carry instead (eqs. 16-18)."""
     g, S, J = inertia.mp_LLcm.g, inertia.mp_LLcm, inertia.I_LLo_L
     if not link.partial_velocities and link.rates is None:
         return _if_clamped(link, inertia)

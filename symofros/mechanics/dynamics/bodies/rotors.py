@@ -22,7 +22,7 @@ class MovingRotor:
 
     Attributes:
         link: Index of the link whose joint drives it.
-        coordinate: Which speed of that joint.
+        coordinate: Index of the driving speed within that joint.
         k: Index of that speed in v; None where the motion is prescribed.
         carrier: Index of the link it spins in, or BASE.
         axis: Unit spin axis in that link's frame.

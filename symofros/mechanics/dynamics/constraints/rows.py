@@ -37,8 +37,8 @@ class Row:
     """One condition.
 
     Attributes:
-        phi: Its residual; zero for one that binds speeds only.
-        G: Its row of the Jacobian (nv).
+        phi: Residual of the condition; zero for one that binds speeds only.
+        G: Row of the constraint Jacobian (nv).
         rate: G v - b: the rate of phi, or the residual of the condition on speeds.
         gamma: Right-hand side of G v' = gamma.
         levers: Terms of G, through which the multiplier acts on bodies.

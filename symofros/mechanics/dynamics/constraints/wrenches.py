@@ -28,7 +28,7 @@ def closure_wrenches(frames: FrameKinematics, rows: Sequence[Row]) -> tuple[list
 
     Args:
         frames: Kinematics of the tree's frames.
-        rows: Of all constraints, in order.
+        rows: Rows of all constraints, in order.
     """
     tree, g = frames.kinematics.tree, frames.g
     on_second, on_first, at = [], [], 0

@@ -93,7 +93,7 @@ class _Row:
 
     Attributes:
         g: The graph.
-        packs: Its edges, WIDTH at a time.
+        packs: Edges of the row, WIDTH at a time.
         least: As of a Pack.
     """
 
@@ -118,7 +118,7 @@ class _Row:
         return self._made([[(factor, mine)] for mine in self.packs], size)
 
     def less(self, factor: Edge, other: _Row, size: int) -> _Row:
-        """Its first entries less a factor times those of another row."""
+        """The first entries less a factor times those of another row."""
         if factor == ZERO:
             return self
         pairs = zip(self.packs, other.packs, strict=False)  # A later row is longer.
