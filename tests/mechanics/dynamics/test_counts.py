@@ -36,7 +36,7 @@ def test_operations_are_not_above(model: str, function: str, mul: int, add: int)
 
 
 @pytest.mark.parametrize(("function", "exponent"), [("bias", 1.0), ("inverse_dynamics", 1.0), ("mass_matrix", 2.0)])
-def test_growth_with_the_number_of_links(function: str, exponent: float) -> None:
+def test_operations_of_h_grow_like_n_and_of_the_mass_matrix_like_its_square(function: str, exponent: float) -> None:
     """Recursion, not expansion: h grows like n, M like n^2; between 26 and 52 links the exponent is read off."""
     small, large = counts("chain26", function).total, counts("chain52", function).total
     assert np.log2(large / small) == pytest.approx(exponent, abs=0.1)

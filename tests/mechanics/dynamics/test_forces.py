@@ -28,13 +28,13 @@ def force(model: sf.Model, x: float, v: float) -> float:
     return float(model.generalized_force([x], [v], np.zeros(model.nu))[0])
 
 
-def test_spring_and_its_energy() -> None:
+def test_a_springs_force_is_the_slope_of_its_energy() -> None:
     m = slider(Spring(10.0, rest=0.2, cubic=3.0))
     assert force(m, 0.7, 5.0) == pytest.approx(-(10 * 0.5 + 3 * 0.125))
     assert m.potential_energy([0.7]) == pytest.approx(5 * 0.25 + 0.75 * 0.0625)
 
 
-def test_damper() -> None:
+def test_a_damper_opposes_its_speed() -> None:
     m = slider(Damper(2.0, quadratic=0.5))
     assert force(m, 9.0, -3.0) == pytest.approx(2 * 3 + 0.5 * 9)
 

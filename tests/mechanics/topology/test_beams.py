@@ -49,16 +49,16 @@ def problems(one: sf.Beam, **system: Any) -> str:
         ({"loads": [sf.Load((1.0, 0, 0))]}, ["Load on a Beam"]),
     ],
 )
-def test_refused(changed: dict[str, Any], said: list[str]) -> None:
+def test_a_beam_that_can_not_exist_is_refused(changed: dict[str, Any], said: list[str]) -> None:
     text = problems(beam(**changed))
     assert all(part in text for part in said), text
 
 
-def test_a_parameter_called_like_the_station() -> None:
+def test_a_parameter_may_not_bear_the_name_of_the_station() -> None:
     assert "'x'" in problems(beam(), parameters=[sf.Parameter("x", 1.0)])
 
 
-def test_a_load_of_the_other_kind() -> None:
+def test_a_load_fits_the_kind_of_its_body() -> None:
     box = sf.RigidBody("box", sf.Joint("q", "revolute"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)), loads=[sf.BeamLoad()])  # type: ignore[list-item]
     with pytest.raises(sf.DescriptionError, match="a BeamLoad on a RigidBody"):
         sf.compile(sf.System("s", [box]))
@@ -73,12 +73,12 @@ def test_a_load_of_the_other_kind() -> None:
         ({"shapes": {"bend_x": ["xi^2"]}}, "bend_y, bend_z, twist"),
     ],
 )
-def test_refused_at_once(changed: dict[str, Any], said: str) -> None:
+def test_a_beam_is_refused_when_it_is_stated(changed: dict[str, Any], said: str) -> None:
     with pytest.raises(sf.DescriptionError, match=said):
         beam(**changed)
 
 
-def test_stations_of_samples() -> None:
+def test_stations_of_samples_rise_from_0_to_1() -> None:
     with pytest.raises(sf.DescriptionError, match="rise from 0 to 1"):
         sf.Samples((0, 0.5, 0.4, 1), (0, 1, 2, 3))
 

@@ -30,7 +30,7 @@ BODIES = (
         (sf.Nonholonomic("k", {"dq": "dp"}), ["'dp' may not be used here"]),
     ],
 )
-def test_refused(constraint: sf.Constraint, said: list[str]) -> None:
+def test_a_constraint_that_can_not_hold_is_refused(constraint: sf.Constraint, said: list[str]) -> None:
     with pytest.raises(sf.DescriptionError) as caught:
         sf.compile(sf.System("s", BODIES, constraints=(constraint,)))
     assert all(part in str(caught.value) for part in said), str(caught.value)
@@ -52,6 +52,6 @@ def test_names_are_unique() -> None:
         (lambda: sf.Nonholonomic("k", {}), "binds no speed"),
     ],
 )
-def test_refused_at_once(make: Any, said: str) -> None:
+def test_a_constraint_is_refused_when_it_is_stated(make: Any, said: str) -> None:
     with pytest.raises(sf.DescriptionError, match=said):
         make()

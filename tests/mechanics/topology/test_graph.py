@@ -32,25 +32,25 @@ def test_a_sound_system_has_no_problems() -> None:
     assert find_problems(arm()) == []
 
 
-def test_unknown_frame() -> None:
+def test_a_frame_that_does_not_exist_is_refused() -> None:
     problem = only(arm().with_bodies(body("arm2", sf.Joint("q2", "revolute", "arm1", "tipp"))))
     assert "frame 'tipp' is not on body 'arm1'" in problem.what
     assert problem.found == "frames of 'arm1': tip" and problem.remedy == "did you mean 'tip'?"
 
 
-def test_a_frame_of_another_body() -> None:
+def test_a_frame_of_another_body_is_pointed_out() -> None:
     problem = only(arm().with_bodies(body("hand", sf.Joint("q3", "revolute", "world", "tip"))))
     assert "frame 'tip' is not on body" in problem.what
     assert problem.remedy == "it is on body 'arm1': write parent: arm1"
 
 
-def test_disconnected_body() -> None:
+def test_a_body_whose_parent_does_not_exist_is_refused() -> None:
     problem = only(arm().with_bodies(body("hand", sf.Joint("q3", "revolute", "arm3"))))
     assert "body 'hand' is disconnected" in problem.what and "'arm3'" in problem.found
     assert problem.remedy == "did you mean 'arm1'?" or "arm2" in problem.remedy
 
 
-def test_cycle() -> None:
+def test_bodies_that_carry_each_other_are_refused() -> None:
     stated = sf.System("loop", [body("a", sf.Joint("qa", "revolute", "b")), body("b", sf.Joint("qb", "revolute", "a"))])
     problem = only(stated)
     assert "cycle" in problem.what and "a -> b -> a" in problem.what and "'qa', 'qb'" in problem.found
@@ -64,12 +64,12 @@ def test_a_long_cycle_is_named_in_short() -> None:
     assert "500 bodies" in problem.found and len(str(problem)) < 1000
 
 
-def test_a_body_that_carries_itself() -> None:
+def test_a_body_that_carries_itself_is_refused() -> None:
     problem = only(sf.System("self", [body("a", sf.Joint("qa", "revolute", "a"))]))
     assert "a -> a" in problem.what
 
 
-def test_two_bases() -> None:
+def test_a_system_has_one_base() -> None:
     problem = only(arm().with_bodies(sf.RigidBody("ground"), sf.RigidBody("floor")))
     assert "two bases" in problem.what and "'ground', 'floor'" in problem.what and "2 bodies" in problem.found
     assert "joint" in problem.remedy
@@ -98,14 +98,14 @@ def test_thin_bodies_are_physical() -> None:
     assert find_problems(arm().with_bodies(body("r", inertia=rod), body("p", inertia=plate))) == []
 
 
-def test_a_joint_that_moves_no_mass() -> None:
+def test_a_joint_that_moves_no_mass_is_refused() -> None:
     problem = only(arm().with_bodies(body("finger", inertia=None)))
     assert "moves no mass" in problem.what and "waive: [massless_tip]" in problem.remedy
     carried = arm().with_bodies(body("wrist", inertia=None), body("hand", sf.Joint("qh", "revolute", "wrist")))
     assert find_problems(carried) == []
 
 
-def test_unknown_symbol() -> None:
+def test_a_formula_of_unknown_names_is_refused() -> None:
     problem = only(arm().with_bodies(body("arm2", inertia=sf.Inertia("L2*2", (0, 0, 0), (1, 1, 1)))))
     assert "unknown symbol 'L2'" in problem.what and problem.remedy == "did you mean 'L1'?"
 
@@ -120,7 +120,7 @@ def test_efforts_may_use_the_state() -> None:
     assert find_problems(arm(inputs=[sf.Input("u1")]).with_bodies(spring)) == []
 
 
-def test_duplicate_names() -> None:
+def test_names_that_appear_twice_are_refused() -> None:
     twice = sf.System("s", [body("a", sf.Joint("q", "revolute")), body("a", sf.Joint("q", "revolute"))])
     text = "\n".join(problem.what for problem in find_problems(twice))
     assert "body 'a' appears 2 times" in text and "joint 'q' appears 2 times" in text
@@ -131,12 +131,12 @@ def test_duplicate_names() -> None:
 @pytest.mark.parametrize(
     ("name", "found"), [("sin", "a function"), ("t", "the time"), ("pi", "a constant"), ("L1", "a parameter")]
 )
-def test_reserved_and_taken_names(name: str, found: str) -> None:
+def test_reserved_and_taken_names_are_refused(name: str, found: str) -> None:
     problem = only(arm(inputs=[sf.Input(name)]))
     assert "the name is taken" in problem.what and found in problem.found
 
 
-def test_names_that_formulas_could_not_use() -> None:
+def test_names_that_formulas_could_not_use_are_refused() -> None:
     assert "not a legal name" in only(arm(inputs=[sf.Input("my input")])).what
     assert "unusable name" in only(arm().with_bodies(body("a\nb", sf.Joint("qa", "revolute")))).what
 
@@ -155,13 +155,13 @@ def test_two_joints_of_one_name_are_told_apart_once() -> None:
 
 
 @pytest.mark.parametrize("rotation", [("1e300*1e300", 0, 0), ("log(-1)", 0, 0)])
-def test_a_rotation_by_no_finite_angle(rotation: tuple[str, int, int]) -> None:
+def test_a_rotation_by_no_finite_angle_is_refused(rotation: tuple[str, int, int]) -> None:
     joint = sf.Joint("q3", "revolute", rotation=sf.Rotation("rpy", rotation))
     assert "not a finite number" in only(arm().with_bodies(body("hand", joint))).what
 
 
 @pytest.mark.parametrize("size", [0.0, 1e308])
-def test_directions_that_are_none(size: float) -> None:
+def test_directions_without_length_are_refused(size: float) -> None:
     """Zero, or so long that the length overflows: the mechanism would be NaN."""
     axis = (size, size, size)
     assert "has no direction" in only(arm().with_bodies(body("b", sf.Joint("q3", "revolute", axis=axis)))).what
@@ -195,7 +195,7 @@ def test_rotations_that_are_none(rotation: sf.Rotation, what: str) -> None:
     assert what in only(arm().with_bodies(body("arm2", frames=[sf.Frame("f", rotation=rotation)]))).what
 
 
-def test_an_axis_of_no_length() -> None:
+def test_an_axis_of_no_length_is_refused() -> None:
     problem = only(arm().with_bodies(body("arm2", sf.Joint("q2", "prismatic", axis=(0, 0, 0)))))
     assert "axis has no direction" in problem.what
 
@@ -205,12 +205,12 @@ def test_efforts_fit_the_joint() -> None:
     assert "2 efforts" in problem.found and "3 speeds" in problem.rule
 
 
-def test_limits_in_order() -> None:
+def test_lower_limits_lie_below_upper_ones() -> None:
     crossed = body("arm2", sf.Joint("q2", "revolute", limits=sf.Limits(1.0, -1.0)))
     assert "limits crossed" in only(arm().with_bodies(crossed)).what
 
 
-def test_nothing_moves() -> None:
+def test_a_system_in_which_nothing_moves_is_refused() -> None:
     assert "nothing moves" in only(sf.System("stone", [sf.RigidBody("ground")])).what
 
 

@@ -33,7 +33,7 @@ def test_what_is_fixed_to_the_base_has_frames_but_no_inertia() -> None:
     assert [len(link.inertias) for link in tree.links] == [1]
 
 
-def test_coordinate_names() -> None:
+def test_coordinates_are_named_by_joint_and_component() -> None:
     tree = build_tree(sf.System("s", [body("a", "world", "free"), body("b", "a", "ball"), body("c", "b", "prismatic")]))
     names = tree.coordinates
     assert names.q[:7] == tuple(f"q_a.{s}" for s in ("px", "py", "pz", "qx", "qy", "qz", "qw"))

@@ -37,7 +37,7 @@ def states(m: sf.Model, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarra
 
 @pytest.mark.parametrize("retain", ORDERS)
 @pytest.mark.parametrize("name", NAMES)
-def test_mass_matrix_and_kinetic_energy(name: str, retain: str, rng: np.random.Generator) -> None:
+def test_kinetic_energy_is_half_the_speeds_times_the_momenta(name: str, retain: str, rng: np.random.Generator) -> None:
     m = model(name, retain)
     q, v = states(m, rng)
     M = m.mass_matrix(q)

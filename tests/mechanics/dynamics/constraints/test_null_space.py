@@ -31,14 +31,14 @@ def state(name: str, backend: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("name", [*GUESSES, *LOOSE])
-def test_the_same_as_by_multipliers(name: str) -> None:
+def test_null_space_and_multipliers_give_the_same_motion(name: str) -> None:
     assert_the_same_motion(name, "interpreter")
 
 
 @pytest.mark.parametrize(
     "name", sampled((*GUESSES, *LOOSE), ("four_bar", "slider_crank", "rolling_disc", "flexible_slider_crank"))
 )
-def test_the_same_as_by_multipliers_in_c(name: str) -> None:
+def test_null_space_and_multipliers_give_the_same_motion_in_c(name: str) -> None:
     assert_the_same_motion(name, "c")
 
 
@@ -88,7 +88,7 @@ def test_no_acceleration(backend: str) -> None:
 
 
 @pytest.mark.parametrize("form", ["multipliers", "null_space"])
-def test_nothing_is_left_free(form: str) -> None:
+def test_a_mechanism_with_no_freedom_left_does_not_accelerate(form: str) -> None:
     """A body that the constraints hold in every direction: the forces alone are to be found."""
     slide = sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(0, 0, 1)), sf.Inertia(2.0))
     rest = sf.Closure("rest", ("world", None), ("b", None), ("z",))

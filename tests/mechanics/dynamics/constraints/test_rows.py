@@ -64,7 +64,7 @@ def state(m: sf.Model, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_derivatives(case: str) -> None:
+def test_rates_of_conditions_are_their_derivatives_along_the_motion(case: str) -> None:
     m = model(case)
     q, v = state(m)
     G, gamma = m.constraint_jacobian(q), m.constraint_bias(q, v)
@@ -77,7 +77,7 @@ def test_derivatives(case: str) -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_c_is_the_interpreter(case: str) -> None:
+def test_c_evaluates_conditions_as_the_interpreter_does(case: str) -> None:
     m = model(case)
     c = sf.compile(CASES[case], sf.Options(functions=FUNCTIONS, flags=("-O2", "-ffp-contract=off", "-fno-math-errno")))
     q, v = state(m, 1)

@@ -122,7 +122,7 @@ class TestStatics:
         assert m.closure_wrench("contact", m.neutral(), lam) == pytest.approx([0, 0, 2 * G, 0, 0, 0], abs=1e-12)
 
 
-def test_unknown_names() -> None:
+def test_a_condition_by_formula_has_no_wrench_on_bodies() -> None:
     slide = sf.RigidBody("b", sf.Joint("x", "prismatic"), sf.Inertia(1.0))
     stated = sf.System("s", [slide], constraints=[sf.Nonholonomic("n", {"dx": 1.0})])
     m = sf.compile(stated, sf.Options(backend="interpreter"))

@@ -53,14 +53,14 @@ def difference(system: sf.System, seed: int = 0) -> float:
 
 
 @pytest.mark.parametrize("name", TREES)
-def test_reference_models(name: str) -> None:
+def test_articulated_bodies_accelerate_reference_models_as_factors_do(name: str) -> None:
     """Flexible arms, rotors, springs and loads among them."""
     assert difference(MODELS[name]) < TOLERANCE
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(seed=st.integers(0, 10**6), n=st.integers(1, 8))
-def test_random_trees(seed: int, n: int) -> None:
+def test_articulated_bodies_accelerate_random_trees_as_factors_do(seed: int, n: int) -> None:
     """Joints of every kind, the user's own among them."""
     assert difference(random_tree(seed, n, (*MORE_KINDS, *SERIES_KINDS)), seed) < TOLERANCE
 
@@ -68,7 +68,7 @@ def test_random_trees(seed: int, n: int) -> None:
 @pytest.mark.filterwarnings("ignore::symofros.InconsistentModelWarning")  # One is without foreshortening on purpose.
 @pytest.mark.parametrize("retain", ["zeroth_order", "first_order", "all"])
 @pytest.mark.parametrize("case", CASES)
-def test_beams(case: str, retain: str) -> None:
+def test_articulated_bodies_accelerate_beams_as_factors_do(case: str, retain: str) -> None:
     """In series, branching, with bodies on their tips, on a driven base."""
     assert difference(CASES[case].retaining(retain)) < TOLERANCE
 
@@ -108,7 +108,7 @@ def geared(carrier: str | None) -> sf.System:
 
 
 @pytest.mark.parametrize("carrier", ["b1", "world"])
-def test_rotors_on_the_parent_or_at_rest(carrier: str) -> None:
+def test_rotors_on_the_parent_or_at_rest_stay_local(carrier: str) -> None:
     assert forward_methods(Equations(plan(geared(carrier)))) == WAYS
     assert difference(geared(carrier)) < TOLERANCE
 
@@ -127,7 +127,7 @@ def massless(system: sf.System, way: Way) -> str:
     return str(caught.value)
 
 
-def test_the_same_refusals() -> None:
+def test_both_methods_refuse_the_same_massless_speeds() -> None:
     """A speed that moves no mass, and two that move the same mass alike."""
     tip = sf.RigidBody("b", sf.Joint("q2", "revolute", "a"), None, waive=("massless_tip",))
     light = sf.System("s", (sf.RigidBody("a", sf.Joint("q1", "revolute"), SOLID), tip))
@@ -148,7 +148,7 @@ def counted(links: int, way: Way) -> Operations:
     return count_program(program(links, way))[NAME, ""]
 
 
-def test_growth_with_the_number_of_links() -> None:
+def test_operations_grow_in_proportion_to_the_links() -> None:
     """Recursion: operations grow as n; those of the factors tend to n^3, and take n^2 to form M."""
     grown = {way: np.log2(counted(52, way).total / counted(26, way).total) for way in WAYS}
     assert grown["articulated"] == pytest.approx(1.0, abs=0.05)
@@ -181,14 +181,14 @@ def error(links: int, way: Way, load: float) -> float:
     return float(np.exp(np.mean(np.log(errors))))
 
 
-def test_digits_and_the_length_of_a_chain() -> None:
+def test_long_chains_cost_articulated_bodies_no_digits() -> None:
     """Twice the links: factors lose a digit more (n^4), articulated bodies nothing to speak of (below n)."""
     lost = {way: np.log2(error(16, way, 1.0) / error(8, way, 1.0)) for way in WAYS}
     assert lost["articulated"] < 1.0
     assert lost["factors"] > 3.0
 
 
-def test_digits_and_the_weight_of_a_load() -> None:
+def test_a_heavy_load_costs_articulated_bodies_fewer_digits() -> None:
     """Both lose in proportion to the load on sixteen links, from levels that lie hundreds of times apart."""
     for way in WAYS:
         slope = np.log10(error(16, way, 1e8) / error(16, way, 1e4)) / 4.0
