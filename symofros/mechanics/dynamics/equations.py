@@ -342,5 +342,7 @@ class Equations:
     @cached_property
     def frames(self) -> FrameKinematics:
         """Kinematics of the frames, at their deflected places."""
-        as_stated = all(beam.forms.order > 0 for beam in self.kinematics.beams)
-        return FrameKinematics(self.kinematics if as_stated else tree_kinematics(self.g, self.tree, as_seen=True))
+        is_deflected = all(beam.forms.order > 0 for beam in self.kinematics.beams)
+        return FrameKinematics(
+            self.kinematics if is_deflected else tree_kinematics(self.g, self.tree, deflected_tips=True)
+        )

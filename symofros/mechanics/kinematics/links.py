@@ -136,14 +136,14 @@ def speeds_by_path(kinematics: TreeKinematics) -> list[list[int]]:
     return paths
 
 
-def tree_kinematics(g: Graph, tree: SpanningTree, as_seen: bool = False) -> TreeKinematics:
+def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) -> TreeKinematics:
     """Lower a tree's joints, beams and offsets into a graph.
 
     Args:
         g: Where the operations go.
         tree: Checked and numbered.
-        as_seen: With every tip where its deflection puts it; otherwise the tips of beams of zeroth order stay at
-            their undeformed places, as their equations of motion take it.
+        deflected_tips: Whether every tip is where its deflection puts it; otherwise the tips of beams of zeroth order
+            stay at their undeformed places, as their equations of motion take it.
     """
     lowering = Lowering(g, tree.coordinates)
     links: list[MovingLink] = []
@@ -163,7 +163,7 @@ def tree_kinematics(g: Graph, tree: SpanningTree, as_seen: bool = False) -> Tree
         if link.tip_of is None:
             across = across_joint(lowering, link.joint, q, speeds, axis)
         else:
-            across = across_beam(beams[-1].forms, q, speeds, as_seen or link.tip_of.retain != "zeroth_order")
+            across = across_beam(beams[-1].forms, q, speeds, deflected_tips or link.tip_of.retain != "zeroth_order")
         constant = constant_rotation(snapped(R_AP @ R_BL))
         links.append(
             MovingLink(

@@ -25,7 +25,7 @@ def arm(links: int, in_space: bool) -> sf.System:
 
 
 @pytest.mark.parametrize("links", [1, 2, 3, 6])
-def test_a_planar_robot_takes_few_operations(links: int) -> None:
+def test_planar_motion_costs_the_same_whether_written_in_plane_or_in_space(links: int) -> None:
     planar, spatial = (count_program(sf.program_of(arm(links, space), FUNCTIONS)) for space in (False, True))
     for name in FUNCTIONS:
         assert spatial[name, ""] == planar[name, ""], name

@@ -115,16 +115,16 @@ class _Row:
 
     def times(self, factor: Edge, size: int) -> _Row:
         """The first entries times a factor."""
-        return self._made([[(factor, mine)] for mine in self.packs], size)
+        return self._combined([[(factor, pack)] for pack in self.packs], size)
 
     def less(self, factor: Edge, other: _Row, size: int) -> _Row:
         """The first entries less a factor times those of another row."""
         if factor == ZERO:
             return self
         pairs = zip(self.packs, other.packs, strict=False)  # A later row is longer.
-        return self._made([[(ONE, mine), (-factor, theirs)] for mine, theirs in pairs], size)
+        return self._combined([[(ONE, pack), (-factor, other_pack)] for pack, other_pack in pairs], size)
 
-    def _made(self, terms: list[list[tuple[Edge, Signed]]], size: int) -> _Row:
+    def _combined(self, terms: list[list[tuple[Edge, Signed]]], size: int) -> _Row:
         packs = [combined(self.g, terms[c], of, self.least) for c, of in _chunks(size)]
         return _Row(self.g, packs, self.least)
 
