@@ -34,7 +34,7 @@ class LinkMotion:
 
 @dataclass(frozen=True)
 class Acceleration:
-    """Acceleration of a link, or a part of it: alpha_WL_L and a_WLo_L, without the terms of its velocity."""
+    """Acceleration of a link or a part of it: terms of alpha_WL_L [rad/s^2] and a_WLo_L [m/s^2]."""
 
     alpha: Vec3
     a: Vec3
@@ -101,9 +101,8 @@ def _across(g: Graph, link: MovingLink, parent: LinkMotion, rates: Sequence[Edge
     w_WA_L = link.R_AL.apply_inverse(parent.w_WL_L)
     w = (w_WA_L + w_AL_L).named(f"w_WL_L[{link.name}]")
     alpha = link.R_AL.apply_inverse(parent.alpha_WL_L) + (w_AL_L_rate + w_WA_L.cross(w_AL_L))
-    a = link.R_AL.apply_inverse(parent.a_WLo_L + parent.U.times(link.p_AL)) + (
-        v_ALo_L_rate + (w_WA_L + w).cross(v_ALo_L)
-    )
+    of_A = link.R_AL.apply_inverse(parent.a_WLo_L + parent.U.times(link.p_AL))
+    a = of_A + (v_ALo_L_rate + (w_WA_L + w).cross(v_ALo_L))
     return w, alpha, a
 
 

@@ -73,16 +73,16 @@ class FrameKinematics:
             link = self.kinematics.links[i]
             parent = rates[link.parent]
             r = self.link_pose(i).p_WF - self.link_pose(link.parent).p_WF
-            w_AL_W, v_ALo_W, w_rate, v_rate_rel = zero, zero, zero, zero
+            w_AL_W, v_ALo_W, w_AL_W_rate, v_ALo_W_rate = zero, zero, zero, zero
             v_rates = [ZERO] * len(link.partial_velocities) if v_rate is None else link.speed_rates(v_rate)
             for partial, speed, rate in zip(self._partials(i), link.speeds, v_rates, strict=True):
                 w_AL_W, v_ALo_W = w_AL_W + partial.w.scaled(speed), v_ALo_W + partial.v.scaled(speed)
-                w_rate = w_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
-                v_rate_rel = v_rate_rel + (partial.v.scaled(rate) + partial.v_rate.scaled(speed))
+                w_AL_W_rate = w_AL_W_rate + (partial.w.scaled(rate) + partial.w_rate.scaled(speed))
+                v_ALo_W_rate = v_ALo_W_rate + (partial.v.scaled(rate) + partial.v_rate.scaled(speed))
             w_r = parent.w_WF_W.cross(r)
-            alpha = parent.alpha_WF_W + (w_rate + parent.w_WF_W.cross(w_AL_W))
+            alpha = parent.alpha_WF_W + (w_AL_W_rate + parent.w_WF_W.cross(w_AL_W))
             a = parent.a_WFo_W + (parent.alpha_WF_W.cross(r) + parent.w_WF_W.cross(w_r))
-            a = a + (v_rate_rel + (parent.w_WF_W + parent.w_WF_W + w_AL_W).cross(v_ALo_W))
+            a = a + (v_ALo_W_rate + (parent.w_WF_W + parent.w_WF_W + w_AL_W).cross(v_ALo_W))
             rates[i] = Rates(parent.v_WFo_W + w_r + v_ALo_W, parent.w_WF_W + w_AL_W, a, alpha)
         return rates
 
