@@ -81,9 +81,9 @@ def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
     free = [joint for joint in joints if not joint.prescribed]
     q = tuple(name for joint in free for name in coordinate_names(joint))
     v = tuple(name for joint in free for name in speed_names(joint))
-    motors = tuple(name for joint in free if joint.actuated for name in speed_names(joint))
+    actuated = tuple(name for joint in free if joint.actuated for name in speed_names(joint))
     stated = tuple(item.name for item in system.inputs)
-    driven = tuple(
+    prescribed = tuple(
         name
         for joint in joints
         if joint.prescribed
@@ -93,14 +93,14 @@ def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
     symbols = {name: Slot("q", i) for i, name in enumerate(q)}
     symbols |= {name: Slot("v", i) for i, name in enumerate(s for joint in free for s in speed_symbols(joint))}
     symbols |= {name: Slot("u", i) for i, name in enumerate(stated)}
-    efforts = len(stated) + len(motors)
-    symbols |= {name: Slot("u", efforts + i) for i, name in enumerate(driven)}
+    efforts = len(stated) + len(actuated)
+    symbols |= {name: Slot("u", efforts + i) for i, name in enumerate(prescribed)}
     symbols |= {parameter.name: Slot("par", i) for i, parameter in enumerate(run_time)}
     symbols["t"] = Slot("t", 0)
     return CoordinateMap(
         q,
         v,
-        stated + motors + driven,
+        stated + actuated + prescribed,
         efforts,
         tuple(parameter.name for parameter in run_time),
         tuple(float(parameter.value) for parameter in run_time),

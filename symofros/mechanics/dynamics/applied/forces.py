@@ -83,10 +83,10 @@ def _coordinate(lowering: Lowering, link: Link, index: int) -> Edge:
 
 
 def _joint_forces(kinematics: TreeKinematics) -> list[Edge]:
-    """Efforts, motors and elements: their virtual power on their own speed is the force itself (eq. 23)."""
+    """Efforts, actuators and elements: their virtual power on their own speed is the force itself (eq. 23)."""
     g, lowering, tree = kinematics.g, kinematics.lowering, kinematics.tree
     total: list[Edge] = [ZERO] * kinematics.nv
-    motor = len(tree.system.inputs)
+    actuator = len(tree.system.inputs)
 
     def add(k: int, edge: Edge) -> None:
         total[k] = g.add(total[k], edge)
@@ -103,8 +103,8 @@ def _joint_forces(kinematics: TreeKinematics) -> list[Edge]:
             add(start + k, element_force(lowering, element, _coordinate(lowering, link, k), speeds[k]))
         if link.joint.actuated:
             for k in range(size):
-                add(start + k, g.input("u", motor + k))
-            motor += size
+                add(start + k, g.input("u", actuator + k))
+            actuator += size
     return total
 
 
