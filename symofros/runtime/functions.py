@@ -9,14 +9,14 @@ from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
+from numpy.typing import ArrayLike as ArrayLike
 
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
-from symofros.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS, generated_with
+from symofros.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
 from symofros.runtime.kernel import Array, Kernel, Manner, Numbers, Precision, Unit
 from symofros.runtime.layout import by_columns, flat, states
 from symofros.runtime.record import ModelRecord
 
-Given = npt.ArrayLike
 Key = tuple[str, str]
 
 
@@ -220,6 +220,36 @@ class Functions:
             raise self._unknown("function", str(name)[:80], known, rule)
         return self._kernels.get((name, frame)) or self._make(name, frame)
 
+    def evaluate(
+        self, name: str, frame: str = "", *, par: ArrayLike | None = None, **inputs: ArrayLike | None
+    ) -> list[Numbers]:
+        """Any function by its name in the table of functions (`symofros/functions.py`).
+
+        Args:
+            name: The function; most have a method of that name.
+            frame: Frame of a frame function.
+            par: Run-time parameters.
+            inputs: The function's inputs by name; `t` is 0 and `u` the default inputs where they are left out.
+
+        Returns:
+            The function's outputs in the order of the table, each (..., *shape).
+
+        Raises:
+            UnknownNameError: No such function, frame or input.
+            ShapeError: An input is missing or does not fit.
+        """
+        public = self._frame(frame) if frame else ""
+        kernel = self._kernel(name, public, "functions of frames are evaluated with their frame")
+        for group in inputs:
+            if group not in INPUTS:
+                raise self._unknown("input", group, tuple(INPUTS), f"{name} takes {', '.join(FUNCTIONS[name].inputs)}")
+        values = {"u": None, "t": 0.0, "gains": np.zeros(2 * self.nc)} | inputs
+        for group, _ in kernel.signature.inputs:
+            if group not in values:
+                takes = ", ".join(FUNCTIONS[name].inputs)
+                raise ShapeError(Problem(f"{name}: no {group}", f"{', '.join(inputs) or 'nothing'}", takes, "add it"))
+        return self._call(name, public, values, par)
+
     def formulas(self, formulas: Sequence[Any], derivatives: bool = True) -> Kernel:
         """Formulas over the model's names, compiled: (q, v, u, t) -> values, and derivatives by q and by v.
 
@@ -250,9 +280,9 @@ class Functions:
         raise self._unknown("frame", frame, self.record.frame_names, "frames are listed in model.names.frames")
 
     def _unknown(self, kind: str, name: str, known: tuple[str, ...], rule: str) -> UnknownNameError:
-        found = f"{len(known)} {kind}s" + (": " + ", ".join(known[:12]) if known else "")
+        listed = f"{len(known)} {kind}s" + (": " + ", ".join(known[:12]) if known else "")
         what = f"model '{self.record.name}': no {kind} '{name}'"
-        return UnknownNameError(Problem(what, found, rule, did_you_mean(name, known) or "use another model"))
+        return UnknownNameError(Problem(what, listed, rule, did_you_mean(name, known) or "use another model"))
 
     def _finite(self, name: str, value: float) -> float:
         try:
@@ -271,10 +301,12 @@ class Functions:
             )
         return number
 
-    def _one(self, name: str, given: Mapping[str, Given | None], par: Given | None, frame: str = "") -> Numbers:
+    def _one(self, name: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None, frame: str = "") -> Numbers:
         return self._call(name, self._frame(frame) if frame else "", given, par)[0]
 
-    def _call(self, name: str, frame: str, given: Mapping[str, Given | None], par: Given | None) -> list[Numbers]:
+    def _call(
+        self, name: str, frame: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None
+    ) -> list[Numbers]:
         kernel = self._kernels.get((name, frame)) or self._make(name, frame)
         dtype = Manner(precision=self._precision).dtype
         arrays = [self._array(group, self._given(given[group]), size, dtype) for group, size in kernel.signature.inputs]
@@ -291,7 +323,7 @@ class Functions:
         shaped = zip(outputs, kernel.signature.outputs, strict=True)
         return [output.reshape(batch + shape) for output, (_, shape) in shaped]
 
-    def _given(self, values: Given | None) -> Given:
+    def _given(self, values: ArrayLike | None) -> ArrayLike:
         """What was given; the default inputs where nothing was."""
         return self.record.u_default if values is None else values
 
@@ -303,7 +335,7 @@ class Functions:
         return self._prepared[key]
 
     def _batch_shape(
-        self, name: str, shapes: list[tuple[int, ...]], given: Mapping[str, Given | None]
+        self, name: str, shapes: list[tuple[int, ...]], given: Mapping[str, ArrayLike | None]
     ) -> tuple[int, ...]:
         try:
             return np.broadcast_shapes(*shapes)
@@ -333,7 +365,7 @@ class Functions:
         self._kernels.update(self._build(together).kernels)
         return self._kernels[name, frame]
 
-    def _array(self, group: str, values: Given, size: int, dtype: npt.DTypeLike = np.float64) -> Numbers:
+    def _array(self, group: str, values: ArrayLike, size: int, dtype: npt.DTypeLike = np.float64) -> Numbers:
         try:
             array = np.asarray(values, dtype=dtype)
         except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""Model: a compiled mechanism in the hand."""
+"""Model: the functions of one mechanism as methods."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import numpy as np
 
 from symofros.runtime import linear, manifold
 from symofros.runtime.bound import Bound, Layout, bind, bind_batch
-from symofros.runtime.functions import Functions
-from symofros.runtime.functions import Given as Given
+from symofros.runtime.constraint_functions import ConstraintFunctions
+from symofros.runtime.frame_functions import FrameFunctions
+from symofros.runtime.functions import ArrayLike as ArrayLike
 from symofros.runtime.functions import Key as Key
 from symofros.runtime.kernel import Array
 from symofros.runtime.linear import FrameDerivatives as FrameDerivatives
@@ -18,7 +19,7 @@ from symofros.runtime.linear import Output as Output
 from symofros.runtime.linear import StateMatrices as StateMatrices
 
 
-class Model(Functions):
+class Model(ConstraintFunctions, FrameFunctions):
     """The equations of one mechanism, ready to be evaluated.
 
     Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays
@@ -41,11 +42,11 @@ class Model(Functions):
         """A random q (nq) on the manifold, within the limits, and v (nv)."""
         return manifold.random_state(self.record, rng)
 
-    def integrate(self, q: Given, dq: Given) -> Array:
+    def integrate(self, q: ArrayLike, dq: ArrayLike) -> Array:
         """Move from q (..., nq) along the manifold by dq (..., nv), a velocity times a time."""
         return manifold.integrate(self.record.segments, self._array("q", q, self.nq), self._array("dq", dq, self.nv))
 
-    def difference(self, q0: Given, q1: Given) -> Array:
+    def difference(self, q0: ArrayLike, q1: ArrayLike) -> Array:
         """The dq (..., nv) that leads from q0 to q1 (..., nq)."""
         return manifold.difference(self.record.segments, self._array("q0", q0, self.nq), self._array("q1", q1, self.nq))
 
@@ -58,7 +59,7 @@ class Model(Functions):
         *,
         n: int | None = None,
         layout: Layout = "rows",
-        par: Given | None = None,
+        par: ArrayLike | None = None,
         **arrays: Array,
     ) -> Bound:
         """A function bound to fixed memory: a call takes a fraction of a microsecond more than its C.
@@ -91,20 +92,22 @@ class Model(Functions):
 
     # Dynamics: M(q) v' + h(q, v) = Q(q, v, u).
 
-    def mass_matrix(self, q: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
-        """M(q) (..., nv, nv)."""
+    def mass_matrix(self, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> Array:
+        """Mass matrix M(q) (..., nv, nv)."""
         return self._one("mass_matrix", {"q": q, "u": u}, par)
 
-    def bias(self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
-        """h(q, v) (..., nv): Coriolis, centrifugal and gravity terms."""
+    def bias(self, q: ArrayLike, v: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> Array:
+        """Coriolis, centrifugal and gravity terms h(q, v) (..., nv)."""
         return self._one("bias", {"q": q, "v": v, "u": u}, par)
 
-    def generalized_force(self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0) -> Array:
-        """Q(q, v, u) (..., nv): applied and joint forces."""
+    def generalized_force(
+        self, q: ArrayLike, v: ArrayLike, u: ArrayLike, *, par: ArrayLike | None = None, t: ArrayLike = 0.0
+    ) -> Array:
+        """Applied and joint forces Q(q, v, u) (..., nv)."""
         return self._one("generalized_force", {"q": q, "v": v, "u": u, "t": t}, par)
 
     def dynamics(
-        self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0
+        self, q: ArrayLike, v: ArrayLike, u: ArrayLike, *, par: ArrayLike | None = None, t: ArrayLike = 0.0
     ) -> tuple[Array, Array, Array]:
         """M (..., nv, nv), h (..., nv) and Q (..., nv) in one call."""
         M, h, Q = self._call("dynamics", "", {"q": q, "v": v, "u": u, "t": t}, par)
@@ -113,39 +116,39 @@ class Model(Functions):
     @overload
     def forward_dynamics(
         self,
-        q: Given,
-        v: Given,
-        u: Given,
+        q: ArrayLike,
+        v: ArrayLike,
+        u: ArrayLike,
         *,
-        par: Given | None = None,
-        t: Given = 0.0,
-        gains: Given | None = None,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+        gains: ArrayLike | None = None,
         multipliers: Literal[False] = False,
     ) -> Array: ...
     @overload
     def forward_dynamics(
         self,
-        q: Given,
-        v: Given,
-        u: Given,
+        q: ArrayLike,
+        v: ArrayLike,
+        u: ArrayLike,
         *,
-        par: Given | None = None,
-        t: Given = 0.0,
-        gains: Given | None = None,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+        gains: ArrayLike | None = None,
         multipliers: Literal[True],
     ) -> tuple[Array, Array]: ...
     def forward_dynamics(
         self,
-        q: Given,
-        v: Given,
-        u: Given,
+        q: ArrayLike,
+        v: ArrayLike,
+        u: ArrayLike,
         *,
-        par: Given | None = None,
-        t: Given = 0.0,
-        gains: Given | None = None,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+        gains: ArrayLike | None = None,
         multipliers: bool = False,
     ) -> Array | tuple[Array, Array]:
-        """The v' (..., nv) that the forces produce, constraints kept.
+        """Accelerations v' (..., nv) that the forces produce, constraints kept.
 
         Args:
             q: Configuration (..., nq).
@@ -161,51 +164,97 @@ class Model(Functions):
         return (a, lam) if multipliers else a
 
     def constrained_dynamics(
-        self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0, gains: Given | None = None
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        u: ArrayLike,
+        *,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+        gains: ArrayLike | None = None,
     ) -> tuple[Array, Array, Array]:
-        """V' (..., nv), multipliers (..., nc) and the rank of G (...,).
+        """Accelerations v' (..., nv), multipliers (..., nc) and the rank of G (...,).
 
         Conditions that repeat others leave v' as it is and get multipliers of least norm; ones that contradict each
         other are met in the sense of least squares. A rank of -1 marks a state that has no acceleration (NaN).
         """
         given = {"q": q, "v": v, "u": u, "t": t, "gains": self._gains(gains)}
-        found = self._call("forward_dynamics", "", given, par)
-        if len(found) == 1:
-            batch = found[0].shape[:-1]
-            return found[0], np.zeros((*batch, 0)), np.zeros(batch)
-        a, lam, rank = found
+        a, *constrained = self._call("forward_dynamics", "", given, par)
+        if not constrained:
+            batch = a.shape[:-1]
+            return a, np.zeros((*batch, 0)), np.zeros(batch)
+        lam, rank = constrained
         return a, lam, rank
 
-    def _gains(self, gains: Given | None) -> Given:
+    def _gains(self, gains: ArrayLike | None) -> ArrayLike:
         if gains is None:
             return np.zeros(2 * self.nc)
         given = np.asarray(gains, dtype=np.float64)
         return np.repeat(given, self.nc, axis=-1) if given.shape == (2,) else given
 
+    def inverse_dynamics(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        *,
+        u: ArrayLike | None = None,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+    ) -> Array:
+        """M a + h - Q(q, v, 0) (..., nv): what the inputs must supply for v' = a; of u, only motions count."""
+        return self._one("inverse_dynamics", {"q": q, "v": v, "a": a, "u": u, "t": t}, par)
+
+    def kinetic_energy(
+        self, q: ArrayLike, v: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
+    ) -> Array:
+        """Kinetic energy (...,) [J]."""
+        return self._one("kinetic_energy", {"q": q, "v": v, "u": u}, par)
+
+    def potential_energy(
+        self, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None, t: ArrayLike = 0.0
+    ) -> Array:
+        """Potential energy (...,) [J]: of the weight, zero for mass at the world origin, and of springs."""
+        return self._one("potential_energy", {"q": q, "u": u, "t": t}, par)
+
     # Derivatives. Those by q are along the manifold: column k is the change as q moves with speed k alone.
 
     def inverse_dynamics_derivatives(
-        self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        *,
+        u: ArrayLike | None = None,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
     ) -> tuple[Array, Array]:
         """The derivatives of `inverse_dynamics` by q and by v (..., nv, nv); that by a is M."""
         by_q, by_v = self._call("inverse_dynamics_derivatives", "", {"q": q, "v": v, "a": a, "u": u, "t": t}, par)
         return by_q, by_v
 
     def forward_dynamics_derivatives(
-        self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0
+        self, q: ArrayLike, v: ArrayLike, u: ArrayLike, *, par: ArrayLike | None = None, t: ArrayLike = 0.0
     ) -> tuple[Array, Array, Array]:
         """The derivatives of `forward_dynamics` by q, v (..., nv, nv) and u (..., nv, nu), constraints kept."""
         by_q, by_v, by_u = self._call("forward_dynamics_derivatives", "", {"q": q, "v": v, "u": u, "t": t}, par)
         return by_q[..., : self.nv, :], by_v[..., : self.nv, :], by_u[..., : self.nv, :]
 
     def inverse_dynamics_by_par(
-        self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        *,
+        u: ArrayLike | None = None,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
     ) -> Array:
         """The derivative of `inverse_dynamics` by the run-time parameters (..., nv, npar)."""
         return self._one("inverse_dynamics_by_par", {"q": q, "v": v, "a": a, "u": u, "t": t}, par)
 
     def forward_dynamics_by_par(
-        self, q: Given, v: Given, u: Given, *, par: Given | None = None, t: Given = 0.0
+        self, q: ArrayLike, v: ArrayLike, u: ArrayLike, *, par: ArrayLike | None = None, t: ArrayLike = 0.0
     ) -> Array:
         """The derivative of `forward_dynamics` by the run-time parameters (..., nv, npar), constraints kept.
 
@@ -215,21 +264,35 @@ class Model(Functions):
 
     @overload
     def linearize(
-        self, q: Given, v: Given, u: Given, *, outputs: None = None, par: Given | None = None, t: Given = 0.0
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        u: ArrayLike,
+        *,
+        outputs: None = None,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
     ) -> tuple[Array, Array]: ...
     @overload
     def linearize(
-        self, q: Given, v: Given, u: Given, *, outputs: Sequence[Output], par: Given | None = None, t: Given = 0.0
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        u: ArrayLike,
+        *,
+        outputs: Sequence[Output],
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
     ) -> StateMatrices: ...
     def linearize(
         self,
-        q: Given,
-        v: Given,
-        u: Given,
+        q: ArrayLike,
+        v: ArrayLike,
+        u: ArrayLike,
         *,
         outputs: Sequence[Output] | None = None,
-        par: Given | None = None,
-        t: Given = 0.0,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
     ) -> tuple[Array, Array] | StateMatrices:
         """A (..., 2 nv, 2 nv) and B (..., 2 nv, nu) of the state's small changes: x' = A x + B u.
 
@@ -261,145 +324,25 @@ class Model(Functions):
         return matrices[:2] if outputs is None else matrices
 
     def residual_derivatives(
-        self, q: Given, v: Given, a: Given, u: Given, lam: Given, *, par: Given | None = None, t: Given = 0.0
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        u: ArrayLike,
+        lam: ArrayLike,
+        *,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
     ) -> list[Array]:
-        """Of R = (M a + h - Q - G^T lam; G a - gamma) by q, v and u (..., nv + nc, nv or nu)."""
+        """Derivatives of R = (M a + h - Q - G^T lam; G a - gamma) by q, v and u (..., nv + nc, nv or nu)."""
         return self._call("residual_derivatives", "", {"q": q, "v": v, "a": a, "u": u, "lam": lam, "t": t}, par)
 
-    def regressor(self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
-        """Y (..., nv, 10 links) with M a + h = Y pi, for the links' inertial parameters pi.
+    def regressor(
+        self, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
+    ) -> Array:
+        """Regressor Y (..., nv, 10 links) with M a + h = Y pi, for the links' inertial parameters pi.
 
         Ten a link, in the order of the tree: m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the origin of its body
         frame, along its axes; what is fixed to a body counts with it. Rotors, armatures and beams are not in pi.
         """
         return self._one("regressor", {"q": q, "v": v, "a": a, "u": u}, par)
-
-    # Constraints: phi(q) = 0, G v = b, G v' = gamma.
-
-    def constraint(self, q: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0) -> Array:
-        """Phi(q) (..., nc); zero for conditions on speeds."""
-        return self._one("constraint", {"q": q, "u": u, "t": t}, par)
-
-    def constraint_rate(
-        self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
-    ) -> Array:
-        """G v - b (..., nc): the rate of phi, and the residual of conditions on speeds."""
-        return self._one("constraint_rate", {"q": q, "v": v, "u": u, "t": t}, par)
-
-    def constraint_rate_derivative(
-        self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
-    ) -> Array:
-        """The derivative of G v - b by q (..., nc, nv); that by v is G."""
-        return self._one("constraint_rate_derivative", {"q": q, "v": v, "u": u, "t": t}, par)
-
-    def constraint_jacobian(
-        self, q: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
-    ) -> Array:
-        """G(q) (..., nc, nv)."""
-        return self._one("constraint_jacobian", {"q": q, "u": u, "t": t}, par)
-
-    def constraint_bias(
-        self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
-    ) -> Array:
-        """Gamma(q, v) (..., nc): what G v' equals."""
-        return self._one("constraint_bias", {"q": q, "v": v, "u": u, "t": t}, par)
-
-    def closure_wrench(
-        self,
-        name: str,
-        q: Given,
-        lam: Given,
-        *,
-        on: Literal["second", "first"] = "second",
-        u: Given | None = None,
-        par: Given | None = None,
-        t: Given = 0.0,
-    ) -> Array:
-        """What a constraint exerts on a frame: force and moment about its origin, in world axes (..., 6) [N, N m].
-
-        Args:
-            name: Of a closure, rod, knife edge or rolling contact.
-            q: Configuration (..., nq).
-            lam: Multipliers of all conditions (..., nc), from `forward_dynamics`.
-            on: Its second frame, the one that follows, or its first, the reference; of a knife edge or a rolling
-                contact the second is the frame that touches, the first the world.
-            u: Inputs, for prescribed motions.
-            par: Run-time parameters.
-            t: Time.
-
-        The force on the second frame of a rod points to the first where the rod pulls: its size is the tension.
-        """
-        if name not in self.record.wrench_names:
-            raise self._unknown(
-                "constraint with a wrench",
-                name,
-                self.record.wrench_names,
-                "conditions by formula have a generalized force G^T lam alone",
-            )
-        found = self._call("closure_wrenches", "", {"q": q, "lam": lam, "u": u, "t": t}, par)
-        wrench: Array = found[0 if on == "second" else 1][..., self.record.wrench_names.index(name), :]
-        return wrench
-
-    def project(
-        self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
-    ) -> tuple[Array, Array, Array]:
-        """The nearest state that meets the constraints: q (..., nq), v (..., nv), and what is left of |phi| (...,).
-
-        Newton's method on phi(q) = 0, then G v = b, each by the least change in the metric of M: for states that have
-        drifted. It does not judge what it reaches; `sf.assemble` starts from afar, holds coordinates, and does.
-        Conditions that repeat others are met by the same change; NaN where M and G determine none.
-        """
-        on_q, on_v, residual, _ = self._call("project", "", {"q": q, "v": v, "u": u, "t": t}, par)
-        return on_q, on_v, residual
-
-    def inverse_dynamics(
-        self, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0
-    ) -> Array:
-        """M a + h - Q(q, v, 0) (..., nv): what the inputs must supply for v' = a; of u, only motions count."""
-        return self._one("inverse_dynamics", {"q": q, "v": v, "a": a, "u": u, "t": t}, par)
-
-    def kinetic_energy(self, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
-        """Kinetic energy (...,) [J]."""
-        return self._one("kinetic_energy", {"q": q, "v": v, "u": u}, par)
-
-    def potential_energy(self, q: Given, *, u: Given | None = None, par: Given | None = None, t: Given = 0.0) -> Array:
-        """Potential energy (...,) [J]: of the weight, zero for mass at the world origin, and of springs."""
-        return self._one("potential_energy", {"q": q, "u": u, "t": t}, par)
-
-    # Frames, in world axes; linear part first.
-
-    def frame_pose(
-        self, frame: str, q: Given, *, u: Given | None = None, par: Given | None = None
-    ) -> tuple[Array, Array]:
-        """p_WF (..., 3) and R_WF (..., 3, 3)."""
-        p, R = self._call("frame_pose", self._frame(frame), {"q": q, "u": u}, par)
-        return p, R
-
-    def frame_velocity(
-        self, frame: str, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None
-    ) -> Array:
-        """Velocity of the frame's origin and angular velocity (..., 6)."""
-        return self._one("frame_velocity", {"q": q, "v": v, "u": u}, par, frame)
-
-    def frame_acceleration(
-        self, frame: str, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None
-    ) -> Array:
-        """The rate of `frame_velocity` when v' = a (..., 6)."""
-        return self._one("frame_acceleration", {"q": q, "v": v, "a": a, "u": u}, par, frame)
-
-    def frame_jacobian(self, frame: str, q: Given, *, u: Given | None = None, par: Given | None = None) -> Array:
-        """J (..., 6, nv) with frame_velocity = J v."""
-        return self._one("frame_jacobian", {"q": q, "u": u}, par, frame)
-
-    def frame_derivatives(
-        self, frame: str, q: Given, v: Given, a: Given, *, u: Given | None = None, par: Given | None = None
-    ) -> FrameDerivatives:
-        """The derivatives of the frame's pose, velocity and acceleration by q, v and u; by a the last has J."""
-        given = {"q": q, "v": v, "a": a, "u": u}
-        return FrameDerivatives(*self._call("frame_derivatives", self._frame(frame), given, par))
-
-    def frame_jacobian_rate(
-        self, frame: str, q: Given, v: Given, *, u: Given | None = None, par: Given | None = None
-    ) -> Array:
-        """dJ/dt (..., 6, nv), so that frame_acceleration = J a + dJ/dt v."""
-        return self._one("frame_jacobian_rate", {"q": q, "v": v, "u": u}, par, frame)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.constrained import RANK
 from symofros.runtime.kernel import Array
-from symofros.runtime.model import Given, Model
+from symofros.runtime.model import ArrayLike, Model
 
 Indices = npt.NDArray[np.intp]
 # No step turns or slides further than this at once: beyond it the linearisation says nothing.
@@ -39,12 +39,12 @@ class Assembled:
 
 def assemble(
     model: Model,
-    q: Given | None = None,
-    v: Given | None = None,
+    q: ArrayLike | None = None,
+    v: ArrayLike | None = None,
     *,
     held: Collection[str] = (),
-    u: Given | None = None,
-    par: Given | None = None,
+    u: ArrayLike | None = None,
+    par: ArrayLike | None = None,
     t: float = 0.0,
     tolerance: float = 1e-12,
     iterations: int = 100,
@@ -163,7 +163,7 @@ def _accept(model: Model, q: Array, phi: Array, tolerance: float, count: int, he
     )
 
 
-def _check_rotations(model: Model, q: Array, u: Given | None, par: Given | None) -> None:
+def _check_rotations(model: Model, q: Array, u: ArrayLike | None, par: ArrayLike | None) -> None:
     """Conditions on rotations vanish at the opposite posture, too; that one is not closed."""
     for closure in model.record.closures:
         if not closure.rotations:

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.errors import EquilibriumError, Problem
 from symofros.runtime.kernel import Array
-from symofros.runtime.model import Given, Model
+from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.assembly import free_speeds
 
 # Largest step of a coordinate at once.
@@ -41,12 +41,12 @@ class Equilibrium:
 
 def equilibrium(
     model: Model,
-    q: Given | None = None,
-    v: Given | None = None,
-    u: Given | None = None,
+    q: ArrayLike | None = None,
+    v: ArrayLike | None = None,
+    u: ArrayLike | None = None,
     *,
     held: Collection[str] = (),
-    par: Given | None = None,
+    par: ArrayLike | None = None,
     t: float = 0.0,
     tolerance: float = 1e-11,
     iterations: int = 100,

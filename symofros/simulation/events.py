@@ -19,7 +19,7 @@ class Event:
         formula: Formula of coordinates, speeds, inputs, parameters and t: text or SymPy expression.
         direction: Direction of the crossings that count.
         terminal: Whether the first one ends the run.
-        name: Given by the mapping it stands in.
+        name: ArrayLike by the mapping it stands in.
     """
 
     formula: Any

@@ -11,7 +11,7 @@ import numpy as np
 from symofros.errors import AssemblyError, Problem
 from symofros.runtime.constrained import RANK
 from symofros.runtime.kernel import Array
-from symofros.runtime.model import Given, Model
+from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.assembly import Indices, free_speeds
 
 # Damping of the least squares, relative to the largest singular value: first value, and factors after a good step and
@@ -30,8 +30,8 @@ class Target:
         rotation: R_WF (3, 3); None if it does not matter.
     """
 
-    position: Given | None = None
-    rotation: Given | None = None
+    position: ArrayLike | None = None
+    rotation: ArrayLike | None = None
 
 
 @dataclass(frozen=True)
@@ -54,12 +54,12 @@ class Reached:
 def inverse_kinematics(
     model: Model,
     targets: Mapping[str, Target],
-    q: Given | None = None,
+    q: ArrayLike | None = None,
     *,
-    rest: Given | None = None,
+    rest: ArrayLike | None = None,
     held: Collection[str] = (),
-    u: Given | None = None,
-    par: Given | None = None,
+    u: ArrayLike | None = None,
+    par: ArrayLike | None = None,
     tolerance: float = 1e-10,
     iterations: int = 200,
 ) -> Reached:
@@ -109,13 +109,13 @@ def inverse_kinematics(
 def joint_motion(
     model: Model,
     frame: str,
-    positions: Given,
-    velocities: Given,
-    accelerations: Given,
-    rotations: Given | None = None,
+    positions: ArrayLike,
+    velocities: ArrayLike,
+    accelerations: ArrayLike,
+    rotations: ArrayLike | None = None,
     *,
-    q: Given | None = None,
-    par: Given | None = None,
+    q: ArrayLike | None = None,
+    par: ArrayLike | None = None,
     tolerance: float = 1e-9,
 ) -> tuple[Array, Array, Array]:
     """A frame's motion -> q, v and v' at each of its samples.
@@ -168,7 +168,7 @@ def joint_motion(
 class _Task:
     """Errors of targets and constraints, and how speeds change them."""
 
-    def __init__(self, model: Model, targets: Mapping[str, Target], u: Given | None, par: Given | None) -> None:
+    def __init__(self, model: Model, targets: Mapping[str, Target], u: ArrayLike | None, par: ArrayLike | None) -> None:
         self.model, self.targets = model, targets
         self.more: dict[str, Any] = {"u": u, "par": par}
         self.coordinates = [i for i, n in enumerate(model.names.constraints) if n not in model.record.speed_conditions]

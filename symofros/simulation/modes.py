@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.runtime.kernel import Array
-from symofros.runtime.model import Given, Model
+from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.state_space import state_space
 
 Complex = npt.NDArray[np.complex128]
@@ -32,7 +32,13 @@ class Modes:
 
 
 def modes(
-    model: Model, q: Given, v: Given | None = None, u: Given | None = None, *, par: Given | None = None, t: float = 0.0
+    model: Model,
+    q: ArrayLike,
+    v: ArrayLike | None = None,
+    u: ArrayLike | None = None,
+    *,
+    par: ArrayLike | None = None,
+    t: float = 0.0,
 ) -> Modes:
     """Modes of small motions about a state, which should be an equilibrium or a steady motion (`equilibrium`).
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Literal
 
 from symofros.errors import Problem, UnknownNameError, did_you_mean
-from symofros.runtime.model import Given
+from symofros.runtime.model import ArrayLike
 
 Stabilisation = Literal["projection", "baumgarte", "none"]
 STABILISATIONS = ("projection", "baumgarte", "none")
@@ -48,10 +48,10 @@ class SimulationOptions:
     adaptive: bool | None = None
     max_step: float = math.inf
     max_steps: int | None = None
-    output: float | Given | None = None
+    output: float | ArrayLike | None = None
     every: int = 1
     stabilisation: Stabilisation = "projection"
-    gains: Given | None = None
+    gains: ArrayLike | None = None
     realtime: float | bool = False
 
     def changed(self, changes: Mapping[str, Any]) -> SimulationOptions:

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.kernel import Array
-from symofros.runtime.model import Given, Model
+from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.methods import METHODS, Method
 from symofros.simulation.options import STABILISATIONS, SimulationOptions
@@ -19,7 +19,7 @@ from symofros.simulation.stepper import Stepper
 _GAIN, _GAIN_STEP = 20.0, 0.5
 
 
-def vector(model: Model, name: str, values: Given, size: int) -> Array:
+def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
     """A vector of that size, finite.
 
     Raises:
@@ -216,7 +216,7 @@ def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, 
             )
 
 
-def _grid(output: float | Given | None, t0: float, t_end: float) -> Array:
+def _grid(output: float | ArrayLike | None, t0: float, t_end: float) -> Array:
     if output is None:
         return np.zeros(0)
     times = np.asarray(output, dtype=np.float64)
@@ -238,7 +238,7 @@ def _grid(output: float | Given | None, t0: float, t_end: float) -> Array:
     return times
 
 
-def _gains(model: Model, stabilisation: str, gains: Given | None, step: float) -> Array:
+def _gains(model: Model, stabilisation: str, gains: ArrayLike | None, step: float) -> Array:
     if stabilisation != "baumgarte" or not model.nc:
         return np.zeros(2 * model.nc)
     if gains is None:

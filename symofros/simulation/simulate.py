@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.runtime.model import Given, Model
+from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.diagnosis import diagnose
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
@@ -22,12 +22,12 @@ from symofros.simulation.trajectory import Found, Statistics, Trajectory
 
 def simulate(
     model: Model,
-    q0: Given | None = None,
-    v0: Given | None = None,
+    q0: ArrayLike | None = None,
+    v0: ArrayLike | None = None,
     t_end: float = 1.0,
     *,
     u: Inputs | None = None,
-    par: Given | None = None,
+    par: ArrayLike | None = None,
     events: Mapping[str, Any] | None = None,
     options: SimulationOptions | None = None,
     progress: bool | Callable[[float], None] = False,

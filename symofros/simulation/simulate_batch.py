@@ -13,7 +13,7 @@ import numpy.typing as npt
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.kernel import Array
 from symofros.runtime.layout import flat
-from symofros.runtime.model import Given, Model
+from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.batch_inputs import Shape, sort_inputs
 from symofros.simulation.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
 from symofros.simulation.inputs import Inputs
@@ -26,12 +26,12 @@ from symofros.simulation.trajectories import Trajectories
 
 def simulate_batch(
     model: Model,
-    q0: Given | None = None,
-    v0: Given | None = None,
+    q0: ArrayLike | None = None,
+    v0: ArrayLike | None = None,
     t_end: float = 1.0,
     *,
     u: Inputs | None = None,
-    par: Given | None = None,
+    par: ArrayLike | None = None,
     threads: int | None = None,
     options: SimulationOptions | None = None,
     **changes: Any,
@@ -129,7 +129,7 @@ def _check_batch(settings: Settings, options: SimulationOptions) -> None:
         raise SymofrosError(Problem("simulate_batch: an option of single runs", found, rule, "leave them out"))
 
 
-def _rows(model: Model, name: str, values: Given, size: int) -> Array:
+def _rows(model: Model, name: str, values: ArrayLike, size: int) -> Array:
     array = np.asarray(values, dtype=np.float64)
     if array.ndim == 0 or array.shape[-1] != size:
         raise ShapeError(

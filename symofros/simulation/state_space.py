@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.runtime.constrained import RANK
 from symofros.runtime.kernel import Array
-from symofros.runtime.model import Given, Model, Output
+from symofros.runtime.model import ArrayLike, Model, Output
 
 
 @dataclass(frozen=True)
@@ -33,12 +33,12 @@ class StateSpace:
 
 def state_space(
     model: Model,
-    q: Given,
-    v: Given | None = None,
-    u: Given | None = None,
+    q: ArrayLike,
+    v: ArrayLike | None = None,
+    u: ArrayLike | None = None,
     *,
     outputs: Sequence[Output] = (),
-    par: Given | None = None,
+    par: ArrayLike | None = None,
     t: float = 0.0,
 ) -> StateSpace:
     """Linearise about a state, on the constraints.
@@ -66,7 +66,7 @@ def state_space(
     return StateSpace(S.T @ A @ S, S.T @ B, C @ S, D, S)
 
 
-def _allowed(model: Model, q: Given, v: Array, u: Array, par: Given | None, t: float) -> Array:
+def _allowed(model: Model, q: ArrayLike, v: Array, u: Array, par: ArrayLike | None, t: float) -> Array:
     """A basis of the solutions of P dq = 0, (d(G v - b)/dq) dq + G dv = 0 (eq. 5)."""
     rate_by_q = model.constraint_rate_derivative(q, v, u=u, par=par, t=t)
     G = model.constraint_jacobian(q, u=u, par=par, t=t)

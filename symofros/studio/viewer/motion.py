@@ -13,7 +13,7 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 
 from symofros.errors import Problem, ShapeError, SymofrosError
-from symofros.runtime.model import Given, Model
+from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.trajectory import Trajectory
 from symofros.studio.viewer.shapes import Array
 
@@ -48,7 +48,7 @@ class Motion:
         """Last time [s]."""
         return float(self.t[-1])
 
-    def at(self, times: Given) -> tuple[Array, Array]:
+    def at(self, times: ArrayLike) -> tuple[Array, Array]:
         """Coordinates (..., nq) and inputs (..., nu) at times (...,), interpolated along the manifold."""
         times = np.asarray(times, dtype=np.float64)
         if len(self.t) == 1:
@@ -65,13 +65,13 @@ class Motion:
 class States(NamedTuple):
     """States over time of a mechanism that is yet to be compiled: t (n), q (n, nq), u (n, nu), par (npar)."""
 
-    t: Given
-    q: Given
-    u: Given | None = None
-    par: Given | None = None
+    t: ArrayLike
+    q: ArrayLike
+    u: ArrayLike | None = None
+    par: ArrayLike | None = None
 
 
-Played = Trajectory | Motion | States | tuple[Given, Given]
+Played = Trajectory | Motion | States | tuple[ArrayLike, ArrayLike]
 
 
 def motion_of(model: Model, given: Played) -> Motion:
@@ -203,7 +203,7 @@ def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> Mot
     return _checked(model, columns["t"], q, u, None, file.name)
 
 
-def _checked(model: Model, t: Given, q: Given, u: Given | None, par: Given | None, what: str) -> Motion:
+def _checked(model: Model, t: ArrayLike, q: ArrayLike, u: ArrayLike | None, par: ArrayLike | None, what: str) -> Motion:
     t, q = np.array(t, dtype=np.float64), np.array(q, dtype=np.float64)
     n = t.size
     u = np.tile(np.array(model.record.u_default), (n, 1)) if u is None else np.array(u, dtype=np.float64)

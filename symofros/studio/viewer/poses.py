@@ -14,7 +14,7 @@ from symofros.errors import AssemblyError, Problem, ShapeError
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import SpanningTree, frame_of
 from symofros.options import Options
-from symofros.runtime.model import Given, Model
+from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.assembly import assemble
 from symofros.studio.viewer.drawing import Bend, Drawing, Place, Strut
 from symofros.studio.viewer.geometry import draw, landmarks
@@ -101,7 +101,7 @@ class Mechanism:
         """Which coordinates are elastic (nq)."""
         return tuple(self._elastic.tolist())
 
-    def state(self, q: Given | None = None, u: Given | None = None, par: Given | None = None) -> State:
+    def state(self, q: ArrayLike | None = None, u: ArrayLike | None = None, par: ArrayLike | None = None) -> State:
         """A state to show; what is left out is neutral, zero or default.
 
         Raises:
@@ -127,7 +127,9 @@ class Mechanism:
             )
         return array
 
-    def posture(self, q: Given, u: Given | None = None, par: Given | None = None, exaggeration: float = 1.0) -> Posture:
+    def posture(
+        self, q: ArrayLike, u: ArrayLike | None = None, par: ArrayLike | None = None, exaggeration: float = 1.0
+    ) -> Posture:
         """Poses of the links for coordinates (..., nq).
 
         Args:
@@ -145,7 +147,7 @@ class Mechanism:
                 p[..., i, :], R[..., i, :, :] = self.model.frame_pose(name, drawn, u=u, par=par)
         return Posture(p, R, drawn)
 
-    def drawing(self, par: Given | None = None) -> Drawing:
+    def drawing(self, par: ArrayLike | None = None) -> Drawing:
         """What to draw, for values of the run-time parameters (npar)."""
         state = self.state(par=par)
         values = dict(zip(self.model.names.par, state.par.tolist(), strict=True))

@@ -10,7 +10,7 @@ from typing import Any
 from symofros.description.system import System
 from symofros.diagrams.result import DiagramRun
 from symofros.loading import load
-from symofros.runtime.model import Given
+from symofros.runtime.model import ArrayLike
 from symofros.studio.viewer.motion import Played
 from symofros.studio.viewer.of_run import shown_of
 from symofros.studio.viewer.server import LOOPBACK, PORT
@@ -22,9 +22,9 @@ def view(
     run: Played | None = None,
     *,
     block: str = "",
-    q: Given | None = None,
-    u: Given | None = None,
-    par: Given | None = None,
+    q: ArrayLike | None = None,
+    u: ArrayLike | None = None,
+    par: ArrayLike | None = None,
     exaggeration: float = 1.0,
     speed: float = 1.0,
     paths: Sequence[Sequence[Any]] = (),

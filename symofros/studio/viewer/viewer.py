@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Any, NamedTuple, Self
 
 from symofros.description.system import System
-from symofros.runtime.model import Given
+from symofros.runtime.model import ArrayLike
 from symofros.studio.viewer.motion import Played, finite, motion_of, positive
 from symofros.studio.viewer.player import Player
 from symofros.studio.viewer.poses import Mechanism, State
@@ -125,7 +125,7 @@ class Viewer(Screen):
             self._stage.change(mechanism)
             self._panel = self._new_panel()
 
-    def show(self, q: Given | None = None, *, u: Given | None = None, par: Given | None = None) -> None:
+    def show(self, q: ArrayLike | None = None, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> None:
         """Show a configuration, now; a motion that plays is paused.
 
         Args:
@@ -141,7 +141,7 @@ class Viewer(Screen):
             self._discard()
             self._stand(state)
 
-    def push(self, t: float, q: Given, *, u: Given | None = None, par: Given | None = None) -> None:
+    def push(self, t: float, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> None:
         """Show a configuration soon, without waiting: for loops that have no time to lose.
 
         The newest state is what is shown: states that come faster than pictures are dropped. A state that is not finite
