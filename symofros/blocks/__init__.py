@@ -1,4 +1,4 @@
-"""The library of blocks, by the categories of the paper's section 6."""
+"""The library of blocks, by the categories of the paper's section 6, and what a block of one's own is made of."""
 
 from symofros.blocks.controllers import LQR as LQR
 from symofros.blocks.controllers import CartesianFeedback as CartesianFeedback
@@ -60,3 +60,10 @@ from symofros.blocks.middleware import ZenohSubscriber as ZenohSubscriber
 from symofros.blocks.network import UdpReceiver as UdpReceiver
 from symofros.blocks.network import UdpTransmitter as UdpTransmitter
 from symofros.blocks.view import View3D as View3D
+from symofros.diagrams.block import At as At
+from symofros.diagrams.block import Block as Block
+from symofros.diagrams.block import Known as Known
+from symofros.diagrams.block import Port as Port
+from symofros.diagrams.block import Ports as Ports
+from symofros.diagrams.block import Values as Values
+from symofros.diagrams.tensor import joined as joined

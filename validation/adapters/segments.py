@@ -20,11 +20,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 import symofros as sf
-from symofros.description.beam import STATION
-from symofros.description.values import Value
-from symofros.mechanics.beams.piecewise import gauss
 from validation.contract.interface import Unsupported
+from validation.mechanics.quadrature import STATION, gauss_stations
 
 # Gauss nodes a link.
 _POINTS = 16
@@ -42,16 +42,14 @@ class _Numbers:
     def length(self) -> float:
         return float(sf.evaluate(self.beam.length, self.parameters))
 
-    def at(self, value: Value, x: float) -> float:
+    def at(self, value: sf.Expression | float, x: float) -> float:
         return float(sf.evaluate(value, {**self.parameters, STATION: x}))
 
-    def moment(self, value: Value, a: float, b: float, power: int = 0, about: float = 0.0) -> float:
+    def moment(self, value: sf.Expression | float, a: float, b: float, power: int = 0, about: float = 0.0) -> float:
         """The integral of value (x - about)^power from a to b."""
-        nodes, weights = gauss(_POINTS)
-        stations = [a + (b - a) * node for node in nodes]
-        return sum(
-            (b - a) * w * self.at(value, x) * (x - about) ** power for x, w in zip(stations, weights, strict=True)
-        )
+        stations, weights = gauss_stations((a, b), _POINTS)
+        values = np.array([self.at(value, x) for x in stations.tolist()])
+        return float(weights @ (values * (stations - about) ** power))
 
     def inertia(self, a: float, b: float, origin: float) -> sf.Inertia:
         """Of the piece from a to b, in a frame at a station of the axis."""

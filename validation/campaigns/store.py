@@ -22,7 +22,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from symofros.atomic import write_atomically
+from symofros.tools import write_atomically
 from validation.campaigns.errors import StoreError
 
 RESULTS = "results.parquet"

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from symofros.atomic import write_atomically
+from symofros.tools import write_atomically
 from validation.adapters import ROUTES, differences
 from validation.check import ModelResult, Settings
 from validation.comparison.errors import Comparison

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 
-from symofros.atomic import write_atomically
+from symofros.tools import write_atomically
 from validation.dashboard.gather import Entry
 from validation.reporting import html, markdown
 from validation.reporting.figures import Figure

@@ -11,7 +11,7 @@ import numpy as np
 import sympy
 
 import symofros as sf
-from symofros.expr.precise import evaluate_precisely
+from symofros.tools import evaluate_precisely
 from validation.oracle import kane, lagrange
 from validation.oracle.models import MODELS
 from validation.oracle.scope import Derived

@@ -7,7 +7,7 @@ import shutil
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,9 +16,8 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from symofros.generator.passes.count import count_program
+from symofros.tools import ABLATIONS, count_program
 from validation.mechanics.geometry import Array
-from validation.passes.switches import PASSES, Without
 from validation.timing.models import SCENES
 from validation.timing.race import error, race
 from validation.timing.sides.arrays import Arrays, loops
@@ -73,7 +72,7 @@ def measure(label: str, repeats: int, done: Callable[[str], None] = lambda words
     """
     system = MODELS[label]()
     built = {ALL: [_Variant(system, _FUSED)], AGAIN: [_Variant(system, _FUSED, copied=True)]}
-    for item in PASSES:
+    for item in ABLATIONS:
         built[item.name] = [_Variant(system, _FUSED, item.without, item.options)]
         done(f"{label} without {item.name}")
     built[APART] = [_Variant(system, name) for name in _PARTS]
@@ -111,7 +110,7 @@ class _Variant:
         self,
         system: sf.System,
         function: str,
-        without: Without = nullcontext,
+        without: Callable[[], AbstractContextManager[object]] = nullcontext,
         options: Callable[[sf.Options], sf.Options] = lambda options: options,
         copied: bool = False,
     ) -> None:

@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
+from symofros.tools import ABLATIONS
 from validation.passes.measure import ALL, APART, MODELS
 from validation.passes.measure import measure as measured
-from validation.passes.switches import PASSES
 from validation.reporting.command import Run, known
 from validation.reporting.numbers import counted, times
 from validation.reporting.provenance import stamp
@@ -41,7 +41,7 @@ def measure(
 ) -> Data:
     """Measure what each pass of the generator gains: the same models with one of them left out."""
     chosen = known(models, MODELS, "--model", "model")
-    run.expect(len(chosen) * len(PASSES))
+    run.expect(len(chosen) * len(ABLATIONS))
     rows = [asdict(row) for label in chosen for row in measured(label, repeats, run.advance)]
     return {**stamp(), "seconds": run.seconds, "rows": rows}
 
@@ -52,7 +52,7 @@ def compose(data: Data) -> Report:
     models = list(dict.fromkeys(row["model"] for row in rows))
     base = {row["model"]: row["median"] for row in rows if row["without"] == ALL}
     gain, most = max(((row["median"] / base[row["model"]], row) for row in rows), key=lambda pair: pair[0])
-    what = {item.name: item.what for item in PASSES} | {APART: _APART}
+    what = {item.name: item.what for item in ABLATIONS} | {APART: _APART}
     tables = [_section(label, [row for row in rows if row["model"] == label]) for label in models]
     return Report(
         "What each pass gains",

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 import symofros as sf
-from symofros.atomic import write_atomically
+from symofros.tools import write_atomically
 from validation.reporting import html, markdown, terminal
 from validation.reporting.provenance import Provenance, stamp
 from validation.reporting.record import Data, Report, Topic

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import symofros as sf
-from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
+from symofros.tools import DEFAULT_FLAGS, find_toolchain
 
 # Packages that have a say in the numbers of one report or another.
 _PACKAGES = ("numpy", "scipy", "pin", "mujoco", "exudyn", "casadi", "example-robot-data")

@@ -12,11 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.expr.edges import Edge
-from symofros.expr.evaluate import needed_nodes
-from symofros.expr.graph import Graph
-from symofros.expr.ops import ADD, MUL, OPS
-from symofros.expr.program import Function, Program
+from symofros.tools import ADD, MUL, OPS, Edge, Function, Graph, Program, needed_nodes
 from validation.mechanics.geometry import Array
 
 PERTURBATION = 1e-6

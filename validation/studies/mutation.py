@@ -17,9 +17,7 @@ import mpmath
 import numpy as np
 
 import symofros as sf
-from symofros.expr.evaluate import evaluate_edges
-from symofros.expr.precise import evaluate_precisely
-from symofros.expr.program import Function
+from symofros.tools import Function, evaluate_edges, evaluate_precisely
 from validation.adapters import ROUTES, Missing, description
 from validation.adapters.interpreted import build as interpreted
 from validation.comparison.errors import Scales, compute, state_errors, typical_scales

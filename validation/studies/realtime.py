@@ -13,10 +13,20 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from symofros.blocks import ForwardDynamics, Store, UdpReceiver, UdpTransmitter
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
-from symofros.diagrams.jitter import Jitter, jitter_of
-from symofros.diagrams.tensor import joined
+from symofros.blocks import (
+    At,
+    Block,
+    ForwardDynamics,
+    Known,
+    Port,
+    Ports,
+    Store,
+    UdpReceiver,
+    UdpTransmitter,
+    Values,
+    joined,
+)
+from symofros.tools import Jitter, jitter_of
 
 ROBOT = Path(reference_models.__file__).parent / "rigid" / "puma560.yaml"
 # Of the motion that is followed: half its width [rad], its frequency [rad/s].

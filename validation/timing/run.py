@@ -14,7 +14,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from symofros.runtime.toolchain import DEFAULT_FLAGS
+from symofros.tools import DEFAULT_FLAGS
 from validation.reporting.provenance import machine
 from validation.timing.models import SCENES
 from validation.timing.race import pin_to_one_cpu

@@ -8,11 +8,10 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.generator.passes.count import count_program
+from symofros.tools import ABLATIONS, Ablation, count_program
 from validation.passes.measure import AGAIN, ALL, APART, Measured, measure
 from validation.passes.measure import MODELS as MEASURED
 from validation.passes.report import compose
-from validation.passes.switches import PASSES, Pass
 from validation.reporting.record import Table
 
 # A model in which the pass has something to do.
@@ -28,8 +27,8 @@ def text(name: str, options: sf.Options) -> str:
     return path.with_suffix(".c").read_text(encoding="utf-8") + path.name
 
 
-@pytest.mark.parametrize("one", PASSES, ids=lambda one: one.name)
-def test_a_pass_that_is_left_out_shows(one: Pass) -> None:
+@pytest.mark.parametrize("one", ABLATIONS, ids=lambda one: one.name)
+def test_a_pass_that_is_left_out_shows(one: Ablation) -> None:
     name = WHERE.get(one.name, "chain22" if one.name in ("packs", "pieces") else "puma560")
     plain = sf.Options(("dynamics",), batch="loop")
     whole, before = text(name, plain), operations(name)
@@ -43,7 +42,7 @@ def test_a_pass_that_is_left_out_shows(one: Pass) -> None:
 def test_a_model_is_measured_without_each(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(MEASURED, "small", lambda: MODELS["rx90"])
     rows = list(measure("small", repeats=3))
-    assert [row.without for row in rows] == [ALL, AGAIN, *(one.name for one in PASSES), APART]
+    assert [row.without for row in rows] == [ALL, AGAIN, *(one.name for one in ABLATIONS), APART]
     assert all(row.off <= 1e-11 and row.minimum > 0.0 for row in rows)
     assert rows[0].off == rows[1].off == 0.0
 

@@ -1,6 +1,6 @@
 """Exudyn's floating-frame body, ObjectFFRFreducedOrder, built from one of our beams (github.com/jgerstm/EXUDYN).
 
-Exudyn gets a "mesh" of Gauss stations with lumped masses, and the values of our shape functions at them as modes. Its
+Exudyn gets a "mesh" of Gauss stations with lumped masses, and the harness' own shape functions at them as modes. Its
 sums over nodes are then Gauss quadrature of our integrals, exact for the polynomials that shape functions are, and the
 two models agree to rounding. What is Exudyn's own is the reduction to modal integrals, the mass matrix, the quadratic
 velocity vector, and how strain and damping enter.
@@ -25,18 +25,17 @@ import numpy as np
 from exudyn.FEM import ObjectFFRFreducedOrderInterface
 
 import symofros as sf
-from symofros.description.beam import STATION
-from symofros.description.values import Value
-from symofros.mechanics.beams.deformation import deformation_of
-from symofros.mechanics.beams.integrals import POINTS
-from symofros.mechanics.beams.piecewise import Piecewise, stations
 from validation.adapters.exudyn.system import VERSION, ExudynSystem, assembled
 from validation.contract.conventions import Chart, Slot, times
 from validation.contract.interface import States, Subject, Unsupported
 from validation.mechanics.assembly import assemble
 from validation.mechanics.geometry import Array
+from validation.mechanics.quadrature import STATION, gauss_stations
+from validation.mechanics.shape_functions import of_family
 
 NAME = "exudyn-frf"
+# Gauss nodes of each piece of the shape functions: exact for products of two up to degree 15.
+POINTS = 16
 CAPABILITIES = frozenset(
     {"mass_matrix", "bias", "gravity", "generalized_force", "kinetic_energy", "inverse_dynamics", "forward_dynamics"}
 )
@@ -145,6 +144,7 @@ def _obstacle(system: sf.System) -> Unsupported | None:
         ),
         f"beam '{beam.name}': loads along it": bool(beam.loads),
         f"beam '{beam.name}': no bending": not beam.bend_y + beam.bend_z,
+        f"beam '{beam.name}': shape functions of the user": beam.family == "user",
         f"beam '{beam.name}': twist; lumped masses have no rotations": bool(beam.twist),
         f"beam '{beam.name}': rotary inertia; lumped masses have no rotations": beam.rotary_inertia,
         f"beam '{beam.name}': foreshortening; displacement is linear in the modes": beam.foreshortening,
@@ -166,32 +166,27 @@ class _Mesh:
     """
 
     def __init__(self, beam: sf.Beam, parameters: dict[str, float]) -> None:
-        shape = deformation_of(beam)
-        knots = sorted({knot for function in shape.functions for knot in function.phi.knots})
-        xi, weights = (np.array(numbers) for numbers in stations(knots, POINTS))
         L = float(sf.evaluate(beam.length, parameters))
+        planes = [of_family(beam.family, count, L, bending=True) for count in (beam.bend_y, beam.bend_z)]
+        knots = sorted({0.0, L, *(knot for _, breaks in planes for knot in breaks)})
+        x, weights = gauss_stations(knots, POINTS)
 
-        def section(value: Value) -> Array:
-            return np.array([sf.evaluate(value, {**parameters, STATION: x * L}) for x in xi])
+        def section(value: sf.Expression | float) -> Array:
+            return np.array([sf.evaluate(value, {**parameters, STATION: station}) for station in x.tolist()])
 
-        def sampled(phi: Piecewise, scale: float) -> Array:
-            return np.array([scale * value for value in phi.rounded(xi.tolist())])
-
-        self.nodes = np.zeros((len(xi), 3))
-        self.nodes[:, 0] = xi * L
-        self.masses = weights * L * section(beam.rhoA)
-        self.spin = float(weights @ section(beam.rhoJ)) * L
+        self.nodes = np.zeros((len(x), 3))
+        self.nodes[:, 0] = x
+        self.masses = weights * section(beam.rhoA)
+        self.spin = float(weights @ section(beam.rhoJ))
         self.damping = float(sf.evaluate(beam.damping, parameters))
-        displacement = np.zeros((len(xi), 3, beam.modes))
-        curvature = np.zeros((2, len(xi), beam.modes))
-        for i, function in enumerate(shape.functions):
-            plane = 0 if i < beam.bend_y else 1
-            # A coordinate that is an angle displaces by L phi.
-            scale = 1.0 if function.length else L
-            displacement[:, 1 + plane, i] = sampled(function.phi, scale)
-            curvature[plane, :, i] = sampled(function.phi.derivative().derivative(), scale / L**2)
+        displacement = np.zeros((len(x), 3, beam.modes))
+        curvature = np.zeros((2, len(x), beam.modes))
+        modes = [(plane, shape) for plane, (shapes, _) in enumerate(planes) for shape in shapes]
+        for i, (plane, shape) in enumerate(modes):
+            displacement[:, 1 + plane, i] = shape.value(x)
+            curvature[plane, :, i] = shape.curvature(x)
         self.modes = displacement.reshape(-1, beam.modes)
-        EI = np.stack([section(beam.EI_z), section(beam.EI_y)]) * weights * L
+        EI = np.stack([section(beam.EI_z), section(beam.EI_y)]) * weights
         self.stiffness = np.einsum("px,pxi,pxj->ij", EI, curvature, curvature)
 
     def interface(self) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from symofros.simulation.methods import METHODS
+from symofros.tools import METHODS
 from validation.pareto.scene import OURS, Contestant, Measured
 
 Judge = Callable[[sf.Trajectory], float]

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 import symofros as sf
-from symofros.simulation.methods import METHODS
+from symofros.tools import METHODS
 from validation.adapters.mujoco import motion as mujoco_motion
 from validation.reporting.findings import Finding
 from validation.stability.reference import data, source

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.runtime.layout import Numbers, Strided, columns
+from symofros.tools import Numbers, Strided, columns
 from validation.mechanics.geometry import Array
 from validation.timing.sides.arrays import loops, room
 

@@ -12,13 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 import symofros as sf
-from symofros.generator.passes.count import count_program
-from symofros.runtime.kernel import Precision
-from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
-from symofros.simulation.inputs import plan_inputs
-from symofros.simulation.options import SimulationOptions
-from symofros.simulation.settings import Settings
-from symofros.simulation.stepper import Stepper
+from symofros.tools import DEFAULT_FLAGS, Precision, count_program, find_toolchain, fixed_step_loop
 from validation.mechanics.geometry import Array
 from validation.timing.sides.arrays import Arrays, Turns, loops
 from validation.timing.sides.blocks import Blocks
@@ -151,9 +145,7 @@ def _steps(task: Task) -> Loop:
     """Our loop of RK4 in C, as many steps as there are states; a race goes on from where the last round ended."""
     model = sf.compile(task.system)
     q, v, steps = task.states.q[START], task.states.v[START], len(task.states)
-    settings = Settings.of(model, SimulationOptions("rk4", STEP, every=steps), _ENDLESS)
-    stepper = Stepper(model, settings.method, plan_inputs(model, None), [], np.asarray(model.parameter_values))
-    settings.apply(stepper)
+    stepper = fixed_step_loop(model, "rk4", STEP, steps, _ENDLESS)
 
     def run(rounds: int) -> None:
         for _ in range(rounds):

@@ -16,7 +16,7 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from symofros.runtime.toolchain import cpu_identity
+from symofros.tools import cpu_identity
 
 # Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
 _LOOSE = ("-ffast-math",)

@@ -18,7 +18,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.expr.precise import evaluate_precisely
+from symofros.tools import evaluate_precisely
 from tests.models import sampled
 from validation.adapters.compiled import SymofrosEngine
 from validation.adapters.pinocchio import loops as pinocchio_loops

@@ -1,4 +1,8 @@
-"""Each pass of the generator, and how to leave it out. Results stay the same within rounding."""
+"""Each pass of the generator, and how to leave it out, to measure what it brings.
+
+Results stay the same within rounding. Nothing in the generator uses this; passes are replaced while a context lasts,
+in the whole process.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +11,11 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
 
-import symofros as sf
+import symofros.generator.passes as passes
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.ops import ADD, DIV, MUL
 from symofros.expr.vector import Sym3, Vec3
-from symofros.generator import passes
 from symofros.generator.codegen import function as functions
 from symofros.generator.codegen.statements import StatementWriter
 from symofros.generator.passes import stage
@@ -20,26 +23,27 @@ from symofros.generator.passes.chain import chain_sums
 from symofros.mechanics.dynamics.bodies import inertia
 from symofros.mechanics.kinematics import rotations
 from symofros.mechanics.kinematics.rotations import MatrixRotation, RotationProduct
+from symofros.options import Options
 from symofros.runtime.toolchain import DEFAULT_FLAGS
 
 Without = Callable[[], AbstractContextManager[object]]
 
 
 @dataclass(frozen=True)
-class Pass:
-    """One of them.
+class Ablation:
+    """A pass that can be left out.
 
     Attributes:
-        name: In tables.
-        what: It does, in a sentence.
-        without: Leaves it out of what is generated meanwhile.
-        options: Leaves it out of what is compiled.
+        name: Name of the pass in tables.
+        what: Effect of the pass, in a sentence.
+        without: Context in which programs are generated without the pass.
+        options: Options changed so that programs are compiled without the pass.
     """
 
     name: str
     what: str
     without: Without = nullcontext
-    options: Callable[[sf.Options], sf.Options] = lambda options: options
+    options: Callable[[Options], Options] = lambda options: options
 
 
 @contextmanager
@@ -104,46 +108,46 @@ def _in_one_piece() -> AbstractContextManager[None]:
     return _replaced(functions, "MAX_STATEMENTS", 10**9)
 
 
-PASSES = (
-    Pass("sharing", "Equal operations are one node of the graph.", _without_sharing),
-    Pass(
+ABLATIONS = (
+    Ablation("sharing", "Equal operations are one node of the graph.", _without_sharing),
+    Ablation(
         "regrouping",
         "What a joint cannot tell from its parent's inertia is booked there, before run time.",
         _without_regrouping,
     ),
-    Pass(
+    Ablation(
         "elementary turns",
         "Rotations act as products of turns about coordinate axes, by 4 multiplications each.",
         _without_turns,
     ),
-    Pass(
+    Ablation(
         "rounding noise",
         "Entries of constant rotations within 1e-15 of 0 and 1 are 0 and 1: cos(pi/2) is 6e-17.",
         lambda: _replaced(rotations, "EXACT", -1.0),
     ),
-    Pass(
+    Ablation(
         "constant factors",
         "c1 (c2 x) becomes (c1 c2) x.",
         lambda: _replaced(Graph, "_scale", lambda self, a, b: _both_numbers(self, a, b)),
     ),
-    Pass("staging", "What parameters alone determine is computed once for each set of them.", _without_staging),
-    Pass(
+    Ablation("staging", "What parameters alone determine is computed once for each set of them.", _without_staging),
+    Ablation(
         "sums in chains",
         "x + a b + c d takes two fused multiply-adds, (a b + c d) + x three operations.",
         _without_chains,
     ),
-    Pass(
+    Ablation(
         "blocks of sines",
         "Sines and cosines of up to eight angles by polynomials in one vector; without: libm's.",
         lambda: _replaced(StatementWriter, "_blocks", lambda self: {}),
     ),
-    Pass("packs", "Columns that are computed alike share vectors.", options=lambda o: replace(o, packs=False)),
-    Pass(
+    Ablation("packs", "Columns that are computed alike share vectors.", options=lambda o: replace(o, packs=False)),
+    Ablation(
         "no search for vectors",
         "The compiler's own search for statements that could share vectors is off.",
         options=lambda o: replace(o, flags=tuple(f for f in DEFAULT_FLAGS if f != "-fno-tree-slp-vectorize")),
     ),
-    Pass("pieces", "Functions past 1000 statements are compiled in pieces.", _in_one_piece),
+    Ablation("pieces", "Functions past 1000 statements are compiled in pieces.", _in_one_piece),
 )
 
 

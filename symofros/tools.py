@@ -1,0 +1,68 @@
+"""What tools that look inside the generator may use: a harness, a profiler, a study of passes.
+
+Everything here is public beside `symofros` itself and `symofros.blocks`; all else inside the package may change without
+notice. Each name has its reason:
+
+| names | for |
+|---|---|
+| Graph, Edge, OPS, ADD, MUL, Program, Function, needed_nodes | programs whose nodes are replaced: planted faults |
+| evaluate_edges, evaluate_precisely | programs evaluated without C, in doubles or in as many digits as wanted |
+| count_program | operations of a program |
+| ABLATIONS, Ablation | programs generated without one pass |
+| DEFAULT_FLAGS, find_toolchain, cpu_identity | provenance of a measurement, builds of peers by the same compiler |
+| METHODS | the table of integrators: which adapt their steps, which are implicit |
+| fixed_step_loop | the C loop of an integrator, called without the recording around it: timing |
+| Numbers, Precision, Strided, columns | batches as the C functions by vectors take them: timing |
+| Jitter, jitter_of | how late the instants of a run in real time began |
+| write_atomically | files that a reader never sees half written |
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from symofros.atomic import write_atomically as write_atomically
+from symofros.diagrams.jitter import Jitter as Jitter
+from symofros.diagrams.jitter import jitter_of as jitter_of
+from symofros.expr.edges import Edge as Edge
+from symofros.expr.evaluate import evaluate_edges as evaluate_edges
+from symofros.expr.evaluate import needed_nodes as needed_nodes
+from symofros.expr.graph import Graph as Graph
+from symofros.expr.ops import ADD as ADD
+from symofros.expr.ops import MUL as MUL
+from symofros.expr.ops import OPS as OPS
+from symofros.expr.precise import evaluate_precisely as evaluate_precisely
+from symofros.expr.program import Function as Function
+from symofros.expr.program import Program as Program
+from symofros.generator.ablation import ABLATIONS as ABLATIONS
+from symofros.generator.ablation import Ablation as Ablation
+from symofros.generator.passes.count import count_program as count_program
+from symofros.runtime.kernel import Precision as Precision
+from symofros.runtime.layout import Numbers as Numbers
+from symofros.runtime.layout import Strided as Strided
+from symofros.runtime.layout import columns as columns
+from symofros.runtime.model import Model
+from symofros.runtime.toolchain import DEFAULT_FLAGS as DEFAULT_FLAGS
+from symofros.runtime.toolchain import cpu_identity as cpu_identity
+from symofros.runtime.toolchain import find_toolchain as find_toolchain
+from symofros.simulation.inputs import plan_inputs
+from symofros.simulation.methods import METHODS as METHODS
+from symofros.simulation.options import SimulationOptions
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepper import Stepper
+
+
+def fixed_step_loop(model: Model, method: str, dt: float, steps: int, t_end: float) -> Stepper:
+    """The C loop of an integrator with fixed steps, its inputs zero: `start` it, then `advance` it.
+
+    Args:
+        model: Model that is integrated.
+        method: Name of a row of METHODS.
+        dt: Step [s].
+        steps: Steps between records.
+        t_end: Time that no advance passes [s].
+    """
+    settings = Settings.of(model, SimulationOptions(method, dt, every=steps), t_end)
+    stepper = Stepper(model, settings.method, plan_inputs(model, None), [], np.asarray(model.parameter_values))
+    settings.apply(stepper)
+    return stepper
