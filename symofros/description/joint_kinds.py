@@ -27,7 +27,10 @@ JOINT_KINDS: tuple[JointKindName, ...] = get_args(JointKindName)
 Measure = Literal["angle", "length", "component"]
 AxisName = Literal["axis", "axis2", "x", "y", "z"]
 ManifoldKind = Literal["linear", "quaternion", "pose"]
-Entry = Literal["axis", "axis2", "pitch", "limits", "coordinates", "moving_position", "moving_rotation"]
+# Entries that only some kinds have: geometry by parameters alone, and others.
+ConstantEntry = Literal["axis", "axis2", "pitch"]
+Entry = ConstantEntry | Literal["limits", "coordinates", "moving_position", "moving_rotation"]
+CONSTANT_ENTRIES: tuple[ConstantEntry, ...] = get_args(ConstantEntry)
 Symbol = Literal["cylinder", "box", "sphere", "disc"]
 
 

@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 from symofros.description.beam import DIRECTIONS, SECTION, STATION, Beam, Samples
 from symofros.description.constraints import Constraint, Nonholonomic
 from symofros.description.joint import Joint
+from symofros.description.joint_kinds import CONSTANT_ENTRIES
 from symofros.description.system import RigidBody, System
 from symofros.description.values import Value, symbols
 from symofros.errors import Problem, did_you_mean
@@ -74,14 +75,10 @@ def _constraint_values(constraint: Constraint) -> Iterator[Stated]:
 
 def _joint_values(joint: Joint) -> Iterator[Stated]:
     what, key = f"joint '{joint.name}'", ("joint", joint.name)
-    constant: list[tuple[str, Iterable[Value]]] = [
-        ("position", joint.position),
-        ("rotation", joint.rotation),
-        ("axis", joint.axis),
-        ("axis2", joint.axis2),
-        ("pitch", (joint.pitch,)),
-        ("armature", (joint.armature,)),
-    ]
+    constant: list[tuple[str, Iterable[Value]]] = [("position", joint.position), ("rotation", joint.rotation)]
+    for entry in (*CONSTANT_ENTRIES, "armature"):
+        stated = getattr(joint, entry)
+        constant.append((entry, stated if isinstance(stated, tuple) else (stated,)))
     for element in joint.elements:
         numbers = [getattr(element, item.name) for item in fields(element) if item.name != "coordinate"]
         constant.append((type(element).__name__.lower(), [x for x in numbers if x is not None]))

@@ -2,49 +2,12 @@
  * a flat vector instead of charts. Quaternions are normalised at the evaluation point and not in y, so that the history
  * stays smooth. */
 
-/* Normalise the quaternions of the evaluation point. */
-static void sym_normalize_quaternions(sym_system *s) {
-    int32_t k, i;
-    for (k = 0; k < s->n_segments; ++k) {
-        double *p = s->q + s->segments[k].q + (s->segments[k].kind == SYM_SEGMENT_POSE ? 3 : 0), size = 0.0;
-        if (s->segments[k].kind == SYM_SEGMENT_LINEAR) continue;
-        for (i = 0; i < 4; ++i) size += p[i] * p[i];
-        size = sqrt(size);
-        for (i = 0; i < 4; ++i) p[i] /= size;
-    }
-}
-
 /* Evaluation point <- y = (q, v) at time t. */
 static void sym_load_flat_state(sym_system *s, double t, const double *y) {
     memcpy(s->q, y, (size_t)s->nq * sizeof *y);
     memcpy(s->v, y + s->nq, (size_t)s->nv * sizeof *y);
     *s->t = t;
     sym_normalize_quaternions(s);
-}
-
-/* Rate of a quaternion p of any length at angular velocity w: p' = p w / 2. */
-static void sym_quaternion_rate(const double *p, const double *w, double *rate) {
-    double c[3];
-    int i;
-    sym_cross(p, w, c);
-    for (i = 0; i < 3; ++i) rate[i] = 0.5 * (p[3] * w[i] + c[i]);
-    rate[3] = -0.5 * (p[0] * w[0] + p[1] * w[1] + p[2] * w[2]);
-}
-
-/* Rate N(q) w at the configuration of the evaluation point; q: the same one, with quaternions of any length. */
-static void sym_configuration_rate(const sym_system *s, const double *q, const double *w, double *rate) {
-    int32_t k;
-    for (k = 0; k < s->n_segments; ++k) {
-        const sym_segment *seg = &s->segments[k];
-        const int32_t at = seg->kind == SYM_SEGMENT_POSE ? 3 : 0;
-        const double *v = w + seg->v;
-        if (seg->kind == SYM_SEGMENT_LINEAR) {
-            memcpy(rate + seg->q, v, (size_t)seg->size * sizeof *v);
-            continue;
-        }
-        if (seg->kind == SYM_SEGMENT_POSE) sym_rotate(s->q + seg->q + 3, v, rate + seg->q);
-        sym_quaternion_rate(q + seg->q + at, v + at, rate + seg->q + at);
-    }
 }
 
 SYM_EXPORT void sym_run_configuration_rate(const sym_run *r, const double *q, const double *w, double *rate) {

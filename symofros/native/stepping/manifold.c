@@ -62,10 +62,11 @@ static void sym_twist_to_displacement(const sym_system *system, double *theta) {
         const sym_segment *seg = &system->segments[k];
         double *v = theta + seg->v, cross[3], cross_cross[3];
         const double *w = v + 3;
-        double angle2, angle, A, B;
+        double angle2, angle, half, A, B;
         if (seg->kind != SYM_SEGMENT_POSE) continue;
         angle2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2], angle = sqrt(angle2);
-        A = angle < 1e-4 ? 0.5 - angle2 / 24.0 : (1.0 - cos(angle)) / angle2;
+        half = angle < 1e-4 ? 0.5 - angle2 / 48.0 : sin(0.5 * angle) / angle;
+        A = 2.0 * half * half; /* (1 - cos(angle)) / angle2, which loses digits at small angles */
         B = angle < 1e-2 ? 1.0 / 6.0 - angle2 / 120.0 + angle2 * angle2 / 5040.0
                          : (angle - sin(angle)) / (angle2 * angle);
         sym_cross(w, v, cross);
@@ -119,5 +120,42 @@ static void sym_chart_rate_jacobian(const sym_system *system, const double *v, c
             sym_cross(x + w, v + seg->v, c);
             for (i = 0; i < 3; ++i) out[seg->v + i] += s * c[i];
         }
+    }
+}
+
+/* Normalise the quaternions of the evaluation point. */
+static void sym_normalize_quaternions(sym_system *s) {
+    int32_t k, i;
+    for (k = 0; k < s->n_segments; ++k) {
+        double *p = s->q + s->segments[k].q + (s->segments[k].kind == SYM_SEGMENT_POSE ? 3 : 0), size = 0.0;
+        if (s->segments[k].kind == SYM_SEGMENT_LINEAR) continue;
+        for (i = 0; i < 4; ++i) size += p[i] * p[i];
+        size = sqrt(size);
+        for (i = 0; i < 4; ++i) p[i] /= size;
+    }
+}
+
+/* Rate of a quaternion p of any length at angular velocity w: p' = p w / 2. */
+static void sym_quaternion_rate(const double *p, const double *w, double *rate) {
+    double c[3];
+    int i;
+    sym_cross(p, w, c);
+    for (i = 0; i < 3; ++i) rate[i] = 0.5 * (p[3] * w[i] + c[i]);
+    rate[3] = -0.5 * (p[0] * w[0] + p[1] * w[1] + p[2] * w[2]);
+}
+
+/* Rate N(q) w at the configuration of the evaluation point; q: the same one, with quaternions of any length. */
+static void sym_configuration_rate(const sym_system *s, const double *q, const double *w, double *rate) {
+    int32_t k;
+    for (k = 0; k < s->n_segments; ++k) {
+        const sym_segment *seg = &s->segments[k];
+        const int32_t at = seg->kind == SYM_SEGMENT_POSE ? 3 : 0;
+        const double *v = w + seg->v;
+        if (seg->kind == SYM_SEGMENT_LINEAR) {
+            memcpy(rate + seg->q, v, (size_t)seg->size * sizeof *v);
+            continue;
+        }
+        if (seg->kind == SYM_SEGMENT_POSE) sym_rotate(s->q + seg->q + 3, v, rate + seg->q);
+        sym_quaternion_rate(q + seg->q + at, v + at, rate + seg->q + at);
     }
 }

@@ -1,0 +1,142 @@
+"""The configuration manifold of the stepping loop's C against that of NumPy, which is tested against the graph's."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import cffi
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from symofros.native import native_text
+from symofros.runtime.build import build_library
+from symofros.runtime.declarations import constants
+from symofros.runtime.manifold import chart_rate, integrate, retract
+from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
+from tests.runtime.test_manifold import (
+    ANGLES,
+    NQ,
+    NV,
+    ROUNDING,
+    SEEDS,
+    SEGMENTS,
+    OnGraph,
+    configuration,
+    step,
+    values,
+)
+
+_INTERFACE = """
+void retracted(int32_t n, const int32_t *segments, const double *q0, const double *theta, double *q);
+void chart_rates(int32_t n, const int32_t *segments, const double *theta, const double *v, double *rate);
+void rates(int32_t n, const int32_t *segments, double *q, const double *v, double *rate);
+void displacements(int32_t n, const int32_t *segments, double *theta);
+"""
+_WRAPPER = """
+#include <math.h>
+#include <string.h>
+#include "symofros_stepper.h"
+#include "manifold.c"
+static sym_system system_of(int32_t n, const int32_t *segments) {
+    sym_system s;
+    memset(&s, 0, sizeof s);
+    s.n_segments = n, s.segments = (const sym_segment *)segments;
+    return s;
+}
+SYM_EXPORT void retracted(int32_t n, const int32_t *segments, const double *q0, const double *theta, double *q) {
+    sym_system s = system_of(n, segments);
+    sym_retract(&s, q0, theta, q);
+}
+SYM_EXPORT void chart_rates(int32_t n, const int32_t *segments, const double *theta, const double *v, double *rate) {
+    sym_system s = system_of(n, segments);
+    sym_chart_rate(&s, theta, v, rate);
+}
+SYM_EXPORT void rates(int32_t n, const int32_t *segments, double *q, const double *v, double *rate) {
+    sym_system s = system_of(n, segments);
+    s.q = q;
+    sym_normalize_quaternions(&s);
+    sym_configuration_rate(&s, q, v, rate);
+}
+SYM_EXPORT void displacements(int32_t n, const int32_t *segments, double *theta) {
+    sym_system s = system_of(n, segments);
+    sym_twist_to_displacement(&s, theta);
+}
+"""
+
+
+@cache
+def native() -> tuple[Any, Any]:
+    """The functions of manifold.c as a library of their own."""
+    toolchain = find_toolchain()
+    if toolchain is None:
+        pytest.skip("no C compiler")
+    source = _WRAPPER
+    for name in ("symofros_stepper.h", "manifold.c"):
+        source = source.replace(f'#include "{name}"', native_text(f"stepping/{name}"))
+    ffi = cffi.FFI()
+    ffi.cdef(_INTERFACE)
+    flags = (*DEFAULT_FLAGS, "-Wno-unused-function")
+    return ffi, ffi.dlopen(str(build_library(source, native_text("model/symofros_model.h"), toolchain, flags)))
+
+
+def call(name: str, *arrays: np.ndarray) -> None:
+    """Call a function of the library; the last array takes the result."""
+    ffi, library = native()
+    segments = np.array([(constants()[s.constant], s.q, s.v, s.size) for s in SEGMENTS], dtype=np.int32)
+    pointers = [ffi.cast("double *", ffi.from_buffer(array)) for array in arrays]
+    getattr(library, name)(len(SEGMENTS), ffi.cast("int32_t *", ffi.from_buffer(segments)), *pointers)
+
+
+@given(SEEDS, ANGLES, ANGLES)
+@settings(max_examples=300, deadline=None)
+def test_the_loop_retracts_as_numpy_does(seed: int, first: float, second: float) -> None:
+    rng = np.random.default_rng(seed)
+    q0, theta, q = configuration(rng), step(rng, (first, second)), np.empty(NQ)
+    call("retracted", q0, theta, q)
+    np.testing.assert_allclose(q, retract(SEGMENTS, q0, theta), atol=ROUNDING, rtol=0)
+
+
+@given(SEEDS, ANGLES, ANGLES)
+@settings(max_examples=300, deadline=None)
+def test_the_loop_has_the_rates_of_charts_that_numpy_has(seed: int, first: float, second: float) -> None:
+    rng = np.random.default_rng(seed)
+    theta, v, rate = step(rng, (first, second)), rng.uniform(-1.0, 1.0, NV), np.empty(NV)
+    call("chart_rates", theta, v, rate)
+    np.testing.assert_allclose(rate, chart_rate(SEGMENTS, theta, v), atol=3 * ROUNDING, rtol=0)
+
+
+@given(SEEDS)
+@settings(max_examples=100, deadline=None)
+def test_the_rates_of_coordinates_are_those_of_the_graph(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    q, v, rate = configuration(rng), rng.uniform(-1.0, 1.0, NV), np.empty(NQ)
+    call("rates", q, v, rate)
+    graph = OnGraph()
+    expected = values(graph.g, graph.rates(graph.q0), q=q, v=v)
+    np.testing.assert_allclose(rate, expected, atol=ROUNDING, rtol=0)
+
+
+@given(SEEDS, ANGLES, ANGLES)
+@settings(max_examples=300, deadline=None)
+def test_constant_twists_lead_the_loop_where_they_lead_numpy(seed: int, first: float, second: float) -> None:
+    rng = np.random.default_rng(seed)
+    q0, theta, q = configuration(rng), step(rng, (first, second)), np.empty(NQ)
+    expected = integrate(SEGMENTS, q0, theta)
+    call("displacements", theta)
+    call("retracted", q0, theta, q)
+    np.testing.assert_allclose(q, expected, atol=ROUNDING, rtol=0)
+
+
+@given(SEEDS, st.integers(1, 2000))
+@settings(max_examples=50, deadline=None)
+def test_quaternions_stay_of_unit_length_over_many_steps(seed: int, count: int) -> None:
+    rng = np.random.default_rng(seed)
+    q, q1 = configuration(rng), np.empty(NQ)
+    for _ in range(count):
+        call("retracted", q, 0.1 * rng.standard_normal(NV), q1)
+        q[:] = q1
+    assert abs(np.linalg.norm(q[2:6]) - 1.0) <= 4 * np.finfo(float).eps
+    assert abs(np.linalg.norm(q[9:13]) - 1.0) <= 4 * np.finfo(float).eps
