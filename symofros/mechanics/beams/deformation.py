@@ -14,6 +14,7 @@ from symofros.mechanics.beams.shape_functions import Shape, shapes
 _HALF = Fraction(1, 2)
 # Slope and twist [rad] up to which second-order theory errs by less than a percent.
 SMALL = 0.1
+# Intervals of the stations at which the largest angle of a shape function is looked for.
 _SAMPLES = 32
 
 
@@ -23,8 +24,8 @@ class Deformation:
 
     Attributes:
         functions: Shape functions, one an elastic coordinate: those of bend_y, then bend_z, then twist.
-        counts: How many of each.
-        foreshortening: Whether bending pulls the axis back.
+        counts: Number of functions of bend_y, bend_z and twist.
+        foreshortening: Whether bending draws the sections towards the root, to second order.
     """
 
     functions: tuple[Shape, ...]
@@ -33,42 +34,43 @@ class Deformation:
 
     @cached_property
     def lengths(self) -> tuple[bool, ...]:
-        """For each coordinate whether it is a displacement."""
+        """Whether each coordinate is a displacement [m] (else an angle)."""
         return tuple(shape.length for shape in self.functions)
 
-    def _modal(self, direction: int, power: int) -> Field:
+    def _superposition(self, direction: int, power: int) -> Field:
+        """The sum of coordinates times shape functions of one direction."""
         start = sum(self.counts[:direction])
-        chosen = range(start, start + self.counts[direction])
-        return Field(power, self.lengths, {(i,): self.functions[i].phi for i in chosen})
+        indices = range(start, start + self.counts[direction])
+        return Field(power, self.lengths, {(i,): self.functions[i].phi for i in indices})
 
     @cached_property
     def v(self) -> Field:
-        """Displacement along y."""
-        return self._modal(0, 1)
+        """Deflection v of the axis along y."""
+        return self._superposition(0, 1)
 
     @cached_property
     def w(self) -> Field:
-        """Displacement along z."""
-        return self._modal(1, 1)
+        """Deflection w of the axis along z."""
+        return self._superposition(1, 1)
 
     @cached_property
     def roll(self) -> Field:
-        """The rotation of sections about x."""
-        return self._modal(2, 0)
+        """Rotation of sections about x: the twist angle."""
+        return self._superposition(2, 0)
 
     @cached_property
     def yaw(self) -> Field:
-        """The rotation of sections about z: v' (eq. 3)."""
+        """Rotation of sections about z: v' (eq. 3)."""
         return self.v.along()
 
     @cached_property
     def pitch(self) -> Field:
-        """The rotation of sections about y: -w' (eq. 3)."""
+        """Rotation of sections about y: -w' (eq. 3)."""
         return -self.w.along()
 
     @cached_property
     def u(self) -> Field:
-        """Foreshortening: -1/2 the integral of v'^2 + w'^2 from the root (eq. 2)."""
+        """Axial displacement u by foreshortening: -1/2 the integral of v'^2 + w'^2 from the root (eq. 2)."""
         if not self.foreshortening:
             return Field(1, self.lengths, {})
         slopes = self.yaw.times(self.yaw) + self.pitch.times(self.pitch)
@@ -76,12 +78,12 @@ class Deformation:
 
     @cached_property
     def position(self) -> tuple[Field, Field, Field]:
-        """p_BS, from the root to the section's centroid, in B (eq. 1)."""
+        """Position p_BS of the section's centroid from the root, in B (eq. 1)."""
         return Field(1, self.lengths, {(): XI}) + self.u, self.v, self.w
 
     @cached_property
     def rotation(self) -> tuple[tuple[Field, Field, Field], ...]:
-        """R_BS to second order, row by row (eq. 4)."""
+        """Rotation R_BS of the section to second order, row by row (eq. 4)."""
         one = unit_field(self.lengths)
         P, T, F = self.yaw, self.pitch, self.roll
         PP, TT, FF = (x.times(x).scaled(_HALF) for x in (P, T, F))
@@ -93,23 +95,23 @@ class Deformation:
 
     @cached_property
     def partial_spins(self) -> tuple[tuple[Field, Field, Field], ...]:
-        """Partial angular velocities of the section, along its own axes, one triple a coordinate (eq. 5)."""
+        """Partial angular velocities of the section, in its own axes, one triple a coordinate (eq. 5)."""
         P, T, F = self.yaw, self.pitch, self.roll
-        found = []
+        triples = []
         for i in range(len(self.functions)):
             Pi, Ti, Fi = P.by(i), T.by(i), F.by(i)
-            found.append((Fi - T.times(Pi), Ti + F.times(Pi), Pi - F.times(Ti)))
-        return tuple(found)
+            triples.append((Fi - T.times(Pi), Ti + F.times(Pi), Pi - F.times(Ti)))
+        return tuple(triples)
 
     @cached_property
     def turning(self) -> tuple[tuple[Field, Field, Field], ...]:
         """Partial angular velocities of the section in the axes of B, to first order, one triple a coordinate."""
         P, T = self.yaw, self.pitch
-        found = []
+        triples = []
         for i in range(len(self.functions)):
             Pi, Ti, Fi = P.by(i), T.by(i), self.roll.by(i)
-            found.append((Fi - P.times(Ti), Ti + P.times(Fi), Pi - T.times(Fi)))
-        return tuple(found)
+            triples.append((Fi - P.times(Ti), Ti + P.times(Fi), Pi - T.times(Fi)))
+        return tuple(triples)
 
     @cached_property
     def curvatures(self) -> tuple[Field, Field, Field]:
@@ -120,24 +122,24 @@ class Deformation:
 
 
 def deformation_of(beam: Beam) -> Deformation:
-    """The displacement field of a beam, shared between beams that have the same.
+    """The displacement field of a beam; beams with equal shape functions share one.
 
     Raises:
         FamilyError: The family has no such functions.
     """
     counts = (beam.bend_y, beam.bend_z, beam.twist)
     user = tuple(beam.user_shapes(direction) for direction in DIRECTIONS)
-    return _cached(beam.family, counts, user, beam.foreshortening)
+    return _shared_deformation(beam.family, counts, user, beam.foreshortening)
 
 
 def small_coordinates(beam: Beam, length: float) -> tuple[float, ...]:
-    """Sizes of the elastic coordinates that second-order theory is good for, to sample within.
+    """Sizes of the elastic coordinates up to which second-order theory holds: bounds for random states.
 
     With every coordinate of a direction at its size, no slope and no twist angle exceeds SMALL.
 
     Args:
-        beam: What the user stated.
-        length: Of the beam [m].
+        beam: The beam as described.
+        length: Length of the beam [m].
     """
     shape = deformation_of(beam)
     sizes = []
@@ -150,10 +152,10 @@ def small_coordinates(beam: Beam, length: float) -> tuple[float, ...]:
 
 
 @lru_cache(maxsize=64)
-def _cached(
+def _shared_deformation(
     family: Family, counts: tuple[int, int, int], user: tuple[tuple[UserShape, ...], ...], foreshortening: bool
 ) -> Deformation:
-    chosen: tuple[Shape, ...] = ()
-    for direction, count, own in zip(DIRECTIONS, counts, user, strict=True):
-        chosen += shapes(family, direction, count, own)
-    return Deformation(chosen, counts, foreshortening)
+    functions: tuple[Shape, ...] = ()
+    for direction, count, stated in zip(DIRECTIONS, counts, user, strict=True):
+        functions += shapes(family, direction, count, stated)
+    return Deformation(functions, counts, foreshortening)

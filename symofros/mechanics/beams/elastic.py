@@ -13,7 +13,7 @@ from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.mechanics.beams.deformation import Deformation, deformation_of
 from symofros.mechanics.beams.fields import EVERY_DEGREE, Field, Form, no_form, unit_field
-from symofros.mechanics.beams.integrals import Along, Lower, points_for
+from symofros.mechanics.beams.integrals import LengthIntegrator, Lower, points_for
 
 ORDERS: dict[Retain, float] = {"zeroth_order": 0, "first_order": 1, "all": EVERY_DEGREE}
 # Pairs of axes in the order of Sym3: xx, yy, zz, xy, xz, yz.
@@ -22,16 +22,16 @@ PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 Vector = tuple[Form, Form, Form]
 
 
-class Section(NamedTuple):
-    """One axis that the sections of a beam have inertia about.
+class SectionInertia(NamedTuple):
+    """Inertia of a beam's sections about one of their axes.
 
     Attributes:
-        weight: Moment of inertia per length.
-        axis: The axis, in B.
-        spins: Partial angular velocities about it, one a coordinate.
+        per_length: Moment of inertia per length about the axis [kg m].
+        axis: Components of the axis in B.
+        spins: Partial angular velocities of the section about the axis, one a coordinate.
     """
 
-    weight: Value
+    per_length: Value
     axis: tuple[Field, ...]
     spins: tuple[Field, ...]
 
@@ -41,31 +41,32 @@ class BeamForms:
     """What the equations of motion need of one beam (eqs. 8-13).
 
     Attributes:
-        beam: What the user stated.
-        along: For integration.
-        shape: Its displacement field.
-        order: Degree to which terms of the equations of motion are kept.
+        beam: The beam as described.
+        along: Integration over its length.
+        shape: Displacement field.
+        order: Degree in elastic coordinates and speeds up to which terms of the equations of motion are kept.
     """
 
     beam: Beam
-    along: Along
+    along: LengthIntegrator
     shape: Deformation
     order: float
 
     @cached_property
-    def _sections(self) -> tuple[Section, ...]:
-        """Axes that sections have inertia about: that of twist alone, or all three, which bending turns (eq. 13)."""
+    def _sections(self) -> tuple[SectionInertia, ...]:
+        """Inertia of sections about the axis of twist alone, or about all three axes, which bending turns (eq. 13)."""
         beam, shape = self.beam, self.shape
         if beam.rotary_inertia:
             weights = ((0, beam.rhoJ), (1, beam.rhoI_y), (2, beam.rhoI_z))
-            found = [
-                Section(weight, tuple(row[axis] for row in shape.rotation), tuple(s[axis] for s in shape.partial_spins))
-                for axis, weight in weights
-            ]
+            sections = []
+            for k, per_length in weights:
+                axis, spins = (tuple(row[k] for row in rows) for rows in (shape.rotation, shape.partial_spins))
+                sections.append(SectionInertia(per_length, axis, spins))
         else:
             one, none = unit_field(shape.lengths), Field(0, shape.lengths, {})
-            found = [Section(beam.rhoJ, (one, none, none), tuple(shape.roll.by(i) for i in range(beam.modes)))]
-        return tuple(section for section in found if section.weight != 0.0)
+            spins = tuple(shape.roll.by(i) for i in range(beam.modes))
+            sections = [SectionInertia(beam.rhoJ, (one, none, none), spins)]
+        return tuple(section for section in sections if section.per_length != 0.0)
 
     def _summed(self, parts: list[tuple[Field, Value]]) -> Form:
         total = no_form(self.along.g, self.along.coordinates)
@@ -80,26 +81,27 @@ class BeamForms:
 
     @cached_property
     def first_moment(self) -> Vector:
-        """S, the integral of r dm (eq. 8)."""
+        """First moment S, the integral of r dm (eq. 8)."""
         x, y, z = (self.along.integral(_cut(field, self.order + 1), self.beam.rhoA) for field in self.shape.position)
         return x, y, z
 
     @cached_property
     def second_moment(self) -> tuple[Form, ...]:
-        """E, the integral of r r^T dm, with what sections add, in the order of Sym3 (eqs. 9, 13)."""
+        """Second moment E, the integral of r r^T dm, sections included, in the order of Sym3 (eqs. 9, 13)."""
         upto, r = self.order + 1, self.shape.position
-        mass = [self.along.integral(r[a].times(r[b], upto), self.beam.rhoA) for a, b in PAIRS]
+        E = [self.along.integral(r[a].times(r[b], upto), self.beam.rhoA) for a, b in PAIRS]
         for section in self._sections:
             c = section.axis
-            J = [self.along.integral(c[a].times(c[b], upto), section.weight) for a, b in PAIRS]
+            J = [self.along.integral(c[a].times(c[b], upto), section.per_length) for a, b in PAIRS]
             half = (J[0] + J[1] + J[2]).scaled(self.along.g.constant(0.5))
-            mass = [m + (half - j if a == b else -j) for m, j, (a, b) in zip(mass, J, PAIRS, strict=True)]
-        return tuple(mass)
+            E = [e + (half - j if a == b else -j) for e, j, (a, b) in zip(E, J, PAIRS, strict=True)]
+        return tuple(E)
 
     @cached_property
     def angular(self) -> tuple[Vector, ...]:
-        """K_i, the angular momentum about the root per unit rate of each coordinate (eqs. 10, 13)."""
-        r, found = self.shape.position, []
+        """Angular momentum K_i about the root per unit rate of each coordinate (eqs. 10, 13)."""
+        r = self.shape.position
+        momenta: list[Vector] = []
         for i in range(self.beam.modes):
             d = [field.by(i) for field in r]
             parts: list[list[tuple[Field, Value]]] = []
@@ -108,23 +110,23 @@ class BeamForms:
                 moment = r[b].times(d[c], self.order) - r[c].times(d[b], self.order)
                 parts.append([(moment, self.beam.rhoA)])
                 for section in self._sections:
-                    parts[a].append((section.axis[a].times(section.spins[i], self.order), section.weight))
-            found.append((self._summed(parts[0]), self._summed(parts[1]), self._summed(parts[2])))
-        return tuple(found)
+                    parts[a].append((section.axis[a].times(section.spins[i], self.order), section.per_length))
+            momenta.append((self._summed(parts[0]), self._summed(parts[1]), self._summed(parts[2])))
+        return tuple(momenta)
 
     @cached_property
     def modal_mass(self) -> dict[tuple[int, int], Form]:
-        """M_ij for i <= j (eqs. 11, 13)."""
-        found = {}
+        """Modal mass M_ij for i <= j (eqs. 11, 13)."""
+        masses = {}
         for i, j in combinations_with_replacement(range(self.beam.modes), 2):
             parts = [(field.by(i).times(field.by(j), self.order), self.beam.rhoA) for field in self.shape.position]
-            parts += [(s.spins[i].times(s.spins[j], self.order), s.weight) for s in self._sections]
-            found[i, j] = self._summed([(field, weight) for field, weight in parts if field.terms])
-        return found
+            parts += [(s.spins[i].times(s.spins[j], self.order), s.per_length) for s in self._sections]
+            masses[i, j] = self._summed([(field, weight) for field, weight in parts if field.terms])
+        return masses
 
     @cached_property
     def strain_energy(self) -> Form:
-        """1/2 the integral of GJ k1^2 + EI_y k2^2 + EI_z k3^2; with the cubic terms if everything is kept (eq. 7)."""
+        """Strain energy, half the integral of GJ k1^2 + EI_y k2^2 + EI_z k3^2 (eq. 7); cubic if every term is kept."""
         upto = 3 if self.order > 1 else 2
         beam, half = self.beam, self.along.g.constant(0.5)
         stiffness = (beam.GJ, beam.EI_y, beam.EI_z)
@@ -132,18 +134,18 @@ class BeamForms:
         return self._summed([(square, EI) for square, EI in squares if square.terms]).scaled(half)
 
     def damping_energy(self, speeds: tuple[Edge, ...]) -> Form:
-        """The dissipation function: damping times the quadratic strain energy, of the rates (eq. 14)."""
+        """Rayleigh's dissipation function: damping times the quadratic strain energy of the rates (eq. 14)."""
         factor = self.along.lower(self.beam.damping)
         quadratic = self.strain_energy.upto(2).scaled(factor)
         return Form(self.along.g, speeds, quadratic.terms)
 
     def point(self, xi: float) -> Vector:
-        """p_BS at a station."""
+        """Position p_BS of the section at a station xi."""
         x, y, z = (self.along.at(field, xi) for field in self.shape.position)
         return x, y, z
 
     def angles(self, xi: float) -> Vector:
-        """Yaw, pitch and roll of the section at a station."""
+        """Yaw, pitch and roll of the section at a station xi."""
         yaw, pitch, roll = (self.along.at(f, xi) for f in (self.shape.yaw, self.shape.pitch, self.shape.roll))
         return yaw, pitch, roll
 
@@ -156,14 +158,14 @@ def beam_forms(g: Graph, lower: Lower, beam: Beam, coordinates: tuple[Edge, ...]
     """The forms of a beam in a graph.
 
     Args:
-        g: Where the operations go.
-        lower: Values of the description -> edges.
-        beam: What the user stated.
-        coordinates: Edges of its elastic coordinates.
+        g: The graph that operations are added to.
+        lower: Lowering of values of the description to edges.
+        beam: The beam as described.
+        coordinates: Edges of the elastic coordinates.
     """
     shape = deformation_of(beam)
     knots = tuple(sorted({knot for function in shape.functions for knot in function.phi.knots} or {0, 1}))
-    along = Along(
+    along = LengthIntegrator(
         g,
         lower,
         beam.length,

@@ -27,9 +27,9 @@ class Field:
     """A sum over monomials of (function of xi) L^p (product of coordinates).
 
     Attributes:
-        power: p of the monomial of degree 0.
-        lengths: For each coordinate whether it is a displacement: each such factor in a monomial lowers p by one.
-        terms: Monomial -> function of xi.
+        power: Exponent p of the monomial of degree 0.
+        lengths: Whether each coordinate is a displacement; each such factor in a monomial lowers p by one.
+        terms: Function of xi by monomial.
     """
 
     power: int
@@ -87,7 +87,7 @@ class Field:
         return self.power - sum(self.lengths[i] for i in mono)
 
     def at(self, g: Graph, coordinates: Sequence[Edge], L: Edge, xi: float) -> Form:
-        """The form that the field is at one station."""
+        """The value of the field at one station, as a form."""
         station = Fraction(xi)  # Exact: stations are doubles.
         values = {mono: float(f(station)) for mono, f in self.terms.items()}
         return Form(
@@ -98,7 +98,7 @@ class Field:
 
 
 def length_power(g: Graph, L: Edge, exponent: int) -> Edge:
-    """L to a whole power."""
+    """A power of L with a whole exponent."""
     return g.power(L, g.constant(float(exponent)))
 
 
@@ -108,8 +108,8 @@ class Form:
 
     Attributes:
         g: The graph.
-        coordinates: The edges of the elastic coordinates.
-        terms: Monomial -> coefficient.
+        coordinates: Edges of the elastic coordinates.
+        terms: Coefficient by monomial.
     """
 
     g: Graph

@@ -26,16 +26,17 @@ Lower = Callable[[Value], Edge]
 
 
 @dataclass(frozen=True)
-class Along:
-    """What integration over one beam needs.
+class LengthIntegrator:
+    """Integration over the length of one beam.
 
     Attributes:
         g: The graph.
-        lower: Values of the description -> edges.
-        length: The beam's length, as it was stated and as an edge.
-        coordinates: Edges of its elastic coordinates.
-        knots: Where its shape functions' pieces meet.
-        points: Gauss nodes an interval.
+        lower: Lowering of values of the description to edges.
+        length: Length as described [m].
+        L: Length as an edge.
+        coordinates: Edges of the elastic coordinates.
+        knots: Stations xi where pieces of the shape functions meet.
+        points: Number of Gauss nodes an interval.
     """
 
     g: Graph
@@ -61,13 +62,13 @@ class Along:
         return self._scaled(field, terms)
 
     def shares(self, weight: Value) -> list[tuple[float, Edge]]:
-        """Gauss stations, and what each has of the weight's integral: for what is no polynomial of the coordinates."""
+        """Gauss stations, each with its share of the weight's integral: for integrands that are not polynomials."""
         g = self.g
-        found = []
+        shares = []
         for xi, w in zip(*stations(self.knots, self.points), strict=True):
-            here = at_station(weight, self.length, xi) if isinstance(weight, Expression) else weight
-            found.append((xi, g.mul(g.constant(w), g.mul(self.lower(here), self.L))))
-        return found
+            value = at_station(weight, self.length, xi) if isinstance(weight, Expression) else weight
+            shares.append((xi, g.mul(g.constant(w), g.mul(self.lower(value), self.L))))
+        return shares
 
     def at(self, field: Field, xi: float) -> Form:
         """The field at one station."""
@@ -91,7 +92,7 @@ def _weighted(g: Graph, f: Piecewise, xi: Sequence[float], w: Sequence[float], v
 
 
 def points_for(functions: Sequence[Piecewise]) -> int:
-    """Gauss nodes an interval for shape functions: exact for every field of theirs, times a weight of degree 15.
+    """Number of Gauss nodes an interval that integrates every field of the functions times a weight of degree 15.
 
     The field of highest degree is u^2 in the second moments, 4 d - 2 for functions of degree d.
     """

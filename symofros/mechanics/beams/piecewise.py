@@ -30,11 +30,11 @@ _NEWTON_STEPS = 5
 
 @dataclass(frozen=True)
 class Piecewise:
-    """Polynomials on consecutive intervals.
+    """A function of xi in [0, 1]: polynomials on consecutive intervals.
 
     Attributes:
         knots: Ends of the intervals, from 0 to 1.
-        pieces: For each interval, coefficients in the distance from its left end, constant first.
+        pieces: Coefficients in the distance from the interval's left end, constant first, for each interval.
     """
 
     knots: tuple[Number, ...]
@@ -95,11 +95,11 @@ class Piecewise:
 
     def rounded(self, stations: Sequence[float]) -> list[float]:
         """Values at stations, rounded once where coefficients and knots are rational, whatever cancels in between."""
-        found = []
+        values = []
         for xi in stations:
             i = max(bisect_left(self.knots, xi) - 1, 0)
-            found.append(_rounded(self.pieces[i], Fraction(xi) - self.knots[i]))
-        return found
+            values.append(_rounded(self.pieces[i], Fraction(xi) - self.knots[i]))
+        return values
 
     def refined(self, knots: tuple[Number, ...]) -> Piecewise:
         """The same function on finer knots, which contain its own."""
@@ -134,7 +134,7 @@ def fitted(function: Callable[[Extended], Extended], pieces: int) -> Piecewise:
         so that a polynomial comes back as one of the same degree.
     """
     points, weights = _interpolation()
-    found = []
+    interpolants = []
     for k in range(pieces):
         values = [function((k + t) / pieces) for t in points]
         coefficients = [CONTEXT.fdot(row, values) for row in weights]
@@ -142,8 +142,8 @@ def fitted(function: Callable[[Extended], Extended], pieces: int) -> Piecewise:
         kept = [c * pieces**n if abs(c) > negligible else 0 for n, c in enumerate(coefficients)]
         while len(kept) > 1 and not kept[-1]:
             kept.pop()
-        found.append(tuple(map(float, kept)))
-    return Piecewise(tuple(k / pieces for k in range(pieces)) + (1.0,), tuple(found))
+        interpolants.append(tuple(map(float, kept)))
+    return Piecewise(tuple(k / pieces for k in range(pieces)) + (1.0,), tuple(interpolants))
 
 
 @cache
@@ -200,8 +200,8 @@ def stations(knots: Sequence[Number], points: int) -> tuple[list[float], list[fl
     """Gauss nodes and weights on every interval between knots.
 
     Args:
-        knots: From 0 to 1.
-        points: Nodes an interval.
+        knots: Ends of the intervals, from 0 to 1.
+        points: Number of nodes an interval.
     """
     nodes, weights = gauss(points)
     xi = [float(a) + float(b - a) * node for a, b in pairwise(knots) for node in nodes]

@@ -40,8 +40,8 @@ class Shape(NamedTuple):
     """One shape function.
 
     Attributes:
-        phi: Its values over xi.
-        length: Whether its coordinate is a displacement [m], rather than an angle.
+        phi: The function of xi.
+        length: Whether the coordinate is a displacement [m], rather than an angle [rad].
     """
 
     phi: Piecewise
@@ -57,10 +57,10 @@ def shapes(family: str, direction: Direction, count: int, user: tuple[UserShape,
     """The first functions of a family.
 
     Args:
-        family: Its name.
+        family: Name of the family.
         direction: "bend_y", "bend_z" or "twist".
-        count: How many.
-        user: The user's own, for family "user".
+        count: Number of functions.
+        user: Functions stated by the user, for family "user".
 
     Raises:
         FamilyError: The family has none, or not as many.
@@ -93,10 +93,10 @@ def _orthogonal(bending: bool, count: int) -> list[Piecewise]:
     m = 2 if bending else 1
     b = Fraction(2 * m)
     x = polynomial(-1, 2)
-    found: list[Piecewise] = []
+    functions: list[Piecewise] = []
     before, now = polynomial(0), polynomial(1)
     for k in range(count):
-        found.append(now * _monomials(bending, 1)[0])
+        functions.append(now * _monomials(bending, 1)[0])
         # Jacobi's recurrence with alpha = 0 (Abramowitz & Stegun 22.7.1), normalised to 1 at the tip by alpha = 0.
         n = Fraction(k)
         if k == 0:
@@ -107,7 +107,7 @@ def _orthogonal(bending: bool, count: int) -> list[Piecewise]:
             following = x.scaled((s + 1) * (s + 2) * s) + polynomial(-(b * b) * (s + 1))
             following = (following * now + before.scaled(-2 * n * (n + b) * (s + 2))).scaled(1 / lead)
         before, now = now, following
-    return found
+    return functions
 
 
 def _hermite(bending: bool, count: int) -> tuple[Shape, ...]:
@@ -222,17 +222,16 @@ def _user(shape: UserShape, bending: bool) -> Piecewise:
 
 
 def _root_correction(knots: tuple[Number, ...], root: list[float]) -> Piecewise:
-    """What takes a value and a slope (zero where none is given) out at the root, within the first interval alone.
+    """The cubic on the first interval that cancels a value and a slope (zero where none is given) at the root.
 
-    The slope there is rounding of the interpolant's derivative, a thousand times its values': taken out as a straight
-    line it would spoil those.
+    It ends with value and slope zero, so that the rest of the beam keeps its values.
     """
     h = float(knots[1] - knots[0])
     value, slope = -root[0], -(root[1] if len(root) > 1 else 0.0)
     if len(root) > 1:
         cubic = (value, slope, -3 * value / h**2 - 2 * slope / h, 2 * value / h**3 + slope / h**2)
     else:
-        cubic = (value, -value / h, 0.0, 0.0)
+        cubic = (value, -value / h, 0.0, 0.0)  # A straight line: twist may have a kink.
     return Piecewise(knots, (cubic, *((0.0,) for _ in knots[2:])))
 
 
