@@ -34,14 +34,17 @@ class ProgramBuilder:
 
     def __init__(self, tree: SpanningTree, options: Options) -> None:
         self.tree, self._options = tree, options
-        self._equations = Equations(tree)
         self._lock = threading.RLock()  # Functions of a model may be called, and so formed, from several threads.
         self._latest: tuple[tuple[Request, ...], Program] | None = None
+
+    @cached_property
+    def _kinematics(self) -> Equations:
+        return Equations(self.tree)
 
     def equations(self) -> Equations:
         """Equations to form further functions on; only the kinematics are there."""
         with self._lock:
-            return self._equations.fork()
+            return self._kinematics.fork()
 
     def program(self, requests: Sequence[Request]) -> Program:
         """The optimised program of some functions; the latest one is kept.
