@@ -20,6 +20,9 @@ from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, Quantity
 from validation.mechanics.assembly import Assembly
 from validation.mechanics.geometry import Array
 
+# What constraints are made of, for engines that know trees.
+ANCHORED = frozenset({"frame_pose", "frame_velocity", "frame_acceleration", "frame_jacobian"})
+
 Factories = Mapping[str, EngineFactory | Missing]
 
 
@@ -100,6 +103,8 @@ def _built(
     engine = factory(subject)
     if isinstance(engine, Unsupported) or not subject.system.constraints:
         return engine
+    if not ANCHORED <= engine.capabilities:
+        return Unsupported("no kinematics of frames, which constraints are stated by")
     joined = joined_frames(assembly, subject.system)
     anchored = factory(replace(subject, frames=joined))
     # Every independent engine knows trees; the protocol of engines does not say so.

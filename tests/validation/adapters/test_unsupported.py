@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from tests.validation.subjects import UNIT, URDF, pendulum, subject_of
 from validation.adapters import Missing
 from validation.adapters.mujoco import tree as mujoco
@@ -110,3 +111,14 @@ def test_a_prescribed_motion_is_refused_in_words() -> None:
     rod = sf.RigidBody("rod", sf.Joint("q", "revolute", "cart"), sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1)))
     result = check(Subject("driven", sf.System("driven", [cart, rod])), Settings(states=5))
     assert not result.ok and "prescribed motion" in result.comparisons[0].note
+
+
+def test_an_engine_without_frames_is_not_asked_about_constraints() -> None:
+    """Constraints are stated by an engine's own frames; one that has none says so, and the others go on."""
+
+    class WithoutFrames:
+        name, version, capabilities = "pinocchio", "1", frozenset({"mass_matrix"})
+
+    result = check(Subject("four_bar", MODELS["four_bar"]), FEW, {"pinocchio": lambda subject: WithoutFrames()})
+    (row,) = (row for row in result.comparisons if row.engine == "pinocchio")
+    assert row.status == "unsupported" and "frames" in row.note and result.ok
