@@ -43,3 +43,18 @@ def test_every_row_names_an_adapter_that_exists(name: str) -> None:
 def test_differences_are_stated_by_the_engines_of_the_table() -> None:
     assert {row.engine for row in differences()} <= set(ROUTES)
     assert all(row.ours != row.theirs for row in differences())
+
+
+def test_the_command_check_imports_no_engine_that_it_does_not_ask(tmp_path: Path) -> None:
+    """Studies import engines of their own; their commands are loaded when one of them is asked for."""
+    code = f"""
+import sys
+from typer.testing import CliRunner
+from validation.__main__ import app
+options = ["--engine", "pinocchio", "--states", "5", "--workers", "1", "--output", {str(tmp_path)!r}]
+result = CliRunner().invoke(app, ["check", "double_pendulum", *options])
+assert result.exit_code == 0, result.output
+print(*sorted({{module.partition(".")[0] for module in sys.modules}}))
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert PACKAGES & set(run.stdout.split()) == {"pinocchio"}, run.stderr

@@ -1,0 +1,17 @@
+"""The commands beside `check`: their modules load engines, so they are imported when one of them is asked for."""
+
+from __future__ import annotations
+
+import typer
+
+from validation.campaigns import command as campaign
+from validation.dashboard import command as dashboard
+from validation.dashboard.catalogue import MEASURES, TOPICS
+from validation.reporting.command import add_command
+
+app = typer.Typer()
+for name, measure in MEASURES.items():
+    if name != "check":
+        add_command(app, TOPICS[name], measure, ())
+campaign.register(app)
+dashboard.register(app)
