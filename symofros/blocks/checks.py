@@ -21,10 +21,10 @@ def numbers(name: str, field: str, values: Any, shape: Sequence[int | None] | No
     """The finite numbers of a field.
 
     Args:
-        name: Of the block.
-        field: Of the block.
-        values: What was given.
-        shape: What it must have; None for any length, or for any shape.
+        name: Name of the block.
+        field: Field of the block.
+        values: Value as given.
+        shape: Shape that it must have; None for any length, or for any shape.
 
     Raises:
         DescriptionError: They are none, or too few or too many.
@@ -55,9 +55,9 @@ def number(
     """A number of a field within bounds.
 
     Args:
-        name: Of the block.
-        field: Of the block.
-        value: What was given.
+        name: Name of the block.
+        field: Field of the block.
+        value: Value as given.
         low: Lower bound.
         high: Upper bound.
         exclusive: Whether the lower bound itself is refused.

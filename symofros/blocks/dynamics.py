@@ -16,7 +16,7 @@ class ForwardDynamics(Block):
     """A mechanism in motion: efforts in, states, accelerations, friction and constraint forces out.
 
     Attributes:
-        model: What moves; its first state is that of the model.
+        model: Model of the mechanism, whose first state is that of the model.
         perturbed: Frames that external wrenches act on: each adds an input "wrench_FRAME" (force; moment), at the
             frame's origin in world axes [N, N m]; "wrench_link2_tip" for the frame "link2.tip".
         engaged: Whether an input "engaged" says which constraints hold now: 1 or 0, one a constraint, from a sampled
@@ -109,7 +109,7 @@ class InverseDynamics(Block):
     """The efforts that a motion takes, tau = M a + h - Q(q, v, 0), for a tree of joints that all have one.
 
     Attributes:
-        model: Of the mechanism; a rigid one makes a controller of the paper's kind.
+        model: Model of the mechanism; a rigid one makes a controller of the paper's kind.
         with_friction: Whether the effort against friction counts; a block of its own compensates it otherwise.
     """
 

@@ -86,7 +86,7 @@ class Receiver(Exchange):
         timeout: After so long without a packet the sender counts as silent [s].
         on_silence: Then "hold" the last values or give the "value" fallback; "alive" is 0 either way.
         fallback: Values before the first packet, and on silence.
-        unit: Of the values.
+        unit: Unit of the values.
     """
 
     size: int
@@ -106,7 +106,7 @@ class Receiving(Running):
     """A receiver in one run.
 
     Args:
-        block: What it is to receive.
+        block: Block that receives.
     """
 
     def __init__(self, block: Receiver) -> None:

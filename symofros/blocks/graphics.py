@@ -107,7 +107,7 @@ class StatePlot(Block):
     """Draws a mechanism's coordinates and its speeds, a picture each.
 
     Attributes:
-        model: Of the mechanism.
+        model: Model of the mechanism.
     """
 
     model: str
@@ -128,8 +128,8 @@ class ExtremityPlot(Block):
     """Draws where frames of a mechanism are, x, y and z over time, a picture a frame.
 
     Attributes:
-        model: Of the mechanism.
-        frames: Whose origins are drawn.
+        model: Model of the mechanism.
+        frames: Frames whose origins are drawn.
     """
 
     model: str

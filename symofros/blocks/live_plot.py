@@ -37,8 +37,8 @@ class LivePlot(OpaqueBlock):
 
     Attributes:
         signals: Names of its inputs.
-        title: Of the page; the block's name by default.
-        window: How long a time is shown [s].
+        title: Title of the page; the block's name by default.
+        window: Time span that is shown [s].
         open_browser: Whether to open a browser; the address is written to standard error either way.
     """
 

@@ -103,14 +103,14 @@ class ZenohSubscriber(_ByZenoh, Receiver):
     """Takes the newest packet under a key at each sample, and counts the others, as UdpReceiver does.
 
     Attributes:
-        key: What to hear; wildcards as Zenoh has them.
+        key: Key expression to subscribe to, with Zenoh's wildcards.
         size: Values a packet.
         address: HOST:PORT where peers meet.
         listens: Whether peers come to that address; else it is gone to.
         timeout: After so long without a packet the sender counts as silent [s].
         on_silence: Then "hold" the last values or give the "value" fallback; "alive" is 0 either way.
         fallback: Values before the first packet, and on silence.
-        unit: Of the values.
+        unit: Unit of the values.
     """
 
     listens: bool = True

@@ -45,8 +45,8 @@ class UdpTransmitter(_ByUdp, Transmitter):
     What it keeps of a run: "sent" and "dropped", how many packets.
 
     Attributes:
-        port: Where to send.
-        host: To which machine; this one by default.
+        port: Port to send to.
+        host: Machine to send to; this one by default.
     """
 
     def begin(self, known: Known) -> Running:
@@ -89,13 +89,13 @@ class UdpReceiver(_ByUdp, Receiver):
     (`symofros.blocks.packets.Reception`).
 
     Attributes:
-        port: Where to listen.
+        port: Port to listen at.
         size: Values a packet.
         host: The address to listen at; this machine's own by default.
         timeout: After so long without a packet the sender counts as silent [s].
         on_silence: Then "hold" the last values or give the "value" fallback; "alive" is 0 either way.
         fallback: Values before the first packet, and on silence.
-        unit: Of the values.
+        unit: Unit of the values.
     """
 
     def begin(self, known: Known) -> Running:

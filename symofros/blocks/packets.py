@@ -64,15 +64,15 @@ class Reception:
     Attributes:
         size: Values a packet.
         silence: After so long without a packet the sender counts as silent, and another may take its place [s].
-        values: Of the newest packet; None before the first.
-        stamp: Its sender's time [s].
-        arrived: When it was taken, by the receiver's time [s].
+        values: Values of the newest packet; None before the first.
+        stamp: Time of sending, by the sender's clock [s].
+        arrived: Time when it was taken, by the receiver's time [s].
         received: Good packets.
         lost: Never arrived, by the gaps in the numbers since the first; one that is late after all is taken off again.
         late: Arrived after a newer one; not used.
         duplicate: Arrived again.
         malformed: No packets of this kind or size, or values that are not finite.
-        foreign: Of another sender while the first is not silent.
+        foreign: Number of packets of another sender while the first is not silent.
     """
 
     size: int

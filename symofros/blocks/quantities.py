@@ -29,9 +29,9 @@ def frame_ports(block: str, prefix: str, frames: Sequence[str]) -> dict[str, str
     ports are names in Python and in "block.port".
 
     Args:
-        block: Its name.
+        block: Name.
         prefix: Such as "wrench_".
-        frames: As the block states them.
+        frames: Frames as the block states them.
 
     Raises:
         DescriptionError: Two frames have one port.

@@ -35,9 +35,9 @@ class View3D(OpaqueBlock):
     drawn since newer ones came first.
 
     Attributes:
-        model: Of the mechanism.
-        exaggeration: What multiplies the elastic coordinates in the picture.
-        port: Of the page on this machine; 0 for any free one.
+        model: Model of the mechanism.
+        exaggeration: Factor of the elastic coordinates in the picture.
+        port: Port of the page on this machine; 0 for any free one.
         paced: Whether the run waits at its samples for the clock, so that the motion is seen as fast as it is; a run in
             real time does so by itself.
         stays: Whether the page is there after the run, until the program ends or the next run takes it over.
@@ -148,9 +148,9 @@ def with_view(diagram: Diagram, block: str = "", **fields: Any) -> tuple[Diagram
     """The same diagram with a mechanism shown as it moves.
 
     Args:
-        diagram: What is run; it stays as it is.
-        block: Whose mechanism; "" for the only one.
-        fields: Of the View3D block.
+        diagram: Diagram to run; it stays as it is.
+        block: Block whose mechanism is shown; "" for the only one.
+        fields: Fields of the View3D block.
 
     Returns:
         The diagram that has the block, and the block.

@@ -23,7 +23,7 @@ class Look:
 
     Attributes:
         view: Whether to open the viewer.
-        block: Of a diagram: whose mechanism; "" for the only one.
+        block: Block of a diagram: whose mechanism; "" for the only one.
         output: File to record to.
         exaggeration: What multiplies elastic coordinates.
     """
@@ -63,7 +63,7 @@ def recorded(run: DiagramRun | Trajectory, look: Look, system: System | None = N
     """Record a run as asked; the files written.
 
     Args:
-        run: Of a diagram, or of a model.
+        run: Run of a diagram, or of a model.
         look: What is asked.
         system: The model's.
     """
@@ -79,7 +79,7 @@ def shown(run: DiagramRun | Trajectory, look: Look, system: System | None = None
     """Play a run in the viewer, if asked, until the user interrupts.
 
     Args:
-        run: Of a diagram, or of a model.
+        run: Run of a diagram, or of a model.
         look: What is asked.
         system: The model's.
         live: What showed the run as it went: its page plays it now.

@@ -18,8 +18,8 @@ class Visual:
 
     Attributes:
         kind: Kind of shape.
-        size: Of a box its edges, of an ellipsoid its half-axes, of a sphere (radius,), of a cylinder or a capsule along
-            z (radius, length), the capsule's without its caps [m]; of a mesh the factors along its axes.
+        size: Sizes: edges of a box, half-axes of an ellipsoid, (radius,) of a sphere, (radius, length) of a cylinder or
+            a capsule along z, the capsule's without its caps [m]; factors along the axes of a mesh.
         position: p_BS [m].
         rotation: R_BS.
         color: Red, green, blue, 0 to 255; None where it is not stated.

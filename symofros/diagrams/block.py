@@ -30,10 +30,10 @@ class Port:
     """Where a signal enters or leaves.
 
     Attributes:
-        name: Its name.
-        shape: Of the signal; None as long as nothing that is connected tells.
+        name: Name.
+        shape: Shape of the signal; None as long as nothing that is connected tells.
         unit: Such as "rad/s"; "" where any will do.
-        default: What an input is where nothing is connected, a number for all entries; None: something must be.
+        default: Value of an input where nothing is connected, a number for all entries; None: it must be connected.
     """
 
     name: str
@@ -128,7 +128,7 @@ class Crossing:
 
     Attributes:
         value: A scalar.
-        direction: Which crossings count.
+        direction: Direction of the crossings that count.
     """
 
     value: Tensor
@@ -147,7 +147,7 @@ class At:
         memory: Name -> what is kept from sample to sample.
         parameters: Field -> its value, which may change between runs.
         q: Configuration of the block's mechanism.
-        v: Its speeds.
+        v: Speeds (nv).
         gains: Baumgarte's (2 nc).
         call: (model, function, frame, groups) -> outputs of a model's function.
         solved: (M, r) -> M^-1 r for a mass matrix.
@@ -267,8 +267,8 @@ class ModelFile:
 
     Attributes:
         path: The file.
-        functions: As of `Diagram.add_model`.
-        floating_base: As of `sf.load`.
+        functions: Functions as of `Diagram.add_model`.
+        floating_base: Floating base as of `sf.load`.
     """
 
     path: str
@@ -281,10 +281,10 @@ class ModelSetup:
     """A model of a diagram: the paper's initialisation.
 
     Attributes:
-        system: Its description.
+        system: Description of the mechanism.
         start: Coordinate, or d and a speed's name -> first value; zero for the others.
         parameters: Run-time parameter -> value, where not the description's own.
-        file: Where it was read from, if it was.
+        file: File that it was read from, if any.
     """
 
     system: System

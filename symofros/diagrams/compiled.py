@@ -39,11 +39,11 @@ class Resolved:
     """A diagram read as a whole, before any code is made of it.
 
     Attributes:
-        wired: Its blocks and wires.
-        pieces: Its blocks, written out.
+        wired: Blocks and wires.
+        pieces: Blocks, lowered to expressions.
         order: All outputs, each after what it depends on.
-        layout: Where things lie.
-        schedule: What is due when.
+        layout: Layout of states and signals in memory.
+        schedule: Schedule of the blocks that are due at each instant.
     """
 
     wired: Wired
@@ -98,12 +98,12 @@ class CompiledDiagram:
     """A diagram as C functions.
 
     Attributes:
-        resolved: What it was made of.
+        resolved: Diagram that was compiled.
         parts: A model for each part.
         instants: Functions "due_i", "crossed_i", "heard_i_j".
         looks_back: Whether functions of instants read accelerations and multipliers of that time.
-        toolchain: What compiles.
-        options: As of `compile_diagram`; functions that are asked for later are compiled alike.
+        toolchain: Compiler and its identity.
+        options: Options as of `compile_diagram`; functions that are asked for later are compiled alike.
         sources: C texts, for people.
     """
 
@@ -135,8 +135,8 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
     """Turn a diagram into C functions, and compile them.
 
     Args:
-        resolved: Of `resolve`.
-        options: Of these, `compiler`, `flags` and `packs` count.
+        resolved: Diagram as `resolve` returns it.
+        options: Options, of which `compiler`, `flags` and `packs` count.
 
     Raises:
         DescriptionError: A part needs what is known at instants only.

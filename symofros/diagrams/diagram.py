@@ -22,8 +22,8 @@ class Part:
     """A diagram inside another, as it was put there.
 
     Attributes:
-        diagram: What was included.
-        models: Its name of a model -> the including diagram's.
+        diagram: Included diagram.
+        models: Name of a model in the included diagram -> name in the including one.
         inputs: Inlet -> source.
     """
 
@@ -37,17 +37,17 @@ class Diagram:
     """Blocks and wires; a system of equations once `sf.compile_diagram` has read it.
 
     Attributes:
-        name: Its name.
+        name: Name.
         models: Name -> model, which blocks refer to; exchanging one exchanges it for all of them.
         blocks: Name -> block, in the order of addition.
         wires: (block, input port) -> source, as "block.port" or "block" where that has one output.
-        inlets: Where it is part of another: name -> input ports "block.port" that it feeds.
-        outlets: Alike: name -> "block.port" that it is read from.
-        simulation: How its author means it to be run.
+        inlets: Inputs of a diagram that is part of another: name -> input ports "block.port" that it feeds.
+        outlets: Outputs of a diagram that is part of another: name -> "block.port" that it is read from.
+        simulation: Settings of a run, as its author stated them.
         parts: Name -> what was included, for those who write the diagram down again.
         origin: ("block", name), ("input", block, port), ("model", name) or ("outlet", name) -> "file:line" of what
             came from a file.
-        file: Where it was read from; "" for none.
+        file: File that it was read from; "" for none.
     """
 
     name: str
@@ -77,12 +77,12 @@ class Diagram:
         """State a model.
 
         Args:
-            name: What blocks call it.
+            name: Name by which blocks refer to it.
             system: The description.
             start: Coordinate, or d and a speed's name -> first value.
             parameters: Run-time parameters that differ from the description's.
             functions: Shape functions in each direction that beams have any in; 0: the equivalent rigid mechanism.
-            file: Where the description was read from, for those who write the diagram down again.
+            file: File that the description was read from, stated when the diagram is saved.
         """
         self._refuse_name("model", name, self.models)
         stated = system if functions is None else with_functions(system, functions)
@@ -131,7 +131,7 @@ class Diagram:
         """Put a diagram into this one: its blocks become "name/block", its outlets "name.outlet".
 
         Args:
-            name: Of the part.
+            name: Name of the part.
             part: A diagram with inlets and outlets.
             models: The part's name of a model -> this diagram's; models that are left out come along as "name/model".
             inputs: Inlet -> source.

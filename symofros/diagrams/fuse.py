@@ -27,12 +27,12 @@ class Point:
 
     Args:
         wired: The diagram.
-        pieces: Its blocks, written out.
-        layout: Where things lie.
+        pieces: Blocks, lowered to expressions.
+        layout: Layout of states and signals in memory.
         order: All outputs, each after what it depends on.
-        g: Where to write.
+        g: Graph that receives the operations.
         due: Sampled blocks whose new outputs count; those of the others are held.
-        part: Whose vectors q, v and lam are read; None: those of the whole diagram.
+        part: Part whose vectors q, v and lam are read; None: those of the whole diagram.
         after: Whether accelerations and multipliers of constrained mechanisms are known.
     """
 
@@ -148,8 +148,8 @@ class Fuser:
 
     Args:
         wired: The diagram.
-        pieces: Its blocks, written out.
-        layout: Where things lie.
+        pieces: Blocks, lowered to expressions.
+        layout: Layout of states and signals in memory.
         order: All outputs, each after what it depends on.
     """
 

@@ -30,7 +30,7 @@ class Blocks:
 
     Args:
         resolved: The diagram.
-        par: Its run-time parameters.
+        par: Run-time parameters (npar).
         gains: Baumgarte's, one pair for all conditions.
         toolchain: Compiles each block by itself; None: NumPy interprets it.
     """
@@ -180,7 +180,7 @@ class InterpretedRun:
     """Signals of an interpreted run, `run["block.port"]` (n, *shape).
 
     Attributes:
-        resolved: What ran.
+        resolved: Diagram that ran.
         t: Times (n) [s].
         values: (block, output) -> its signal.
         kept: Block -> what it kept of the run, by name.
@@ -277,11 +277,11 @@ def run_interpreted(
 
     Args:
         blocks: The diagram's.
-        called: Those of Python's, begun.
+        called: Python blocks, started.
         instants: (time, what is due, whether to record), in order; the first is the start.
-        t_end: Where to end [s].
+        t_end: End time [s].
         dt: Step [s]; steps also end at instants.
-        tableau: Of the method.
+        tableau: Tableau of the method.
         projects: Whether constraints are met again after each step.
         show: Told the time.
     """

@@ -22,8 +22,8 @@ class Jitter:
         median: The middle.
         p999: 99.9 of 100 were no later.
         maximum: The worst.
-        instants: How many there were.
-        missed: How many began when the next was due already, or later.
+        instants: Number of instants.
+        missed: Number of instants that began when the next was due already, or later.
         spacing: Shortest time between two instants.
     """
 
@@ -70,7 +70,7 @@ def histogram(late: Array, title: str = "") -> Any:
     """A Matplotlib figure: how many instants began how late, both on scales of powers of ten.
 
     Args:
-        late: Of each instant (n) [s].
+        late: Lateness of each instant (n) [s].
         title: Above it.
 
     Raises:

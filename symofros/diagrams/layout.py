@@ -44,10 +44,10 @@ class Part:
     """What moves together between samples.
 
     Attributes:
-        blocks: With continuous states.
-        q: Its entries of the diagram's q.
-        v: Of v.
-        conditions: Of lam.
+        blocks: Blocks with continuous states.
+        q: Range of its entries in the diagram's q.
+        v: Range of its entries in the diagram's v.
+        conditions: Range of its entries in the diagram's lam.
     """
 
     blocks: tuple[str, ...]
@@ -76,7 +76,7 @@ class Layout:
     """Places of everything.
 
     Attributes:
-        parts: In the order of q.
+        parts: Parts in the order of q.
         q: Block -> its mechanism's configuration.
         v: Block -> its mechanism's speeds.
         lam: Block -> multipliers of its constraints.
@@ -90,14 +90,14 @@ class Layout:
         v0: First v.
         u0: First u.
         q_names: Names of q, v, u, par.
-        v_names: See q_names.
-        u_names: See q_names.
-        par_names: See q_names.
-        segments: Of the configuration manifold.
+        v_names: Names of the speeds, as q_names.
+        u_names: Names of the inputs, as q_names.
+        par_names: Names of the run-time parameters, as q_names.
+        segments: Segments of the configuration manifold.
         signals: (index in u, times, values, whether linear).
         engaging: Entries of u whose change takes mechanisms onto their constraints.
-        condition_names: Of the constraints.
-        speed_conditions: Those of them on speeds only.
+        condition_names: Names of the conditions of constraints.
+        speed_conditions: Names of the conditions on speeds only.
     """
 
     parts: list[Part] = field(default_factory=list)

@@ -43,7 +43,7 @@ class Loop:
     Args:
         layout: Layout of the diagram's vectors.
         parts: A stepper for each part, started.
-        schedule: Its instants; RECORD among the sets' members.
+        schedule: Schedule of the instants; RECORD is among the members of its sets.
         tasks: Tasks of each set of the schedule.
         crossings: Task of each crossing.
         par: Run-time parameters (npar).

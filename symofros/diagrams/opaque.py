@@ -31,7 +31,7 @@ class Called:
         """Call one.
 
         Args:
-            name: Of the block.
+            name: Name of the block.
             t: Time [s].
             heard: Input that is connected -> its signal, which the block may keep.
 
@@ -87,10 +87,10 @@ class Opaque:
 
     Args:
         resolved: The diagram.
-        called: Its blocks of Python's in this run.
+        called: Python blocks of this run.
 
     Attributes:
-        names: Of the blocks.
+        names: Names of the blocks.
     """
 
     def __init__(self, resolved: Resolved, called: Called) -> None:

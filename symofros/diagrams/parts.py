@@ -24,7 +24,7 @@ class Placed:
     """A part that is ready to move.
 
     Attributes:
-        stepper: Its loop.
+        stepper: Stepper of the part.
         q: First configuration, on the constraints.
         v: First speeds.
     """
@@ -39,7 +39,7 @@ def place_parts(compiled: CompiledDiagram, settings_of: Callable[[Model], Settin
 
     Args:
         compiled: The diagram.
-        settings_of: How a part steps.
+        settings_of: Settings of a part's steps, by its model.
         par: Run-time parameters.
 
     Raises:

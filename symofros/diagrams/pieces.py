@@ -31,7 +31,7 @@ class Piece:
         outputs: Output port -> value.
         rates: Continuous state -> rate.
         updates: Memory -> next value.
-        terms: How its mechanism moves.
+        terms: Terms of the equations of motion of its mechanism.
         crossings: Name -> what is watched.
         jumps: Name of a crossing -> what it changes.
         states: Continuous state -> first value.

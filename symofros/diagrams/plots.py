@@ -34,9 +34,9 @@ def draw(run: Recording, plots: Sequence[Plot], figure: Any = None) -> Any:
     """A Matplotlib figure with a diagram below the other for each plot, over one axis of time.
 
     Args:
-        run: What is shown.
-        plots: What of it; at least one.
-        figure: To draw in; by default one that `savefig` writes.
+        run: Run to show.
+        plots: Plots to draw, at least one.
+        figure: Figure to draw in; by default one that `savefig` writes.
 
     Raises:
         SymofrosError: Matplotlib is not installed, or there is no such signal.

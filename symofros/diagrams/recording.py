@@ -33,10 +33,10 @@ class Cost:
     Attributes:
         steps: Accepted, of all parts together.
         rejected: Tried in vain.
-        evaluations: Of accelerations.
-        seconds: On the clock, in the loop.
-        worked: Of the processor, by the calling thread [s].
-        late: How late each instant began (n) [s]; empty unless pace was kept.
+        evaluations: Number of evaluations of the accelerations.
+        seconds: Wall time in the loop [s].
+        worked: Processor time of the processor, by the calling thread [s].
+        late: Lateness of each instant (n) [s]; empty unless pace was kept.
         spacing: The shortest time between two instants, on the clock where pace was kept [s].
     """
 
@@ -54,15 +54,15 @@ class Recording(Mapping[str, Array]):
     """Signals over time, `run["block.port"]`, computed from the recorded states when they are asked for.
 
     Attributes:
-        compiled: What ran.
+        compiled: Compiled diagram.
         t: Times (n) [s].
         q: Configurations (n, nq) of all mechanisms.
         v: Speeds and continuous states (n, nv).
-        u: What was held between samples (n, nu).
+        u: Inputs, held between samples (n, nu).
         par: Run-time parameters.
-        outcome: How the run ended.
-        crossings: What was met, in the order of time.
-        cost: What it took.
+        outcome: Outcome of the run.
+        crossings: Crossings met, in the order of time.
+        cost: Cost of the run.
         kept: Block -> what it kept of the run by itself, by name: arrays at its own times "t", or counts.
     """
 

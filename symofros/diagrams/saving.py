@@ -15,7 +15,7 @@ def save_run(run: Recording, path: Path, signals: Iterable[str]) -> list[Path]:
     """Write a run.
 
     Args:
-        run: What to write.
+        run: Run to write.
         path: .npz: an array (n, *shape) a signal, "names" and "units" beside them. .csv, .parquet: a column an entry,
             named "block.port[i]", with its unit; what blocks kept at times of their own goes to NAME.BLOCK.csv.
         signals: Outputs, or entries of them; all of them by default.

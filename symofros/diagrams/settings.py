@@ -24,16 +24,16 @@ class RunSettings:
     """Settings of a run; None where a diagram leaves one to `run_compiled`.
 
     Attributes:
-        t_end: Where to end [s].
-        t0: Where to begin [s].
+        t_end: End time [s].
+        t0: Start time [s].
         dt: Step [s].
-        method: As of `run_compiled`.
+        method: Method as of `run_compiled`.
         record: Interval of recording [s].
-        rtol: Of adaptive methods.
-        atol: Of adaptive methods.
+        rtol: Relative bound of the local error of adaptive methods.
+        atol: Absolute bound of the local error of adaptive methods.
         realtime: Seconds of motion a second, to keep pace with the clock.
-        threads: How many share the parts.
-        plots: What to show afterwards.
+        threads: Number of threads that share the parts.
+        plots: Plots to show afterwards.
     """
 
     t_end: float | None = None

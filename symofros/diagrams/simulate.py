@@ -50,19 +50,19 @@ def run_compiled(
     """Run a compiled diagram from its first state.
 
     Args:
-        compiled: By `compile_diagram`.
-        t_end: Where to end [s].
-        t0: Where to begin [s]; instants are counted from it.
+        compiled: Diagram as `compile_diagram` returns it.
+        t_end: End time [s].
+        t0: Start time [s]; instants are counted from it.
         method: An explicit method of `sf.simulate`: rk4, euler, semi_implicit_euler, dopri5, dop853.
         dt: Step [s]; steps also end at instants.
         record: Interval of recording [s]; by default about 2000 times in all. Steps end at recorded times, too.
-        rtol: Of adaptive methods, as `atol`.
-        atol: See rtol.
+        rtol: Relative bound of the local error of adaptive methods.
+        atol: Absolute bound of the local error of adaptive methods.
         parameters: Run-time parameters by name, such as {"pd.kp": [100, 80, 50], "plant.m_load": 0.8}.
-        stabilisation: How constraints are kept, as in `sf.simulate`.
+        stabilisation: Method of keeping constraints, as in `sf.simulate`.
         gains: Baumgarte's.
         realtime: Keep pace with the clock: True, or seconds of motion a second.
-        threads: How many share the parts that meet at samples only; results do not depend on it.
+        threads: Number of threads that share the parts that meet at samples only; results do not depend on it.
         progress: Show a progress bar.
 
     Raises:

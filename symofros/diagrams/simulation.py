@@ -28,8 +28,8 @@ class Simulation:
     """A diagram, checked at once, compiled when it is first run.
 
     Args:
-        diagram: What its author stated.
-        options: Of the compiler.
+        diagram: Diagram as its author stated it.
+        options: Options of the compiler.
 
     Raises:
         DescriptionError: With what is wrong with the diagram.
@@ -49,8 +49,8 @@ class Simulation:
         """Run it in C.
 
         Args:
-            t_end: Where to end [s]; the diagram's own where it states one.
-            settings: Of `run_compiled`, in place of the diagram's own.
+            t_end: End time [s]; the diagram's own where it states one.
+            settings: Settings of `run_compiled`, in place of the diagram's own.
 
         Raises:
             SymofrosError: As `run_compiled`; or nobody says where to end.
@@ -74,8 +74,8 @@ class Simulation:
         """Run it block by block from Python: the reference of `run`, and some hundred times slower.
 
         Args:
-            t_end: Where to end [s].
-            t0: Where to begin [s].
+            t_end: End time [s].
+            t0: Start time [s].
             method: rk4 or euler.
             dt: Step [s].
             record: Interval of recording [s].

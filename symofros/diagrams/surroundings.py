@@ -43,7 +43,7 @@ class Models:
     """The models of one diagram.
 
     Args:
-        diagram: Its name, for messages.
+        diagram: Name of the diagram, for messages.
         setups: Name -> model.
     """
 
@@ -159,9 +159,9 @@ class Models:
 
         Args:
             g: The graph.
-            model: Which.
-            function: As of the methods of sf.Model.
-            frame: Of frame functions.
+            model: Name of the model.
+            function: Function as of the methods of sf.Model.
+            frame: Frame of frame functions.
             groups: q, v, a, u, t, gains, as the function takes them; t and u have defaults.
 
         Returns:

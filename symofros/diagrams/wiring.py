@@ -28,14 +28,14 @@ class Wired:
     """A diagram that holds together.
 
     Attributes:
-        name: Its name.
+        name: Name.
         blocks: Name -> block.
         ports: Name -> its ports, all shapes known.
         sources: (block, input) -> (block, output); inputs on their defaults are left out.
-        models: What blocks refer to.
+        models: Models that blocks refer to.
         outlets: Name -> (block, output), of included parts and of the diagram's own.
-        origin: As of the diagram.
-        plots: What the diagram asks to be shown.
+        origin: Origin as of the diagram.
+        plots: Plots that the diagram asks for.
     """
 
     name: str

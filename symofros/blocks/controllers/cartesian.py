@@ -50,10 +50,10 @@ class CartesianLinear(_Cartesian):
 
     Attributes:
         model: The model.
-        frame: Its frame.
-        rows: Which rows of its motion, as in `InverseKinematics`.
+        frame: Frame of the model.
+        rows: Rows of its motion, as in `InverseKinematics`.
         stiffness: One, or one a row [N/m, N m/rad].
-        damping: Likewise [N s/m, N m s/rad].
+        damping: Damping of each row [N s/m, N m s/rad].
     """
 
     stiffness: Any
@@ -84,10 +84,10 @@ class CartesianFeedback(_Cartesian):
 
     Attributes:
         model: The model; it has no closures.
-        frame: Its frame.
+        frame: Frame of the model.
         rows: Which rows of its motion, as in `InverseKinematics`.
         kp: One, or one a row [1/s^2].
-        kd: Likewise [1/s].
+        kd: Derivative gain of each row, or one for all [1/s].
         idle: Damping of motion that the task leaves free [1/s].
         regular: Added to L^-1 where J is nearly singular, relative to its mean diagonal.
         near: Below which least singular value of J, about, a posture is nearly singular [m/rad, or 1].

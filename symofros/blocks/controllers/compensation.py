@@ -19,7 +19,7 @@ class FrictionCompensation(Block):
 
     Attributes:
         model: The model, with friction in its joints.
-        factor: How much of it to compensate, one number or one a joint; more than 1 may let joints creep.
+        factor: Share to compensate, one number or one a joint; more than 1 may let joints creep.
     """
 
     model: str

@@ -23,7 +23,7 @@ class ComputedTorque(Block):
     Attributes:
         model: The model, a rigid one say.
         kp: One number or one a speed (nv) [1/s^2].
-        kd: Likewise [1/s].
+        kd: Derivative gain of each joint, or one for all [1/s].
     """
 
     model: str

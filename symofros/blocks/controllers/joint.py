@@ -18,8 +18,8 @@ class JointPD(Block):
     """Efforts kp (q_d - q) + kd (v_d - v), entry by entry.
 
     Attributes:
-        kp: Of each joint, or one for all [N m/rad].
-        kd: Likewise [N m s/rad].
+        kp: Proportional gain of each joint, or one for all [N m/rad].
+        kd: Derivative gain of each joint, or one for all [N m s/rad].
     """
 
     kp: Any
@@ -47,9 +47,9 @@ class JointPID(Block):
     While a limit holds, the integral follows it, so that it does not wind up. Sampled, i[k + 1] = i[k] + T i'.
 
     Attributes:
-        kp: Of each joint, or one for all [N m/rad].
-        ki: Likewise [N m/(rad s)].
-        kd: Likewise [N m s/rad].
+        kp: Proportional gain of each joint, or one for all [N m/rad].
+        ki: Integral gain of each joint, or one for all [N m/(rad s)].
+        kd: Derivative gain of each joint, or one for all [N m s/rad].
         low: Least effort [N m].
         high: Greatest effort [N m].
         tracking: Time constant with which the integral follows a limit, at least the period [s].

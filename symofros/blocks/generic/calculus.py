@@ -27,9 +27,9 @@ class Integrator(Block):
         start: First y, a number or one an entry, which also tells the shape inside loops.
         low: Lower limit.
         high: Upper limit.
-        reset: Which crossings of the input "reset" count: none (no such input), rising, falling, both.
-        unit_in: Of u.
-        unit_out: Of y.
+        reset: Crossings of the input "reset" that count: none (no such input), rising, falling, both.
+        unit_in: Unit of u.
+        unit_out: Unit of y.
     """
 
     start: Any = 0.0
@@ -128,8 +128,8 @@ class Derivative(Block):
     Attributes:
         tau: Time constant of the filter [s]; above zero, or zero for plain differences of samples.
         start: U before the start: its own first value keeps y from jumping.
-        unit_in: Of u.
-        unit_out: Of y.
+        unit_in: Unit of u.
+        unit_out: Unit of y.
     """
 
     tau: float = 0.01

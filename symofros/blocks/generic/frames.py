@@ -32,7 +32,7 @@ def transformed(quantity: str, p: Tensor, R: Tensor, u: Tensor) -> Tensor:
             from the origin of B to that of A, as those of one rigid body.
         p: Origin of B in A (3).
         R: R_AB (3, 3).
-        u: In B.
+        u: Vector in B.
     """
     if quantity == "point":
         return p + R @ u

@@ -111,7 +111,7 @@ class TransferFunction(_Linear):
 
     Attributes:
         num: Coefficients of the numerator, highest power first.
-        den: Of the denominator, of no lower degree.
+        den: Coefficients of the denominator, of no lower degree.
     """
 
     num: Any

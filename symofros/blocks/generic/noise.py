@@ -63,11 +63,11 @@ class Noise(Block):
 
     Attributes:
         scale: Standard deviation, or greatest distance from the mean; one, or one an entry.
-        mean: Of the signal.
-        seed: Of the stream; different seeds never overlap.
+        mean: Mean of the signal.
+        seed: Seed of the stream; different seeds never overlap.
         kind: "normal" (Box and Muller) or "uniform".
         size: Number of entries (n); 0 for a scalar.
-        unit: Of the signal.
+        unit: Unit of the signal.
     """
 
     scale: Any = 1.0

@@ -75,7 +75,7 @@ class Saturation(_Bounded):
     Attributes:
         low: Least output.
         high: Greatest output.
-        unit: Of both.
+        unit: Unit of input and output.
     """
 
     def compute(self, at: At) -> Values:
@@ -90,7 +90,7 @@ class DeadZone(_Bounded):
     Attributes:
         low: Lower end of the zone.
         high: Upper end.
-        unit: Of both.
+        unit: Unit of input and output.
     """
 
     def compute(self, at: At) -> Values:
@@ -105,7 +105,7 @@ class Quantizer(_OneToOne):
 
     Attributes:
         step: Distance of neighbouring values, above zero.
-        unit: Of both.
+        unit: Unit of input and output.
     """
 
     step: Any = 1.0
@@ -128,8 +128,8 @@ class Switch(Block):
     """y = u1 where by >= threshold, else u2.
 
     Attributes:
-        threshold: Of the input `by`, a scalar.
-        unit: Of u1, u2 and y.
+        threshold: Threshold of the input `by`, a scalar.
+        unit: Unit of u1, u2 and y.
     """
 
     threshold: float = 0.5
@@ -157,11 +157,11 @@ class LookupTable(Block):
     """y(u) by straight lines between points: y_0 + sum slope_i clip(u - x_i, 0, h_i).
 
     Attributes:
-        x: Where points are (n), increasing.
+        x: Positions of the points (n), increasing.
         y: Values there (n), or vectors (n, m).
         outside: "hold" the first and last value, or "extend" the first and last line.
-        unit_in: Of u.
-        unit_out: Of y.
+        unit_in: Unit of u.
+        unit_out: Unit of y.
     """
 
     x: Any

@@ -17,7 +17,7 @@ class UnitDelay(Block):
 
     Attributes:
         start: First output; a number for all entries, or all of them, which also tells the shape inside loops.
-        unit: Of both.
+        unit: Unit of input and output.
     """
 
     start: Any = 0.0
@@ -51,7 +51,7 @@ class Hold(Block):
     """The input at the last sample: y(t) = u(t_k) for t_k <= t < t_k+1.
 
     Attributes:
-        unit: Of both.
+        unit: Unit of input and output.
     """
 
     unit: str = ""

@@ -22,8 +22,8 @@ class Constant(Block):
     """Always the same numbers: y = value.
 
     Attributes:
-        value: Of any shape.
-        unit: Theirs.
+        value: Value of any shape.
+        unit: Unit of the values.
     """
 
     value: Any
@@ -52,8 +52,8 @@ class Gain(Block):
 
     Attributes:
         gain: A number, one a component (n), or a matrix (m, n).
-        unit_in: Of the input; "" takes any.
-        unit_out: Of the output.
+        unit_in: Unit of the input; "" takes any.
+        unit_out: Unit of the output.
     """
 
     gain: Any = 1.0
@@ -103,7 +103,7 @@ class Sum(Block):
 
     Attributes:
         signs: One sign an input, such as "+-".
-        unit: Of all.
+        unit: Unit of all signals.
     """
 
     signs: str = "++"
@@ -178,9 +178,9 @@ class Pick(Block):
     Attributes:
         entries: Numbers from 0 on, or names; "actuated" stands for a model's actuated joints, in the order of its
             inputs.
-        model: Whose names they are; "" where entries are numbers.
-        of: Which vector of the model's the input is: q, v (also a, tau) or u.
-        unit: Of the entries.
+        model: Model whose names they are; "" where entries are numbers.
+        of: Vector of the model that the input is: q, v (also a, tau) or u.
+        unit: Unit of the entries.
     """
 
     entries: Any
@@ -256,7 +256,7 @@ class Join(Block):
 
     Attributes:
         count: Number of inputs.
-        unit: Of all.
+        unit: Unit of all signals.
     """
 
     count: int = 2
@@ -285,7 +285,7 @@ class Reshape(Block):
     """The same entries, row by row, in another shape: nine numbers as a matrix, say.
 
     Attributes:
-        shape: Of the output; () for a scalar.
+        shape: Shape of the output; () for a scalar.
     """
 
     shape: Any = ()

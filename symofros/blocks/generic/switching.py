@@ -17,12 +17,12 @@ class Relay(Block):
     """On from u >= upper until u <= lower: sampled, at samples; continuous, at the crossings, located in time.
 
     Attributes:
-        lower: Where it falls off.
-        upper: Where it comes on, above `lower`.
+        lower: Level at which it switches off.
+        upper: Level at which it switches on, above `lower`.
         on: Output while on.
         off: Output while off.
         starts_on: Whether it is on at first.
-        unit: Of the output.
+        unit: Unit of the output.
     """
 
     lower: float = 0.0
@@ -90,7 +90,7 @@ class RateLimit(Block):
     Attributes:
         rising: Greatest rate, above zero [1/s].
         falling: Greatest rate downwards, above zero [1/s].
-        unit: Of both.
+        unit: Unit of input and output.
     """
 
     rising: Any = 1.0

@@ -57,9 +57,9 @@ def moves(t: Tensor, law: str, begin: Array, duration: Array, accelerating: floa
 
     Args:
         t: Time, a scalar.
-        law: Of LAWS.
-        begin: When each move begins (n) [s].
-        duration: How long each takes (n) [s].
+        law: Name of the law, a key of LAWS.
+        begin: Time when each move begins (n) [s].
+        duration: Time that each takes (n) [s].
         accelerating: Share of the time that a trapezoidal law accelerates, 0 to 0.5.
     """
     raw = joined([(t - float(b)) / float(d) for b, d in zip(begin, duration, strict=True)])
@@ -72,7 +72,7 @@ def spline(t: Tensor, times: Array, table: Array) -> Share:
 
     Args:
         t: Time, a scalar.
-        times: Of the knots (k) [s].
+        times: Times of the knots (k) [s].
         table: Values there (k, m).
     """
     slopes = _slopes(times, table)

@@ -33,7 +33,7 @@ class Sequence(Block):
     Attributes:
         t: Times (n) [s], where values are given here.
         values: One output y (n) or (n, m), or a mapping from outputs to such.
-        file: Where they are read from instead, once, when the block is made.
+        file: File that they are read from instead, once, when the block is made.
         outputs: Output -> name, or names, of what it consists of in the file; none: one output y of all but t.
         kind: "linear" between samples, or "hold" each until the next.
         units: Output -> unit.

@@ -24,16 +24,16 @@ class Square(Block):
 
     Attributes:
         corner: The first corner (2) or (3) [m]; as many numbers everywhere.
-        first: From the first corner to the second [m].
-        second: From the second to the third [m]; the fourth corner closes a parallelogram.
-        start: Where to begin [m]; None: where `frame` of `model` is at the model's first state.
-        model: See start.
-        frame: See start.
-        axes: Which world axes the numbers are along.
-        leave: When to leave the start [s].
+        first: Vector from the first corner to the second [m].
+        second: Vector from the second corner to the third [m]; the fourth corner closes a parallelogram.
+        start: First corner [m]; None: where `frame` of `model` is at the model's first state.
+        model: Model of `frame`, where `start` is not given.
+        frame: Frame at the first corner, where `start` is not given.
+        axes: World axes along which the numbers are.
+        leave: Time to leave the start [s].
         approach: Duration of the way to the corner [s].
         side: Duration of a side [s].
-        laps: How many times around.
+        laps: Number of times around.
         law: quintic, septic (continuous jerk) or trapezoidal.
         blend: Share of a move's time that the next one overlaps it by, 0 (stop at corners) to 0.5.
         accelerating: Share of a move's time that a trapezoidal law accelerates.

@@ -27,10 +27,10 @@ class JointTrajectory(Block):
 
     Attributes:
         points: One a row (k, n); the first is the start.
-        times: When each is reached (k) [s].
+        times: Time when each is reached (k) [s].
         law: quintic, septic or trapezoidal, which stop at each point, or spline (cubic, at rest at both ends).
         accelerating: Share of a move's time that a trapezoidal law accelerates.
-        unit: Of the coordinates; "" where they differ.
+        unit: Unit of the coordinates; "" where they differ.
     """
 
     points: Any
@@ -66,7 +66,7 @@ class CartesianTrajectory(Block):
 
     Attributes:
         points: Positions, one a row (k, n), n up to 3 [m].
-        times: When each is reached (k) [s].
+        times: Time when each is reached (k) [s].
         quaternions: Orientations (k, 4), x y z w, of any length; None: positions only.
         law: quintic, septic or trapezoidal, which stop at each point, or spline (at rest at both ends).
         accelerating: Share of a move's time that a trapezoidal law accelerates.

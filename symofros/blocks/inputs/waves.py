@@ -57,10 +57,10 @@ class Step(_Wave):
     """y = before, and after from some time on.
 
     Attributes:
-        time: When it steps [s].
+        time: Time when it steps [s].
         before: Value before.
         after: Value from then on.
-        unit: Of the signal.
+        unit: Unit of the signal.
     """
 
     time: Any = 1.0
@@ -80,11 +80,11 @@ class Ramp(_Wave):
     """y = start, from some time on start + slope (t - time), until it has risen for a duration.
 
     Attributes:
-        time: When it begins to rise [s].
+        time: Time when it begins to rise [s].
         slope: Rate [1/s].
         start: First value.
-        duration: How long it rises [s].
-        unit: Of the signal.
+        duration: Time that it rises [s].
+        unit: Unit of the signal.
     """
 
     time: Any = 0.0
@@ -112,12 +112,12 @@ class Pulse(_Wave):
     """A square wave: high for a part of every interval, low otherwise, low before it starts.
 
     Attributes:
-        time: When it starts [s].
+        time: Time when it starts [s].
         every: Seconds from pulse to pulse.
         width: Part of the interval that is high, 0 to 1.
         high: Value during pulses.
         low: Value otherwise.
-        unit: Of the signal.
+        unit: Unit of the signal.
     """
 
     time: Any = 0.0
@@ -150,8 +150,8 @@ class Sine(_Wave):
         amplitude: Amplitude.
         frequency: f [Hz].
         phase: Phase [rad].
-        mean: Its mean.
-        unit: Of the signal.
+        mean: Mean of the signal.
+        unit: Unit of the signal.
     """
 
     amplitude: Any = 1.0
@@ -183,9 +183,9 @@ class Chirp(_Wave):
         amplitude: Amplitude.
         first: Frequency at the start [Hz].
         last: Frequency after the duration [Hz].
-        duration: How long it changes [s].
+        duration: Time that it changes [s].
         sweep: "linear" f over time, or "exponential".
-        unit: Of the signal.
+        unit: Unit of the signal.
     """
 
     amplitude: Any = 1.0

@@ -51,7 +51,7 @@ class ForwardKinematics(Block):
 
     Attributes:
         model: The model.
-        frame: Its frame.
+        frame: Frame of the model.
     """
 
     model: str
@@ -73,7 +73,7 @@ class Extremities(Block):
 
     Attributes:
         model: The model.
-        frames: Which; none: all of the model's, the world's left out.
+        frames: Names of the frames; none: all of the model's but the world's.
     """
 
     model: str
@@ -102,7 +102,7 @@ class Jacobian(Block):
 
     Attributes:
         model: The model.
-        frame: Its frame.
+        frame: Frame of the model.
     """
 
     model: str

@@ -26,14 +26,14 @@ class InverseKinematics(Block):
 
     Attributes:
         model: The model.
-        frame: Its frame.
+        frame: Frame of the model.
         rows: What to follow: some of x, y, z (world axes) and rx, ry, rz (rotation about them), in this order. One
             rotation is followed by an angle, several by a matrix R.
         joints: Names of coordinates that move; none: the actuated ones, or, of a model with closures or without named
             actuators, all that have one coordinate.
         steps: Newton steps at a sample.
         gain: K, of the continuous form [1/s].
-        damping: Of the rates near singular postures [m/rad, or 1].
+        damping: Damping of the rates near singular postures [m/rad, or 1].
         near: Below which least singular value of J, about, a posture is nearly singular [m/rad, or 1].
         stride: Most that a joint moves in a Newton step, in proportion with the others [rad or m].
     """

@@ -100,11 +100,11 @@ class Task:
 
     Attributes:
         model: The model.
-        frame: Its frame.
+        frame: Frame of the model.
         rows: Places in (linear; angular).
         columns: Places in v of what moves.
         closes: Whether closures count.
-        suffix: Of the names of the inputs for the desired motion.
+        suffix: Suffix of the names of the inputs for the desired motion.
     """
 
     model: str

@@ -39,8 +39,8 @@ class Wishes:
     """What the command line asks of a run; None and "" where it leaves things to the diagram.
 
     Attributes:
-        t_end: Where to end [s].
-        settings: Of `run_compiled`.
+        t_end: End time [s].
+        settings: Settings of `run_compiled`.
         speed: Seconds of motion a second; 0: as fast as can be.
         signals: Outputs that are saved and plotted.
         output: File to save to.

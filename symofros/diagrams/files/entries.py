@@ -14,8 +14,8 @@ class Entries:
     """Reads nodes of one file.
 
     Args:
-        file: How its name is shown.
-        problems: Where faults are noted; the files of one diagram share it.
+        file: File name as it is shown.
+        problems: List that receives the faults; the files of one diagram share it.
     """
 
     def __init__(self, file: str, problems: list[Problem]) -> None:

@@ -64,7 +64,7 @@ def read(kind: Any, node: Node) -> Any:
 
     Args:
         kind: The field's type.
-        node: From the file.
+        node: Node of the file.
 
     Raises:
         Misfit: The node is not of that type.

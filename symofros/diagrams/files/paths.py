@@ -14,10 +14,10 @@ def refused(text: str, base: Path, folder: Path, suffixes: tuple[str, ...] = ())
     """Why a file may not be read; None if it may.
 
     Args:
-        text: As written: relative to base.
+        text: Path as written, relative to base.
         base: The folder of the file that refers to it.
         folder: The main diagram's, resolved; all lies in it or below.
-        suffixes: That such files have; any by default.
+        suffixes: Suffixes that such files have; any by default.
     """
     try:
         target = (base / text).resolve()

@@ -35,7 +35,7 @@ def save_diagram(diagram: Diagram, path: str | os.PathLike[str]) -> list[Path]:
     others are written beside the diagram as NAME_MODEL.yaml. The same holds for parts, which else stay inline.
 
     Args:
-        diagram: What to write.
+        diagram: Diagram to write.
         path: Ends in .yaml or .yml.
 
     Returns:

@@ -26,7 +26,7 @@ class Choice:
     Attributes:
         subject: What of, such as "beam 'link1'".
         change: What is done, such as "rigid".
-        kind: Of the reduction, such as "foreshortening".
+        kind: Kind of the reduction, such as "foreshortening".
         verdict: "taken", "refused" by simulation, or "not tried", because the estimate is far beyond what is allowed.
         estimate: Expected error, in units of what is allowed.
         error: Error of the simulation with it, with all that was taken before, and with what was taken in the same
@@ -59,7 +59,7 @@ class Advice:
         full: The system as it was described.
         system: The reduced one.
         stepping: How to step it; `full_stepping` is the cheapest way to step the full one as exactly.
-        cost: Of a run; `full_cost` of the full one, stepped by `full_stepping`.
+        cost: Cost of a run; `full_cost` of the full one, stepped by `full_stepping`.
         choices: Every reduction judged.
         errors: Output's name -> error of the reduced model as it is stepped, against the richer one, in units of what
             is allowed.

@@ -40,7 +40,7 @@ class Reduction:
     Attributes:
         subject: What of, such as "beam 'link1'".
         change: What is done, such as "rigid".
-        kind: Of the reduction.
+        kind: Kind of the reduction.
         estimate: Expected error of the scene's outputs, in units of what is allowed.
         reason: What the estimate rests on, with numbers.
         numbers: The same for programs.

@@ -71,9 +71,9 @@ def deflection(
     """Quasi-static displacement [m] and slope [rad] of a cantilever's tip.
 
     Args:
-        rhoA: [kg/m].
-        EI: [N m^2].
-        length: [m].
+        rhoA: Rhoa [kg/m].
+        EI: Ei [N m^2].
+        length: Length [m].
         across: Acceleration of the root across the axis, less gravity [m/s^2].
         turning: Angular acceleration [rad/s^2].
         force: Across the axis, at the tip [N].
@@ -104,8 +104,8 @@ def stiffening(eta: float, gamma: float = 0.0, load: float = 0.0) -> float:
     """Relative shift of the first frequency that goes missing without foreshortening.
 
     Args:
-        eta: Of the spin.
-        gamma: Of the root's acceleration along the axis, r Omega^2 of a hub included.
+        eta: Eta of the spin.
+        gamma: Gamma of the root's acceleration along the axis, r Omega^2 of a hub included.
         load: P L^2 / EI of what pulls at the tip.
     """
     return (BY_SPIN * eta**2 + BY_PULL * gamma + BY_FORCE * load) / (2.0 * FREQUENCIES[0] ** 2)

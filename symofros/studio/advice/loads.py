@@ -40,7 +40,7 @@ class BeamLoads:
 
     Attributes:
         beam: As described.
-        length: [m].
+        length: Length [m].
         rhoA: Mean [kg/m].
         stiffness: Least EI_z (bend_y), EI_y (bend_z) and GJ (twist) [N m^2]; those of rigid directions are infinite.
         outboard: Mass carried by the tip [kg].

@@ -23,10 +23,10 @@ def cheapest(bench: Bench, system: System, truth: Trial, share: float) -> tuple[
     """The cheapest way to step a model through the scene.
 
     Args:
-        bench: Of the scene.
+        bench: Bench of the scene.
         system: What to step.
         truth: Its exact motion.
-        share: Of the tolerance, which the error of stepping may take.
+        share: Share of the tolerance, which the error of stepping may take.
 
     Returns:
         The stepping, its cost, its error in units of what is allowed, and a line on each method tried.

@@ -25,7 +25,7 @@ def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any) ->
         file: The document's.
         text: The document's text.
         now: What it says.
-        path: Of the field; it need not exist yet. Empty: the formula alone is checked.
+        path: Path of the field; it need not exist yet. Empty: the formula alone is checked.
         typed: What the field would hold.
 
     Returns:

@@ -64,7 +64,7 @@ class Jobs:
         Args:
             kind: What it does (tasks.TASKS).
             request: What it needs.
-            revision: Of the document.
+            revision: Revision of the document.
 
         Raises:
             EditError: One of that kind is running.

@@ -40,8 +40,8 @@ class Edit:
         op: "set" a value, whether it exists or not; "remove" an entry; "insert" an entry into the mapping or list at
             `path`; "rename" an entry's key; "move" an entry to another place of its own mapping or list.
         path: Keys and indices from the root.
-        value: Of "set" and "insert": plain data.
-        key: Of "insert" into a mapping, and the new key of "rename".
+        value: Value of "set" and "insert": plain data.
+        key: Key of "insert" into a mapping, and the new key of "rename".
         index: The place of "insert" and "move"; None is the end.
     """
 

@@ -56,7 +56,7 @@ class CentreLine:
         """p_BS of the stations, in the axes of the root (..., S, 3) [m].
 
         Args:
-            length: Of the beam [m].
+            length: Length of the beam [m].
             q: Elastic coordinates (..., modes).
         """
         return np.stack([field.at(length, q) for field in self._position], axis=-1)

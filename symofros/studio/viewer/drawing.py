@@ -46,12 +46,12 @@ class Bend:
     """A flexible beam.
 
     Attributes:
-        name: Of the beam.
+        name: Name of the beam.
         link: Its root.
         q: Its elastic coordinates in q, as (start, size).
         line: Where its sections are.
-        length: [m].
-        outline: Of its section, y and z (K, 2) [m].
+        length: Length [m].
+        outline: Outline of its section, y and z (K, 2) [m].
         color: Red, green, blue.
     """
 
@@ -73,7 +73,7 @@ class Strut:
         kind: As for a Part.
         first: One end.
         second: The other.
-        outline: Of its section (K, 2) [m].
+        outline: Outline of its section (K, 2) [m].
         color: Red, green, blue.
     """
 
@@ -99,7 +99,7 @@ class Drawing:
     """A mechanism, as it is drawn.
 
     Attributes:
-        name: Of the system.
+        name: Name of the system.
         parts: Rigid pieces.
         bends: Beams that bend.
         struts: Pieces whose ends move apart.

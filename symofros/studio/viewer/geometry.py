@@ -61,7 +61,7 @@ def landmarks(tree: SpanningTree, numbers: Numbers) -> Iterator[Place]:
     """Points that a picture must hold: joints, frames, mass centres.
 
     Args:
-        tree: Of a checked system.
+        tree: Tree of a checked system.
         numbers: The parameters' values.
     """
     yield Place(BASE, np.zeros(3))
@@ -86,8 +86,8 @@ def draw(tree: SpanningTree, values: dict[str, float], size: float, center: Arra
     """What to draw of a mechanism.
 
     Args:
-        tree: Of a checked system.
-        values: Of its parameters, by name; those left out keep their defaults.
+        tree: Tree of a checked system.
+        values: Values of its parameters, by name; those left out keep their defaults.
         size: How far it reaches, for the thickness of what has none of its own [m].
         center: Its middle (3) [m].
     """

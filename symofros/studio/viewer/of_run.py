@@ -15,7 +15,7 @@ def chosen_block(name: str, blocks: Mapping[str, Block], block: str = "") -> str
     """The block whose mechanism is shown.
 
     Args:
-        name: Of the diagram.
+        name: Name of the diagram.
         blocks: Name -> block.
         block: Which; "" for the only one that moves a mechanism.
 

@@ -54,13 +54,13 @@ class Panel:
     """The controls of one mechanism, in place of those of the one before.
 
     Args:
-        server: Of viser.
+        server: Server of viser.
         controls: What they act on.
         drawing: For its name.
         layers: What is shown.
-        sliders: Of the coordinates.
-        exaggeration: Of the elastic ones; None where there are none.
-        player: Of the motion, if there is one.
+        sliders: Sliders of the coordinates.
+        exaggeration: Exaggeration of the elastic ones; None where there are none.
+        player: Player of the motion, if there is one.
         controls_shown: Whether there are any; the panel is empty and minimized otherwise.
     """
 
@@ -156,8 +156,8 @@ class Panel:
         """Let the controls stand where the picture is.
 
         Args:
-            values: Of the sliders (nv).
-            player: Of the motion, if there is one.
+            values: Values of the sliders (nv).
+            player: Player of the motion, if there is one.
         """
         for handle, value in zip(self._sliders, values, strict=False):  # No sliders without controls.
             handle.value = float(np.clip(value, handle.min, handle.max))

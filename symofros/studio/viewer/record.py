@@ -81,7 +81,7 @@ def record(
         run: A trajectory of it, or times (n) and coordinates (n, nq); left out where a diagram's run is stated.
         path: .html (a page with the scene in it, to turn and to play; needs viser, and no network), .mp4 (needs ffmpeg,
             as the extra `video` brings it), .gif, or .png (the last state).
-        block: Of a diagram's run: the block whose mechanism is shown; where there is one only, that.
+        block: Block of a diagram's run: the block whose mechanism is shown; where there is one only, that.
         exaggeration: What multiplies elastic coordinates.
         speed: Seconds of the motion a second.
         paths: Curves drawn beside it, as of `Viewer`.

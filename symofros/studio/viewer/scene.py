@@ -39,7 +39,7 @@ class Scene:
     """The nodes of one drawing on a server, in place of those of the drawing before.
 
     Args:
-        server: Of viser.
+        server: Server of viser.
         drawing: What to show.
         posture: Where it is.
         layers: What is shown of it.

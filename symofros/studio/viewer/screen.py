@@ -22,7 +22,7 @@ class Screen:
     """A mechanism on a server, and the controls beside it.
 
     Args:
-        server: Of viser.
+        server: Server of viser.
         mechanism: What is shown.
         exaggeration: What multiplies elastic coordinates.
         controls: Whether there are sliders and buttons.

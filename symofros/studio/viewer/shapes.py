@@ -84,9 +84,9 @@ def tube(outline: Array, points: Array, axes: Array) -> Mesh:
     """The closed surface that a section sweeps along a line.
 
     Args:
-        outline: Of the section, in its y-z plane, counter-clockwise as seen against x (K, 2) [m].
-        points: Of the line (S, 3) [m].
-        axes: Of the section at each of them: R with x along the line (S, 3, 3).
+        outline: Outline of the section, in its y-z plane, counter-clockwise as seen against x (K, 2) [m].
+        points: Points of the line (S, 3) [m].
+        axes: Axes of the section at each of them: R with x along the line (S, 3, 3).
     """
     rings = points[:, None, :] + outline @ axes[:, :, 1:].transpose(0, 2, 1)
     count, sides = rings.shape[:2]

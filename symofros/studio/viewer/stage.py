@@ -19,7 +19,7 @@ class Stage:
     """A mechanism on a server.
 
     Args:
-        server: Of viser.
+        server: Server of viser.
         mechanism: What is shown.
         exaggeration: What multiplies its elastic coordinates.
     """

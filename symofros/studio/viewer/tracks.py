@@ -57,7 +57,7 @@ def track_part(track: Track, size: float) -> Part:
 
     Args:
         track: The curve.
-        size: Of the mechanism [m].
+        size: Size of the mechanism [m].
     """
     return Part(
         f"paths/{track.name}", "paths", BASE, _mesh(_thinned(track.points, _STEP * size), _RADIUS * size), track.color

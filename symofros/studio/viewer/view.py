@@ -40,7 +40,7 @@ def view(
     Args:
         system: A system, or the path of a description; or a diagram's run, whose motion is played.
         run: A motion to play: a trajectory of the system, or times (n) and coordinates (n, nq).
-        block: Of a diagram's run: the block whose mechanism is shown; where there is one only, that.
+        block: Block of a diagram's run: the block whose mechanism is shown; where there is one only, that.
         q: Otherwise coordinates (nq) to show; by default neutral ones, with loops closed.
         u: Inputs (nu), for prescribed motions.
         par: Run-time parameters (npar).
@@ -48,7 +48,7 @@ def view(
         speed: Seconds of the motion a second.
         paths: Curves drawn beside it, as of `Viewer`.
         host: Address that it is served at.
-        port: Of the page; 0 for any free one.
+        port: Port of the page; 0 for any free one.
         browser: Whether to open the page.
 
     Returns:

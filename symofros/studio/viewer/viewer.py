@@ -37,7 +37,7 @@ class Viewer(Screen):
         system: What to show.
         host: Address that it is served at; the default is seen from this machine only. Nothing asks for a password:
             whoever reaches the address sees the model, and may move its controls.
-        port: Of the page; 0 for any free one.
+        port: Port of the page; 0 for any free one.
         exaggeration: What multiplies elastic coordinates in the picture.
         rate: Pictures a second at most.
         controls: Whether the page has sliders and buttons; not, for a page that is embedded in another.
