@@ -24,14 +24,14 @@ class Choice:
     """One reduction, judged.
 
     Attributes:
-        subject: What of, such as "beam 'link1'".
-        change: What is done, such as "rigid".
+        subject: Part of the model, such as "beam 'link1'".
+        change: Change made to it, such as "rigid".
         kind: Kind of the reduction, such as "foreshortening".
         verdict: "taken", "refused" by simulation, or "not tried", because the estimate is far beyond what is allowed.
         estimate: Expected error, in units of what is allowed.
         error: Error of the simulation with it, with all that was taken before, and with what was taken in the same
             go, in the same units; None: not simulated.
-        why: In words, with numbers.
+        why: Reason, with numbers.
         numbers: The estimators' numbers.
     """
 
@@ -55,7 +55,7 @@ class Advice:
     """The cheapest model found for a scene.
 
     Attributes:
-        scene: What it is for.
+        scene: Scene that the advice is for.
         full: The system as it was described.
         system: The reduced one.
         stepping: How to step it; `full_stepping` is the cheapest way to step the full one as exactly.
@@ -67,8 +67,8 @@ class Advice:
         truncation: Error of the full model against the richer one, in units of what is allowed.
         options: The functions to generate, and the frames.
         methods: A line on each integrator tried.
-        runs: How many simulations it took.
-        notes: What else to know.
+        runs: Number of simulations it took.
+        notes: Further remarks.
     """
 
     scene: Scene

@@ -57,9 +57,9 @@ class Cost:
 
     Attributes:
         per_evaluation: Operations of one evaluation of the accelerations, or of an implicit step's residual.
-        evaluations: How many.
+        evaluations: Number of evaluations.
         per_jacobian: Operations of the derivatives, and of a factorisation of the matrix made of them.
-        jacobians: How many.
+        jacobians: Number of Jacobians.
         seconds: Measured, in the stepping loop.
     """
 

@@ -38,11 +38,11 @@ class Reduction:
     """One thing left out.
 
     Attributes:
-        subject: What of, such as "beam 'link1'".
-        change: What is done, such as "rigid".
+        subject: Part of the model, such as "beam 'link1'".
+        change: Change made to it, such as "rigid".
         kind: Kind of the reduction.
         estimate: Expected error of the scene's outputs, in units of what is allowed.
-        reason: What the estimate rests on, with numbers.
+        reason: Basis of the estimate, with numbers.
         numbers: The same for programs.
         apply: System -> System; the same one where there is nothing left to do.
     """

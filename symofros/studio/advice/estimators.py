@@ -77,9 +77,9 @@ def deflection(
         across: Acceleration of the root across the axis, less gravity [m/s^2].
         turning: Angular acceleration [rad/s^2].
         force: Across the axis, at the tip [N].
-        moment: At the tip [N m].
-        functions: What some shape functions leave out of it; None: all of it.
-        modes: As in `tip_response`.
+        moment: Moment at the tip [N m].
+        functions: Shape functions whose remainder is taken; None: the whole response.
+        modes: Modes as in `tip_response`.
     """
     loads: dict[Load, float] = {
         "uniform": rhoA * across * length**4 / EI,
@@ -143,7 +143,7 @@ def tip_response(load: Load, functions: int | None = None, modes: bool = False) 
 
     Args:
         load: "uniform", "rising" from the root to one at the tip, a "force" or a "moment" at the tip.
-        functions: As some shape functions show it; None: exactly.
+        functions: Shape functions that show it; None: exact.
         modes: Cantilever modes; otherwise polynomials x^2, x^3, and so on, as which the other families count.
     """
     if functions is None:

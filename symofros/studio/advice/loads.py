@@ -39,7 +39,7 @@ class BeamLoads:
     """One beam in a motion; largest values over time.
 
     Attributes:
-        beam: As described.
+        beam: Beam as described.
         length: Length [m].
         rhoA: Mean [kg/m].
         stiffness: Least EI_z (bend_y), EI_y (bend_z) and GJ (twist) [N m^2]; those of rigid directions are infinite.
@@ -48,10 +48,10 @@ class BeamLoads:
         across: Acceleration of the root along y and z, less gravity [m/s^2].
         turning: Angular acceleration about z (bends along y), y and x [rad/s^2].
         along: Acceleration of the root along x, less gravity [m/s^2].
-        force: On the tip along y and z, by the motion and the weight of what it carries [N].
-        moment: On the tip about z (bends along y) and y, likewise [N m].
+        force: Force on the tip along y and z, by the motion and the weight of what it carries [N].
+        moment: Moment on the tip about z (bends along y) and about y, of the same causes [N m].
         period: Characteristic periods of the loads along y and z [s].
-        moment_of_inertia: Of what is outboard about the beam's axis [kg m^2].
+        moment_of_inertia: Moment of inertia of what is outboard, about the beam's axis [kg m^2].
         tip: Largest displacement of the tip across the axis, in the simulation [m].
         reach: Displacement of outputs per displacement of the tip, in units of what is allowed [1/m].
         lever: The same per slope of the tip [1/rad].
@@ -174,8 +174,8 @@ class Observed:
 
         Args:
             name: The body that is displaced.
-            places: Where, over time (n, 3).
-            length: That tells turns of joints from displacements [m].
+            places: Positions over time (n, 3) [m].
+            length: Length that relates rotations of joints to displacements [m].
         """
         carried = {body.name for body in self.outboard_of(name)} | {name}
         shift = turn = 0.0

@@ -23,11 +23,11 @@ class Output:
     """Something of interest, and how far it may be off.
 
     Attributes:
-        name: For people, unique in the scene.
+        name: Name, unique in the scene.
         kind: "position" of a frame's origin in the world [m], "coordinate", "speed", or "effort": an input's value,
             where a law gives it.
         of: Name of the frame, coordinate, speed (that of its coordinate) or input.
-        absolute: What it may be off at any time, in its own unit.
+        absolute: Error allowed at any time, in its own unit.
         relative: The same as a share of its largest distance from its first value; the two are added.
     """
 
@@ -101,13 +101,13 @@ class Scene:
     """A task: how a system is driven, for how long, and what of its motion matters.
 
     Attributes:
-        t_end: Where the motion ends [s].
-        outputs: What matters, each with its tolerance.
-        inputs: As `sf.simulate` takes them: name -> number, formula or Signal.
+        t_end: End time of the motion [s].
+        outputs: Outputs that matter, each with its tolerance.
+        inputs: Inputs as `sf.simulate` takes them: name -> number, formula or Signal.
         start: First coordinates by name, and speeds by "d" and the name of their coordinate; others are neutral.
         keep: Run-time parameters that have to remain so; any other may become a constant.
         fixed_step: Whether only methods of fixed steps will do, as in real time.
-        samples: At how many instants motions are compared.
+        samples: Number of instants at which motions are compared.
     """
 
     t_end: float

@@ -35,7 +35,7 @@ def advise(system: System, scene: Scene, tolerance: float | Mapping[str, float] 
     richer one, which has more functions than described. Last come the integrator and its step.
 
     Args:
-        system: As rich as it may have to be.
+        system: System with every refinement that the scene may need.
         scene: Inputs, first state, outputs of interest and their tolerances.
         tolerance: Absolute ones in place of the scene's: one for all outputs, or by name.
 

@@ -24,8 +24,8 @@ def cheapest(bench: Bench, system: System, truth: Trial, share: float) -> tuple[
 
     Args:
         bench: Bench of the scene.
-        system: What to step.
-        truth: Its exact motion.
+        system: System to step.
+        truth: Exact motion of the system.
         share: Share of the tolerance, which the error of stepping may take.
 
     Returns:

@@ -27,11 +27,11 @@ class Analysis:
     Attributes:
         readable: Whether it is YAML at all; if not, there are no data.
         data: The YAML as JSON holds it.
-        graph: Its diagram.
-        problems: As the page shows them.
-        parameters: Those that could be read.
-        inputs: Likewise.
-        system: What was read; None where nothing is.
+        graph: Diagram of the document.
+        problems: Problems as the page shows them.
+        parameters: Parameters that could be read.
+        inputs: Inputs that could be read.
+        system: System that was read; None where nothing could be.
     """
 
     readable: bool
@@ -47,8 +47,8 @@ def analyse(file: Path, text: str) -> Analysis:
     """Read and check a text.
 
     Args:
-        file: Where it is, or will be; what it includes is found from there.
-        text: What it holds.
+        file: Path of the document; files that it includes are relative to it.
+        text: Text of the document.
     """
     try:
         sheet = sheet_of(text)

@@ -235,9 +235,9 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
     """The server's application, guarded.
 
     Args:
-        session: What it works on.
-        token: What every request must carry.
-        port: Where it listens: Host and Origin must name it.
+        session: Session that requests act on.
+        token: Token that every request must carry.
+        port: Port that it listens at: Host and Origin must name it.
     """
     view_token = token_urlsafe(32)
     editor = Editor(session, view_token)

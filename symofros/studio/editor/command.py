@@ -28,9 +28,9 @@ def serve(file: Path | None, port: int, token: str | None, browser: bool, tell: 
     """Serve the editor until it is interrupted.
 
     Args:
-        file: What to open; its folder is the workspace. None: an empty document in the current folder.
-        port: Where to listen; 0: any that is free.
-        token: What requests must carry; None: drawn at random.
+        file: File to open, whose folder is the workspace; None: an empty document in the current folder.
+        port: Port to listen at; 0: any that is free.
+        token: Token that requests must carry; None: drawn at random.
         browser: Whether to open the page.
         tell: Receives the page's address once the server listens.
 

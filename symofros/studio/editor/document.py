@@ -32,7 +32,7 @@ class Document:
     """A text under edit.
 
     Attributes:
-        file: Where it is, or will be when it is saved.
+        file: Path of the document, or the one it will be saved to.
         text: The text, without a byte order mark.
         saved: The text on disk when it was last read or written; None if it was never there.
         revision: Grows with every change of the text.

@@ -24,9 +24,9 @@ def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any) ->
     Args:
         file: The document's.
         text: The document's text.
-        now: What it says.
+        now: Present text of the field.
         path: Path of the field; it need not exist yet. Empty: the formula alone is checked.
-        typed: What the field would hold.
+        typed: Text that was typed.
 
     Returns:
         `ok`, `names`, `value` where parameters suffice for one, otherwise `error` with `column` (from 1; 0: the

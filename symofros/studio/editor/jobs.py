@@ -62,8 +62,8 @@ class Jobs:
         """Start a worker.
 
         Args:
-            kind: What it does (tasks.TASKS).
-            request: What it needs.
+            kind: Kind of job, a key of tasks.TASKS.
+            request: Request that the worker process receives.
             revision: Revision of the document.
 
         Raises:

@@ -92,7 +92,7 @@ def insertion(data: Any, part: Json, parent: str | None, frame: str | None) -> l
 
     Args:
         data: The document.
-        part: As `extracted` makes them.
+        part: Part as `extracted` makes it.
         parent: The body that carries what stood on the world; None: the world.
         frame: The frame of that body.
 

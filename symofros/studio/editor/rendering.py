@@ -36,9 +36,9 @@ def scalar(value: Any, *, flow: bool, quote: str = "", key: bool = False) -> str
     """A scalar's text.
 
     Args:
-        value: None, bool, int, float or str.
+        value: Value to write: None, bool, int, float or str.
         flow: Whether it stands within brackets.
-        quote: How the text that it replaces was quoted.
+        quote: Quotation mark of the text that it replaces.
         key: Whether it is a key, which is a name whatever it looks like.
     """
     if isinstance(value, str):
@@ -90,8 +90,8 @@ def is_block(value: Any, path: Path, column: int) -> bool:
 
     Args:
         value: The data.
-        path: Where it goes.
-        column: Where its text would begin.
+        path: Path in the document that it goes to.
+        column: Column at which its text would begin.
     """
     if not isinstance(value, (dict, list)) or not value:
         return False

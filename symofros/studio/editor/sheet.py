@@ -34,8 +34,8 @@ class Sheet:
 
     Attributes:
         text: The text, without a byte order mark.
-        root: Its tree.
-        newline: How its lines end.
+        root: Root of the document's tree.
+        newline: Line ending of the document.
     """
 
     def __init__(self, text: str) -> None:

@@ -205,7 +205,7 @@ class Storage:
         """Write the document.
 
         Args:
-            path: Where, in the workspace; "": its own file.
+            path: Path in the workspace; "": the document's own file.
             over: Digest of a state of the file that may be overwritten, besides the one that is known.
 
         Raises:

@@ -55,7 +55,7 @@ class View:
         """Show a system; the one before stays where this one can't be shown.
 
         Args:
-            system: What the document says; None while it has problems.
+            system: System of the document; None while it has problems.
 
         Returns:
             What the page's controls are made of.

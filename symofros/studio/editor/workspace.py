@@ -36,7 +36,7 @@ class Workspace:
 
         Args:
             text: Relative to the workspace.
-            suffixes: What its name may end in; empty: a folder.
+            suffixes: Suffixes that its name may have; empty: a folder.
 
         Raises:
             FileError: It leaves the folder (links are followed), is hidden, or has another suffix.

@@ -21,7 +21,7 @@ class Camera:
 
     Attributes:
         position: (3) [m].
-        target: What it looks at (3) [m].
+        target: Point that it looks at (3) [m].
         up: Direction that is upright in the picture (3).
         fov: Vertical field of view [rad].
     """

@@ -43,7 +43,7 @@ class CentreLine:
     The last station is the tip, and has the pose that the model's own `frame_pose` gives the tip's frame.
 
     Args:
-        beam: What the user stated.
+        beam: Beam as the user stated it.
     """
 
     def __init__(self, beam: Beam) -> None:

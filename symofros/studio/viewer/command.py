@@ -18,7 +18,7 @@ def add_view(app: typer.Typer, load: Callable[[Path, bool], sf.System], bad_inpu
     """Add the command; viser is imported when it runs.
 
     Args:
-        app: To add it to.
+        app: Command-line application that the command is added to.
         load: Reads a model, or says what is wrong with it and exits.
         bad_input: Exit code for input that can't be used.
     """

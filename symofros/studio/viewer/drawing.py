@@ -28,9 +28,9 @@ class Part:
 
     Attributes:
         name: Unique in the drawing; "/" sorts it into folders.
-        kind: What it stands for, to be shown or hidden together.
+        kind: Layer that it belongs to, shown or hidden together.
         link: Index of the link, -1 for the world.
-        mesh: In the link's frame.
+        mesh: Mesh in the link's frame.
         color: Red, green, blue, 0 to 255.
     """
 
@@ -47,9 +47,9 @@ class Bend:
 
     Attributes:
         name: Name of the beam.
-        link: Its root.
-        q: Its elastic coordinates in q, as (start, size).
-        line: Where its sections are.
+        link: Link at its root.
+        q: Range of its elastic coordinates in q, as (start, size).
+        line: Centre line, on which its sections stand.
         length: Length [m].
         outline: Outline of its section, y and z (K, 2) [m].
         color: Red, green, blue.
@@ -70,7 +70,7 @@ class Strut:
 
     Attributes:
         name: Unique in the drawing.
-        kind: As for a Part.
+        kind: Layer, as for a Part.
         first: One end.
         second: The other.
         outline: Outline of its section (K, 2) [m].
@@ -105,8 +105,8 @@ class Drawing:
         struts: Pieces whose ends move apart.
         triads: Every named frame.
         gravity: Acceleration vector in the world (3) [m/s^2].
-        size: How far the mechanism reaches, from end to end [m].
-        center: Its middle in the neutral configuration (3) [m].
+        size: Extent of the mechanism from end to end [m].
+        center: Centre of the mechanism in the neutral configuration (3) [m].
         inertias_fit: Whether no box of inertia is much longer than the mechanism; placeholders in files often are.
     """
 

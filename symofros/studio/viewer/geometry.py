@@ -88,8 +88,8 @@ def draw(tree: SpanningTree, values: dict[str, float], size: float, center: Arra
     Args:
         tree: Tree of a checked system.
         values: Values of its parameters, by name; those left out keep their defaults.
-        size: How far it reaches, for the thickness of what has none of its own [m].
-        center: Its middle (3) [m].
+        size: Extent, from which parts without a thickness of their own take theirs [m].
+        center: Centre (3) [m].
     """
     return _Draughtsman(tree, values, size, center).drawing()
 

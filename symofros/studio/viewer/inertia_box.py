@@ -33,7 +33,7 @@ def inertia_box(body: RigidBody, numbers: Numbers) -> InertiaBox | None:
     no body can have (waiver `nonphysical_inertia`) makes that negative, the edge is zero.
 
     Args:
-        body: What the user stated.
+        body: Body as the user stated it.
         numbers: The parameters' values.
     """
     if body.inertia is None:

@@ -25,7 +25,7 @@ class Motion:
     """States over time.
 
     Attributes:
-        model: What moves, for its configuration manifold.
+        model: Model whose configuration manifold the motion follows.
         t: Times, rising (n) [s].
         q: Configurations (n, nq).
         u: Inputs, for prescribed motions (n, nu).
@@ -103,7 +103,7 @@ def read_motion(path: str | Path, model: Model) -> Motion:
     Args:
         path: .npz with t (n), q (n, nq) and, if it has them, u, par, names_q; .csv or .parquet with columns t and the
             coordinates' names and, where motions are prescribed, the inputs'.
-        model: What moves.
+        model: Model that moves.
 
     Raises:
         SymofrosError: There is no such file, or it can't be read.

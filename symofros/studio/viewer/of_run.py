@@ -17,7 +17,7 @@ def chosen_block(name: str, blocks: Mapping[str, Block], block: str = "") -> str
     Args:
         name: Name of the diagram.
         blocks: Name -> block.
-        block: Which; "" for the only one that moves a mechanism.
+        block: Name of the block; "" for the only one that moves a mechanism.
 
     Raises:
         UnknownNameError: There is no such block, it moves no mechanism, or there are several to choose from.

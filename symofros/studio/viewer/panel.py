@@ -55,9 +55,9 @@ class Panel:
 
     Args:
         server: Server of viser.
-        controls: What they act on.
-        drawing: For its name.
-        layers: What is shown.
+        controls: Object that the controls act on.
+        drawing: Drawing whose name is the title.
+        layers: Layers that are shown.
         sliders: Sliders of the coordinates.
         exaggeration: Exaggeration of the elastic ones; None where there are none.
         player: Player of the motion, if there is one.

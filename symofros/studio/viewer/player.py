@@ -9,7 +9,7 @@ class Player:
     """The position in a motion; no clock of its own.
 
     Args:
-        motion: What is played.
+        motion: Motion to play.
         speed: Seconds of the motion a second.
         loop: Whether it begins again at its end.
 

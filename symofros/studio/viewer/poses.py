@@ -61,8 +61,8 @@ class Mechanism:
     """A system with what it takes to draw it: its tree, and its frame poses compiled (cached, as every model is).
 
     Args:
-        system: What the user stated.
-        tracks: What is drawn beside it.
+        system: System as the user stated it.
+        tracks: Tracks to draw beside it.
 
     Raises:
         DescriptionError: The system can't be a mechanism.
@@ -136,7 +136,7 @@ class Mechanism:
             q: Coordinates.
             u: Inputs, for prescribed motions.
             par: Run-time parameters.
-            exaggeration: What multiplies the elastic coordinates.
+            exaggeration: Factor of the elastic coordinates.
         """
         drawn = np.array(q, dtype=np.float64)
         drawn[..., self._elastic] *= exaggeration

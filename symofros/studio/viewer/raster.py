@@ -40,12 +40,12 @@ def picture(
     """A picture (height, width, 3) of a mechanism; labels and frames are not in it.
 
     Args:
-        drawing: What there is to show.
-        posture: Where it is.
-        layers: What is shown of it.
-        camera: Where from.
-        width: In pixels.
-        height: In pixels.
+        drawing: Drawing to show.
+        posture: Posture of the mechanism.
+        layers: Layers that are shown.
+        camera: Camera.
+        width: Width [pixels].
+        height: Height [pixels].
     """
     return _Canvas(camera, width, height).painted(drawing, posture, layers)
 

@@ -77,12 +77,12 @@ def record(
     `sf.record(system, run, "run.html")`, or `sf.record(run, "run.html")` of a diagram's run.
 
     Args:
-        system: What moves, or a diagram's run.
+        system: System that moves, or a diagram's run.
         run: A trajectory of it, or times (n) and coordinates (n, nq); left out where a diagram's run is stated.
         path: .html (a page with the scene in it, to turn and to play; needs viser, and no network), .mp4 (needs ffmpeg,
             as the extra `video` brings it), .gif, or .png (the last state).
         block: Block of a diagram's run: the block whose mechanism is shown; where there is one only, that.
-        exaggeration: What multiplies elastic coordinates.
+        exaggeration: Factor of the elastic coordinates.
         speed: Seconds of the motion a second.
         paths: Curves drawn beside it, as of `Viewer`.
         rate: Pictures a second; those of a GIF last whole hundredths of a second.

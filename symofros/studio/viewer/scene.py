@@ -40,9 +40,9 @@ class Scene:
 
     Args:
         server: Server of viser.
-        drawing: What to show.
-        posture: Where it is.
-        layers: What is shown of it.
+        drawing: Drawing to show.
+        posture: Posture of the mechanism.
+        layers: Layers that are shown.
     """
 
     def __init__(self, server: Any, drawing: Drawing, posture: Posture, layers: frozenset[str]) -> None:

@@ -23,12 +23,12 @@ class Screen:
 
     Args:
         server: Server of viser.
-        mechanism: What is shown.
-        exaggeration: What multiplies elastic coordinates.
+        mechanism: Mechanism that is shown.
+        exaggeration: Factor of the elastic coordinates.
         controls: Whether there are sliders and buttons.
 
     Attributes:
-        painted: How many pictures were shown.
+        painted: Number of pictures shown.
     """
 
     def __init__(self, server: Any, mechanism: Mechanism, exaggeration: float, controls: bool) -> None:
@@ -113,8 +113,8 @@ class Screen:
         """Move some degrees of freedom, and change some run-time parameters; loops close around them where they can.
 
         Args:
-            values: By the labels of `sliders` [rad or m].
-            par: By the names of the parameters; those that are not named stay as they are.
+            values: Values by the labels of `sliders` [rad or m].
+            par: Parameters by name; those that are not named stay as they are.
 
         Returns:
             Why the loops can't be closed there, and the picture stays: "" where they can.

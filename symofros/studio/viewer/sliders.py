@@ -32,8 +32,8 @@ def sliders_of(model: Model, elastic: tuple[bool, ...]) -> tuple[Slider, ...]:
     """One slider a speed, in their order.
 
     Args:
-        model: What moves.
-        elastic: Which coordinates are elastic (nq).
+        model: Model that moves.
+        elastic: Mask of the elastic coordinates (nq).
     """
     bounds = model.record.sampling_bounds()
     found: list[Slider] = []

@@ -20,8 +20,8 @@ class Stage:
 
     Args:
         server: Server of viser.
-        mechanism: What is shown.
-        exaggeration: What multiplies its elastic coordinates.
+        mechanism: Mechanism that is shown.
+        exaggeration: Factor of its elastic coordinates.
     """
 
     def __init__(self, server: Any, mechanism: Mechanism, exaggeration: float) -> None:

@@ -44,7 +44,7 @@ def view(
         q: Otherwise coordinates (nq) to show; by default neutral ones, with loops closed.
         u: Inputs (nu), for prescribed motions.
         par: Run-time parameters (npar).
-        exaggeration: What multiplies elastic coordinates in the picture.
+        exaggeration: Factor of the elastic coordinates in the picture.
         speed: Seconds of the motion a second.
         paths: Curves drawn beside it, as of `Viewer`.
         host: Address that it is served at.

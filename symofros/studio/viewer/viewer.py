@@ -34,19 +34,19 @@ class Viewer(Screen):
     The page is served from this process until `close()`, or the end of a `with`. Methods may be called from any thread.
 
     Args:
-        system: What to show.
+        system: System to show.
         host: Address that it is served at; the default is seen from this machine only. Nothing asks for a password:
             whoever reaches the address sees the model, and may move its controls.
         port: Port of the page; 0 for any free one.
-        exaggeration: What multiplies elastic coordinates in the picture.
+        exaggeration: Factor of the elastic coordinates in the picture.
         rate: Pictures a second at most.
         controls: Whether the page has sliders and buttons; not, for a page that is embedded in another.
         paths: Curves drawn beside it, each (name, points) or (name, points, color): points (n, 3) in the world, or
             (n, 2) in its plane z = 0 [m]; red, green and blue, 0 to 255.
 
     Attributes:
-        painted: How many pictures were shown.
-        dropped: How many pushed states were not, because newer ones came first.
+        painted: Number of pictures shown.
+        dropped: Number of pushed states that were dropped for newer ones.
 
     Raises:
         DescriptionError: The system can't be a mechanism.
