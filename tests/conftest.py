@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+import zlib
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -25,7 +26,8 @@ sys.dont_write_bytecode = False
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--slow", action="store_true", help="also run tests that take minutes")
+    parser.addoption("--slow", action="store_true", help="also run what a run leaves out for its time")
+    parser.addoption("--slow-part", metavar="I/N", help="only every N-th of the slow tests, from the I-th on")
     parser.addoption("--tools", action="store_true", help="also run tests of programs that .ci/run installs")
     parser.addoption("--browser", action="store_true", help="also run tests that look at pages with Chromium")
     parser.addoption("--update-golden", action="store_true", help="rewrite the expected texts that tests compare with")
@@ -40,12 +42,24 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    needs = {"slow": "takes minutes", "tools": "needs programs of the system", "browser": "needs Chromium"}
+    if config.getoption("--slow-part"):
+        _keep_a_part_of_the_slow(config, items)
+        return
+    needs = {"slow": "left out for its time", "tools": "needs programs of the system", "browser": "needs Chromium"}
     for word, why in needs.items():
         if not config.getoption(f"--{word}"):
             for item in items:
                 if word in item.keywords:
                     item.add_marker(pytest.mark.skip(reason=f"{why}; run with --{word}"))
+
+
+def _keep_a_part_of_the_slow(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """One of N shares that are alike in time, but for tests that state their minutes, which take as long as a share."""
+    index, count = map(int, config.getoption("--slow-part").split("/"))
+    slow = [item for item in items if (marker := item.get_closest_marker("slow")) and not marker.kwargs]
+    kept = [item for item in slow if zlib.crc32(item.nodeid.encode()) % count == index % count]
+    config.hook.pytest_deselected(items=[item for item in items if item not in kept])
+    items[:] = kept
 
 
 @pytest.fixture

@@ -130,7 +130,7 @@ def test_without_any_compiler_the_interpreter_serves(
         find_toolchain.cache_clear()
 
 
-@pytest.mark.slow
+@pytest.mark.slow(minutes=2)
 def test_the_ziglang_package_serves_as_compiler(
     cache: Path, without_compilers: pytest.MonkeyPatch, rng: np.random.Generator
 ) -> None:

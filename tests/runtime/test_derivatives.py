@@ -48,7 +48,12 @@ def sixth(function: Callable[[float], np.ndarray], step: float) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("robot", "backend"),
-    [("ur5", "c"), ("panda", "c"), ("talos", "interpreter"), pytest.param("talos", "c", marks=pytest.mark.slow)],
+    [
+        ("ur5", "c"),
+        ("panda", "c"),
+        ("talos", "interpreter"),
+        pytest.param("talos", "c", marks=pytest.mark.slow(minutes=3)),
+    ],
 )
 def test_forward_dynamics_against_pinocchio(robot: str, backend: str) -> None:
     """Pinocchio's recursive derivatives of its articulated-body algorithm: another method for the same numbers."""

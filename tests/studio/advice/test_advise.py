@@ -211,7 +211,7 @@ def test_scenes_that_do_not_fit(changed: dict[str, object], words: str) -> None:
     assert words in str(raised.value)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(minutes=5)
 def test_the_station() -> None:
     """Fifty-seven coordinates; one boom may be rigid in a slow motion, most elastic joints may be locked."""
     advice = advised("flexible_mss")

@@ -141,7 +141,7 @@ def test_an_interrupt_ends_in_words_and_is_resumed(tmp_path: Path) -> None:
     assert result(tmp_path / "c").equals(uninterrupted())
 
 
-@pytest.mark.slow
+@pytest.mark.slow(minutes=20)
 def test_a_hundred_thousand_states_killed_twice(tmp_path: Path) -> None:
     """Thirty models, two workers; the client is killed at a third and, after one of its workers, at two thirds."""
     models = tuple(case.label for case in standard_set()[:30])
