@@ -16,7 +16,7 @@ from validation.reporting.axes import Axis, line, names, shown, svg, text
 from validation.reporting.figures import SHAPES, Chart, Curve, Drawing, Mark
 
 WIDTH = 760
-_LEFT, _EXACT, _RIGHT, _TOP, _BOTTOM = 190, 46, 16, 8, 56
+_LEFT, _EXACT, _RIGHT, _TOP, _BOTTOM = 225, 46, 30, 8, 56
 _ROW = 42
 EPS = 2.0**-52
 
@@ -53,8 +53,8 @@ def error_distributions(distributions: Distributions) -> Drawing | None:
         at = x.at(quantity.tolerance)
         parts.append(line("bound", at, at, base, base - _ROW + 4))
     parts.append(text(_LEFT + _EXACT / 2 - 5, bottom + 17, "exact", "middle", "tick"))
-    said = "relative error of a state [1]; height: share of the states [1]"
-    parts += names((x.start, x.end), (_TOP, bottom), bottom + _BOTTOM, said, "")
+    said = "relative error of a state [1]; height: share of states [1]"
+    parts += names((0, WIDTH), (_TOP, bottom), bottom + _BOTTOM, said, "")
     legend = [
         (f'<rect class="bar {_color(name)}" x="6" width="12" height="12"/>', engine_label(name)) for name in engines
     ]

@@ -30,7 +30,7 @@ def draw(chart: Chart) -> Drawing:
     parts += names((x.start, x.end), (y.start, y.end), HEIGHT, chart.x, chart.y)
     legend = [(_sample(curve), curve.label) for curve in chart.curves]
     legend += [
-        (line(f"limit l{k % _LIMITS}", 0, 24, 6, 6), f"{mark.label}: {short(mark.at)}")
+        (line(f"limit l{k % _LIMITS}", 0, 24, 6, 6), f"{mark.label}: {short(float(format(mark.at, '.3g')))}")
         for k, mark in enumerate(chart.marks)
     ]
     return Drawing(chart.title, tuple(legend), svg(WIDTH, HEIGHT, chart.title, parts))
@@ -99,7 +99,7 @@ def _curve(curve: Curve, chart: Chart, x: Axis, y: Axis) -> str:
                 runs.append([])
             else:
                 runs[-1].append(f"{p[0]:.1f},{p[1]:.1f}")
-        style = f"plot {curve.kind} e{curve.color}"
+        style = f"plot {curve.kind} e{curve.color} s{curve.shape}"
         parts += [f'<polyline class="{style}" points="{" ".join(run)}"/>' for run in runs if run]
     if curve.kind in ("points", "joined"):
         size = 4.0 if curve.kind == "points" else 3.2
@@ -120,7 +120,7 @@ def _sample(curve: Curve) -> str:
     """The curve in the legend, 24 by 12."""
     parts = []
     if curve.kind != "points":
-        parts.append(line(f"plot {curve.kind} e{curve.color}", 0, 24, 6, 6))
+        parts.append(line(f"plot {curve.kind} e{curve.color} s{curve.shape}", 0, 24, 6, 6))
     if curve.kind in ("points", "joined"):
         parts.append(point(f"e{curve.color}", 12, 6, curve.shape, 4.0))
     return "".join(parts)

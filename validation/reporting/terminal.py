@@ -14,7 +14,7 @@ from validation.reporting import markdown
 from validation.reporting.record import Block, Cell, Report, Table, Text
 
 # Wide enough for every column when the output is not a terminal, which has a width of its own.
-PLAIN_WIDTH = 120
+PLAIN_WIDTH = 140
 
 _STYLE = {True: "bold green", False: "bold red", None: "bold"}
 _TONE = {"plain": "", "soft": "yellow", "bad": "red", "advice": ""}
@@ -44,8 +44,9 @@ def _print(block: Block, console: Console) -> None:
 
 def _table(table: Table) -> RichTable:
     shown = RichTable(box=SIMPLE_HEAD, padding=(0, 2, 0, 0), pad_edge=False)
-    for name in table.head:
-        shown.add_column(name.removeprefix("#"), justify="right" if name.startswith("#") else "left")
+    for k, name in enumerate(table.head):
+        number = name.startswith("#")
+        shown.add_column(name.removeprefix("#"), justify="right" if number else "left", no_wrap=k == 0 or number)
     for row in table.rows:
         shown.add_row(*map(_cell, row))
     return shown
