@@ -23,7 +23,7 @@ class Range(BaseModel):
     Attributes:
         low: The smallest.
         high: The largest.
-        count: How many, evenly spaced; for a grid only.
+        count: Number of values, evenly spaced; for a grid only.
         log: Whether even spacing is that of logarithms.
     """
 
@@ -57,11 +57,11 @@ def points_of(
 
     Args:
         over: Parameter -> its values.
-        design: How they combine.
-        points: How many, unless the design is a grid.
-        seed: Of the spread.
+        design: Way in which they combine.
+        points: Number of points, unless the design is a grid.
+        seed: Seed of the spread.
         first: Number of the first point wanted.
-        count: How many are wanted; None: all that follow.
+        count: Number of values wanted; None: all that follow.
 
     Returns:
         One row a point, one column a parameter, (count, n).

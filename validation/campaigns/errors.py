@@ -30,8 +30,8 @@ class Unfinished(RuntimeError):
     """Batches are missing: the session was interrupted, or some could not be done.
 
     Args:
-        folder: Of the campaign.
-        reasons: Of the batches that could not be done; none: it was interrupted.
+        folder: Folder of the campaign.
+        reasons: Reasons of the batches that could not be done; none: it was interrupted.
     """
 
     def __init__(self, folder: Path, reasons: list[str]) -> None:

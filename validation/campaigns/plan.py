@@ -37,9 +37,9 @@ class CheckPlan(_Strict):
     Attributes:
         kind: "check".
         models: Names of the standard set, or files below the current folder.
-        states: How many in all, shared among the models.
+        states: Number of states in all, shared among the models.
         batch: States a batch.
-        seed: Of the states.
+        seed: Seed of the states.
         engines: To compare with; None: all.
         floating_base: Whether URDF files get a free joint under their root.
     """
@@ -84,14 +84,14 @@ class SweepPlan(_Strict):
         quantity: "frequencies" of small motions about the equilibrium, or "end_state" of a motion.
         over: Parameter or input -> the values it takes.
         design: How the values combine: every one with every other, or spread by Latin hypercube or Sobol sequence.
-        points: How many, unless the design is a grid.
+        points: Number of points, unless the design is a grid.
         batch: Points a batch.
-        seed: Of the spread.
-        modes: How many frequencies, the lowest.
+        seed: Seed of the spread.
+        modes: Number of frequencies, from the lowest.
         start: Coordinate or speed -> its value at the start, or near the equilibrium; others are neutral.
         held: Speeds whose coordinates stay where they are while the equilibrium is sought.
         inputs: Input -> value; others are zero.
-        motion: Of "end_state".
+        motion: Motion that "end_state" is the end of.
     """
 
     kind: Literal["sweep"]

@@ -34,7 +34,7 @@ class Store:
 
     Args:
         folder: Where.
-        hash: Of the plan; parts that do not bear it are not ours.
+        hash: Hash of the plan; parts that do not bear it belong to another.
     """
 
     def __init__(self, folder: Path, hash: str) -> None:

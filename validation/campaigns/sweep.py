@@ -21,12 +21,12 @@ class Sweeper:
 
     Args:
         plan: What to evaluate.
-        case: Its model.
+        case: The model.
 
     Raises:
         SymofrosError: The model can't be made.
         UnknownNameError: The plan names what it does not have.
-        OSError: Its file can't be read.
+        OSError: The file of the model can't be read.
     """
 
     def __init__(self, plan: SweepPlan, case: Case) -> None:

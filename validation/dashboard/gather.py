@@ -23,10 +23,10 @@ class Entry:
     Attributes:
         topic: What it is about.
         report: What it says; None if it is not there or can't be read.
-        data: Its JSON.
+        data: JSON of the report.
         provenance: Origin of its numbers.
         remarks: What a reader should know before relying on it.
-        page: Its full page, in the same folder; empty if there is none.
+        page: Full page in the same folder; empty if there is none.
     """
 
     topic: Topic

@@ -17,7 +17,7 @@ class Outcome:
     """How one command ended.
 
     Attributes:
-        name: Of the report.
+        name: Name of the report.
         code: Exit code of its process; 1 is a report that says something is wrong.
         seconds: Wall time.
         said: The last lines of what it complained of, if it wrote no report.
@@ -38,7 +38,7 @@ def regenerate(folder: Path, starting: Callable[[str], None], done: Callable[[Ou
     """Run every command in turn; Ctrl-C ends the one that runs, and KeyboardInterrupt goes on to the caller.
 
     Args:
-        folder: Of the reports.
+        folder: Folder of the reports.
         starting: Gets the name of each report.
         done: Gets how it ended.
     """

@@ -37,7 +37,7 @@ def seconds_at(points: Iterable[Point], error: float) -> float:
     half of one model and half of another is no model.
 
     Args:
-        points: Of one side.
+        points: Points of one side.
         error: To keep.
 
     Returns:

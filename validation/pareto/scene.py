@@ -14,7 +14,7 @@ class Measured:
 
     Attributes:
         error: Against the scene's reference, in its unit; NaN if the run did not come to its end.
-        seconds: Of the processor, stepping only.
+        seconds: Time of the processor, stepping only.
         ended: Why it did not come to its end; "" if it did.
     """
 
@@ -31,7 +31,7 @@ class Contestant:
         who: OURS, or the engine.
         model: Modes, elements, how loops are closed: what is approximated in space. One colour of a chart.
         method: The integrator.
-        setting: Its step or tolerance.
+        setting: Step or tolerance.
         run: Does it once.
     """
 
@@ -47,9 +47,9 @@ class Point:
     """A contestant that was run.
 
     Attributes:
-        who, model, method, setting: Of the contestant.
+        who, model, method, setting: As the contestant states them.
         error: As measured.
-        seconds: Of the processor, least of the repeats.
+        seconds: Time of the processor, least of the repeats.
         ended: As measured.
     """
 
@@ -77,9 +77,9 @@ class Target:
     """So much faster than an engine's best at the same error.
 
     Attributes:
-        engine: Whose best is compared with.
+        engine: The engine whose best is compared with ours.
         error: The error, in the scene's unit.
-        ratio: Its seconds over ours, at least.
+        ratio: Lower bound of the engine's seconds over ours.
     """
 
     engine: str
@@ -93,7 +93,7 @@ class Prepared:
 
     Attributes:
         contestants: Compiled and assembled, so that a run is stepping only.
-        agreement: How far two independent references are apart, in the unit of errors.
+        agreement: Distance of two independent references, in the unit of errors.
         references: What they are, in words.
         floors: What our beam models leave, however finely they are stepped, by what they retain.
     """
@@ -113,11 +113,11 @@ class Scene:
         setting: From where, for how long, at what output interval.
         measure: What errors are of.
         axis: The same in a few words, with the unit.
-        tuned: How each side was tuned.
+        tuned: Tuning of each side, in words.
         prepare: Whether quickly -> what is to run.
         targets: What is asked of us.
         trust: Errors above this must be above the references' disagreement.
-        sources: Of parameters and references.
+        sources: Origins of parameters and references.
         percent: Whether errors are shares, and read best as such.
     """
 

@@ -42,7 +42,7 @@ class Measured:
     """One model without one pass.
 
     Attributes:
-        model: Its label.
+        model: Label of the model.
         nv: Degrees of freedom.
         without: Name of the pass; ALL for none, AGAIN for none in a copy of the same library, which shows what the
             placement of code makes; APART for M, h and Q by three functions.

@@ -44,8 +44,8 @@ class Mark:
     """A straight line across the chart, named in the legend.
 
     Attributes:
-        label: Its name.
-        at: Its value.
+        label: Name in the legend.
+        at: Value of the axis.
         axis: The axis that `at` is a value of.
     """
 

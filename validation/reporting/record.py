@@ -29,8 +29,8 @@ class Cell:
     """A cell of a table.
 
     Attributes:
-        text: Its content.
-        ok: Its verdict; None where nothing was asked of it.
+        text: Content.
+        ok: Verdict; None where nothing was asked.
         shade: Depth of its background, 0 to 1.
         hint: What is said when the pointer rests on it.
     """
@@ -87,9 +87,9 @@ class Section:
 
     Attributes:
         title: The heading.
-        blocks: Its content.
+        blocks: Content.
         anchor: Name for links; "" for none.
-        ok: Its verdict; None where nothing was asked of it.
+        ok: Verdict; None where nothing was asked.
         page_only: Whether the Markdown summary leaves it out.
         badge: The verdict in a word, beside the heading.
     """
@@ -109,7 +109,7 @@ class Fact:
     Attributes:
         value: As shown.
         label: What it is, with unit and bound.
-        ok: Its verdict; None where nothing was asked of it.
+        ok: Verdict; None where nothing was asked.
     """
 
     value: str
@@ -122,11 +122,11 @@ class Report:
     """One report.
 
     Attributes:
-        title: Its heading.
+        title: Heading.
         summary: What it found, in a sentence.
-        ok: Its verdict; None for a measurement of which nothing was asked.
+        ok: Verdict; None for a measurement of which nothing was asked.
         blocks: What comes before the first section.
-        sections: Its parts.
+        sections: Parts under headings.
         facts: Key numbers, for the top of the page and for the index of reports.
         highlights: Most telling charts, for the index of reports.
         digest: What a terminal shows.
@@ -164,7 +164,7 @@ class Topic:
         name: Name of its command and its files.
         group: Heading that it stands under in the index.
         question: What it answers.
-        compose: Its JSON -> report.
+        compose: JSON of the report -> report.
         words: Words after `python -m validation` that write it; the name if None.
         everyday: Whether `dashboard --regenerate` writes it; one that takes a plan of one's own is left to hand.
     """

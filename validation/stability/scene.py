@@ -27,9 +27,9 @@ class Grid:
 
     Attributes:
         name: With its unit.
-        values: Of the whole map, rising.
-        few: Of the quick one.
-        labels: Of categories, whose values are 0, 1, 2, ...
+        values: Values of the whole map, rising.
+        few: Values of the quick map.
+        labels: Names of categories, whose values are 0, 1, 2, ...
         log: Whether it is drawn by its logarithm.
     """
 
@@ -70,7 +70,7 @@ class Cell:
     """One run.
 
     Attributes:
-        value: Of the criterion's quantity; NaN if the run did not come to its end.
+        value: Value of the criterion's quantity; NaN if the run did not come to its end.
         ended: The kind of its Outcome, or "refused".
         note: What was said: the reason of the end, or the first line of the refusal.
     """
@@ -115,7 +115,7 @@ class Limit:
     """A line over the map: a closed form.
 
     Attributes:
-        label: Its name.
+        label: Name in the legend.
         x: Points (n); for categories, between -0.5 and their number - 0.5.
         y: Points (n).
     """
@@ -145,11 +145,11 @@ class Map:
     """What one subject comes to, all over the grid.
 
     Attributes:
-        subject: Whose it is.
+        subject: Method, formulation or engine that was run.
         x: Values (nx).
         y: Values (ny).
         cells: (ny, nx).
-        bound: Of the criterion.
+        bound: Bound of the criterion.
     """
 
     subject: Subject
@@ -207,7 +207,7 @@ class Map:
         """The largest factor by which a closed form lies outside the steps of the grid where good turns bad.
 
         Args:
-            axis: Of the parameter that the closed form bounds.
+            axis: Axis of the parameter that the closed form bounds.
             limit: The other parameter -> that bound.
 
         Returns:
@@ -244,11 +244,11 @@ class Scene:
         setting: What moves, from where, for how long.
         x: Parameter along; y: across.
         quantity: What the criterion bounds, with its unit.
-        bound: Its bound: at most so much is good.
+        bound: Bound of the criterion: at most so much is good.
         subjects: Who is asked.
         judge: Maps by subject -> verdict.
         advice: What to do, and what to use instead.
-        sources: Of closed forms and reference numbers.
+        sources: Origins of closed forms and reference numbers.
     """
 
     question: str

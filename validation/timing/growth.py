@@ -24,7 +24,7 @@ class Growth:
         quantity: What grows, with its unit.
         who: On which side.
         n: Numbers of joints.
-        values: Of the quantity.
+        values: Values of the quantity.
         exponent: Slope on logarithmic axes from FROM joints on; NaN where two points are not to be had.
     """
 

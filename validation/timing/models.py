@@ -36,7 +36,7 @@ class Scene:
 
     Attributes:
         title: In tables.
-        make: Its description.
+        make: Makes the description.
         functions: What is timed of it.
     """
 

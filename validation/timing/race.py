@@ -47,7 +47,7 @@ def race(loops: Mapping[str, Loop], states: int, repeats: int) -> dict[str, Time
 
     Args:
         loops: By the names of their sides.
-        states: Of one round.
+        states: Number of states of one round.
         repeats: Interleaved.
 
     Returns:
@@ -95,10 +95,10 @@ def checked(function: str, name: str, found: Array, expected: Array, coarser: fl
 
     Args:
         function: Which.
-        name: Of the side.
+        name: Name of the side.
         found: What it computes (n, size).
         expected: What we do.
-        coarser: How much larger its rounding is.
+        coarser: Factor by which its rounding is larger.
 
     Raises:
         DisagreementError: It is more than rounding.

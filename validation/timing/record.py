@@ -23,7 +23,7 @@ class Entry:
     """One function of one model by us and by one build of one peer, timed in turn.
 
     Attributes:
-        model: Its label.
+        model: Label of the model.
         nv: Degrees of freedom.
         function: What was timed.
         peer: Whom we raced; variant: how it was built and which way it went.
@@ -135,7 +135,7 @@ class Record:
 
     Attributes:
         entries: Pairs of sides.
-        costs: Of generated functions.
+        costs: Costs of generated functions.
         skipped: What a peer has no side for: (model, function, peer, why).
         failed: What should have been timed and was not: likewise.
         flexible: Rows of the flexible robot.

@@ -13,10 +13,10 @@ class Target:
     """A ratio of medians, theirs to ours, that is to be reached.
 
     Attributes:
-        model, function, peer: Of what.
+        model, function, peer: Race that the target is of.
         least: The ratio.
         how: Ours state by state, or by vectors, column by column.
-        family: Of the compiler of the peer; "" for its best.
+        family: Family of the peer's compiler; "" for its best.
     """
 
     model: str

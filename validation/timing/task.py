@@ -50,7 +50,7 @@ class Loop:
 
     Attributes:
         function: Which.
-        variant: How it was built and which way it takes; "" where there is one.
+        variant: Build and algorithm; "" where there is one.
         run: So many rounds over all states, results left behind.
         results: What it computes, in our conventions (n, size).
         cost: What making it took, of generated code.
@@ -68,7 +68,7 @@ class Task:
     """One model.
 
     Attributes:
-        label: Its name on the command line.
+        label: Name on the command line.
         system: The description.
         assembly: The same as numbers.
         states: With u, and in `applied` the forces that it makes.

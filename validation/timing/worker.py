@@ -34,7 +34,7 @@ class Job:
     """What one worker is to do.
 
     Attributes:
-        model: Its label.
+        model: Label of the model.
         peers: Whom it races.
         functions: At what.
         repeats: Interleaved.

@@ -22,9 +22,9 @@ class InMujoco:
     Attributes:
         label: What is particular about the model.
         model: Step [s] -> MuJoCo's model; most do not depend on the step, soft closures do.
-        q0: Its positions at the start (nq).
-        v0: Its speeds (nv).
-        times: How many records, the start not counted.
+        q0: Positions at the start (nq).
+        v0: Speeds at the start (nv).
+        times: Number of records, the start not counted.
         output: Their interval [s].
         judge: Positions at the records (times + 1, nq) -> error.
     """

@@ -30,7 +30,7 @@ def system(loops: int, spacing: float = 1.0) -> sf.System:
 
     Args:
         loops: N.
-        spacing: Of the pivots [m]; 1 makes parallelograms.
+        spacing: Distance of the pivots [m]; 1 makes parallelograms.
     """
     bodies, closures = [crank(0, spacing)], []
     for i in range(1, loops + 1):

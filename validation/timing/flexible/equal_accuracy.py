@@ -39,7 +39,7 @@ class Pair:
 
     Attributes:
         functions: Shape functions a strip.
-        elements: Of Exudyn's, a strip.
+        elements: Number of Exudyn's elements a strip.
         error: Ours and Exudyn's.
         tree: Exudyn's model.
     """

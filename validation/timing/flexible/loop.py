@@ -24,7 +24,7 @@ class GeneratedLoop:
         v: Speeds (n, nv). Inputs and time are zero.
 
     Attributes:
-        results: Of each function, its outputs at every state (n, rows, columns), as the last call left them.
+        results: Function -> outputs at every state (n, rows, columns), as the last call left them.
     """
 
     def __init__(self, system: sf.System, functions: Sequence[str], q: Array, v: Array) -> None:

@@ -75,7 +75,7 @@ class Arrays:
 
     Args:
         inputs: Each (n, size), or (size,) where all states share it.
-        sizes: Of the outputs.
+        sizes: Sizes of the outputs.
         scratch: Doubles and integers that the function works with.
     """
 

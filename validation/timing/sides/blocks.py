@@ -17,10 +17,10 @@ class Blocks:
 
     Args:
         inputs: Each (n, size), or (size,) where all states share it; the parameters' part first.
-        sizes: Of the outputs.
+        sizes: Sizes of the outputs.
         work: Doubles of scratch.
         block: States of a call.
-        dtype: Of inputs, but for the parameters' part, and of outputs.
+        dtype: Type of inputs, but for the parameters' part, and of outputs.
     """
 
     def __init__(

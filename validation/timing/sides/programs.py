@@ -41,7 +41,7 @@ class Compiler:
     """One that runs here.
 
     Attributes:
-        path: Of the program.
+        path: Path of the program.
         name: Family and version: "gcc 12.2.0".
         version: What it says of itself.
     """

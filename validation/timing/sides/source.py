@@ -11,10 +11,10 @@ class Source:
     """One function as C text, with CasADi's signature.
 
     Attributes:
-        name: Of the function, ours and in C.
+        name: Name of the function, ours and in C.
         text: C.
         inputs: Groups of the states it reads, in order.
-        sizes: Of its outputs.
+        sizes: Sizes of its outputs.
         scratch: Doubles and integers it works with.
         operations: Executed.
         seconds: From the description to the text.
