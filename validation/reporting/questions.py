@@ -84,7 +84,7 @@ def composing(title: str, theory: str, telling: Mapping[str, tuple[int, int]]) -
         highlights = [
             Chart.of(studies[key]["figures"][figure]["charts"][chart])
             for key, (figure, chart) in telling.items()
-            if key in studies
+            if key in studies and studies[key]["figures"]
         ]
         return Report(
             title,
