@@ -16,7 +16,7 @@ HEADERS = (
     "diagrams/symofros_diagram.h",
     "diagrams/symofros_program.h",
 )
-_C_INCLUDE = re.compile(r'^#include "(?P<file>[^"]+\.c)"\n', re.MULTILINE)
+_C_INCLUDE = re.compile(r'^#include "(?P<file>[^"]+\.c)"(?:\n|\Z)', re.MULTILINE)
 
 
 @cache

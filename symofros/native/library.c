@@ -1,5 +1,5 @@
 /* What Python loads: integrator, batches, diagrams and their threads, as one library. */
-#include "stepping/symofros_stepper.c"
+#include "stepping/integrator.c"
 #include "symofros_batch.h"
 #include "stepping/batch_stepper.c"
 #include "symofros_diagram.h"

@@ -1,12 +1,16 @@
-"""Functions that generated code begins and a hand-written routine finishes (templates/)."""
+"""Functions that generated code begins and a hand-written routine finishes (native/model/)."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
+from functools import cache, partial
 
 from symofros.expr.program import Function, Program, Solver
 from symofros.generator.codegen.function import FunctionText, FunctionWriter
+from symofros.native import native_text
 
+_WORK_MACRO = re.compile(r"^#define (SYM_\w+_WORK)\(([\w, ]+)\) (.+)$", re.MULTILINE)
 # Routine -> the template files it needs, in the order in which C must see them; the keys are in that order, too.
 ROUTINES: dict[str, tuple[str, ...]] = {
     "dense": ("dense",),
@@ -42,13 +46,13 @@ def with_solver(program: Program, c_name: str, function: Function, solver: Solve
 def _constrained(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
     """M, r, G, c -> a, lam, rank, by multipliers."""
     m, n = function.outputs[2].shape
-    return _on_terms("sym_constrained", c_name, m, n, max(needs, _scratch(n, m) + m))
+    return _on_terms("sym_constrained", c_name, m, n, max(needs, work_size("SYM_CONSTRAINED_WORK", n, m)))
 
 
 def _null_space(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
     """The same in the coordinates that the constraints leave free."""
     m, n = function.outputs[2].shape
-    return _on_terms("sym_null_space", c_name, m, n, max(needs, 4 * n * n + m * n + 2 * m * m + 4 * n))
+    return _on_terms("sym_null_space", c_name, m, n, max(needs, work_size("SYM_NULL_SPACE_WORK", n, m)))
 
 
 def _on_terms(routine: str, c_name: str, m: int, n: int, scratch: int) -> tuple[list[str], int]:
@@ -70,7 +74,7 @@ def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], in
     lines = [
         f"    *out[3] = sym_project({nq}, {n}, {m}, {c_name}_terms, {c_name}_move, in, out[0], out[1], out[2], work);"
     ]
-    return lines, n * n + m * n + 3 * m + n + nq + max(needs, _scratch(n, m) + m)
+    return lines, work_size("SYM_PROJECT_WORK", nq, n, m) + max(needs, work_size("SYM_CONSTRAINED_WORK", n, m))
 
 
 def _differentiate(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
@@ -81,12 +85,24 @@ def _differentiate(c_name: str, function: Function, needs: int) -> tuple[list[st
         f"    static const int columns[{len(columns)}] = {{{', '.join(map(str, columns))}}};",
         f"    sym_differentiate({n}, {m}, {len(columns)}, columns, {c_name}_terms, {c_name}_slopes, in, out, work);",
     ]
-    return lines, n * n + m * n + n + m + _scratch(n, m) + m * max(1, *columns) + needs
+    return lines, work_size("SYM_DIFFERENTIATE_WORK", n, m) + m * max(1, *columns) + needs
 
 
-def _scratch(n: int, m: int) -> int:
-    """What sym_kkt_factor asks for."""
-    return n * n + n + 2 * m * n + 2 * m * m
+def work_size(macro: str, *sizes: int) -> int:
+    """Doubles of scratch of a routine: the value of its macro in native/model, such as "SYM_KKT_WORK", for sizes."""
+    macros = _work_macros()
+    parameters, expression = macros[macro]
+    names: dict[str, object] = {name: partial(work_size, name) for name in macros}
+    # Sums and products of integers are written alike in C and in Python.
+    return int(eval(expression, {"__builtins__": {}}, names | dict(zip(parameters, sizes, strict=True))))
+
+
+@cache
+def _work_macros() -> dict[str, tuple[list[str], str]]:
+    """Name -> parameters and expression of the macros that state the scratch of routines."""
+    files = dict.fromkeys(file for needed in ROUTINES.values() for file in needed)
+    text = "\n".join(native_text(f"model/{file}.c.in") for file in files)
+    return {name: (parameters.split(", "), expression) for name, parameters, expression in _WORK_MACRO.findall(text)}
 
 
 _CALLS: dict[str, Callable[[str, Function, int], tuple[list[str], int]]] = {

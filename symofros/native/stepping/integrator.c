@@ -1,0 +1,21 @@
+/* The integrator: symofros_stepper.h. */
+#if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)
+#define _POSIX_C_SOURCE 199309L /* clock_gettime, nanosleep */
+#endif
+#include <math.h>
+#include "symofros_stepper.h"
+#include "symofros_instance.h"
+#include "arena.c"
+#include "manifold.c"
+#include "system.c"
+#include "elimination.c"
+#include "workspace.c"
+#include "explicit.c"
+#include "step_size.c"
+#include "rosenbrock.c"
+#include "second_order.c"
+#include "real_time.c"
+#include "dense_output.c"
+#include "events.c"
+#include "run.c"
+#include "external_rhs.c"

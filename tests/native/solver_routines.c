@@ -1,0 +1,75 @@
+/* Calls the routines of native/model with scratch of exactly the size that their macros state, under sanitizers, and prints
+ * the results. Appended to the routines' text. */
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { NQ = 3, N = 3, M_ = 2 };
+
+static double *scratch(size_t n) { return malloc(n * sizeof(double)); }
+
+static void print(const char *name, size_t n, const double *x) {
+    size_t i;
+    printf("%s", name);
+    for (i = 0; i < n; ++i) printf(" %.17g", x[i]);
+    printf("\n");
+}
+
+static void copy(double *to, const double *from, size_t n) { memcpy(to, from, n * sizeof *to); }
+
+/* A mass matrix that is singular alone: no inertia along the third speed, which the second condition binds. */
+static const double MASS[N * N] = {2, 0.5, 0, 0.5, 1, 0, 0, 0, 0};
+static const double G[M_ * N] = {1, 1, 0, 0, 1, 2};
+static const double FORCE[N] = {1, -2, 3}, RIGHT[M_] = {0.7, -0.4};
+
+static void dynamics_terms(const double *const *in, double *const *out, double *work) {
+    (void)in, (void)work;
+    copy(out[0], MASS, N * N), copy(out[1], FORCE, N), copy(out[2], G, M_ * N), copy(out[3], RIGHT, M_);
+}
+
+/* phi = G q - RIGHT and phi' = G v. */
+static void projection_terms(const double *const *in, double *const *out, double *work) {
+    int i, j;
+    (void)work;
+    copy(out[0], MASS, N * N), copy(out[1], G, M_ * N);
+    for (i = 0; i < M_; ++i) {
+        out[2][i] = 1.0, out[3][i] = -RIGHT[i], out[4][i] = 0.0;
+        for (j = 0; j < N; ++j) out[3][i] += G[i * N + j] * in[1][j], out[4][i] += G[i * N + j] * in[2][j];
+    }
+}
+
+static void move(const double *const *in, double *const *out, double *work) {
+    int i;
+    (void)work;
+    for (i = 0; i < NQ; ++i) out[0][i] = in[1][i] + in[2][i];
+}
+
+/* dR/dx of one x with N columns: minus the identity above zeros. */
+static void slopes(const double *const *in, double *const *out, double *work) {
+    int i;
+    (void)in, (void)work;
+    memset(out[0], 0, (N + M_) * N * sizeof(double));
+    for (i = 0; i < N; ++i) out[0][i * N + i] = -1.0;
+}
+
+int main(void) {
+    const double q0[NQ] = {0.3, 0.1, -0.2}, v0[N] = {1, 2, 3}, none[1] = {0};
+    const double *const in[5] = {none, q0, v0, none, none};
+    const int columns[1] = {N};
+    double A[N * N], B[M_ * N], r[N], c[M_], q[NQ], v[N], residual, derivative[(N + M_) * N], *out[1], *work;
+    copy(A, MASS, N * N), copy(B, G, M_ * N), copy(r, FORCE, N), copy(c, RIGHT, M_);
+    work = scratch(SYM_CONSTRAINED_WORK(N, M_));
+    printf("rank %d\n", sym_constrained(N, M_, A, r, B, c, work));
+    print("a", N, r), print("lam", M_, c), free(work);
+    copy(B, G, M_ * N), copy(r, FORCE, N), copy(c, RIGHT, M_);
+    work = scratch(SYM_NULL_SPACE_WORK(N, M_));
+    printf("null_rank %d\n", sym_null_space(N, M_, MASS, r, B, c, work));
+    print("null_a", N, r), print("null_lam", M_, c), free(work);
+    work = scratch(SYM_PROJECT_WORK(NQ, N, M_) + SYM_CONSTRAINED_WORK(N, M_));
+    printf("project_rank %d\n", sym_project(NQ, N, M_, projection_terms, move, in, q, v, &residual, work));
+    print("q", NQ, q), print("v", N, v), print("residual", 1, &residual), free(work);
+    work = scratch(SYM_DIFFERENTIATE_WORK(N, M_) + M_ * N);
+    out[0] = derivative;
+    sym_differentiate(N, M_, 1, columns, dynamics_terms, slopes, in, out, work);
+    print("derivative", (N + M_) * N, derivative), free(work);
+    return 0;
+}

@@ -1,0 +1,54 @@
+"""The integrator in C: what single statements of it are for, on the smallest models that show it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+
+MODELS = Path(__file__).parents[2] / "reference_models"
+
+
+@pytest.fixture(scope="module")
+def cart() -> sf.Model:
+    """A mass on a rail with a force."""
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), effort=("F",))
+    return sf.compile(sf.System("cart", [sf.RigidBody("mass", joint, sf.Inertia(2.0))], inputs=[sf.Input("F")]))
+
+
+def test_a_held_signal_changes_at_the_time_of_its_sample(cart: sf.Model) -> None:
+    """At the time of an inner sample its own value holds; a step that begins there is driven by it."""
+    force = sf.Signal([0.0, 0.25, 0.5, 1.0], [0.0, 4.0, -4.0, 0.0], "hold")
+    run = sf.simulate(cart, t_end=0.75, u={"F": force}, method="euler", dt=0.25)  # Times are exact in binary.
+    np.testing.assert_array_equal(run.t, [0.0, 0.25, 0.5, 0.75])
+    np.testing.assert_array_equal(run.u[:, 0], [0.0, 4.0, -4.0, -4.0])
+    np.testing.assert_allclose(run.v[:, 0], [0.0, 0.0, 0.5, 0.0], rtol=0, atol=1e-15)
+
+
+def test_no_adaptive_step_is_longer_than_max_step(cart: sf.Model) -> None:
+    """A constant force is integrated exactly, so that nothing but max_step keeps steps short."""
+    free, bound = (
+        sf.simulate(cart, t_end=1.0, u={"F": 1.0}, method="dopri5", max_step=longest) for longest in (np.inf, 0.03)
+    )
+    assert np.diff(free.t).max() > 0.3
+    assert np.diff(bound.t).max() <= 0.03 * (1 + 1e-12)
+    batch = sf.simulate_batch(cart, [[0.0]], t_end=1.0, u={"F": 1.0}, method="dopri5", max_step=0.03)
+    assert int(batch.steps[0]) == bound.statistics.steps >= 34
+
+
+def test_generalized_alpha_keeps_conditions_on_speeds() -> None:
+    """Such a condition is solved for the acceleration at the end of the step; its order is two, as for phi."""
+    model = sf.compile(sf.load(MODELS / "closed" / "sleigh.yaml"))
+    start = sf.assemble(model, model.neutral(), np.linspace(0.5, 1.0, model.nv))
+    exact = sf.simulate(model, start.q, start.v, 0.2, method="dop853", rtol=1e-11, atol=1e-12)
+    errors = []
+    for dt in (4e-3, 2e-3):
+        run = sf.simulate(model, start.q, start.v, 0.2, method="generalized_alpha", dt=dt)
+        assert run.outcome.ok, run.outcome
+        rate = model.constraint_rate(run.q, run.v, u=run.u)
+        assert np.abs(rate).max() < 1e-9
+        errors.append(np.abs(model.difference(exact.q[-1], run.q[-1])).max())
+    assert errors[1] < 1e-4 and 3.0 < errors[0] / errors[1] < 5.0, errors

@@ -1,0 +1,67 @@
+"""Constrained dynamics in C against NumPy, with scratch of exactly the stated size, under sanitizers."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from symofros.generator.codegen.solvers import ROUTINES
+from symofros.native import native_text
+
+DRIVER = Path(__file__).parent / "solver_routines.c"
+FLAGS = ("-std=gnu99", "-O1", "-g", "-Wno-unused-function", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+# No inertia along the third speed, which the second condition binds; as in the driver.
+MASS = np.array([[2, 0.5, 0], [0.5, 1, 0], [0, 0, 0]])
+G = np.array([[1.0, 1, 0], [0, 1, 2]])
+FORCE, RIGHT = np.array([1.0, -2, 3]), np.array([0.7, -0.4])
+KKT = np.block([[MASS, -G.T], [G, np.zeros((2, 2))]])
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
+    """Name -> numbers that the driver prints; a read or write beyond its scratch would have ended it."""
+    gcc = shutil.which("gcc")
+    if gcc is None:
+        pytest.skip("needs gcc")
+    folder = tmp_path_factory.mktemp("routines")
+    files = dict.fromkeys(file for needed in ROUTINES.values() for file in needed)
+    routines = "\n".join(native_text(f"model/{file}.c.in") for file in files)
+    head = "#include <math.h>\n#include <stdint.h>\n#include <string.h>\n"
+    (folder / "driver.c").write_text(head + routines + DRIVER.read_text(encoding="utf-8"), encoding="utf-8")
+    built = subprocess.run([gcc, *FLAGS, "-o", "driver", "driver.c", "-lm"], cwd=folder, capture_output=True, text=True)
+    if built.returncode != 0 and "sanitize" in built.stderr:
+        pytest.skip("needs the sanitizers of gcc")
+    assert built.returncode == 0, built.stderr
+    done = subprocess.run([folder / "driver"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    rows = (line.split() for line in done.stdout.splitlines())
+    return {name: np.array(values, dtype=np.float64) for name, *values in rows}
+
+
+@pytest.mark.parametrize("form", ["", "null_"], ids=["multipliers", "null space"])
+def test_a_singular_mass_matrix_gives_the_accelerations_and_multipliers_of_the_kkt_system(
+    results: dict[str, np.ndarray], form: str
+) -> None:
+    """M is singular alone, so that M + rho G^T G is factored: the right side must become r + rho G^T c."""
+    expected = np.linalg.solve(KKT, np.concatenate([FORCE, RIGHT]))
+    assert results[f"{form}rank"] == 2
+    np.testing.assert_allclose(results[f"{form}a"], expected[:3], rtol=0, atol=1e-13)
+    np.testing.assert_allclose(results[f"{form}lam"], expected[3:], rtol=0, atol=1e-13)
+
+
+def test_projection_is_the_least_change_in_the_metric_of_the_mass_matrix(results: dict[str, np.ndarray]) -> None:
+    q0, v0 = np.array([0.3, 0.1, -0.2]), np.array([1.0, 2, 3])
+    for name, start, right in (("q", q0, RIGHT - G @ q0), ("v", v0, -G @ v0)):
+        change = np.linalg.solve(KKT, np.concatenate([np.zeros(3), right]))[:3]
+        np.testing.assert_allclose(results[name], start + change, rtol=0, atol=1e-13)
+    assert results["residual"] < 1e-13 and results["project_rank"] == 2
+
+
+def test_derivatives_of_accelerations_and_multipliers_solve_the_kkt_system(results: dict[str, np.ndarray]) -> None:
+    slopes = np.vstack([-np.eye(3), np.zeros((2, 3))])  # dR/dx, as in the driver.
+    derivative = results["derivative"].reshape(5, 3)
+    np.testing.assert_allclose(derivative, np.linalg.solve(KKT, -slopes), rtol=0, atol=1e-13)
