@@ -12,7 +12,7 @@ import symofros as sf
 from validation.adapters import ROUTES, compiled, has_beams
 from validation.comparison.errors import Comparison, Scales, compute, judge, scaled_errors, typical_scales
 from validation.comparison.loops import of_unique_multipliers
-from validation.comparison.motion import MOTIONS, Motion, fall, judge_drift, smoothness_obstacle
+from validation.comparison.motion import MOTIONS, FreeMotion, fall, judge_drift, smoothness_obstacle
 from validation.comparison.participants import (
     Factories,
     Participant,
@@ -275,7 +275,7 @@ def _free_motion(bench: _Bench) -> Iterator[Comparison]:
             yield _judged(bench, one, MOTION_ENERGY, ours, motion.states, scales)
 
 
-def _drift(bench: _Bench, motion: Motion) -> Comparison:
+def _drift(bench: _Bench, motion: FreeMotion) -> Comparison:
     reason = ""
     for order in omitted_orders(bench.subject.system)[:1]:
         reason = f"beams of {order.replace('_', ' ')} conserve energy only up to the terms they leave out"

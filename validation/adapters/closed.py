@@ -84,11 +84,11 @@ class ConstrainedEngine:
         return self._rows(states).gamma
 
     def forward_dynamics(self, states: States) -> Array:
-        """V' of M v' - G^T lam = Q - h, G v' = gamma."""
+        """Acceleration v' of M v' - G^T lam = Q - h, G v' = gamma."""
         return self._solved(states)[0]
 
     def multipliers(self, states: States) -> Array:
-        """Lam of least norm."""
+        """Multipliers lam of least norm."""
         return self._solved(states)[1]
 
     def _solved(self, states: States) -> tuple[Array, Array]:
@@ -283,7 +283,7 @@ def _rolling(radius: float, height: float, shape: str, B: _Kinematics) -> tuple[
 
 
 def _stacked(rows: list[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
-    """Phi, G and gamma = -drift of several conditions."""
+    """Residuals phi, Jacobian G and gamma = -drift of several conditions."""
     phi, G, drift = (np.stack(parts, axis=1) for parts in zip(*rows, strict=True))
     return phi, G, -drift
 

@@ -40,8 +40,8 @@ def build(factory: EngineFactory, subject: Subject) -> Engine | Unsupported:
     """An engine's model of a description with rotors.
 
     Args:
-        factory: Of an engine for trees.
-        subject: With rotors.
+        factory: Factory of an engine for trees.
+        subject: Subject with rotors.
     """
     plain = without_rotors(subject.system)
     bodies, spins = _rotor_bodies(subject.system)

@@ -45,7 +45,7 @@ _CORNERS = frozenset({"sign", "abs", "min", "max"})
 
 
 @dataclass(frozen=True)
-class Motion:
+class FreeMotion:
     """Free motions from several initial states.
 
     Attributes:
@@ -61,7 +61,7 @@ class Motion:
     step: float = STEP
 
 
-def fall(model: sf.Model, q: Array, v: Array, weightless: sf.Model | None = None) -> Motion:
+def fall(model: sf.Model, q: Array, v: Array, weightless: sf.Model | None = None) -> FreeMotion:
     """Let a model fall from initial states, with zero inputs, with two step lengths.
 
     Args:
@@ -77,13 +77,13 @@ def fall(model: sf.Model, q: Array, v: Array, weightless: sf.Model | None = None
     return motion
 
 
-def _fall(model: sf.Model, q: Array, v: Array, weightless: sf.Model | None, duration: float) -> Motion:
+def _fall(model: sf.Model, q: Array, v: Array, weightless: sf.Model | None, duration: float) -> FreeMotion:
     # A motion that runs away is told by its verdict, not by NumPy.
     with np.errstate(over="ignore", invalid="ignore"):
         coarse, fine = (_integrate(model, q, v, weightless, duration, steps) for steps in (_STEPS, 2 * _STEPS))
         scale = max(float(np.ptp(fine.potential, axis=0).max()), float(fine.kinetic.max())) or 1.0
         drift = (float(coarse.drift.max()) / scale, float(fine.drift.max()) / scale)
-    return Motion(fine.states, scale, drift, duration / _STEPS)
+    return FreeMotion(fine.states, scale, drift, duration / _STEPS)
 
 
 _STEPS = round(DURATION / STEP)
@@ -141,7 +141,7 @@ def step(model: sf.Model, q: Array, v: Array, u: Array, h: float) -> tuple[Array
     return q_next, v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4), h / 6 * (p1 + 2 * p2 + 2 * p3 + p4)
 
 
-def judge_drift(label: str, motion: Motion) -> Comparison:
+def judge_drift(label: str, motion: FreeMotion) -> Comparison:
     """Whether our energy drifts as a fourth-order method's does and no faster."""
     coarse, fine = motion.drift
     if not (math.isfinite(coarse) and math.isfinite(fine)):

@@ -107,7 +107,7 @@ class Chart:
         return Chart(tuple(slots), q, v)
 
     def coordinates(self, q: Array) -> Array:
-        """Our q -> the engine's."""
+        """Coordinates of the engine from ours."""
         q_e = np.zeros((len(q), self.nq))
         for slot in self.slots:
             part = _ENCODE[slot.encoding](slot.mover, q[:, slot.mover.q])
@@ -142,41 +142,41 @@ class Chart:
         return slot.mover.X_AP.R @ R_PB if slot.encoding == "free_in_world" else R_PB
 
     def mass_matrix(self, q: Array, M_e: Array) -> Array:
-        """M from the engine's."""
+        """Mass matrix M from the engine's."""
         T = self.transform(q)
         return _transposed(T) @ M_e @ T
 
     def bias(self, q: Array, v: Array, h_e: Array, M_e: Array) -> Array:
-        """H from the engine's: the chart's own acceleration T' v is among our velocity terms."""
+        """Bias h from the engine's: the chart's own acceleration T' v is among our velocity terms."""
         carried = times(M_e, times(self.transform_rate(q, v), v))
         return times(_transposed(self.transform(q)), h_e + carried)
 
     def speeds(self, q: Array, v: Array) -> Array:
-        """V_e from ours."""
+        """Speeds v_e of the engine from ours."""
         return times(self.transform(q), v)
 
     def accelerations(self, q: Array, v: Array, a: Array) -> Array:
-        """A_e from ours."""
+        """Accelerations a_e of the engine from ours."""
         return times(self.transform(q), a) + times(self.transform_rate(q, v), v)
 
     def our_accelerations(self, q: Array, v: Array, a_e: Array) -> Array:
-        """Ours from a_e."""
+        """Our accelerations from a_e."""
         return times(_transposed(self.transform(q)), a_e - times(self.transform_rate(q, v), v))
 
     def forces(self, q: Array, Q: Array) -> Array:
-        """Q_e from ours; T is orthogonal, so forces turn like speeds."""
+        """Forces Q_e of the engine from ours; T is orthogonal, so forces turn like speeds."""
         return times(self.transform(q), Q)
 
     def our_forces(self, q: Array, Q_e: Array) -> Array:
-        """Ours from Q_e."""
+        """Our forces from Q_e."""
         return times(_transposed(self.transform(q)), Q_e)
 
     def jacobian(self, q: Array, J_e: Array) -> Array:
-        """J (N, F, 6, nv) from the engine's."""
+        """Jacobian J (N, F, 6, nv) from the engine's."""
         return J_e @ self.transform(q)[:, None]
 
     def jacobian_rate(self, q: Array, v: Array, J_e: Array, J_e_rate: Array) -> Array:
-        """J' from the engine's J and J'."""
+        """Rate J' from the engine's J and J'."""
         return J_e_rate @ self.transform(q)[:, None] + J_e @ self.transform_rate(q, v)[:, None]
 
 

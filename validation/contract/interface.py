@@ -73,7 +73,7 @@ class Engine(Protocol):
 
     @property
     def version(self) -> str:
-        """Of its package."""
+        """Version of the engine's package."""
 
     @property
     def capabilities(self) -> frozenset[str]:
@@ -122,7 +122,7 @@ class UrdfSource:
     """The file that a system was read from, for engines that read it themselves.
 
     Attributes:
-        text: Of the file, undecoded: its first line says how it is encoded.
+        text: Content of the file, undecoded: its first line says how it is encoded.
         verbatim: Our reading of it with every digit as it stands; reading it normally makes exact what was meant so.
         floating_base: Whether reading it put a free joint under its root.
     """
@@ -137,7 +137,7 @@ class MjcfSource:
     """The MJCF file that a system was read from; reading it has shown that it names no file outside of its folder.
 
     Attributes:
-        path: Of the main file.
+        path: Path of the main file.
         verbatim: Our reading of it with every digit as it stands.
     """
 
@@ -154,7 +154,7 @@ class Subject:
         system: The description.
         frames: The frames that frame quantities are compared at; none: the harness chooses.
         urdf: Its file, if it came from one.
-        mjcf: Likewise.
+        mjcf: Its MJCF file, if it came from one.
     """
 
     label: str
@@ -165,7 +165,7 @@ class Subject:
 
     @property
     def format(self) -> Format:
-        """Of the file that engines can read themselves."""
+        """Format of the file that engines can read themselves."""
         return "urdf" if self.urdf is not None else "mjcf" if self.mjcf is not None else ""
 
     @property

@@ -171,7 +171,7 @@ def assemble(system: sf.System) -> Assembly:
     Args:
         system: A legal description; `symofros.compile` is what finds its faults.
     """
-    builder = _Builder(system)
+    builder = _AssemblyBuilder(system)
     builder.visit_all()
     names = Counter(own for own, _, _ in builder.frames)
     frames = {}
@@ -185,7 +185,7 @@ def assemble(system: sf.System) -> Assembly:
     )
 
 
-class _Builder:
+class _AssemblyBuilder:
     def __init__(self, system: sf.System) -> None:
         self.system = system
         self.parameters = system.parameter_values()

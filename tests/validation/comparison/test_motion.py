@@ -4,7 +4,7 @@ import pytest
 import symofros as sf
 from tests.validation.subjects import every_kind, states_of, subject_of
 from validation.adapters.compiled import build_weightless
-from validation.comparison.motion import Motion, fall, judge_drift, step
+from validation.comparison.motion import FreeMotion, fall, judge_drift, step
 
 SUBJECT = every_kind()
 FUNCTIONS = ("forward_dynamics", "generalized_force", "kinetic_energy", "potential_energy")
@@ -55,8 +55,8 @@ def test_work_on_a_spring_is_counted_once() -> None:
     assert motion.drift[1] < 1e-9
 
 
-def with_drift(coarse: float, fine: float) -> Motion:
-    return Motion(states_of(SUBJECT, 1), 1.0, (coarse, fine))
+def with_drift(coarse: float, fine: float) -> FreeMotion:
+    return FreeMotion(states_of(SUBJECT, 1), 1.0, (coarse, fine))
 
 
 @pytest.mark.parametrize(

@@ -128,7 +128,7 @@ def populate(mbs: Any, system: sf.System, angles: Mapping[str, float], cables: M
     Returns:
         The body that carries each mover of the description, in its order.
     """
-    builder = _Builder(mbs, system)
+    builder = _PlanarBuilder(mbs, system)
     for mover in assemble(system).movers:
         builder.add(mover, angles.get(mover.joint.name, 0.0), cables)
     return builder.frames
@@ -143,7 +143,7 @@ def smallest() -> ExudynSystem:
     return assembled(container, mbs)
 
 
-class _Builder:
+class _PlanarBuilder:
     def __init__(self, mbs: Any, system: sf.System) -> None:
         self.mbs, self.system = mbs, system
         self.parameters = system.parameter_values()
