@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike as ArrayLike
 
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
-from symofros.runtime.kernel import Array, Kernel, Manner, Numbers, Precision, Unit
+from symofros.runtime.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.layout import by_columns, flat, states
 from symofros.runtime.record import ModelRecord
 
@@ -308,7 +308,7 @@ class Functions:
         self, name: str, frame: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None
     ) -> list[Numbers]:
         kernel = self._kernels.get((name, frame)) or self._make(name, frame)
-        dtype = Manner(precision=self._precision).dtype
+        dtype = BatchOptions(precision=self._precision).dtype
         arrays = [self._array(group, self._given(given[group]), size, dtype) for group, size in kernel.signature.inputs]
         shapes = [array.shape[:-1] for array in arrays]
         par_array = None
@@ -319,7 +319,7 @@ class Functions:
         n = int(np.prod(batch))
         pre = self._pre(kernel, (name, frame), par_array, batch)
         inputs = [states(array, batch) for array in arrays]
-        outputs = kernel.run(n, pre, inputs, Manner(self._threads, by_columns(inputs), self._precision))
+        outputs = kernel.run(n, pre, inputs, BatchOptions(self._threads, by_columns(inputs), self._precision))
         shaped = zip(outputs, kernel.signature.outputs, strict=True)
         return [output.reshape(batch + shape) for output, (_, shape) in shaped]
 

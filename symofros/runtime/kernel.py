@@ -40,7 +40,7 @@ class Lanes:
 
     Attributes:
         own: Whether each state may have parameters of its own.
-        precision: Of what lanes hold.
+        precision: Floating-point type of the lanes: "double" or "single".
     """
 
     own: bool = False
@@ -56,13 +56,13 @@ SHARED = Lanes()
 
 
 @dataclass(frozen=True)
-class Manner:
-    """How a batch is to be evaluated.
+class BatchOptions:
+    """Options of one evaluation of a batch.
 
     Attributes:
-        threads: How many may share the work.
-        columns: Whether results are wanted with the batch as their fast axis.
-        precision: Of inputs and results, and of the work where there is code for it.
+        threads: Most threads that share the batch.
+        columns: Whether the batch is the fast axis of the results.
+        precision: Floating-point type of inputs and results, and of the computation where there is code for it.
     """
 
     threads: int = 1
@@ -71,15 +71,15 @@ class Manner:
 
     @property
     def dtype(self) -> type[np.float32] | type[np.float64]:
-        """Of inputs and results."""
+        """Type of inputs and results."""
         return np.float32 if self.precision == "single" else np.float64
 
     def empty(self, n: int, size: int) -> Numbers:
-        """Room for results of so many numbers a state (n, size), laid out as wanted."""
+        """Uninitialised results (n, size) in the layout of these options."""
         return columns(n, size, self.dtype) if self.columns else np.empty((n, size), self.dtype)
 
     def of(self, results: Array) -> Numbers:
-        """Results (n, *shape), row by row in double precision, as wanted: a copy where they are not so already."""
+        """Results (n, *shape), given row by row in double precision, in the layout and precision of these options."""
         if not self.columns and self.precision == "double":
             return results
         wanted = self.empty(len(results), prod(results.shape[1:]))
@@ -89,7 +89,7 @@ class Manner:
         return wanted.reshape(results.shape)
 
 
-PLAIN = Manner()
+DEFAULT_OPTIONS = BatchOptions()
 
 
 class Kernel(Protocol):
@@ -111,14 +111,14 @@ class Kernel(Protocol):
         """
         ...
 
-    def run(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner = PLAIN) -> list[Numbers]:
+    def run(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions = DEFAULT_OPTIONS) -> list[Numbers]:
         """Evaluate n states.
 
         Args:
             n: Number of states.
             pre: (n or 1, npre), from `prepare`.
             inputs: Each (n or 1, size), with any strides, in the signature's order.
-            manner: How.
+            options: Threads, layout and precision.
 
         Returns:
             One array an output, (n, *shape).

@@ -14,7 +14,17 @@ import numpy as np
 
 from symofros.errors import CompileError, Problem
 from symofros.runtime.declarations import interface, model_abi
-from symofros.runtime.kernel import PLAIN, SHARED, Array, Kernel, Lanes, Manner, Numbers, Precision, Signature
+from symofros.runtime.kernel import (
+    DEFAULT_OPTIONS,
+    SHARED,
+    Array,
+    BatchOptions,
+    Kernel,
+    Lanes,
+    Numbers,
+    Precision,
+    Signature,
+)
 from symofros.runtime.layout import Strided
 from symofros.runtime.sharing import parts, share, together
 
@@ -151,13 +161,13 @@ class CompiledKernel:
             self._lanes[lanes] = (make(key, lanes) if make is not None else None) or self
         return self._lanes[lanes]
 
-    def run(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner = PLAIN) -> list[Numbers]:
+    def run(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions = DEFAULT_OPTIONS) -> list[Numbers]:
         """Evaluate n states in C: by vectors if they are many, or wanted in single precision; else one by one."""
-        kernel = self._for_many(n, pre, manner.precision)
+        kernel = self._for_many(n, pre, options.precision)
         if kernel is not None:
-            return kernel._by_lanes(n, pre, inputs, manner)
+            return kernel._by_lanes(n, pre, inputs, options)
         rows = [np.ascontiguousarray(x, dtype=np.float64) for x in (pre, *inputs)]
-        return [manner.of(output) for output in self._by_rows(n, rows, manner.threads)]
+        return [options.of(output) for output in self._by_rows(n, rows, options.threads)]
 
     def _for_many(self, n: int, pre: Array, precision: Precision = "double") -> CompiledKernel | None:
         """The same by vectors, where a batch is evaluated so."""
@@ -167,11 +177,11 @@ class CompiledKernel:
         kernel = self.in_lanes(lanes)
         return kernel if kernel.has(lanes) else None
 
-    def _by_lanes(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner) -> list[Numbers]:
+    def _by_lanes(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions) -> list[Numbers]:
         """By vectors of this library: rows are told by their addresses alone, which takes less than their layout."""
-        if manner.precision == "double" and not manner.columns and all(x.flags.c_contiguous for x in inputs):
-            return self._by_rows(n, [pre, *inputs], manner.threads)
-        return self._in_place(n, pre, inputs, manner)
+        if options.precision == "double" and not options.columns and all(x.flags.c_contiguous for x in inputs):
+            return self._by_rows(n, [pre, *inputs], options.threads)
+        return self._in_place(n, pre, inputs, options)
 
     def has(self, lanes: Lanes) -> bool:
         """Whether there is code by such vectors in this library."""
@@ -201,12 +211,12 @@ class CompiledKernel:
         share(n, threads, part)
         return outputs
 
-    def _in_place(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner) -> list[Numbers]:
+    def _in_place(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions) -> list[Numbers]:
         """Arrays as they lie, by vectors."""
         ffi, nowhere = self._unit.ffi, self._unit.nowhere
-        flat = [manner.empty(n, math.prod(shape)) for _, shape in self.signature.outputs]
-        read = [Strided.of(pre, np.float64), *(Strided.of(x, manner.dtype) for x in inputs)]
-        written = [Strided.of(y, manner.dtype) for y in flat]
+        flat = [options.empty(n, math.prod(shape)) for _, shape in self.signature.outputs]
+        read = [Strided.of(pre, np.float64), *(Strided.of(x, options.dtype) for x in inputs)]
+        written = [Strided.of(y, options.dtype) for y in flat]
 
         def part(first: int, end: int) -> None:
             # An address is given as a pointer to so many bytes from nowhere on.
@@ -214,7 +224,7 @@ class CompiledKernel:
             from_, to = (ffi.new("sym_strided[]", of) for of in arrays)
             self._by_vectors.batch(end - first, from_, to, self._own_work())
 
-        share(n, manner.threads, part)
+        share(n, options.threads, part)
         # Splits an axis, so that these are views.
         return [y.reshape(n, *shape) for y, (_, shape) in zip(flat, self.signature.outputs, strict=True)]
 

@@ -11,7 +11,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.runtime import library
-from symofros.runtime.kernel import Manner
+from symofros.runtime.kernel import BatchOptions
 from symofros.runtime.layout import Strided, by_columns, columns, states
 from symofros.runtime.toolchain import DEFAULT_FLAGS
 
@@ -180,4 +180,4 @@ def test_what_is_told_of_a_layout() -> None:
     rows, one, scalar = np.zeros((9, 4)), np.zeros((1, 4)), np.zeros((9, 1))
     assert by_columns([np.asfortranarray(rows), one, scalar]) and not by_columns([np.asfortranarray(rows), rows])
     assert not by_columns([one, scalar]) and not by_columns([])
-    assert Manner(columns=True).of(rows + 1.0).flags.c_contiguous is False
+    assert BatchOptions(columns=True).of(rows + 1.0).flags.c_contiguous is False

@@ -9,7 +9,7 @@ import numpy as np
 from symofros.expr.evaluate import evaluate_edges, interpret
 from symofros.expr.program import Function, Program, Solver
 from symofros.runtime.constrained import constrained, differentiate, null_space, project
-from symofros.runtime.kernel import PLAIN, Array, Kernel, Manner, Numbers, Signature
+from symofros.runtime.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
 
 
 class InterpretedUnit:
@@ -41,13 +41,13 @@ class InterpretedKernel:
             pre[:, i] = column
         return pre
 
-    def run(self, n: int, pre: Array, inputs: list[Numbers], manner: Manner = PLAIN) -> list[Numbers]:
+    def run(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions = DEFAULT_OPTIONS) -> list[Numbers]:
         """Evaluate n states; in one thread, since the interpreter keeps its lock, and in double precision."""
         named = dict(zip(self._function.inputs, [x.astype(np.float64, copy=False) for x in inputs], strict=True))
         outputs = interpret(self._program, self._function, named | {"pre": pre}, n)
         solver = self._function.solver
         found = outputs if solver is None else _TWINS[solver.routine](self, solver, named | {"pre": pre}, outputs)
-        return [manner.of(output) for output in found]
+        return [options.of(output) for output in found]
 
     def bind(self, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
         """The function on fixed memory, for one state."""
