@@ -13,7 +13,7 @@ import pytest
 
 import symofros as sf
 from tests.exports.cases import (
-    SAMPLED,
+    MODELS,
     STARTS,
     STEP,
     STRICT,
@@ -25,13 +25,14 @@ from tests.exports.cases import (
     system_of,
     trajectory,
 )
+from tests.models import sampled
 
 HERE = Path(__file__).parent
 # The same steps in the same order, compiled with other flags: fused products round differently.
 SAME = 1e-12
 
 
-@pytest.fixture(scope="module", params=SAMPLED)
+@pytest.fixture(scope="module", params=sampled(MODELS, ("four_bar",)))
 def package(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     name = request.param
     folder = tmp_path_factory.mktemp("package") / name

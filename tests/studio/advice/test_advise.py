@@ -147,7 +147,9 @@ def test_a_beam_that_may_be_rigid_is_said_to() -> None:
     assert sf.compile(advice.system).names.v == ("swing",)
 
 
-@pytest.mark.parametrize("estimated", ["rigid", "foreshortening", "elastic joint"])
+@pytest.mark.parametrize(
+    "estimated", ["rigid", "foreshortening", pytest.param("elastic joint", marks=pytest.mark.slow)]
+)
 def test_tighter_tolerances_keep_more(estimated: str) -> None:
     """Estimates are in units of what is allowed: a hundredth of it, a hundred times the estimate."""
     system, scene = crane()

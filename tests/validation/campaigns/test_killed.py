@@ -114,6 +114,7 @@ def test_a_killed_worker_costs_its_batch_and_no_other(tmp_path: Path) -> None:
     assert result(tmp_path / "c").equals(uninterrupted())
 
 
+@pytest.mark.slow  # In every run: an interrupt, and parts that a kill in the middle of writing leaves out.
 def test_a_killed_client_costs_what_its_workers_were_at(tmp_path: Path) -> None:
     client = start(tmp_path / "c")
     wait_for(client, lambda: sum(events(tmp_path / "c", "done").values()) >= 5)

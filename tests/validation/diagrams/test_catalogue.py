@@ -13,7 +13,7 @@ from validation.__main__ import app
 from validation.diagrams import catalogue
 
 
-@pytest.mark.parametrize("name", ["square", "two_arms"])
+@pytest.mark.parametrize("name", ["square", pytest.param("two_arms", marks=pytest.mark.slow)])
 def test_the_studies_answer(name: str, tmp_path: Path) -> None:
     command = ["diagrams", "--study", name, "--quick", "--json", "--report", str(tmp_path)]
     done = CliRunner().invoke(app, command)

@@ -80,7 +80,10 @@ def test_a_beam_on_every_kind_of_joint(kind: str) -> None:
     checked(sf.System(kind, [beam("b", joint), load]))
 
 
-@pytest.mark.parametrize("family", ["spline", "polynomial", "legendre", "clamped_free", "hermite"])
+@pytest.mark.parametrize(
+    "family",
+    sampled(("spline", "polynomial", "legendre", "clamped_free", "hermite"), ("spline", "legendre", "clamped_free")),
+)
 def test_every_family_in_three_directions(family: str) -> None:
     joint = sf.Joint("j", "revolute", axis=(1, 2, 2))
     counts = {"bend_y": 2, "bend_z": 2, "twist": 1}

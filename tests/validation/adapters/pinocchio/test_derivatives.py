@@ -48,7 +48,11 @@ def is_rigid(system: sf.System) -> bool:
 RIGID = tuple(name for name in MODELS if is_rigid(MODELS[name]) and not MODELS[name].constraints)
 TREES = tuple(name for name in RIGID if name != "gyroscope")
 # Each kind of joint, rotors, wheels, short chains; long chains and wide trees take seconds each to generate.
-SMALL = tuple(name for name in TREES if not name.startswith(("chain", "random_tree")) and name not in ("mss", "spdm"))
+SMALL = tuple(
+    name
+    for name in TREES
+    if not name.startswith(("chain", "random_tree")) and name not in ("mss", "spdm", "ssrms", "puma560")
+)
 
 
 def test_only_the_gyroscope_is_left_out() -> None:
