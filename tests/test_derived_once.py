@@ -17,7 +17,7 @@ from symofros.generator import programs
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.topology import graph
 from symofros.runtime import build
-from symofros.studio.editor.work import compile_model
+from symofros.studio.editor.jobs.operations import compile_model
 
 
 @pytest.fixture

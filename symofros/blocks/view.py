@@ -20,7 +20,7 @@ from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.kernel import Array
-from symofros.studio.viewer.of_run import chosen_block
+from symofros.studio.viewer.playing.diagram_motion import chosen_block
 from symofros.studio.viewer.viewer import Viewer
 
 

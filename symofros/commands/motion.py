@@ -12,7 +12,7 @@ import typer
 from rich.table import Table
 
 import symofros as sf
-from symofros.commands import watching
+from symofros.commands import view_options
 from symofros.commands.shared import (
     BAD_INPUT,
     AsJson,
@@ -85,7 +85,7 @@ def simulate(
     settings = {"method": method, "dt": dt, "rtol": rtol}
     stated: dict[str, Any] = {name: value for name, value in settings.items() if value is not None}
     wanted = not as_json and err.is_terminal
-    look = watching.Look(view, view_block, record_view, exaggeration)
+    viewing = view_options.ViewOptions(view, view_block, record_view, exaggeration)
     try:
         if diagrams.is_diagram(model):
             if inputs:
@@ -102,12 +102,12 @@ def simulate(
             names = tuple(names_of(signals) or ())
             wishes = diagrams.Wishes(t_end, stated, pace, names, output, picture, jitter)
             diagram = sf.load_diagram(model, network=network)
-            diagram, live = watching.prepared(diagram, look, bool(pace or diagram.simulation.realtime))
-            found = diagrams.run_diagram(diagram, wishes, wanted)
-            files = diagrams.write_files(found, wishes) + watching.recorded(found, look)
-            diagrams.tell_run(found, files, as_json, out)
-            watching.shown(found, look, live=live)
-            ok = found.outcome.ok
+            diagram, live = view_options.with_live_view(diagram, viewing, bool(pace or diagram.simulation.realtime))
+            diagram_run = diagrams.run_diagram(diagram, wishes, wanted)
+            files = diagrams.write_files(diagram_run, wishes) + view_options.record_run(diagram_run, viewing)
+            diagrams.tell_run(diagram_run, files, as_json, out)
+            view_options.show_run(diagram_run, viewing, live=live)
+            ok = diagram_run.outcome.ok
         else:
             if picture == diagrams.WINDOW:
                 raise sf.SymofrosError(
@@ -118,15 +118,15 @@ def simulate(
                         "write a picture: --plot run.png",
                     )
                 )
-            look.check()
+            viewing.check()
             system = load(model, floating_base)
             run = _simulated(system, t_end, given, inputs, every, pace, stated, wanted)
-            files = ([str(run.save(output))] if output else []) + watching.recorded(run, look, system)
+            files = ([str(run.save(output))] if output else []) + view_options.record_run(run, viewing, system)
             if picture:
                 run.plot().savefig(picture, dpi=120)
                 files.append(picture)
             _tell(run, files, as_json)
-            watching.shown(run, look, system)
+            view_options.show_run(run, viewing, system)
             ok = run.outcome.ok
     except (sf.SymofrosError, ValueError, OSError) as error:
         raise refuse(error) from None

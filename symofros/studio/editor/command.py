@@ -15,9 +15,9 @@ import uvicorn
 import symofros
 from symofros.description.yaml.files import SUFFIXES, write_yaml
 from symofros.errors import Problem
-from symofros.studio.editor.app import application
-from symofros.studio.editor.session import Session
-from symofros.studio.editor.workspace import FileError, Workspace
+from symofros.studio.editor.document.session import Session
+from symofros.studio.editor.document.workspace import FileError, Workspace
+from symofros.studio.editor.server.app import application
 
 HOST = "127.0.0.1"
 # Of the 3-D view; the package comes with viser, and without it there is nothing to connect to.

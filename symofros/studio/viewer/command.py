@@ -10,8 +10,8 @@ import typer
 
 import symofros as sf
 from symofros.errors import Problem
-from symofros.studio.viewer.motion import read_motion
-from symofros.studio.viewer.poses import Mechanism
+from symofros.studio.viewer.drawing.poses import Mechanism
+from symofros.studio.viewer.playing.motion import read_motion
 
 
 def add_view(app: typer.Typer, load: Callable[[Path, bool], sf.System], bad_input: int) -> None:

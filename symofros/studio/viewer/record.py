@@ -18,14 +18,15 @@ from symofros.atomic import write_atomically
 from symofros.description.system import System
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError, did_you_mean
-from symofros.studio.viewer.camera import Camera
-from symofros.studio.viewer.motion import Motion, Played, finite, motion_of, positive
-from symofros.studio.viewer.of_run import shown_of
-from symofros.studio.viewer.poses import Mechanism, Posture
-from symofros.studio.viewer.raster import Image, picture
-from symofros.studio.viewer.scene import Scene, shown_at_first
-from symofros.studio.viewer.server import LOOPBACK, start_server, stop_server
-from symofros.studio.viewer.tracks import tracks_of
+from symofros.studio.viewer.drawing.layers import shown_at_first
+from symofros.studio.viewer.drawing.poses import Mechanism, Posture
+from symofros.studio.viewer.drawing.tracks import tracks_of
+from symofros.studio.viewer.page.viser_scene import Scene
+from symofros.studio.viewer.page.viser_server import LOOPBACK, start_server, stop_server
+from symofros.studio.viewer.playing.diagram_motion import shown_of
+from symofros.studio.viewer.playing.motion import Motion, Played, finite, motion_of, positive
+from symofros.studio.viewer.render.camera import Camera
+from symofros.studio.viewer.render.raster import Image, picture
 
 MOST_FRAMES = 20_000  # Eleven minutes at thirty a second.
 _SUFFIXES = (".html", ".mp4", ".gif", ".png")

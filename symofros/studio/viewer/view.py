@@ -11,9 +11,9 @@ from symofros.description.system import System
 from symofros.diagrams.result import DiagramRun
 from symofros.loading import load
 from symofros.runtime.model import ArrayLike
-from symofros.studio.viewer.motion import Played
-from symofros.studio.viewer.of_run import shown_of
-from symofros.studio.viewer.server import LOOPBACK, PORT
+from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT
+from symofros.studio.viewer.playing.diagram_motion import shown_of
+from symofros.studio.viewer.playing.motion import Played
 from symofros.studio.viewer.viewer import Viewer
 
 

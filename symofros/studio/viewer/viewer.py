@@ -11,12 +11,12 @@ from typing import Any, NamedTuple, Self
 
 from symofros.description.system import System
 from symofros.runtime.model import ArrayLike
-from symofros.studio.viewer.motion import Played, finite, motion_of, positive
-from symofros.studio.viewer.player import Player
-from symofros.studio.viewer.poses import Mechanism, State
-from symofros.studio.viewer.screen import Screen
-from symofros.studio.viewer.server import LOOPBACK, PORT, start_server, stop_server
-from symofros.studio.viewer.tracks import tracks_of
+from symofros.studio.viewer.drawing.poses import Mechanism, State
+from symofros.studio.viewer.drawing.tracks import tracks_of
+from symofros.studio.viewer.page.viewer_page import Screen
+from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT, start_server, stop_server
+from symofros.studio.viewer.playing.motion import Played, finite, motion_of, positive
+from symofros.studio.viewer.playing.player import Player
 
 RATE = 60.0  # Pictures a second at most; browsers show no more.
 

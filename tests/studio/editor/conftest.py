@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from symofros.studio.editor.app import application
-from symofros.studio.editor.session import Session
-from symofros.studio.editor.workspace import Workspace
+from symofros.studio.editor.document.session import Session
+from symofros.studio.editor.document.workspace import Workspace
+from symofros.studio.editor.server.app import application
 from tests.studio.editor.texts import FILES
 
 TOKEN = "the-token"

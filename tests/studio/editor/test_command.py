@@ -19,7 +19,7 @@ import pytest
 from typer.testing import CliRunner
 
 from symofros.__main__ import app
-from symofros.studio.editor.workspace import autosave_of
+from symofros.studio.editor.document.workspace import autosave_of
 from tests.studio.editor.texts import FILES, TEXTS
 
 ROOT = Path(__file__).parents[3]

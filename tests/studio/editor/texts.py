@@ -7,8 +7,8 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from symofros.studio.editor.plain import Path as Steps
-from symofros.studio.editor.sheet import Sheet
+from symofros.studio.editor.editing.data_edits import Path as Steps
+from symofros.studio.editor.editing.yaml_spans import Sheet
 
 ROOT = Path(__file__).parents[3] / "reference_models"
 # Models lie in folders by kind; scenes and diagrams do not.

@@ -1,4 +1,4 @@
-/** What the server sends and takes: the contract of symofros/studio/editor/app.py. */
+/** What the server sends and takes: the contract of symofros/studio/editor/server/app.py. */
 
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 export type JsonMap = { [key: string]: Json };

@@ -1,0 +1,101 @@
+"""What `symofros simulate` shows: a run as it goes, or afterwards, in a browser or in a file."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from symofros.blocks.view import View3D, with_view
+from symofros.description.system import System
+from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.result import DiagramRun
+from symofros.simulation.trajectory import Trajectory
+from symofros.studio.viewer.page.viser_server import load_viser
+from symofros.studio.viewer.playing.diagram_motion import chosen_block, shown_of
+from symofros.studio.viewer.record import check_suffix, record
+from symofros.studio.viewer.view import view
+
+
+@dataclass(frozen=True)
+class ViewOptions:
+    """Options of the command line about viewing and recording.
+
+    Attributes:
+        view: Whether to open the viewer.
+        block: Mechanism block of a diagram to be shown; "" for the only one.
+        output: File to record to.
+        exaggeration: Factor on elastic coordinates in the picture.
+    """
+
+    view: bool = False
+    block: str = ""
+    output: Path | None = None
+    exaggeration: float = 1.0
+
+    def check(self) -> None:
+        """Raise before the run what would fail only after it.
+
+        Raises:
+            SymofrosError: The file has another suffix, or viser is not installed.
+        """
+        if self.output is not None:
+            check_suffix(self.output)
+        if self.view:
+            load_viser()
+
+
+def with_live_view(diagram: Diagram, options: ViewOptions, keeps_pace: bool) -> tuple[Diagram, View3D | None]:
+    """The diagram to run, and the block in it that shows it, if it keeps pace with the clock.
+
+    Raises:
+        SymofrosError: As `ViewOptions.check`; or the mechanism to be shown is not there, or not the only one.
+    """
+    options.check()
+    if options.view and keeps_pace:
+        return with_view(diagram, options.block, exaggeration=options.exaggeration)
+    if options.view or options.output is not None:
+        chosen_block(diagram.name, diagram.blocks, options.block)
+    return diagram, None
+
+
+def record_run(run: DiagramRun | Trajectory, options: ViewOptions, system: System | None = None) -> list[str]:
+    """Record a run if asked, and return the files written.
+
+    Args:
+        run: Run of a diagram, or of a model.
+        options: Options of the command line.
+        system: System of a model's run.
+    """
+    if options.output is None:
+        return []
+    if isinstance(run, DiagramRun):
+        return [str(record(run, options.output, block=options.block, exaggeration=options.exaggeration))]
+    assert system is not None
+    return [str(record(system, run, options.output, exaggeration=options.exaggeration))]
+
+
+def show_run(
+    run: DiagramRun | Trajectory, options: ViewOptions, system: System | None = None, live: View3D | None = None
+) -> None:
+    """Play a run in the viewer, if asked, until the user interrupts.
+
+    Args:
+        run: Run of a diagram, or of a model.
+        options: Options of the command line.
+        system: System of a model's run.
+        live: Block that showed the run as it went; its page replays the run.
+    """
+    if not options.view:
+        return
+    if live is not None and live.viewer is not None and isinstance(run, DiagramRun):
+        viewer = live.viewer
+        viewer.play(shown_of(run, options.block)[1])
+    elif isinstance(run, DiagramRun):
+        viewer = view(run, block=options.block, exaggeration=options.exaggeration, port=0)
+    else:
+        assert system is not None
+        viewer = view(system, run, exaggeration=options.exaggeration, port=0)
+    with viewer:
+        print(f"it plays at {viewer.url} (Ctrl-C ends)", file=sys.stderr, flush=True)
+        viewer.wait()

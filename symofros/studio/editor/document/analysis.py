@@ -1,0 +1,98 @@
+"""What a text says: its data, its diagram, and everything wrong with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from symofros.description.reading import in_order
+from symofros.description.system import System
+from symofros.description.yaml.files import read_yaml
+from symofros.description.yaml.yaml_nodes import YamlFault
+from symofros.errors import DescriptionError, Problem
+from symofros.mechanics.topology.graph import find_problems
+from symofros.studio.editor.document.diagram import diagram
+from symofros.studio.editor.document.problems import placed, schema_problems
+from symofros.studio.editor.editing.yaml_spans import sheet_of
+
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """A text's meaning.
+
+    Attributes:
+        readable: Whether it is YAML at all; if not, there are no data.
+        data: The YAML as JSON holds it.
+        graph: Diagram of the document.
+        problems: Problems as the page shows them.
+        parameters: Parameters that could be read.
+        inputs: Inputs that could be read.
+        system: System that was read; None where nothing could be.
+    """
+
+    readable: bool
+    data: Any = None
+    graph: Json = field(default_factory=lambda: {"nodes": [], "edges": []})
+    problems: list[Json] = field(default_factory=list)
+    parameters: list[Json] = field(default_factory=list)
+    inputs: list[Json] = field(default_factory=list)
+    system: System | None = None
+
+
+def analyse(file: Path, text: str) -> Analysis:
+    """Read and check a text.
+
+    Args:
+        file: Path of the document; files that it includes are relative to it.
+        text: Text of the document.
+    """
+    try:
+        sheet = sheet_of(text)
+    except YamlFault as error:
+        return Analysis(False, problems=[placed(error.problem, None, "", {})])
+    found, system = _checked(file, text)
+    exact = schema_problems(sheet, str(file))
+    shown_problems = [placed(problem, sheet, str(file), exact) for problem in found]
+    data = as_json(sheet.root.plain())
+    graph = diagram(data)
+    blocks = {node["id"]: node for node in graph["nodes"]}
+    base = next((node for node in graph["nodes"] if node["kind"] == "base"), None)
+    for entry in shown_problems:
+        if base and entry["path"][:2] == base["path"]:
+            entry["node"] = base["id"]
+        if entry["node"] in blocks:
+            blocks[entry["node"]]["problems"] += 1
+        else:
+            entry["node"] = ""
+    stated = system.parameters if system else ()
+    parameters = [
+        {"name": item.name, "value": item.value, "unit": item.unit, "constant": item.constant, "number": item.value}
+        for item in stated
+    ]
+    inputs = [{"name": item.name, "unit": item.unit} for item in (system.inputs if system else ())]
+    return Analysis(True, data, graph, shown_problems, parameters, inputs, system)
+
+
+def _checked(file: Path, text: str) -> tuple[list[Problem], System | None]:
+    """Every problem of the file and of its mechanism."""
+    try:
+        reading = read_yaml(file, text)
+        found = find_problems(reading.system, reading.broken) if reading.system is not None else []
+    except DescriptionError as error:
+        return list(error.problems), None
+    return list(in_order([*reading.problems, *found])), reading.system
+
+
+def as_json(value: Any) -> Any:
+    """Plain data that JSON can hold: a number that is not finite becomes the text that YAML writes for it."""
+    if isinstance(value, dict):
+        return {key: as_json(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [as_json(item) for item in value]
+    if isinstance(value, float) and not isfinite(value):
+        return ".nan" if value != value else ".inf" if value > 0 else "-.inf"
+    return value

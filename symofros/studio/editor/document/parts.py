@@ -1,0 +1,175 @@
+"""Sub-assemblies that a user keeps: bodies with what holds them together, taken out of a document and put into one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from symofros.description.yaml.schema import VERSION, default_joint_name
+from symofros.studio.editor.editing.data_edits import SECTIONS, Edit, Path, edited, fault, same
+from symofros.studio.editor.editing.formulas import formulas, names_in
+from symofros.studio.editor.editing.renaming import anchors, renaming, speed_keys, symbols_of, taken
+
+Json = dict[str, Any]
+
+# Sections that hold what acts between bodies, and the symbols of bodies.
+_BETWEEN = ("connections", "closures", "nonholonomic", "virtual_power", "potentials")
+
+
+def extracted(data: Any, bodies: list[str]) -> Json:
+    """A document of some bodies, what connects them, and the parameters and inputs that they use.
+
+    Args:
+        data: The document that they are in.
+        bodies: Their names. Where the parent of one is not among them, it will stand on the world.
+
+    Raises:
+        EditError: There is no such body, or one is the base.
+    """
+    stated = _mapping(data, "bodies")
+    for name in bodies:
+        if not _mapping(stated.get(name), "joint"):
+            raise fault(
+                ("bodies", name), "no such body, or no joint", "a part is made of bodies with joints", "choose others"
+            )
+    if not bodies:
+        raise fault(("bodies",), "no bodies", "a part has one body at least", "choose some")
+    part: Json = {
+        "symofros": VERSION,
+        "bodies": {name: _rooted(stated[name], bodies) for name in stated if name in bodies},
+    }
+    foreign = _symbols(data) - _symbols(part)
+    for section in _BETWEEN:
+        kept = {
+            name: entry
+            for name, entry in _mapping(data, section).items()
+            if _belongs(section, name, entry, set(bodies), _symbols(part), foreign)
+        }
+        if kept:
+            part[section] = kept
+    used = {name for _, text in formulas(part) for name in names_in(text)}
+    for section in ("parameters", "inputs"):
+        kept = {name: entry for name, entry in _mapping(data, section).items() if name in used}
+        if kept:
+            part[section] = kept
+    return {section: part[section] for section in SECTIONS if section in part}
+
+
+def _rooted(body: Json, bodies: list[str]) -> Json:
+    """A body whose parent is in the part, or that stands on the world."""
+    joint = dict(body["joint"])
+    if joint.get("parent") not in bodies:
+        joint.pop("parent", None)
+        joint.pop("frame", None)
+    return {**body, "joint": joint}
+
+
+def _belongs(section: str, name: str, entry: Any, bodies: set[str], own: set[str], foreign: set[str]) -> bool:
+    """Whether something between bodies concerns those of the part, and no others."""
+    alone = {section: {name: entry}}
+    held = [anchor.get("body") for _, anchor in anchors(alone)]
+    used = {symbol for _, text in formulas(alone) for symbol in names_in(text)}
+    used |= {speed for _, speeds in speed_keys(alone) for speed in speeds}
+    if held:
+        return all(body in bodies for body in held) and not used & foreign
+    return bool(used & own) and not used & foreign
+
+
+def _symbols(data: Any) -> set[str]:
+    """What formulas call the coordinates and speeds of a document's bodies."""
+    found: set[str] = set()
+    for name, body in _mapping(data, "bodies").items():
+        joint = _mapping(body, "joint")
+        stated = joint.get("coordinates") if joint.get("kind") == "general" else None
+        if isinstance(stated, list):
+            found.update(f"{rate}{symbol}" for rate in ("", "d", "dd") for symbol in stated)
+        found.update(symbols_of(joint, str(joint.get("name", default_joint_name(name)))) if joint else ())
+    return found
+
+
+def insertion(data: Any, part: Json, parent: str | None, frame: str | None) -> list[Edit]:
+    """The edits that put a part into a document; what clashes is renamed, equal parameters and inputs are shared.
+
+    Args:
+        data: The document.
+        part: Part as `extracted` makes it.
+        parent: The body that carries what stood on the world; None: the world.
+        frame: The frame of that body.
+
+    Raises:
+        EditError: The part is unusable.
+    """
+    part = _distinct(data, part)
+    edits: list[Edit] = []
+    for section in SECTIONS:
+        for name, entry in _mapping(part, section).items():
+            if section in ("symofros", "include", "system", "options"):
+                continue
+            there = _mapping(data, section)
+            if section in ("parameters", "inputs") and name in there and same(there[name], entry):
+                continue
+            edits.append(Edit("set", (section, name), _carried(entry, parent, frame) if section == "bodies" else entry))
+    return edits
+
+
+def _carried(body: Any, parent: str | None, frame: str | None) -> Any:
+    joint = _mapping(body, "joint")
+    if parent is None or not joint or "parent" in joint:
+        return body
+    placed = {"kind": joint.get("kind"), "parent": parent, **({"frame": frame} if frame else {}), **joint}
+    return {**body, "joint": {"name": placed.pop("name"), **placed} if "name" in placed else placed}
+
+
+def _distinct(data: Any, part: Json) -> Json:
+    """The part with names that the document does not have yet."""
+    names = taken(data)
+    for section in ("parameters", "inputs"):
+        there = _mapping(data, section)
+        for name, entry in list(_mapping(part, section).items()):
+            if name in names and not (name in there and same(there[name], entry)):
+                part = _renamed(part, (section, name), _free(name, names | taken(part)))
+    for name in list(_mapping(part, "bodies")):
+        bodies = {*_mapping(data, "bodies"), *_mapping(part, "bodies")}
+        if name in _mapping(data, "bodies"):
+            part = _renamed(part, ("bodies", name), _free(name, bodies))
+    joints = _joints(data)
+    for name, body in list(_mapping(part, "bodies").items()):
+        joint = _mapping(body, "joint")
+        own = str(joint.get("name", default_joint_name(name)))
+        if joint and (own in joints or set(symbols_of(joint, own)) & names):
+            part = _renamed(part, ("bodies", name, "joint"), _free(own, joints | _joints(part) | names | taken(part)))
+        stated = joint.get("coordinates")
+        for i, symbol in enumerate(stated if isinstance(stated, list) else []):
+            if symbol in names:
+                part = _renamed(part, ("bodies", name, "joint", "coordinates", i), _free(symbol, names | taken(part)))
+    for section in _BETWEEN:
+        for name in list(_mapping(part, section)):
+            if name in _mapping(data, section):
+                known = {*_mapping(data, section), *_mapping(part, section)}
+                part = _renamed(part, (section, name), _free(name, known))
+    return part
+
+
+def _joints(data: Any) -> set[str]:
+    """Names of joints, those that nothing formulas use follows from included."""
+    bodies = _mapping(data, "bodies").items()
+    return {str(_mapping(body, "joint").get("name", default_joint_name(name))) for name, body in bodies}
+
+
+def _renamed(part: Json, path: Path, new: str) -> Json:
+    for edit in renaming(part, Edit("rename", path, key=new)):
+        part = edited(part, edit)
+    return part
+
+
+def _free(name: str, known: Iterable[str]) -> str:
+    """The next free name: motor3 -> motor4, hook -> hook2."""
+    stem = name.rstrip("0123456789")
+    first = int(name[len(stem) :][-9:] or 1) + 1
+    known = set(known)
+    return next(new for n in range(first, first + len(known) + 1) if (new := f"{stem}{n}") not in known)
+
+
+def _mapping(data: Any, key: str) -> dict[str, Any]:
+    found = data.get(key) if isinstance(data, dict) else None
+    return found if isinstance(found, dict) else {}

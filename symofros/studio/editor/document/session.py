@@ -1,0 +1,195 @@
+"""One run of the editor: what each request does to the document, and what it needs of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from symofros.description.system import System
+from symofros.errors import Problem
+from symofros.studio.editor.document.document import Document, refuse_text
+from symofros.studio.editor.document.expressions import check_field
+from symofros.studio.editor.document.parts import insertion
+from symofros.studio.editor.document.parts_library import Library
+from symofros.studio.editor.document.storage import Storage
+from symofros.studio.editor.document.workspace import READABLE, FileError, Workspace, write
+from symofros.studio.editor.editing.data_edits import EditError, four_parts
+from symofros.studio.editor.editing.requests import edits_of, path_of, text_of
+from symofros.studio.editor.editing.yaml_edits import with_references
+from symofros.studio.editor.editing.yaml_spans import sheet_of
+
+Json = dict[str, Any]
+
+JOBS = ("compile", "crosscheck", "simulate", "export")
+
+
+class Session:
+    """What the server holds between requests. Not to be used by two threads at once.
+
+    Raises of all that change the document: StaleError (another revision), EditError (what is asked makes no sense),
+    FileError (a file can't be read or written). Nothing has changed then.
+    """
+
+    def __init__(self, workspace: Workspace, file: Path | None = None) -> None:
+        """Open a file, or begin an empty document."""
+        self.workspace = workspace
+        self.library = Library(workspace)
+        self.storage = Storage(workspace, file)
+
+    @property
+    def document(self) -> Document:
+        """The document that is open."""
+        return self.storage.document
+
+    @property
+    def sound_system(self) -> System | None:
+        """What the document says; None while it has problems."""
+        analysis = self.document.analysis
+        return None if analysis.problems else analysis.system
+
+    def as_json(self) -> Json:
+        """The document as every answer carries it."""
+        return {
+            "path": self.workspace.shown(self.document.file),
+            **self.document.as_json(),
+            "layout": self.storage.layout,
+            "recovered": self.storage.recovered,
+            "unkept": four_parts(self.storage.unkept) if self.storage.unkept else None,
+            "disk_changed": self.storage.changed_on_disk(),
+        }
+
+    # Changing.
+
+    def edit(self, body: Json) -> None:
+        """Apply edits, all or none."""
+        self.document.expect(body.get("revision"))
+        edits = edits_of(body.get("edits"))
+        self.document.change(text_of(body, "label")[:200] or "edit", lambda text: with_references(text, edits))
+        for edit in edits:
+            if edit.op == "rename" and (place := self.storage.layout.get("/".join(map(str, edit.path)))):
+                self.storage.place({"/".join(map(str, (*edit.path[:-1], edit.key))): place})
+        self.storage.autosave()
+
+    def set_text(self, body: Json) -> None:
+        """Replace the whole text."""
+        self.document.expect(body.get("revision"))
+        self.document.change("edit text", lambda _: refuse_text(body.get("text")))
+        self.storage.autosave()
+
+    def undo(self, body: Json) -> None:
+        """One step back."""
+        self.document.expect(body.get("revision"))
+        self.document.undo()
+        self.storage.autosave()
+
+    def redo(self, body: Json) -> None:
+        """One step forth."""
+        self.document.expect(body.get("revision"))
+        self.document.redo()
+        self.storage.autosave()
+
+    def discard(self, body: Json) -> None:
+        """Go back to what was saved."""
+        self.document.expect(body.get("revision", self.document.revision))
+        self.storage.discard()
+
+    def reload(self, body: Json) -> None:
+        """Take the text on disk."""
+        self.document.expect(body.get("revision"))
+        self.storage.reload()
+
+    def save(self, body: Json) -> None:
+        """Write the document to its own file or to another; ConflictError where that would lose something."""
+        self.document.expect(body.get("revision"))
+        self.storage.save(text_of(body, "path"), text_of(body, "over"))
+
+    def open(self, body: Json) -> None:
+        """Open a file of the workspace; `discard`: the user gave up what is unsaved of the present one."""
+        file = self.workspace.inside(text_of(body, "path"))
+        self._leave(body, lambda: self.storage.open(file))
+
+    def create(self, body: Json) -> None:
+        """Begin a file of the workspace, alike."""
+        file = self.workspace.inside(text_of(body, "path"))
+        self._leave(body, lambda: self.storage.create(file))
+
+    def adopt(self, body: Json, name: str, text: str) -> None:
+        """Begin a document with a text that came from elsewhere, alike."""
+        self._leave(body, lambda: self.storage.adopt(name, text))
+
+    def _leave(self, body: Json, enter: Callable[[], None]) -> None:
+        """Go to another document; what is unsaved stays beside its file, unless it was given up."""
+        if body.get("discard") is not True:
+            enter()
+            return
+        self.storage.forget()
+        try:
+            enter()
+        except FileError:
+            self.storage.autosave()  # The user is still here.
+            raise
+
+    def insert_part(self, body: Json) -> None:
+        """Put a part into the document, on a frame of a body."""
+        self.document.expect(body.get("revision"))
+        name = text_of(body, "name")
+        parent, frame = text_of(body, "parent") or None, text_of(body, "frame") or None
+        edits = insertion(sheet_of(self.document.text).root.plain(), self.library.part(name), parent, frame)
+        self.document.change(f"insert {name}"[:200], lambda text: with_references(text, edits))
+        self.storage.autosave()
+
+    # Beside the document.
+
+    def place(self, body: Json) -> None:
+        """Remember where blocks are; of those that are named."""
+        self.storage.place(body.get("positions"))
+
+    def keep_part(self, body: Json) -> None:
+        """Keep some bodies of the document as a part."""
+        self.library.keep(text_of(body, "name"), sheet_of(self.document.text).root.plain(), body.get("bodies"))
+
+    # Asking.
+
+    def check_field(self, body: Json) -> Json:
+        """What is to say about one field's text."""
+        document = self.document
+        return check_field(
+            document.file, document.text, document.analysis, path_of(body.get("path", [])), body.get("text")
+        )
+
+    def job_request(self, body: Json) -> tuple[str, Json]:
+        """The kind of a job, and what its worker needs.
+
+        Raises:
+            EditError: An unknown kind, or options that are no mapping.
+            FileError: An export to outside of the workspace.
+        """
+        kind, options = body.get("kind"), body.get("options") or {}
+        if kind not in JOBS or not isinstance(options, dict):
+            raise EditError(
+                Problem(
+                    "no such job",
+                    f"{kind!r:.50}",
+                    f"one of {', '.join(JOBS)}; options are a mapping",
+                    "choose one of them",
+                )
+            )
+        document = self.document
+        request: Json = {"file": str(document.file), "text": document.text, "options": options}
+        if kind == "export":
+            folder = self.workspace.inside(text_of(options, "folder"), ())
+            request |= {"folder": str(folder), "root": str(self.workspace.root)}
+        return kind, request
+
+    def to_import(self, body: Json, folder: Path) -> Path:
+        """The file to import: one of the workspace, or the request's text, put into a folder.
+
+        Raises:
+            FileError: Neither, or of another format.
+        """
+        if "path" in body:
+            return self.workspace.inside(text_of(body, "path"), READABLE)
+        file = Workspace(folder).inside(Path(text_of(body, "name")).name, READABLE)
+        write(file, refuse_text(body.get("text")))
+        return file

@@ -1,0 +1,247 @@
+"""The open document and its files: opened, kept while it is unsaved, recovered, saved; nothing is lost on the way."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from symofros.errors import Problem, SymofrosError
+from symofros.studio.editor.document.document import BOM, MAX_TEXT, Document, too_large
+from symofros.studio.editor.document.workspace import (
+    FileError,
+    Workspace,
+    autosave_of,
+    digest,
+    identifier,
+    layout_of,
+    positions,
+    read_layout,
+    read_own,
+    read_text,
+    signature,
+    write,
+)
+
+EMPTY = "symofros: 1\nsystem: {{name: {name}, gravity: [0, 0, -9.81]}}\nparameters: {{}}\nbodies: {{}}\n"
+
+
+class ConflictError(SymofrosError):
+    """The file on disk is not the one that was opened; carries what the answer says.
+
+    Attributes:
+        disk: The text on disk.
+        over: The digest of the file: a save that names it may overwrite this state, and no other.
+    """
+
+    def __init__(self, problem: Problem, disk: str, over: str) -> None:
+        super().__init__(problem)
+        self.disk, self.over = disk, over
+
+
+class Storage:
+    """One document at a time.
+
+    Attributes:
+        document: The one that is open.
+        layout: Positions of its blocks.
+        recovered: Whether it is unsaved work of a server that was killed.
+        unkept: Why unsaved work could not be kept; None where it is.
+    """
+
+    def __init__(self, workspace: Workspace, file: Path | None) -> None:
+        """Open a file; begin it if it is not there; None: begin one without a name.
+
+        Raises:
+            FileError: It can't be read.
+        """
+        self.workspace = workspace
+        self.document: Document
+        self.layout: dict[str, list[float]] = {}
+        self.recovered = False
+        self.unkept: Problem | None = None
+        self._on_disk = ""  # Digest of the file when it was last read or written; "" where there was none.
+        self._signature = ""
+        self._revision = 1
+        if file is None:
+            file = self._unused("untitled")
+        if file.exists():
+            self.open(file)
+        else:
+            self.begin(file)
+
+    def open(self, file: Path) -> None:
+        """Open a file; unsaved work on it, left by a server that was killed, is taken up again.
+
+        Raises:
+            FileError: It can't be read.
+        """
+        text, data = read_text(file)
+        if len(data) > MAX_TEXT:
+            raise FileError(too_large(len(data)))
+        marked = data.startswith(BOM.encode())
+        self._become(Document(file, text, text, marked=marked, revision=self._revision), digest(data))
+
+    def begin(self, file: Path) -> None:
+        """Begin a file that is not there yet."""
+        empty = EMPTY.format(name=identifier(file.stem))
+        self._become(Document(file, empty, None, revision=self._revision), "")
+
+    def create(self, file: Path) -> None:
+        """Begin a new file.
+
+        Raises:
+            FileError: There is one of that name, or its folder is missing.
+        """
+        if file.exists() or not file.parent.is_dir():
+            found = "a file of that name" if file.exists() else "no such folder"
+            raise FileError(
+                Problem(
+                    f"'{file.name}' can't be begun", found, "a new file has a name of its own", "choose another name"
+                )
+            )
+        self.begin(file)
+
+    def adopt(self, name: str, text: str) -> None:
+        """Begin a new document with a text that came from elsewhere; it takes a free name."""
+        self.begin(self._unused(identifier(Path(name).stem)))
+        self.document.change("import", lambda _: text)
+        self.autosave()
+
+    def _become(self, document: Document, on_disk: str) -> None:
+        self.document, self._on_disk, self.recovered = document, on_disk, False
+        self._signature, self.layout = signature(document.file), read_layout(document.file)
+        try:
+            text = read_own(autosave_of(document.file))
+        except FileError:
+            text = document.text
+        if text != document.text:
+            document.change("recovered work", lambda _: text)
+            self.recovered = True
+        self.note_revision()
+
+    def note_revision(self) -> None:
+        """No later document may have a revision of an earlier one: a page that shows that would edit this."""
+        self._revision = max(self._revision, self.document.revision) + 1
+
+    def _unused(self, stem: str) -> Path:
+        """A free name; an untitled document with unsaved work is there to go on with."""
+        for n in range(1, 1000):
+            file = self.workspace.root / f"{stem}{n if n > 1 else ''}.yaml"
+            if not file.exists() and (stem == "untitled" or not autosave_of(file).exists()):
+                return file
+        raise FileError(Problem("no free name", f"999 files '{stem}'", "a document has a file name", "give one"))
+
+    # While it is open.
+
+    def autosave(self) -> None:
+        """Keep what is unsaved, for the case that the server is killed; nothing once it is saved.
+
+        Where that fails (a full disk, a folder that is gone) the edit stands nevertheless, and the page says so.
+        """
+        self.unkept = None
+        try:
+            if self.document.dirty:
+                write(autosave_of(self.document.file), self.document.text)
+            else:
+                self.forget()
+        except FileError as error:
+            self.unkept = error.problem
+        self.note_revision()
+
+    def place(self, data: Any) -> None:
+        """Remember positions: name -> [x, y]; those of other names stay."""
+        self.layout |= positions(data)
+        self._write_layout()
+
+    def _write_layout(self) -> None:
+        try:
+            write(layout_of(self.document.file), json.dumps({"layout": self.layout}, indent=1, sort_keys=True) + "\n")
+        except FileError as error:
+            self.unkept = error.problem
+
+    def changed_on_disk(self) -> bool:
+        """Whether somebody else has written the file since it was read or written here."""
+        now = signature(self.document.file)
+        if now == self._signature:
+            return False
+        try:
+            same = digest(read_text(self.document.file)[1]) == self._on_disk
+        except FileError:
+            same = now == ""  # What was removed can't be in conflict.
+        if same:
+            self._signature = now
+        return not same
+
+    def reload(self) -> None:
+        """Take the text on disk; what it replaces can be had back by undo.
+
+        Raises:
+            FileError: It can't be read.
+        """
+        text, data = read_text(self.document.file)
+        self.document.change("take the file from disk", lambda _: text)
+        self._saved(data)
+        self.autosave()
+
+    def discard(self) -> None:
+        """Go back to what was saved, or to the empty document; what is discarded can be had back by undo."""
+        saved = self.document.saved
+        empty = EMPTY.format(name=identifier(self.document.file.stem))
+        self.document.change("discard", lambda _: empty if saved is None else saved)
+        self.recovered = False
+        self.forget()
+        self.note_revision()
+
+    def forget(self) -> None:
+        """Drop what is kept of unsaved work."""
+        with suppress(OSError):  # It is not there, or can't be removed; then it is offered again, and can be discarded.
+            autosave_of(self.document.file).unlink()
+
+    # Saving.
+
+    def save(self, path: str, over: str) -> None:
+        """Write the document.
+
+        Args:
+            path: Path in the workspace; "": the document's own file.
+            over: Digest of a state of the file that may be overwritten, besides the one that is known.
+
+        Raises:
+            ConflictError: The file is in another state.
+            FileError: It can't be written.
+        """
+        before = self.document.file
+        file = self.workspace.inside(path) if path else before
+        self._refuse_conflict(file, self._on_disk if file == before else "", over)
+        content = self.document.content
+        write(file, content)
+        self.forget()
+        self.document.file = file
+        self._saved(content)
+        if self.layout:
+            self._write_layout()
+
+    def _saved(self, content: bytes) -> None:
+        self.document.saved = self.document.text
+        self._on_disk, self.recovered = digest(content), False
+        self._signature = signature(self.document.file)
+
+    def _refuse_conflict(self, file: Path, known: str, over: str) -> None:
+        if not file.exists():
+            return
+        disk, data = read_text(file)
+        there = digest(data)
+        if there in (known, over) or data == self.document.content:
+            return
+        raise ConflictError(
+            Problem(
+                f"'{file.name}' has changed on disk" if known else f"'{file.name}' is there already",
+                "another text",
+                "a file is overwritten only in the state that you saw",
+                "compare the two texts; overwrite, or take the other",
+            ),
+            disk,
+            there,
+        )

@@ -1,0 +1,203 @@
+"""Renaming a body, frame, joint, coordinate, parameter or input, with every reference to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from symofros.description.beam import STATION
+from symofros.description.joint import WORLD, Joint
+from symofros.description.joint_kinds import KINDS
+from symofros.description.yaml.schema import default_joint_name
+from symofros.errors import DescriptionError
+from symofros.expr.expression import CONSTANTS
+from symofros.expr.ops import FUNCTIONS
+from symofros.mechanics.topology.coordinates import coordinate_names, rate_symbols, speed_symbols
+from symofros.mechanics.topology.formulas import TIME
+from symofros.mechanics.topology.joints import IDENTIFIER
+from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault
+from symofros.studio.editor.editing.formulas import formulas, with_names
+
+# Mappings whose keys are speeds that formulas could name.
+_BY_SPEED = (("virtual_power", None), ("nonholonomic", "coefficients"))
+_BARE = ("parameters", "inputs")
+
+
+def renaming(data: Any, edit: Edit) -> list[Edit]:
+    """The edits that a renaming consists of; the references first, so that all paths are those of the document.
+
+    Args:
+        data: The document.
+        edit: Its op is "rename": `path` is that of a body, frame, parameter, input, of another named entry, of a
+            joint (or its name), or of a general joint's coordinate; `key` is the new name.
+
+    Raises:
+        EditError: There is no such entry, or the name is taken or unusable.
+    """
+    path, new = edit.path, edit.key
+    if path[:1] == ("bodies",) and path[2:] in (("joint",), ("joint", "name")):
+        return _joint(data, path[:3], new)
+    if len(path) == 5 and path[0] == "bodies" and path[2:4] == ("joint", "coordinates"):
+        old = str(_at(data, path))
+        names = {f"{rate}{old}": f"{rate}{new}" for rate in ("", "d", "dd")}
+        return [*_symbols(data, path, names), Edit("set", path, new)]
+    edited(data, edit)  # Whether it can be done at all.
+    edits: list[Edit] = []
+    if len(path) == 2 and path[0] == "bodies":
+        edits = _body(data, path, new)
+    elif len(path) == 4 and path[0] == "bodies" and path[2] == "frames":
+        edits = _frame(data, str(path[1]), str(path[3]), new)
+    elif len(path) == 2 and path[0] in _BARE:
+        edits = _symbols(data, path, {str(path[1]): new})
+    return [*edits, edit]
+
+
+def _body(data: Any, at: Path, new: str) -> list[Edit]:
+    """References to a body; the names of its joint's coordinates, where they are made of its own."""
+    old = str(at[1])
+    if new == WORLD:
+        raise fault(at, f"'{WORLD}'", f"'{WORLD}' is the ground's own name", "choose another")
+    found = [Edit("set", path, new) for path, name in _bodies_named(data) if name == old and old != WORLD]
+    joint = _mapping(_mapping(_mapping(data, "bodies"), old), "joint")
+    if joint and "name" not in joint:
+        before, after = (symbols_of(joint, default_joint_name(name)) for name in (old, new))
+        found += _symbols(data, at, dict(zip(before, after, strict=True)))
+    return found
+
+
+def _bodies_named(data: Any) -> Iterator[tuple[Path, str]]:
+    """Every place that names a body."""
+    for name, body in _mapping(data, "bodies").items():
+        joint = _mapping(body, "joint")
+        if isinstance(joint.get("parent"), str):
+            yield ("bodies", name, "joint", "parent"), joint["parent"]
+        rotors = joint.get("rotors")
+        for i, rotor in enumerate(rotors if isinstance(rotors, list) else []):
+            if isinstance(rotor, dict) and isinstance(rotor.get("carrier"), str):
+                yield ("bodies", name, "joint", "rotors", i, "carrier"), rotor["carrier"]
+    for path, anchor in anchors(data):
+        if isinstance(anchor.get("body"), str):
+            yield (*path, "body"), anchor["body"]
+
+
+def anchors(data: Any) -> Iterator[tuple[Path, dict[str, Any]]]:
+    """Every place that names a body with a frame of it."""
+    for section, sides in (
+        ("connections", ("first", "second")),
+        ("closures", ("first", "second")),
+        ("nonholonomic", ("knife_edge", "rolling")),
+    ):
+        for name, entry in _mapping(data, section).items():
+            for side in sides:
+                if anchor := _mapping(entry, side):
+                    yield (section, name, side), anchor
+
+
+def _frame(data: Any, body: str, old: str, new: str) -> list[Edit]:
+    """References to a frame: of joints that sit in it, anchors, loads."""
+    bodies = _mapping(data, "bodies")
+    base = next((name for name, entry in bodies.items() if "joint" not in (entry or {})), WORLD)
+    names = {body, WORLD} if body == base else {body}
+    found = []
+    for name, entry in bodies.items():
+        joint = _mapping(entry, "joint")
+        if joint.get("frame") == old and joint.get("parent", WORLD) in names:
+            found.append(Edit("set", ("bodies", name, "joint", "frame"), new))
+    for path, anchor in anchors(data):
+        if anchor.get("frame") == old and anchor.get("body") in names:
+            found.append(Edit("set", (*path, "frame"), new))
+    loads = _mapping(bodies, body).get("loads")
+    for i, load in enumerate(loads if isinstance(loads, list) else []):
+        if isinstance(load, dict) and load.get("at") == old:
+            found.append(Edit("set", ("bodies", body, "loads", i, "at"), new))
+    return found
+
+
+def _joint(data: Any, path: Path, new: str) -> list[Edit]:
+    """A joint's name, and its coordinates and speeds wherever they are used."""
+    joint = _at(data, path)
+    if not isinstance(joint, dict):
+        raise fault(path, "no joint", "the path leads to a joint", "give the body a joint")
+    if not new:
+        raise fault(path, "no name", "a joint has a name", "give one")
+    old = joint.get("name", default_joint_name(str(path[1])))
+    before, after = symbols_of(joint, str(old)), symbols_of(joint, new)
+    return [*_symbols(data, path, dict(zip(before, after, strict=True))), Edit("set", (*path, "name"), new)]
+
+
+def symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
+    """What formulas call the coordinates, speeds and rates of a joint of that name."""
+    kind: Any = joint.get("kind")
+    if kind not in KINDS or KINDS[kind].user_defined:
+        return ()
+    try:
+        stated = Joint(name, kind=kind)
+    except DescriptionError:
+        return ()
+    return (*coordinate_names(stated), *speed_symbols(stated), *rate_symbols(stated))
+
+
+def taken(data: Any) -> set[str]:
+    """The names that formulas could use."""
+    names = {TIME, *CONSTANTS, *FUNCTIONS, *_mapping(data, "parameters"), *_mapping(data, "inputs")}
+    for body, entry in _mapping(data, "bodies").items():
+        if _mapping(entry, "beam"):
+            names.add(STATION)
+        joint = _mapping(entry, "joint")
+        stated = joint.get("coordinates") if joint.get("kind") == "general" else None
+        if isinstance(stated, list):
+            names.update(f"{rate}{name}" for rate in ("", "d", "dd") for name in stated)
+        elif joint:
+            names.update(symbols_of(joint, str(joint.get("name", default_joint_name(body)))))
+    return names
+
+
+def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
+    """Names exchanged in all formulas, and where speeds are keys.
+
+    Raises:
+        EditError: A new name is taken, and could not be told from the other one afterwards; or none that formulas know.
+    """
+    clash = sorted(set(new.values()) & (taken(data) - new.keys()))
+    if clash:
+        raise fault(at, f"'{clash[0][:50]}' is taken", "names that formulas use are unique", "choose another name")
+    found = []
+    for path, text in formulas(data):
+        changed = with_names(text, new)
+        if changed != text:
+            found.append(Edit("set", path, changed))
+    for path, speeds in speed_keys(data):
+        found += [Edit("rename", (*path, speed), key=new[speed]) for speed in speeds if speed in new]
+    odd = [name for name in new.values() if not all(map(IDENTIFIER.match, name.split(".")))]
+    if odd and (found or at[0] in _BARE):
+        raise fault(
+            at,
+            f"'{odd[0][:50]}'",
+            "a letter or underscore, then letters, digits, underscores, where formulas use a name",
+            "choose another name",
+        )
+    # A formula within a mapping is changed under its old key, before the key is.
+    return found
+
+
+def speed_keys(data: Any) -> Iterator[tuple[Path, list[str]]]:
+    """Every mapping whose keys are speeds: its path, and these."""
+    for section, inner in _BY_SPEED:
+        for name, entry in _mapping(data, section).items():
+            speeds = _mapping(entry, inner) if inner else entry
+            if isinstance(speeds, dict):
+                yield ((section, name, inner) if inner else (section, name)), list(speeds)
+
+
+def _mapping(data: Any, key: str) -> dict[str, Any]:
+    found = data.get(key) if isinstance(data, dict) else None
+    return found if isinstance(found, dict) else {}
+
+
+def _at(data: Any, path: Path) -> Any:
+    for step in path:
+        if isinstance(data, dict) and step in data or isinstance(data, list) and step in range(len(data)):
+            data = data[step]  # type: ignore[index]
+        else:
+            raise fault(path, f"no '{step}'", "the path leads to an entry that exists", "reload the document")
+    return data

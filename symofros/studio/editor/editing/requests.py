@@ -1,0 +1,90 @@
+"""Bodies of requests -> edits; whatever a page, or somebody else, sends is checked here."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+from symofros.description.yaml.yaml_nodes import MAX_DEPTH, scalar_of
+from symofros.errors import Problem
+from symofros.studio.editor.editing.data_edits import Edit, EditError, Op, Path
+from symofros.studio.editor.editing.yaml_rendering import WHOLE, Typed
+
+MAX_EDITS = 1000
+MAX_PATH = 50
+
+
+def edits_of(given: Any) -> list[Edit]:
+    """The edits of a request.
+
+    Raises:
+        EditError: They are not what the contract says.
+    """
+    if not isinstance(given, list) or len(given) > MAX_EDITS:
+        raise _malformed("edits", given, f"a list of at most {MAX_EDITS}")
+    return [_edit(item) for item in given]
+
+
+def path_of(given: Any) -> Path:
+    """A path of a request.
+
+    Raises:
+        EditError: It is not one.
+    """
+    if not isinstance(given, list) or len(given) > MAX_PATH or not all(type(step) in (str, int) for step in given):
+        raise _malformed("path", given, "a list of names and indices")
+    return tuple(given)
+
+
+def text_of(body: dict[str, Any], key: str) -> str:
+    """A text of a request; "" where it has none.
+
+    Raises:
+        EditError: It is something else.
+    """
+    found = body.get(key, "")
+    if found is not None and not isinstance(found, str):
+        raise _malformed(key, found, "a text")
+    return found or ""
+
+
+def _edit(item: Any) -> Edit:
+    if not isinstance(item, dict) or item.get("op") not in get_args(Op):
+        raise _malformed("an edit", item, f"a mapping whose op is one of {', '.join(get_args(Op))}")
+    path, index, op = path_of(item.get("path")), item.get("index"), item["op"]
+    if index is not None and (type(index) is not int or index < 0):
+        raise _malformed("index", index, "a number from 0")
+    key = item.get("to" if op == "rename" else "key", "")
+    if not isinstance(key, str):
+        raise _malformed("key", key, "a text")
+    value = _clean(item.get("value"))
+    if "text" in item:
+        value = _typed(item["text"])
+    return Edit(op, path, value, key, index)
+
+
+def _clean(value: Any, depth: int = 0) -> Any:
+    """A value as the format holds it: whole numbers of sixteen digits and more are doubles."""
+    if depth > MAX_DEPTH:
+        raise _malformed("value", f"more than {MAX_DEPTH} levels", "the format needs fewer than ten")
+    if isinstance(value, dict):
+        return {key: _clean(inner, depth + 1) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_clean(inner, depth + 1) for inner in value]
+    if isinstance(value, int) and abs(value) >= WHOLE:
+        try:
+            return float(value)
+        except OverflowError:
+            raise _malformed("value", "a number of hundreds of digits", "numbers are doubles") from None
+    return value
+
+
+def _typed(text: Any) -> Any:
+    """What somebody who types this into a field means: a number where it is one, otherwise a text."""
+    if not isinstance(text, str):
+        raise _malformed("text", text, "a text")
+    found = scalar_of(text.strip())
+    return Typed(text.strip()) if type(found) in (int, float) else found
+
+
+def _malformed(what: str, found: Any, rule: str) -> EditError:
+    return EditError(Problem(f"{what} of the request is malformed", f"{found!r:.100}", rule, "reload the page"))

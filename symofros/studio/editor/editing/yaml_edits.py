@@ -1,0 +1,184 @@
+"""Edits of YAML text: only what an edit is about changes; all else keeps its bytes, comments included.
+
+Each edit is cut out of, or put into, the text at the places that the reader found (surgery.py). What comes out is read
+again and compared with the same edit of plain data; where they differ (a layout that is not foreseen), the smallest
+enclosing entry for which they agree is written anew.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from symofros.description.yaml.yaml_nodes import Node, YamlFault
+from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault, same
+from symofros.studio.editor.editing.renaming import renaming
+from symofros.studio.editor.editing.yaml_spans import Sheet, sheet_of
+from symofros.studio.editor.editing.yaml_text_edits import moved, patch, put, removed, renamed, replaced, rewritten
+
+
+def apply(text: str, edit: Edit) -> str:
+    """The text after an edit.
+
+    Raises:
+        EditError: The edit makes no sense for this document.
+        YamlFault: The text is not YAML to begin with.
+    """
+    return trace(text, edit)[0]
+
+
+def with_references(text: str, edits: list[Edit]) -> str:
+    """The text after several edits, one upon the other; what is renamed is renamed wherever it is used.
+
+    Raises:
+        EditError: One of them makes no sense.
+        YamlFault: The text is not YAML to begin with.
+    """
+    for edit in edits:
+        if edit.op == "rename":
+            text = _together(text, renaming(sheet_of(text).root.plain(), edit))
+        else:
+            text = apply(text, edit)
+    return text
+
+
+def _together(text: str, edits: list[Edit]) -> str:
+    """The text after edits apart from each other, read once: a parameter may be used in hundreds of formulas."""
+    sheet = sheet_of(text)
+    done, after, rest = text, sheet.root.plain(), []
+    patches = [(patch(sheet, edit), edit) for edit in edits]
+    # From the end of the text, so that positions and paths stay valid: a key stands before what is in it.
+    for found, edit in sorted(patches, key=lambda pair: pair[0][:2], reverse=True):
+        start, end, new = found
+        if start < 0:
+            rest.append(edit)
+        else:
+            done, after = done[:start] + new + done[end:], edited(after, edit)
+    meant = _meaning(done, after)
+    return _one_by_one(text, edits) if meant is None else _one_by_one(meant, rest)
+
+
+def _one_by_one(text: str, edits: list[Edit]) -> str:
+    for edit in edits:
+        text = apply(text, edit)
+    return text
+
+
+def trace(text: str, edit: Edit) -> tuple[str, Path | None]:
+    """As `apply`, and the path of the entry that had to be written anew, if one had to."""
+    sheet = sheet_of(text)
+    before = sheet.root.plain()
+    after = edited(before, edit)
+    if same(before, after):
+        return text, None
+    done = _meaning(_operated(sheet, edit), after)
+    if done is not None:
+        return done, None
+    path = edit.path
+    while True:
+        done = _meaning(_written_anew(sheet, path, after), after)
+        if done is not None:
+            return done, path
+        if not path:
+            raise fault(
+                edit.path,
+                "what the format refuses, such as a key '<<'",
+                "edits keep the document readable",
+                "choose other names",
+            )
+        path = path[:-1]
+
+
+def _meaning(text: str | None, wanted: Any) -> str | None:
+    """A text, if it means what it should."""
+    if text is None:
+        return None
+    try:
+        return text if same(sheet_of(text).root.plain(), wanted) else None
+    except YamlFault:
+        return None
+
+
+def _written_anew(sheet: Sheet, path: Path, after: Any) -> str | None:
+    """The text with the whole value at a path written anew; None where there is none, before or after."""
+    for step in path:
+        if isinstance(after, dict) and step in after:
+            after = after[step]
+        elif isinstance(after, list) and isinstance(step, int) and step < len(after):
+            after = after[step]
+        else:
+            return None
+    if not path:
+        return rewritten(sheet, after)
+    return replaced(sheet, path, after) if sheet.node(path) else None
+
+
+def _operated(sheet: Sheet, edit: Edit) -> str | None:
+    """The text after surgery; None where it knows no way."""
+    if edit.op == "set":
+        return _set(sheet, edit.path, edit.value)
+    if edit.op == "insert":
+        return put(sheet, edit.path, edit.key, edit.value, edit.index)
+    owner = sheet.node(edit.path[:-1])
+    assert owner is not None  # The edit of plain data went through.
+    at = place_of(owner, edit.path[-1])
+    if edit.op == "remove":
+        return removed(sheet, owner, at)
+    if edit.op == "rename":
+        return renamed(sheet, owner, at, edit.key)
+    return moved(sheet, owner, at, len(owner.value) - 1 if edit.index is None else edit.index)
+
+
+def place_of(owner: Node, step: str | int) -> int:
+    """The number of an entry in its collection."""
+    return list(owner.value).index(step) if isinstance(owner.value, dict) else int(step)
+
+
+def _set(sheet: Sheet, path: Path, value: Any) -> str | None:
+    """Set a value; of a mapping or list that stays one, only what differs."""
+    known = 0
+    while known < len(path) and sheet.node(path[: known + 1]) is not None:
+        known += 1
+    if known < len(path):
+        for step in reversed(path[known + 1 :]):
+            value = {step: value}
+        return put(sheet, path[:known], str(path[known]), value, None)
+    node = sheet.node(path)
+    assert node is not None
+    old = node.plain()
+    difference: Edit | None = None
+    if isinstance(old, dict) and isinstance(value, dict):
+        difference = _difference(old, value, path)
+    elif isinstance(old, list) and isinstance(value, list) and old and value:
+        difference = _list_difference(old, value, path)
+    if difference is None:
+        return replaced(sheet, path, value) if path else rewritten(sheet, value)
+    # One difference at a time; what is left is found in the text that has it.
+    return apply(apply(sheet.text, difference), Edit("set", path, value))
+
+
+def _difference(old: dict[str, Any], new: dict[str, Any], path: Path) -> Edit | None:
+    """One edit that brings a mapping nearer to another; None where they have nothing in common."""
+    if not old.keys() & new.keys() or "" in new:
+        return None
+    for key in old:
+        if key not in new:
+            return Edit("remove", (*path, key))
+    for i, key in enumerate(new):
+        if key not in old:
+            return Edit("insert", path, new[key], key, i)
+        if list(old)[i] != key:
+            return Edit("move", (*path, key), index=i)
+        if not same(old[key], new[key]):
+            return Edit("set", (*path, key), new[key])
+    return None
+
+
+def _list_difference(old: list[Any], new: list[Any], path: Path) -> Edit:
+    """One edit that brings a list nearer to another."""
+    pairs = enumerate(zip(old, new, strict=False))
+    start = next((i for i, (a, b) in pairs if not same(a, b)), min(len(old), len(new)))
+    if len(old) == len(new):
+        return Edit("set", (*path, start), new[start])
+    if len(old) > len(new):
+        return Edit("remove", (*path, start))
+    return Edit("insert", path, new[start], index=start)

@@ -1,0 +1,169 @@
+"""A YAML text with the place of every entry in it: where it begins and ends, what lines and comments are its own."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import NamedTuple
+
+from symofros.description.yaml.yaml_nodes import Node, compose_text
+from symofros.studio.editor.editing.data_edits import Path
+
+_BREAK = re.compile(r"\r\n|\n|\r")
+
+
+class Span(NamedTuple):
+    """Positions in a text, the second one excluded."""
+
+    start: int
+    end: int
+
+
+@lru_cache(maxsize=8)
+def sheet_of(text: str) -> Sheet:
+    """The sheet of a text; reading takes longer than anything that is done with it, and sheets do not change.
+
+    Raises:
+        YamlFault: It is not a YAML document that the format accepts; the problem's `where` is ":line".
+    """
+    return Sheet(text)
+
+
+class Sheet:
+    """A text and its tree of nodes.
+
+    Attributes:
+        text: The text, without a byte order mark.
+        root: Root of the document's tree.
+        newline: Line ending of the document.
+    """
+
+    def __init__(self, text: str) -> None:
+        """Read the text; see `sheet_of`."""
+        self.text = text
+        self.root, _ = compose_text(text, "")
+        first = _BREAK.search(text)
+        self.newline = first.group() if first else "\n"
+        self._settle(self.root)
+
+    def _settle(self, owner: Node) -> None:
+        """Put values that are not written (the scanner has them at the next token) after their colon or dash."""
+        if not owner.value or not isinstance(owner.value, (dict, list)):
+            return
+        for i, node in enumerate(self.children(owner)):
+            if node.start == node.end and node.style == "plain":
+                node.start = node.end = self.after_mark(owner, i)
+            self._settle(node)
+
+    def after_mark(self, owner: Node, i: int) -> int:
+        """The position after the colon of a key or the dash of an item; of a key without a colon, after it."""
+        if isinstance(owner.value, dict):
+            key_end = self.children(owner)[i].key_end
+            colon = self.skip(key_end)
+            return colon + 1 if self.text[colon : colon + 1] == ":" else key_end
+        return self.begin(owner, i) + (owner.style == "block")
+
+    def node(self, path: Path) -> Node | None:
+        """The node at a path; None if there is none."""
+        node = self.root
+        for step in path:
+            inner = node.value
+            known = isinstance(inner, dict) and step in inner
+            known |= isinstance(inner, list) and isinstance(step, int) and 0 <= step < len(inner)
+            if not known:
+                return None
+            node = inner[step]
+        return node
+
+    def children(self, owner: Node) -> list[Node]:
+        """A mapping's values or a list's items, in order."""
+        return list(owner.value.values()) if isinstance(owner.value, dict) else list(owner.value)
+
+    def end(self, node: Node) -> int:
+        """Where a value really ends, comments and blank lines after it excluded."""
+        if node.style == "block":
+            return self.end(self.children(node)[-1])
+        if node.style in ("|", ">"):
+            return node.start + len(self.text[node.start : node.end].rstrip())
+        return node.end
+
+    def begin(self, owner: Node, i: int) -> int:
+        """Where an entry begins: at its key, or at the dash of an item."""
+        nodes = self.children(owner)
+        if isinstance(owner.value, dict):
+            return nodes[i].key_start
+        if owner.style == "flow":
+            return nodes[i].start
+        return self.skip(self.end(nodes[i - 1])) if i else owner.start
+
+    def skip(self, at: int) -> int:
+        """The first position from here that is neither blank nor in a comment."""
+        while at < len(self.text):
+            sign = self.text[at]
+            if sign == "#":
+                at = self.line_end(at)
+            elif sign.isspace():
+                at += 1
+            else:
+                break
+        return at
+
+    def line_start(self, at: int) -> int:
+        """Where the line of a position begins."""
+        return max(self.text.rfind("\n", 0, at), self.text.rfind("\r", 0, at)) + 1
+
+    def line_end(self, at: int) -> int:
+        """Where the line of a position ends, its break excluded."""
+        found = _BREAK.search(self.text, at)
+        return found.start() if found else len(self.text)
+
+    def next_line(self, at: int) -> int:
+        """Where the line after that of a position begins."""
+        found = _BREAK.search(self.text, at)
+        return found.end() if found else len(self.text)
+
+    def column(self, at: int) -> int:
+        """A position's column, from 0."""
+        return at - self.line_start(at)
+
+    def leads(self, at: int) -> bool:
+        """Whether nothing but blanks stands before a position on its line."""
+        return not self.text[self.line_start(at) : at].strip()
+
+    def lines_of(self, owner: Node, i: int) -> Span:
+        """What belongs to an entry of a collection in block style.
+
+        Its own lines, the comments directly above it at its own indentation (but not those at the head of the file),
+        the comment at the end of its last line, and comments below it that are indented deeper than it is.
+        """
+        nodes = self.children(owner)
+        start = self.begin(owner, i)
+        column = self.column(start)
+        first = self.line_start(start) if self.leads(start) else start
+        if first != start or column == 0:
+            lowest = self.next_line(self.end(nodes[i - 1])) if i else self._floor(owner)
+            while first > lowest and self._comment_column(before := self.line_start(first - 1)) == column:
+                first = before
+        last = self.next_line(self.end(nodes[i]))
+        # Comments deeper than the entry are about its inside; blank lines between them go with them.
+        ahead = last
+        while ahead < len(self.text):
+            found = self._comment_column(ahead)
+            if found is not None and found > column:
+                last = self.next_line(ahead)
+            elif self.text[ahead : self.line_end(ahead)].strip():
+                break
+            ahead = self.next_line(ahead)
+        return Span(first, last)
+
+    def _floor(self, owner: Node) -> int:
+        """What comments above the first entry of a collection are not above of."""
+        if owner is self.root:
+            return self.line_start(owner.start)
+        return self.next_line(owner.key_end) if owner.key_start >= 0 else owner.start
+
+    def _comment_column(self, line: int) -> int | None:
+        """The column of the comment that a line consists of."""
+        text = self.text[line : self.line_end(line)]
+        bare = text.lstrip(" ")
+        return len(text) - len(bare) if bare.startswith("#") else None

@@ -1,0 +1,1 @@
+"""Long operations (compile, cross-check, simulate, export, import) in worker processes."""

@@ -1,0 +1,271 @@
+"""The kinds of work: compile, cross-check, simulate, export, import."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import symofros as sf
+from symofros.compiler import Compilation, compile_system, plan
+from symofros.description.yaml.files import write_yaml
+from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.functions import exported
+from symofros.generator.passes.count import count_program
+from symofros.mechanics.topology.tree import SpanningTree
+from symofros.studio.editor.jobs.request import Json, Tell, system_of
+from symofros.studio.editor.units import coordinate_units
+
+POINTS, MAX_POINTS = 1000, 5000
+
+
+def compile_model(request: Json, tell: Tell) -> Json:
+    """Derive, generate, compile; how much of each."""
+    tell(0, 4, "reading")
+    system = system_of(request)
+    start = time.perf_counter()
+    shown = exported(bool(system.constraints), ("dynamics", "constraints"))
+    compilation = Compilation(system, sf.Options(shown))
+    tell(1, 4, "deriving the equations")
+    program = compilation.program
+    tell(2, 4, "writing C")
+    text = compilation.source()
+    generated = time.perf_counter()
+    tell(3, 4, "compiling C")
+    model = compilation.model()
+    done = time.perf_counter()
+    counts = {
+        key[0]: {"mul": n.mul, "add": n.add, "div": n.div, "call": n.call, "total": n.total}
+        for key, n in count_program(program).items()
+        if key[0] != "init"
+    }
+    names = model.names
+    return {
+        "name": system.name,
+        "operations": counts,
+        "bytes": len(text),
+        "generate_s": generated - start,
+        "compile_s": done - generated,
+        "nq": model.nq,
+        "nv": model.nv,
+        "nu": model.nu,
+        "npar": model.npar,
+        "nc": model.nc,
+        "q_names": list(names.q),
+        "v_names": list(names.v),
+        "u_names": list(names.u),
+        "par_names": list(names.par),
+        "frames": list(names.frames),
+        "notes": list(system.notes),
+    }
+
+
+def cross_check(request: Json, tell: Tell) -> Json:
+    """Compare the compiled model with every engine that can represent it: the command of the harness does it."""
+    tell(0, 3, "reading")
+    system = system_of(request)
+    if find_spec("validation") is None:
+        raise SymofrosError(
+            Problem(
+                "cross-check: the harness is not installed",
+                "no package 'validation'",
+                "independent engines come with the extra 'validation'",
+                "pip install 'symofros[validation]'",
+            )
+        )
+    options = request.get("options", {})
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "model.yaml"
+        file.write_text(write_yaml(system), encoding="utf-8")
+        command = [sys.executable, "-P", "-m", "validation", "check", str(file), "--json", "--report", folder]
+        command += ["--workers", "1", "--states", str(_whole(options.get("states"), 1, 10_000, 20))]
+        tell(1, 3, "engines at work")
+        run = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=os.environ, check=False)
+    tell(2, 3, "reading the verdict")
+    try:
+        verdict = json.loads(run.stdout.strip().splitlines()[-1])
+    except (ValueError, IndexError):
+        raise SymofrosError(
+            Problem(
+                "cross-check: the harness gave no verdict",
+                run.stderr.strip()[-1000:],
+                "it prints its comparisons as JSON",
+                "run `python -m validation check` on the saved file",
+            )
+        ) from None
+    rows = [
+        {
+            "quantity": row["quantity"],
+            "engine": row["engine"],
+            "worst": row["error"],
+            "tolerance": row["tolerance"],
+            "states": row["states"],
+            "passed": row["ok"],
+            "note": row.get("note", ""),
+        }
+        for row in verdict["comparisons"]
+    ]
+    return {"ok": verdict["ok"], "rows": rows, "unsupported": _unsupported(verdict["unsupported"])}
+
+
+def _unsupported(rows: list[Json]) -> list[Json]:
+    kept = ("engine", "quantity", "reason")
+    return [{key: row[key] for key in kept} for row in rows]
+
+
+def simulate(request: Json, tell: Tell) -> Json:
+    """Move the model; coordinates, speeds, inputs and energies over time."""
+    tell(0, 100, "reading")
+    system = system_of(request)
+    options = request.get("options", {})
+    t_end = _number(options.get("t_end", 1.0), "t_end")
+    tell(0, 100, "compiling")
+    model = compile_system(system)
+    par = _vector(model.names.par, options.get("parameters"), model.parameter_values, "parameter")
+    q = _vector(model.names.q, options.get("q0"), model.neutral(), "coordinate")
+    v = _vector(model.names.v, options.get("v0"), np.zeros(model.nv), "speed")
+    if model.nc:
+        tell(0, 100, "closing the loops")
+        closed = sf.assemble(model, q, v, par=par)
+        q, v = closed.q, closed.v
+    points = _whole(options.get("points"), 2, MAX_POINTS, POINTS)
+    chosen: Json = {key: options[key] for key in ("method", "stabilisation") if options.get(key)}
+    chosen |= {key: _number(options[key], key) for key in ("dt", "rtol", "atol") if options.get(key) is not None}
+    inputs = {
+        str(name): _formula(text) for name, text in (options.get("inputs") or {}).items() if text not in ("", None)
+    }
+    shown = -1
+
+    def progress(t: float) -> None:
+        nonlocal shown
+        percent = int(100 * t / t_end) if t_end else 100
+        if percent > shown:
+            shown = percent
+            tell(percent, 100, f"t = {t:.3g} s")
+
+    began = time.perf_counter()
+    run = sf.simulate(
+        model,
+        q,
+        v,
+        t_end,
+        u=inputs or None,
+        par=par,
+        output=t_end / points if t_end else None,
+        progress=progress,
+        **chosen,
+    )
+    return {**_motion(run, plan(system)), "wall_s": time.perf_counter() - began}
+
+
+def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
+    units = coordinate_units(tree)
+    names, series = run.model.names, []
+    for kind, group, values in (("q", names.q, run.q), ("v", names.v, run.v), ("u", names.u, run.u)):
+        for i, name in enumerate(group):
+            own = units.get(name, "")
+            unit = own if kind == "q" else (f"{own}/s" if own else "") if kind == "v" else ""
+            label = f"d{name}" if kind == "v" and name in names.q else name
+            series.append({"name": label, "kind": kind, "unit": unit, "values": _numbers(values[:, i])})
+    cost, end = run.statistics, run.outcome
+    return {
+        "t": _numbers(run.t),
+        "series": series,
+        "method": cost.method,
+        "steps": cost.steps,
+        "rejected": cost.rejected,
+        "evaluations": cost.evaluations,
+        "loop_s": cost.seconds,
+        "energy": {
+            "kinetic": _numbers(run.kinetic_energy),
+            "potential": _numbers(run.potential_energy),
+            "total": _numbers(run.energy),
+        },
+        "outcome": {
+            "ok": end.ok,
+            "kind": end.kind,
+            "t": end.t,
+            "reason": end.reason,
+            "advice": end.advice,
+            "notes": list(end.notes),
+        },
+    }
+
+
+def export(request: Json, tell: Tell) -> Json:
+    """Write the model for another environment."""
+    tell(0, 2, "reading")
+    system = system_of(request)
+    options = request["options"]
+    tell(1, 2, f"writing {options['target']}")
+    done = sf.export(system, options["target"], request["folder"], name=options.get("name") or None)
+    root = Path(request["root"])
+    files = [os.path.relpath(file.resolve(), root) for file in done.files]
+    return {"files": files, "notes": list(done.notes), "target": done.target}
+
+
+def import_model(request: Json, tell: Tell) -> Json:
+    """A description of another format as the text of a native one."""
+    tell(0, 1, "reading")
+    system = sf.load(request["file"])
+    return {"text": write_yaml(system), "notes": list(system.notes)}
+
+
+def _number(given: Any, what: str) -> float:
+    try:
+        number = float(given)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise SymofrosError(Problem(f"{what} is not a number", f"{given!r:.100}", "a finite number", "mend it"))
+    return number
+
+
+def _whole(given: Any, low: int, high: int, default: int) -> int:
+    return max(low, min(high, given)) if type(given) is int else default
+
+
+def _formula(text: Any) -> str | float:
+    return float(text) if isinstance(text, (int, float)) else str(text)
+
+
+def _vector(names: tuple[str, ...], given: Any, default: Any, what: str) -> Any:
+    """Values by name over defaults; a speed may bear its coordinate's d."""
+    values = np.array(default, dtype=np.float64)
+    for name, number in (given or {}).items():
+        plain = name if name in names else name.removeprefix("d")
+        if plain not in names:
+            raise UnknownNameError(
+                Problem(
+                    f"no {what} '{name}'",
+                    ", ".join(names[:12]),
+                    f"a {what} of the model",
+                    did_you_mean(name, names),
+                )
+            )
+        values[names.index(plain)] = _number(number, name)
+    return values
+
+
+def _numbers(values: Any) -> list[float | None]:
+    """Numbers as JSON holds them; None where one is not finite, as after a run that diverged."""
+    return [x if math.isfinite(x) else None for x in np.asarray(values, dtype=np.float64).tolist()]
+
+
+TASKS: dict[str, Callable[[Json, Tell], Any]] = {
+    "compile": compile_model,
+    "crosscheck": cross_check,
+    "simulate": simulate,
+    "export": export,
+    "import": import_model,
+}

@@ -1,0 +1,72 @@
+"""What a worker process does: reads one request, says how far it is, answers, ends.
+
+Lines of JSON: in comes the request; out go {"progress": …}, and at last {"result": …} or {"error": …}. When the server
+is gone, the request's pipe ends, and so does the worker with all that it started.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from symofros.errors import Problem, SymofrosError
+from symofros.studio.editor.editing.data_edits import four_parts
+from symofros.studio.editor.jobs.request import Json, Tell
+
+
+def error_of(error: Exception) -> Json:
+    """An exception as the four parts that the page shows: its first problem, and how many more there are."""
+    if not isinstance(error, SymofrosError):
+        return {**four_parts(Problem(str(error) or type(error).__name__))}
+    first, rest = error.problem, len(error.problems) - 1
+    more = f" (and {rest} more)" if rest else ""
+    return four_parts(replace(first, what=first.what + more))
+
+
+def main() -> None:
+    """Serve one request."""
+    # Whatever writes to the standard output, a compiler or a library, must not garble the answer.
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    request = json.loads(sys.stdin.readline())
+    threading.Thread(target=_end_with_the_server, daemon=True).start()
+
+    def say(message: Json) -> None:
+        answers.write(json.dumps(message) + "\n")
+        answers.flush()
+
+    def tell(done: int, total: int, text: str) -> None:
+        say({"progress": {"done": done, "total": total, "text": text}})
+
+    try:
+        say({"result": task(request["kind"])(request, tell)})
+    except (SymofrosError, ValueError, OSError) as error:
+        say({"error": error_of(error)})
+    except Exception as error:
+        traceback.print_exc()
+        say({"error": {**error_of(error), "rule": "this should not happen", "remedy": "please report it"}})
+
+
+def task(kind: str) -> Callable[[Json, Tell], Any]:
+    """What a kind of work is; each brings its own imports, which the others do not pay for."""
+    from symofros.studio.editor.jobs import operations
+
+    return operations.TASKS[kind]
+
+
+def _end_with_the_server() -> None:
+    # By the descriptor: a buffered read would hold a lock that the end of the interpreter waits for.
+    while os.read(0, 4096):
+        pass
+    os.killpg(0, signal.SIGKILL)
+
+
+if __name__ == "__main__":
+    main()

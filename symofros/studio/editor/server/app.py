@@ -1,0 +1,302 @@
+"""The addresses of the server, and what answers them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from functools import partial
+from pathlib import Path
+from secrets import token_urlsafe
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import anyio
+from anyio.to_thread import run_sync
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response, StreamingResponse
+from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.types import ASGIApp
+
+from symofros.description.yaml.yaml_nodes import YamlFault
+from symofros.errors import Problem
+from symofros.studio.editor.document.document import StaleError
+from symofros.studio.editor.document.palette import catalogue
+from symofros.studio.editor.document.session import Json, Session
+from symofros.studio.editor.document.shape_curves import curves
+from symofros.studio.editor.document.storage import ConflictError
+from symofros.studio.editor.document.workspace import FileError
+from symofros.studio.editor.editing.data_edits import EditError
+from symofros.studio.editor.jobs.processes import Jobs
+from symofros.studio.editor.server.document_viewer import View
+from symofros.studio.editor.server.events import Events
+from symofros.studio.editor.server.guard import Guard, error_body
+from symofros.studio.editor.server.relay import Relay
+
+IMPORT_SECONDS = 60.0
+WATCH_SECONDS = 2.0
+STATIC = Path(__file__).parents[1] / "static"
+
+Answer = Callable[[Request], Awaitable[Response]]
+
+
+class Editor:
+    """Answers requests, one at a time where they touch the document."""
+
+    def __init__(self, session: Session, view_token: str) -> None:
+        self.session = session
+        self.view = View()
+        self.relay = Relay(self.view, view_token)
+        self.events = Events()
+        self.jobs = Jobs(self.events.publish)
+        self.turn = anyio.Lock()
+
+    def routes(self) -> list[Route | WebSocketRoute]:
+        """Address by address."""
+        session = self.session
+        changes: dict[str, Callable[[Json], None]] = {
+            "edit": session.edit,
+            "text": session.set_text,
+            "undo": session.undo,
+            "redo": session.redo,
+            "save": session.save,
+            "discard": session.discard,
+            "reload": session.reload,
+            "open": session.open,
+            "new": session.create,
+            "parts/insert": session.insert_part,
+        }
+        made = [Route(f"/api/{name}", self.changing(action), methods=["POST"]) for name, action in changes.items()]
+        return [
+            *made,
+            Route("/api/schema", self.schema),
+            Route("/api/document", self.document),
+            Route("/api/layout", self.layout, methods=["POST"]),
+            Route("/api/expression", self.expression, methods=["POST"]),
+            Route("/api/shapes", self.shapes, methods=["POST"]),
+            Route("/api/files", self.files),
+            Route("/api/parts", self.parts),
+            Route("/api/parts", self.keep_part, methods=["POST"]),
+            Route("/api/import", self.import_text, methods=["POST"]),
+            Route("/api/jobs", self.start_job, methods=["POST"]),
+            Route("/api/jobs/{key}", self.job),
+            Route("/api/jobs/{key}", self.cancel_job, methods=["DELETE"]),
+            Route("/api/events", self.listen),
+            Route("/api/view", self.look),
+            Route("/api/pose", self.pose, methods=["POST"]),
+            *self.relay.routes(),
+        ]
+
+    def changing(self, action: Callable[[Json], None]) -> Answer:
+        """The answer to a request that changes the document: the document. The others are told."""
+
+        async def answer(request: Request) -> Response:
+            found = await self.exclusively(partial(self._changed, action, await body_of(request)))
+            self.tell_changed(request)
+            return JSONResponse(found)
+
+        return answer
+
+    def _changed(self, action: Callable[[Json], None], body: Json) -> Json:
+        action(body)
+        return self.session.as_json()
+
+    def tell_changed(self, request: Request) -> None:
+        """Tell the pages that the document has changed, and by whom."""
+        document = self.session.document
+        client = request.headers.get("x-client", "")[:100]
+        self.events.publish("document", {"revision": document.revision, "name": document.file.name, "client": client})
+
+    async def exclusively(self, work: Callable[[], Any]) -> Any:
+        """Do work on the document in a thread of its own, while nobody else does."""
+        async with self.turn:
+            return await run_sync(work)
+
+    async def schema(self, _: Request) -> Response:
+        """The format, and what the palette offers."""
+        return JSONResponse(await run_sync(catalogue))
+
+    async def document(self, _: Request) -> Response:
+        """The document as it is."""
+        return JSONResponse(await self.exclusively(self.session.as_json))
+
+    async def layout(self, request: Request) -> Response:
+        """Remember positions."""
+        await self.exclusively(partial(self.session.place, await body_of(request)))
+        return JSONResponse({"layout": self.session.storage.layout})
+
+    async def expression(self, request: Request) -> Response:
+        """Check one field."""
+        body = await body_of(request)
+        return JSONResponse(await self.exclusively(partial(self.session.check_field, body)))
+
+    async def shapes(self, request: Request) -> Response:
+        """Shape functions of a beam."""
+        return JSONResponse(await run_sync(curves, await body_of(request)))
+
+    async def files(self, _: Request) -> Response:
+        """What can be opened."""
+        workspace = self.session.workspace
+        return JSONResponse({"root": str(workspace.root), "files": await run_sync(workspace.files)})
+
+    async def parts(self, _: Request) -> Response:
+        """Sub-assemblies that were kept."""
+        return JSONResponse({"parts": await self.exclusively(self.session.library.listed)})
+
+    async def keep_part(self, request: Request) -> Response:
+        """Keep one more."""
+        await self.exclusively(partial(self.session.keep_part, await body_of(request)))
+        return await self.parts(request)
+
+    async def import_text(self, request: Request) -> Response:
+        """Begin a document from a description of another format: its text, or a file of the workspace."""
+        body = await body_of(request)
+        with TemporaryDirectory() as folder:
+            file = self.session.to_import(body, Path(folder))
+            job = await run_sync(partial(self.jobs.start, "import", {"file": str(file)}))
+            if not await run_sync(job.over.wait, IMPORT_SECONDS):
+                await run_sync(self.jobs.cancel, job.key)
+        if job.error is not None or job.result is None:
+            error = job.error or {
+                "object": "the import took too long",
+                "found": f"{IMPORT_SECONDS} s",
+                "rule": "",
+                "remedy": "import it with `sf.load` and `sf.save`",
+            }
+            return JSONResponse({"error": error}, 422)
+        adopt = partial(self.session.adopt, name=file.name, text=job.result["text"])
+        found = await self.exclusively(partial(self._changed, adopt, body))
+        self.tell_changed(request)
+        return JSONResponse({**found, "notes": job.result["notes"]})
+
+    async def start_job(self, request: Request) -> Response:
+        """Start work on the document as it is now."""
+        body = await body_of(request)
+        kind, needs = await self.exclusively(partial(self.session.job_request, body))
+        job = await run_sync(partial(self.jobs.start, kind, needs, self.session.document.revision))
+        return JSONResponse({"id": job.key}, 202)
+
+    async def job(self, request: Request) -> Response:
+        """How far a job is."""
+        return JSONResponse(self.jobs.get(request.path_params["key"]).as_json())
+
+    async def cancel_job(self, request: Request) -> Response:
+        """Stop a job."""
+        return JSONResponse((await run_sync(self.jobs.cancel, request.path_params["key"])).as_json())
+
+    async def listen(self, _: Request) -> Response:
+        """Tell whatever happens, as it happens."""
+        return StreamingResponse(self.events.join(), media_type="text/event-stream")
+
+    async def look(self, _: Request) -> Response:
+        """The 3-D view of the document as it is now, made or brought up to date: its address and what moves it."""
+        system = await self.exclusively(lambda: self.session.sound_system)
+        # Compiling takes its time, while others go on with the document.
+        found = await run_sync(partial(self.view.follow, system))
+        return JSONResponse({"address": self.relay.address, **found})
+
+    async def pose(self, request: Request) -> Response:
+        """Move the 3-D view."""
+        return JSONResponse(await run_sync(partial(self.view.pose, await body_of(request))))
+
+    async def watch(self) -> None:
+        """Tell when somebody else has written the file: once a time that it changes."""
+        told = False
+        while True:
+            await anyio.sleep(WATCH_SECONDS)
+            changed = await self.exclusively(self.session.storage.changed_on_disk)
+            if changed and not told:
+                self.events.publish("disk", {"name": self.session.document.file.name})
+            told = changed
+
+
+async def body_of(request: Request) -> Json:
+    """The JSON mapping that a request carries.
+
+    Raises:
+        EditError: It is not one.
+    """
+    data = await request.body()
+    try:
+        found = json.loads(data) if data else {}
+    except (ValueError, RecursionError) as error:
+        found = str(error)
+    if not isinstance(found, dict):
+        raise EditError(
+            Problem("the body is not a JSON mapping", f"{found!r:.100}", "bodies are JSON mappings", "reload the page")
+        )
+    return found
+
+
+def application(session: Session, token: str, port: int) -> ASGIApp:
+    """The server's application, guarded.
+
+    Args:
+        session: Session that requests act on.
+        token: Token that every request must carry.
+        port: Port that it listens at: Host and Origin must name it.
+    """
+    view_token = token_urlsafe(32)
+    editor = Editor(session, view_token)
+
+    async def refused(_: Request, error: Exception) -> Response:
+        assert isinstance(error, (EditError, FileError, YamlFault))
+        return JSONResponse(error_body(error.problem), 422)
+
+    async def stale(_: Request, error: Exception) -> Response:
+        problem = Problem(
+            "the document has changed meanwhile",
+            str(error),
+            "an edit is of the document as it is",
+            "it is done again on the new one",
+        )
+        return JSONResponse({**error_body(problem), "document": session.as_json()}, 409)
+
+    async def conflict(_: Request, error: Exception) -> Response:
+        assert isinstance(error, ConflictError)
+        both = {"disk": error.disk, "over": error.over, "text": session.document.text}
+        return JSONResponse({**error_body(error.problem), **both, "document": session.as_json()}, 409)
+
+    async def no_such(_: Request, error: Exception) -> Response:
+        assert isinstance(error, HTTPException)
+        problem = Problem("no such address", str(error.detail), "addresses are those of the page", "reload the page")
+        return JSONResponse(error_body(problem), error.status_code)
+
+    async def unforeseen(_: Request, error: Exception) -> Response:
+        problem = Problem(
+            "the server met a fault of its own",
+            type(error).__name__,
+            "this should not happen",
+            "please report it, with what the terminal shows; the document is as it was",
+        )
+        return JSONResponse(error_body(problem), 500)
+
+    handlers: dict[Any, Any] = {
+        HTTPException: no_such,
+        Exception: unforeseen,
+        EditError: refused,
+        FileError: refused,
+        YamlFault: refused,
+        StaleError: stale,
+        ConflictError: conflict,
+    }
+    pages = [Mount("/", StaticFiles(directory=STATIC, html=True))] if STATIC.is_dir() else []
+
+    @asynccontextmanager
+    async def running(_: Starlette) -> AsyncIterator[None]:
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(editor.watch)
+            yield
+            tasks.cancel_scope.cancel()
+        await run_sync(editor.view.close)
+        await run_sync(editor.jobs.close)
+
+    inner = Starlette(
+        routes=[*editor.routes(), *pages],
+        exception_handlers=handlers,
+        lifespan=running,
+    )
+    return Guard(inner, token, port, view_token)

@@ -1,0 +1,184 @@
+"""The mechanism in three dimensions beside the diagram: a viewer of the document, made when it is first asked for."""
+
+from __future__ import annotations
+
+import gzip
+import math
+from threading import Lock
+from typing import Any
+from urllib.request import urlopen
+
+import numpy as np
+
+from symofros.description.system import System
+from symofros.errors import Problem, SymofrosError
+from symofros.studio.editor.editing.data_edits import EditError, four_parts
+from symofros.studio.editor.jobs.worker import error_of
+from symofros.studio.editor.units import coordinate_units
+from symofros.studio.viewer.viewer import Viewer
+
+Json = dict[str, Any]
+
+MOST_EXAGGERATION = 1000.0
+# Chromium starts no module worker from a blob of a page of no origin, and says so only to the page. Where a blob is
+# refused at once, viser's page takes a data address, and that works.
+NO_BLOB_WORKERS = b"""<script>
+Worker = class extends Worker {
+  constructor(file, options) {
+    if (String(file).startsWith("blob:")) throw new Error("no workers from blobs here");
+    super(file, options);
+  }
+};
+</script>"""
+BROKEN = Problem("the model has problems", "see their list", "what is drawn is a mechanism", "mend them")
+
+
+class View:
+    """What is shown of the document, for all pages alike. Its methods may be called from any thread, and take turns.
+
+    The viewer lives in this process: a picture costs milliseconds. Its poses are compiled when the mechanism changes.
+    """
+
+    def __init__(self) -> None:
+        self._turn = Lock()
+        self._viewer: Viewer | None = None
+        self._page: bytes | None = None
+        self._fault: Json | None = None
+
+    @property
+    def port(self) -> int | None:
+        """Where viser itself listens; None while nothing is shown."""
+        viewer = self._viewer
+        return None if viewer is None else viewer.port
+
+    def follow(self, system: System | None) -> Json:
+        """Show a system; the one before stays where this one can't be shown.
+
+        Args:
+            system: System of the document; None while it has problems.
+
+        Returns:
+            What the page's controls are made of.
+
+        Raises:
+            EditError: There is nothing to show yet, or viser is not installed.
+        """
+        with self._turn:
+            self._fault = None
+            if system is None:
+                self._fault = four_parts(BROKEN)
+            else:
+                try:
+                    self._show(system)
+                except (SymofrosError, ValueError, ArithmeticError) as error:
+                    self._fault = error_of(error)
+            if self._viewer is None:
+                raise EditError(_problem(self._fault or {}))
+            return self._as_json(self._viewer)
+
+    def _show(self, system: System) -> None:
+        if self._viewer is None:
+            self._viewer = Viewer(system, port=0, controls=False)
+        elif self._viewer.mechanism.system != system:
+            self._viewer.set_system(system)
+
+    def pose(self, body: Json) -> Json:
+        """Move it: `q` {coordinate: value}, `par` {parameter: value}, `exaggeration`, `reset`; all may be left out.
+
+        Returns:
+            Where everything stands then, and why loops could not be closed.
+
+        Raises:
+            EditError: Nothing is shown, or the request is malformed or names what is not there.
+        """
+        q, par = _numbers(body, "q"), _numbers(body, "par")
+        factor = body.get("exaggeration")
+        if factor is not None and not (_finite(factor) and abs(factor) <= MOST_EXAGGERATION):
+            raise _malformed("exaggeration", factor, f"a number up to {MOST_EXAGGERATION:g}")
+        with self._turn:
+            viewer = self._viewer
+            if viewer is None:
+                raise EditError(
+                    Problem(
+                        "nothing is shown",
+                        "no view",
+                        "a pose is of the mechanism that is shown",
+                        "open the 3-D pane first",
+                    )
+                )
+            if body.get("reset") is True:
+                viewer.reset()
+            if factor is not None:
+                viewer.exaggeration = float(factor)
+            try:
+                why = viewer.move(q, par) if q or par else ""
+            except SymofrosError as error:
+                raise EditError(_problem(error_of(error))) from None
+            return {**_stand(viewer), "why": why and why.partition("\n")[0]}
+
+    def _as_json(self, viewer: Viewer) -> Json:
+        units = coordinate_units(viewer.mechanism.tree)
+        coordinates = [
+            {
+                "name": slider.label,
+                "unit": units.get(slider.label) or ("rad" if ".turn_" in slider.label else ""),
+                "low": slider.low,
+                "high": slider.high,
+                "elastic": slider.elastic,
+            }
+            for slider in viewer.sliders
+        ]
+        return {
+            "coordinates": coordinates,
+            "flexible": viewer.mechanism.is_flexible,
+            "run_time": list(viewer.mechanism.model.names.par),
+            "fault": self._fault,
+            **_stand(viewer),
+        }
+
+    def page(self) -> bytes | None:
+        """The page of viser, fit for a frame of no origin (gzip); None while nothing is shown."""
+        with self._turn:
+            if self._viewer is not None and self._page is None:
+                with urlopen(self._viewer.url, timeout=10) as answer:
+                    page = answer.read().replace(b"<head>", b"<head>" + NO_BLOB_WORKERS, 1)
+                self._page = gzip.compress(page, mtime=0)
+            return self._page
+
+    def close(self) -> None:
+        """Stop serving."""
+        with self._turn:
+            if self._viewer is not None:
+                self._viewer.close()
+                self._viewer = None
+
+
+def _stand(viewer: Viewer) -> Json:
+    """Where everything stands; `gap`: the largest residual of the loops' conditions [m or rad], None without loops."""
+    model, state = viewer.mechanism.model, viewer.state
+    gap = float(np.abs(model.constraint(state.q, u=state.u, par=state.par)).max()) if model.nc else None
+    labels = (slider.label for slider in viewer.sliders)
+    return {
+        "q": dict(zip(labels, viewer.values.tolist(), strict=True)),
+        "exaggeration": viewer.exaggeration,
+        "gap": gap,
+    }
+
+
+def _finite(number: Any) -> bool:
+    return type(number) in (int, float) and abs(number) < 1e300 and math.isfinite(number)
+
+
+def _numbers(body: Json, key: str) -> dict[str, float]:
+    given = body.get(key) or {}
+    if not isinstance(given, dict) or not all(map(_finite, given.values())):
+        raise _malformed(key, given, "a mapping of names to finite numbers")
+    return {str(name): float(value) for name, value in given.items()}
+
+
+def _malformed(what: str, found: Any, rule: str) -> EditError:
+    return EditError(Problem(f"{what} of the request is malformed", f"{found!r:.100}", rule, "reload the page"))
+
+
+def _problem(parts: Json) -> Problem:
+    return Problem(parts["object"], parts["found"], parts["rule"], parts["remedy"])

@@ -1,0 +1,61 @@
+"""What happens, told to every page that listens: server-sent events."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+from typing import Any
+
+from symofros.errors import Problem
+from symofros.studio.editor.editing.data_edits import EditError
+
+MAX_LISTENERS = 50
+MAX_WAITING = 1000
+BEAT = 15.0  # Seconds between signs of life; a listener that has gone is noticed by them.
+
+
+class Events:
+    """Those who listen, each with what it has not been told yet."""
+
+    def __init__(self) -> None:
+        self._listeners: set[asyncio.Queue[str]] = set()
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    def publish(self, kind: str, data: dict[str, Any]) -> None:
+        """Tell everybody; from any thread."""
+        message = f"event: {kind}\ndata: {json.dumps(data)}\n\n"
+        if self._loop is not None and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._put, message)
+
+    def _put(self, message: str) -> None:
+        for queue in list(self._listeners):
+            if queue.full():  # Whoever does not listen misses the oldest.
+                queue.get_nowait()
+            queue.put_nowait(message)
+
+    def join(self) -> AsyncIterator[str]:
+        """Listen from now on.
+
+        Raises:
+            EditError: Too many do already.
+        """
+        if len(self._listeners) >= MAX_LISTENERS:
+            raise EditError(
+                Problem("too many pages listen", f"{MAX_LISTENERS}", f"at most {MAX_LISTENERS}", "close some tabs")
+            )
+        self._loop = asyncio.get_running_loop()
+        queue: asyncio.Queue[str] = asyncio.Queue(MAX_WAITING)
+        self._listeners.add(queue)
+        return self._told(queue)
+
+    async def _told(self, queue: asyncio.Queue[str]) -> AsyncIterator[str]:
+        try:
+            yield ": listening\n\n"
+            while True:
+                try:
+                    yield await asyncio.wait_for(queue.get(), BEAT)
+                except TimeoutError:
+                    yield ": still here\n\n"
+        finally:
+            self._listeners.discard(queue)

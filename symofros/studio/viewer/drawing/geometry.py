@@ -1,0 +1,301 @@
+"""A checked system -> what to draw of it, from its data alone.
+
+| stated | drawn |
+|---|---|
+| inertia of a rigid body | the box that has it |
+| joint, frames, joints carried | cylinders from the joint to each of them |
+| joint axis | a cylinder along it; spheres where a joint has several |
+| beam | a tube along its axis, as the equations bend it |
+| closure, rod, spring, slide | a strut between two points |
+| rolling contact, knife edge | a disc, a sphere, a blade |
+| visual shapes of a file | these |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from symofros.description.beam import STATION, Beam
+from symofros.description.constraints import Closure, KnifeEdge, Rod, Rolling
+from symofros.description.forces import Anchor
+from symofros.description.system import RigidBody
+from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology.tree import BASE, Link, NamedFrame, Placement, SpanningTree, frame_of
+from symofros.studio.viewer.drawing.centre_line import CentreLine
+from symofros.studio.viewer.drawing.drawing import Bend, Color, Drawing, Part, Place, Strut, Triad
+from symofros.studio.viewer.drawing.inertia_box import inertia_box, longest_edges
+from symofros.studio.viewer.drawing.meshes import Array, Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
+from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
+
+# Told apart on white and on grey, also by those who see red and green alike.
+_PALETTE: tuple[Color, ...] = (
+    (68, 119, 170),
+    (204, 187, 68),
+    (34, 136, 102),
+    (238, 119, 51),
+    (136, 34, 85),
+    (102, 204, 238),
+    (153, 153, 51),
+)
+_BASE, _JOINT, _CLOSURE, _ROD, _SPRING, _SLIDE = (
+    (110, 110, 110),
+    (60, 60, 60),
+    (204, 51, 17),
+    (120, 80, 40),
+    (0, 153, 136),
+    (160, 160, 160),
+)
+
+# Shares of the mechanism's size.
+_ROD_RADIUS, _JOINT_RADIUS, _JOINT_LENGTH, _THIN, _NEAR = 0.006, 0.012, 0.045, 0.002, 1e-6
+# Shares of a link's own length, which its pieces do not exceed; and of the size, which they keep to be seen.
+_OF_LINK, _LEAST = 0.12, 0.25
+_MOST_BOX = 1.2  # Longest box, over the mechanism's size, that is not taken for a placeholder.
+_SLENDER = 60.0  # Length over half the thickness of a beam whose section is not known.
+_FLATTEST = 6.0  # Ratio of the sides of its section.
+
+
+def landmarks(tree: SpanningTree, numbers: Numbers) -> Iterator[Place]:
+    """Points that a picture must hold: joints, frames, mass centres.
+
+    Args:
+        tree: Tree of a checked system.
+        numbers: The parameters' values.
+    """
+    yield Place(BASE, np.zeros(3))
+    for frame in tree.frames:
+        yield Place(frame.link, placed(frame.placement, numbers)[0])
+    for i, link in enumerate(tree.links):
+        yield Place(link.parent, placed(link.placement, numbers)[0])
+        for placement, inertia in link.inertias:
+            p, R = placed(placement, numbers)
+            yield Place(i, p + R @ numbers.values(inertia.center_of_mass))
+
+
+def placed(placement: Placement, numbers: Numbers) -> tuple[Array, Array]:
+    """Position (3) and rotation (3, 3) of a constant placement."""
+    p, R = np.zeros(3), np.eye(3)
+    for step in placement:
+        p, R = p + R @ numbers.values(step.position), R @ numbers.rotation(step.rotation)
+    return p, R
+
+
+def draw(tree: SpanningTree, values: dict[str, float], size: float, center: Array) -> Drawing:
+    """What to draw of a mechanism.
+
+    Args:
+        tree: Tree of a checked system.
+        values: Values of its parameters, by name; those left out keep their defaults.
+        size: Extent, from which parts without a thickness of their own take theirs [m].
+        center: Centre (3) [m].
+    """
+    return _Draughtsman(tree, values, size, center).drawing()
+
+
+class _Draughtsman:
+    def __init__(self, tree: SpanningTree, values: dict[str, float], size: float, center: Array) -> None:
+        self.tree, self.values, self.size, self.center = tree, values, size, center
+        self.numbers = Numbers(tree.system, values)
+        self.stars = {i: list(self._star(i)) for i in range(BASE, len(tree.links))}
+
+    def drawing(self) -> Drawing:
+        boxes = list(self._boxes())
+        longest = max(longest_edges(self.tree.system, self.numbers), default=0.0)
+        triads = tuple(Triad(f.name, f.link, *placed(f.placement, self.numbers)) for f in self.tree.frames)
+        parts = (*self._skeleton(), *self._joints(), *boxes, *self._contacts(), *self._visuals())
+        return Drawing(
+            self.tree.system.name,
+            parts,
+            tuple(self._bends()),
+            (*self._slides(), *self._ties()),
+            triads,
+            self.numbers.values(self.tree.system.gravity),
+            self.size,
+            self.center,
+            longest <= _MOST_BOX * self.size,
+        )
+
+    # How thick things are.
+
+    def _color(self, link: int) -> Color:
+        return _BASE if link == BASE else _PALETTE[link % len(_PALETTE)]
+
+    def _scaled(self, share: float, link: int) -> float:
+        """A share of the mechanism's size, less on short links, so that a gripper's joints do not hide the gripper."""
+        own = max((float(np.linalg.norm(p)) for p in self.stars[link]), default=0.0)
+        if own == 0.0 and link != BASE:
+            return self._scaled(share, self.tree.links[link].parent)
+        return max(min(share * self.size, share / _ROD_RADIUS * _OF_LINK * own), _LEAST * share * self.size)
+
+    # Rigid bodies.
+
+    def _star(self, link: int) -> Iterator[Array]:
+        """Where a link's frames are and what it carries begins; its mass centre if that is all there is."""
+        if link != BASE and self.tree.links[link].beam is not None:
+            return  # The beam itself leads there.
+        found = [placed(frame.placement, self.numbers)[0] for frame in self.tree.frames if frame.link == link]
+        found += [placed(child.placement, self.numbers)[0] for child in self.tree.links if child.parent == link]
+        far = [p for p in found if np.linalg.norm(p) > _NEAR * self.size]
+        if not far and link != BASE:
+            far = [
+                place.position
+                for place in landmarks(self.tree, self.numbers)
+                if place.link == link and np.linalg.norm(place.position) > _NEAR * self.size
+            ]
+        kept: list[Array] = []
+        for p in far:
+            if all(np.linalg.norm(p - other) > _NEAR * self.size for other in kept):
+                kept.append(p)
+                yield p
+
+    def _skeleton(self) -> Iterator[Part]:
+        for link, points in self.stars.items():
+            if points:
+                radius = self._scaled(_ROD_RADIUS, link)
+                mesh = merged([cylinder(np.zeros(3), p, radius) for p in points])
+                yield Part(f"bodies/{self._name(link)}", "bodies", link, mesh, self._color(link))
+
+    def _name(self, link: int) -> str:
+        return "world" if link == BASE else self.tree.links[link].name
+
+    def _boxes(self) -> Iterator[Part]:
+        for body in self.tree.system.bodies:
+            found = inertia_box(body, self.numbers) if isinstance(body, RigidBody) else None
+            if found is None:
+                continue
+            frame = frame_of(self.tree, body.name)
+            if np.any(found.edges > 0.0):
+                mesh = box(np.maximum(found.edges, _THIN * self.size))
+            else:
+                mesh = sphere(2 * _JOINT_RADIUS * self.size)  # A point mass.
+            mesh = mesh.moved(found.center, found.axes).moved(*placed(frame.placement, self.numbers))
+            yield Part(f"inertias/{body.name}", "inertias", frame.link, mesh, self._color(frame.link))
+
+    def _joints(self) -> Iterator[Part]:
+        for i, link in enumerate(self.tree.links):
+            mesh = None if link.tip_of is not None else self._joint(link, i)
+            if mesh is not None:
+                yield Part(f"joints/{link.joint.name}", "joints", i, mesh, _JOINT)
+
+    def _joint(self, link: Link, i: int) -> Mesh | None:
+        """The sign of a joint, in its distal frame; none of a clamped or a free body."""
+        radius, length = self._scaled(_JOINT_RADIUS, i), self._scaled(_JOINT_LENGTH, i)
+        symbol = link.joint.traits.symbol
+        if symbol is None:
+            return None
+        if symbol == "sphere":
+            return sphere(1.3 * radius)
+        if symbol == "disc":
+            return disc(length / 2, radius / 2)
+        axis = self.numbers.values(link.joint.axis)
+        axis = axis / np.linalg.norm(axis)
+        if symbol == "box":
+            return box(np.array([length, 1.6 * radius, 1.6 * radius])).moved(np.zeros(3), axes_along(axis))
+        return cylinder(-length / 2 * axis, length / 2 * axis, radius)
+
+    def _visuals(self) -> Iterator[Part]:
+        """How bodies look by their file."""
+        for body in self.tree.system.bodies:
+            for k, visual in enumerate(self.tree.system.visuals.get(body.name, ())):
+                mesh = visual_mesh(visual)
+                if mesh is None:
+                    continue
+                frame = frame_of(self.tree, body.name)
+                mesh = mesh.moved(np.array(visual.position), self.numbers.rotation(visual.rotation))
+                mesh = mesh.moved(*placed(frame.placement, self.numbers))
+                yield Part(
+                    f"visuals/{body.name}.{k}", "visuals", frame.link, mesh, visual.color or self._color(frame.link)
+                )
+
+    # Beams.
+
+    def _bends(self) -> Iterator[Bend]:
+        tips = {link.tip_of.name: link for link in self.tree.links if link.tip_of is not None}
+        for i, link in enumerate(self.tree.links):
+            if link.beam is not None:
+                tip = tips.get(link.name)
+                yield Bend(
+                    link.name,
+                    i,
+                    tip.q if tip else (0, 0),
+                    CentreLine(link.beam),
+                    self.numbers.value(link.beam.length),
+                    self._outline(link.beam),
+                    self._color(i),
+                )
+
+    def _outline(self, beam: Beam) -> Array:
+        """The section at mid-length: that of its rotary inertia, or a guess with the proportions of its stiffnesses."""
+        length = self.numbers.value(beam.length)
+        middle = Numbers(self.tree.system, {**self.values, STATION: length / 2})
+        rhoA, about_y, about_z = (middle.value(x) for x in (beam.rhoA, beam.rhoI_y, beam.rhoI_z))
+        if about_y > 0.0 and about_z > 0.0 and rhoA > 0.0:
+            # An elliptic section of half-axis a has moment of inertia A a^2/4.
+            return ellipse(2 * np.sqrt(about_z / rhoA), 2 * np.sqrt(about_y / rhoA))
+        EI_y, EI_z = middle.value(beam.EI_y), middle.value(beam.EI_z)
+        ratio = np.sqrt(EI_y / EI_z) if EI_y > 0.0 and EI_z > 0.0 else 1.0
+        flat = np.sqrt(np.clip(ratio, 1 / _FLATTEST, _FLATTEST))
+        return ellipse(length / _SLENDER / flat, length / _SLENDER * flat)
+
+    # What joins two points, and what touches the ground.
+
+    def _slides(self) -> Iterator[Strut]:
+        for i, link in enumerate(self.tree.links):
+            if link.joint.traits.slides:
+                start = Place(link.parent, placed(link.placement, self.numbers)[0])
+                radius = self._scaled(_ROD_RADIUS, i) / 2
+                yield Strut(
+                    f"joints/{link.joint.name}.slide",
+                    "joints",
+                    start,
+                    Place(i, np.zeros(3)),
+                    ellipse(radius, radius),
+                    _SLIDE,
+                )
+
+    def _ties(self) -> Iterator[Strut]:
+        system, radius = self.tree.system, _ROD_RADIUS * self.size
+        for item in system.constraints:
+            if isinstance(item, Closure):
+                yield self._tie(item.name, item.first, item.second, radius / 2, _CLOSURE)
+            elif isinstance(item, Rod):
+                yield self._tie(item.name, item.first, item.second, radius, _ROD)
+        for spring in system.connections:
+            yield self._tie(spring.name, spring.first, spring.second, radius / 2, _SPRING)
+
+    def _tie(self, name: str, first: Anchor, second: Anchor, radius: float, color: Color) -> Strut:
+        return Strut(
+            f"constraints/{name}",
+            "constraints",
+            self._place(first),
+            self._place(second),
+            ellipse(radius, radius),
+            color,
+        )
+
+    def _anchor(self, anchor: Anchor) -> NamedFrame:
+        return frame_of(self.tree, *anchor)
+
+    def _place(self, anchor: Anchor) -> Place:
+        frame = self._anchor(anchor)
+        return Place(frame.link, placed(frame.placement, self.numbers)[0])
+
+    def _contacts(self) -> Iterator[Part]:
+        """The marks of closures, rolling contacts and knife edges."""
+        for item in self.tree.system.constraints:
+            if isinstance(item, Closure):
+                mesh, anchor = sphere(1.5 * _JOINT_RADIUS * self.size), item.second
+            elif isinstance(item, Rolling):
+                radius = self.numbers.value(item.radius)
+                mesh, anchor = sphere(radius) if item.shape == "sphere" else disc(radius, radius / 15), item.anchor
+            elif isinstance(item, KnifeEdge):
+                sides = np.array([_JOINT_LENGTH, _JOINT_LENGTH, _JOINT_LENGTH / 3]) * self.size
+                sides["xyz".index(item.axis)] = _THIN * self.size
+                mesh, anchor = box(sides), item.anchor
+            else:
+                continue
+            frame = self._anchor(anchor)
+            mesh = mesh.moved(*placed(frame.placement, self.numbers))
+            yield Part(f"constraints/{item.name}.mark", "constraints", frame.link, mesh, _CLOSURE)

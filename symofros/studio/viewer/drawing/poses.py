@@ -1,0 +1,203 @@
+"""Where everything drawn is, for given coordinates: the model's own frame poses, and its beams' own axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symofros.compiler import compile_system, plan
+from symofros.description.constraints import Closure, Rolling
+from symofros.description.system import System
+from symofros.errors import AssemblyError, Problem, ShapeError
+from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology.tree import SpanningTree, frame_of
+from symofros.options import Options
+from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.assembly import assemble
+from symofros.studio.viewer.drawing.drawing import Bend, Drawing, Place, Strut
+from symofros.studio.viewer.drawing.geometry import draw, landmarks
+from symofros.studio.viewer.drawing.inertia_box import longest_edges
+from symofros.studio.viewer.drawing.meshes import Array, axes_along
+from symofros.studio.viewer.drawing.tracks import Track, track_part
+
+_LEAST_SIZE = 1e-6  # [m]; what is smaller is drawn as if it were a metre, for want of anything to go by.
+
+
+@dataclass(frozen=True)
+class Posture:
+    """Poses of all links, with room for any leading dimensions.
+
+    Attributes:
+        p: p_WL of every link, the world last, so that index -1 is the world (..., links + 1, 3) [m].
+        R: R_WL, alike (..., links + 1, 3, 3).
+        q: The coordinates drawn, elastic ones exaggerated (..., nq).
+    """
+
+    p: Array
+    R: Array
+    q: Array
+
+    def __getitem__(self, index: int) -> Posture:
+        """One of several."""
+        return Posture(self.p[index], self.R[index], self.q[index])
+
+    def point(self, place: Place) -> Array:
+        """A point in the world (..., 3) [m]."""
+        found: Array = self.p[..., place.link, :] + self.R[..., place.link, :, :] @ place.position
+        return found
+
+
+class State(NamedTuple):
+    """What is shown: coordinates (nq), inputs (nu) for prescribed motions, run-time parameters (npar)."""
+
+    q: Array
+    u: Array
+    par: Array
+
+
+class Mechanism:
+    """A system with what it takes to draw it: its tree, and its frame poses compiled (cached, as every model is).
+
+    Args:
+        system: System as the user stated it.
+        tracks: Tracks to draw beside it.
+
+    Raises:
+        DescriptionError: The system can't be a mechanism.
+    """
+
+    def __init__(self, system: System, tracks: tuple[Track, ...] = ()) -> None:
+        self.system, self.tracks = system, tracks
+        self.tree: SpanningTree = plan(system)
+        frames = self.tree.frames
+        # A beam's tip without a frame moves nothing that is drawn, and has no name.
+        self._names = [
+            next((f.name for f in frames if f.link == i and not f.placement), None) for i in range(len(self.tree.links))
+        ]
+        wanted = {name for name in self._names if name is not None}
+        functions: tuple[str, ...] = ("frame_pose",)
+        if system.constraints:
+            functions += ("constraint", "constraint_jacobian", "constraint_rate")
+            ends = [
+                end for item in system.constraints if isinstance(item, Closure) for end in (item.first, item.second)
+            ]
+            wanted |= {frame_of(self.tree, *end).name for end in ends}
+        asked = tuple(frame.name for frame in frames if frame.name in wanted)
+        self.model: Model = compile_system(system, Options(functions, asked, batch="loop"))
+        self._elastic = np.zeros(self.model.nq, dtype=bool)
+        for link in self.tree.links:
+            if link.tip_of is not None:
+                self._elastic[link.q[0] : sum(link.q)] = True
+
+    @property
+    def is_flexible(self) -> bool:
+        """Whether it has elastic coordinates."""
+        return bool(self._elastic.any())
+
+    @property
+    def elastic(self) -> tuple[bool, ...]:
+        """Which coordinates are elastic (nq)."""
+        return tuple(self._elastic.tolist())
+
+    def state(self, q: ArrayLike | None = None, u: ArrayLike | None = None, par: ArrayLike | None = None) -> State:
+        """A state to show; what is left out is neutral, zero or default.
+
+        Raises:
+            ShapeError: An array does not fit the model.
+        """
+        model = self.model
+        return State(
+            model.neutral() if q is None else self._vector("q", q, model.nq),
+            np.array(model.record.u_default) if u is None else self._vector("u", u, model.nu),
+            np.array(model.parameter_values) if par is None else self._vector("par", par, model.npar),
+        )
+
+    def _vector(self, what: str, given: Any, size: int) -> Array:
+        array = np.array(given, dtype=np.float64)
+        if array.shape != (size,):
+            raise ShapeError(
+                Problem(
+                    f"view of '{self.system.name}': {what} has the wrong shape",
+                    str(array.shape),
+                    f"{what} has shape ({size},)",
+                    "one state is shown at a time; motions are played",
+                )
+            )
+        return array
+
+    def posture(
+        self, q: ArrayLike, u: ArrayLike | None = None, par: ArrayLike | None = None, exaggeration: float = 1.0
+    ) -> Posture:
+        """Poses of the links for coordinates (..., nq).
+
+        Args:
+            q: Coordinates.
+            u: Inputs, for prescribed motions.
+            par: Run-time parameters.
+            exaggeration: Factor of the elastic coordinates.
+        """
+        drawn = np.array(q, dtype=np.float64)
+        drawn[..., self._elastic] *= exaggeration
+        shape = (*drawn.shape[:-1], len(self._names) + 1)
+        p, R = np.zeros((*shape, 3)), np.broadcast_to(np.eye(3), (*shape, 3, 3)).copy()
+        for i, name in enumerate(self._names):
+            if name is not None:
+                p[..., i, :], R[..., i, :, :] = self.model.frame_pose(name, drawn, u=u, par=par)
+        return Posture(p, R, drawn)
+
+    def drawing(self, par: ArrayLike | None = None) -> Drawing:
+        """What to draw, for values of the run-time parameters (npar)."""
+        state = self.state(par=par)
+        values = dict(zip(self.model.names.par, state.par.tolist(), strict=True))
+        neutral = self.posture(state.q, state.u, state.par)
+        numbers = Numbers(self.system, values)
+        places = [neutral.point(place) for place in landmarks(self.tree, numbers)]
+        points = np.concatenate([places, *(track.points for track in self.tracks)])
+        low, high = points.min(axis=0), points.max(axis=0)
+        # A body on its own has no other size than its inertia's; a typical one, as files have placeholders.
+        size = max(
+            float(np.linalg.norm(high - low)),
+            float(np.median(longest_edges(self.system, numbers) or [0.0])),
+            *(2 * numbers.value(item.radius) for item in self.system.constraints if isinstance(item, Rolling)),
+        )
+        size = size if size > _LEAST_SIZE else 1.0
+        drawing = draw(self.tree, values, size, (low + high) / 2)
+        return replace(drawing, parts=(*drawing.parts, *(track_part(track, size) for track in self.tracks)))
+
+    def closed(self, state: State, held: tuple[str, ...] = ()) -> tuple[State, str]:
+        """The nearest state whose loops are closed, and why there is none: "" where there is.
+
+        Args:
+            state: A guess.
+            held: Names of speeds whose coordinates stay as they are.
+        """
+        if not self.model.nc:
+            return state, ""
+        try:
+            found = assemble(self.model, state.q, held=held, u=state.u, par=state.par)
+        except AssemblyError as error:
+            return state, str(error)
+        return state._replace(q=found.q), ""
+
+
+class Sweep(NamedTuple):
+    """A section that goes along a line: p_WS (S, 3) and R_WS (S, 3, 3) of its stations."""
+
+    points: Array
+    axes: Array
+
+
+def bend_sweep(bend: Bend, posture: Posture) -> Sweep:
+    """A beam's sections in the world."""
+    start, size = bend.q
+    q, p, R = posture.q[start : start + size], posture.p[bend.link], posture.R[bend.link]
+    return Sweep(p + bend.line.points(bend.length, q) @ R.T, R @ bend.line.axes(bend.length, q))
+
+
+def strut_sweep(strut: Strut, posture: Posture) -> Sweep:
+    """A strut's ends in the world."""
+    first, second = posture.point(strut.first), posture.point(strut.second)
+    R = axes_along(second - first)
+    return Sweep(np.stack([first, second]), np.stack([R, R]))

@@ -1,0 +1,92 @@
+"""How bodies look by their files: visual shapes as meshes."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from functools import lru_cache
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+
+from symofros.description.visual import Visual
+from symofros.studio.viewer.drawing.collada import read_collada
+from symofros.studio.viewer.drawing.meshes import Array, Mesh, box, cylinder, merged, sphere
+
+MOST_BYTES = 64 << 20
+MOST_FACES = 500_000
+SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".off")
+
+
+def visual_mesh(visual: Visual) -> Mesh | None:
+    """A shape in its own frame; None, with a warning, for a mesh that can't be read."""
+    size = np.array(visual.size)
+    if visual.kind == "box":
+        return box(size)
+    if visual.kind == "sphere":
+        return sphere(float(size[0]))
+    if visual.kind == "ellipsoid":
+        return _scaled(sphere(1.0), size)
+    if visual.kind == "mesh":
+        try:
+            file = Path(visual.file)
+            return _scaled(_read(file, file.stat().st_mtime_ns), size)
+        except (OSError, ValueError) as error:
+            warnings.warn(f"view: mesh '{Path(visual.file).name}' is not drawn: {str(error)[:200]}", stacklevel=2)
+            return None
+    radius, half = float(size[0]), np.array([0.0, 0.0, size[1] / 2])
+    tube = cylinder(-half, half, radius)
+    if visual.kind == "cylinder":
+        return tube
+    ball = sphere(radius)
+    return merged([tube, ball.moved(half, np.eye(3)), ball.moved(-half, np.eye(3))])
+
+
+def _scaled(mesh: Mesh, factors: Array) -> Mesh:
+    """Seen from outside also where it is mirrored."""
+    return Mesh(mesh.vertices * factors, mesh.faces if np.prod(factors) > 0.0 else mesh.faces[:, ::-1])
+
+
+@lru_cache(maxsize=256)
+def _read(file: Path, changed: int) -> Mesh:  # A file that was changed since is read again.
+    """A mesh's file.
+
+    Raises:
+        OSError: It can't be read.
+        ValueError: It is no mesh of SUFFIXES, or too large; or trimesh is not installed.
+    """
+    if file.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"{file.suffix or 'no suffix'} is none of {', '.join(SUFFIXES)}; convert it")
+    if file.stat().st_size > MOST_BYTES:
+        raise ValueError(f"{file.stat().st_size} bytes, {MOST_BYTES} at most")
+    data = file.read_bytes()
+    vertices, faces = read_collada(data, MOST_FACES) if file.suffix.lower() == ".dae" else _loaded(file.suffix, data)
+    if not 0 < len(faces) <= MOST_FACES or not np.all(np.isfinite(vertices)):
+        raise ValueError(f"{len(faces)} triangles; 1 to {MOST_FACES} with finite corners")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise ValueError("a triangle without a corner")
+    return Mesh(vertices, faces)
+
+
+def _loaded(suffix: str, data: bytes) -> Mesh:
+    """Of all formats but COLLADA, for which trimesh needs more packages.
+
+    Raises:
+        ValueError: It is no such mesh, or trimesh is not installed.
+    """
+    try:
+        trimesh = import_module("trimesh")
+    except ImportError:
+        raise ValueError("trimesh is not installed; pip install 'symofros[view]'") from None
+    try:
+        # Of bytes, without a resolver: nothing that the file refers to is opened.
+        found = trimesh.load(
+            io.BytesIO(data), file_type=suffix.lower()[1:], force="mesh", process=False, skip_materials=True
+        )
+        return Mesh(
+            np.array(found.vertices, dtype=np.float64).reshape(-1, 3),
+            np.array(found.faces, dtype=np.int64).reshape(-1, 3),
+        )
+    except Exception as error:  # noqa: BLE001 - its readers raise whatever a bad file makes them stumble over.
+        raise ValueError(f"not a {suffix} file: {error}") from None

@@ -1,0 +1,1 @@
+"""The page in the browser: viser's server and scene, the controls, and the state that they show."""

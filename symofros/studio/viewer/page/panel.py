@@ -1,0 +1,166 @@
+"""The controls beside the picture: playing, what is shown, exaggeration, coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Protocol
+
+import numpy as np
+
+from symofros.studio.viewer.drawing.drawing import Drawing
+from symofros.studio.viewer.drawing.layers import LAYERS
+from symofros.studio.viewer.drawing.meshes import Array
+from symofros.studio.viewer.playing.player import Player
+from symofros.studio.viewer.playing.sliders import Slider
+
+_SPEEDS = ("0.01", "0.1", "0.25", "0.5", "1", "2", "5")
+_LAYER_NAMES = {
+    "inertias": "inertia boxes",
+    "constraints": "constraints and springs",
+    "visuals": "visual shapes",
+    "ground": "ground and gravity",
+}
+_MOST_EXAGGERATION = 50.0
+_STEPS = 500  # Of a slider.
+
+
+class Controls(Protocol):
+    """What the controls act on."""
+
+    def toggle(self) -> None:
+        """Play or pause."""
+
+    def seek(self, time: float) -> None:
+        """Go to a time of the motion [s]."""
+
+    def set_speed(self, speed: float) -> None:
+        """Play at so many seconds a second."""
+
+    def set_layer(self, layer: str, visible: bool) -> None:
+        """Show or hide a layer."""
+
+    def set_exaggeration(self, factor: float) -> None:
+        """Multiply elastic coordinates."""
+
+    def slide(self, index: int, value: float) -> None:
+        """Show the configuration with one slider moved."""
+
+    def reset(self) -> None:
+        """Show the configuration that was shown first."""
+
+
+class Panel:
+    """The controls of one mechanism, in place of those of the one before.
+
+    Args:
+        server: Server of viser.
+        controls: Object that the controls act on.
+        drawing: Drawing whose name is the title.
+        layers: Layers that are shown.
+        sliders: Sliders of the coordinates.
+        exaggeration: Exaggeration of the elastic ones; None where there are none.
+        player: Player of the motion, if there is one.
+        controls_shown: Whether there are any; the panel is empty and minimized otherwise.
+    """
+
+    def __init__(
+        self,
+        server: Any,
+        controls: Controls,
+        drawing: Drawing,
+        layers: frozenset[str],
+        sliders: tuple[Slider, ...],
+        exaggeration: float | None,
+        player: Player | None,
+        controls_shown: bool = True,
+    ) -> None:
+        self._gui = gui = server.gui
+        self._controls = controls
+        self._play: Any = None
+        self._time: Any = None
+        self._exaggeration: Any = None
+        self._boxes: dict[str, Any] = {}
+        self._sliders: list[Any] = []
+        gui.reset()
+        gui.configure_theme(show_logo=False, show_share_button=False)
+        gui.set_panel_label(drawing.name)
+        self._status = gui.add_markdown("")
+        if not controls_shown:
+            gui.main_panel.minimize()
+            return
+        gui.main_panel.dock_right()  # Beside the picture, not over it.
+        if player is not None:
+            self._add_player(player)
+        self._add_layers(layers, exaggeration)
+        self._add_sliders(sliders)
+
+    def _add_layers(self, layers: frozenset[str], exaggeration: float | None) -> None:
+        gui, controls = self._gui, self._controls
+        with gui.add_folder("Show"):
+            if exaggeration is not None:
+                most = max(_MOST_EXAGGERATION, 2 * exaggeration)
+                self._exaggeration = gui.add_slider(
+                    "exaggeration", 0.0, most, 0.5, max(exaggeration, 0.0), hint="multiplies the elastic coordinates"
+                )
+                self._on(self._exaggeration, controls.set_exaggeration)
+            for layer in LAYERS:
+                self._boxes[layer] = gui.add_checkbox(_LAYER_NAMES.get(layer, layer), layer in layers)
+                self._on(self._boxes[layer], partial(controls.set_layer, layer))
+
+    def _on(self, handle: Any, act: Callable[[Any], None]) -> Any:
+        """Act on what a person changes; a change by this program has no client, and nothing follows from it."""
+        handle.on_update(lambda event: act(event.target.value) if event.client is not None else None)
+        return handle
+
+    def _add_player(self, player: Player) -> None:
+        gui, motion = self._gui, player.motion
+        with gui.add_folder("Motion"):
+            self._play = gui.add_button("Pause" if player.playing else "Play")
+            self._play.on_click(lambda _: self._controls.toggle())
+            length = max(motion.end - motion.start, 1e-9)
+            self._time = gui.add_slider("time [s]", motion.start, motion.start + length, length / 1000, player.time)
+            self._on(self._time, self._controls.seek)
+            speeds = sorted({*_SPEEDS, f"{player.speed:g}"}, key=float)
+            chosen = gui.add_dropdown("speed", speeds, initial_value=f"{player.speed:g}")
+            self._on(chosen, lambda text: self._controls.set_speed(float(text)))
+
+    def _add_sliders(self, sliders: tuple[Slider, ...]) -> None:
+        gui, handles = self._gui, {}
+        for title, elastic in (("Coordinates", False), ("Elastic coordinates", True)):
+            chosen = [i for i, slider in enumerate(sliders) if slider.elastic == elastic]
+            if not chosen:
+                continue
+            with gui.add_folder(title, expand_by_default=not elastic):
+                for i in chosen:
+                    one = sliders[i]
+                    step = (one.high - one.low) / _STEPS or 1.0
+                    handle = gui.add_slider(one.label, one.low, one.high, step, float(np.clip(0.0, one.low, one.high)))
+                    handles[i] = self._on(handle, partial(self._controls.slide, i))
+        if sliders:
+            gui.add_button("Reset").on_click(lambda _: self._controls.reset())
+        self._sliders = [handles[i] for i in range(len(sliders))]
+
+    def say(self, text: str) -> None:
+        """Show a line of text above the controls."""
+        self._status.content = text
+
+    def show(self, layers: frozenset[str], exaggeration: float) -> None:
+        """Let the controls say what is shown."""
+        for layer, box in self._boxes.items():
+            box.value = layer in layers
+        if self._exaggeration is not None:
+            self._exaggeration.value = float(np.clip(exaggeration, 0.0, self._exaggeration.max))
+
+    def follow(self, values: Array, player: Player | None) -> None:
+        """Let the controls stand where the picture is.
+
+        Args:
+            values: Values of the sliders (nv).
+            player: Player of the motion, if there is one.
+        """
+        for handle, value in zip(self._sliders, values, strict=False):  # No sliders without controls.
+            handle.value = float(np.clip(value, handle.min, handle.max))
+        if player is not None and self._time is not None:
+            self._time.value = player.time
+            self._play.label = "Pause" if player.playing else "Play"

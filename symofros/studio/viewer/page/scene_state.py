@@ -1,0 +1,114 @@
+"""The picture as it stands: which mechanism, in which state, how it is drawn. One thread at a time may use it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.studio.viewer.drawing.drawing import Drawing, alike
+from symofros.studio.viewer.drawing.layers import shown_at_first
+from symofros.studio.viewer.drawing.meshes import Array
+from symofros.studio.viewer.drawing.poses import Mechanism, Posture, State
+from symofros.studio.viewer.page.viser_scene import Scene
+from symofros.studio.viewer.playing.sliders import Slider, coordinates_of, sliders_of, values_of
+
+
+class Stage:
+    """A mechanism on a server.
+
+    Args:
+        server: Server of viser.
+        mechanism: Mechanism that is shown.
+        exaggeration: Factor of its elastic coordinates.
+    """
+
+    def __init__(self, server: Any, mechanism: Mechanism, exaggeration: float) -> None:
+        self.server, self.mechanism, self.exaggeration = server, mechanism, exaggeration
+        self.first = self.state = mechanism.closed(mechanism.state())[0]
+        drawing = mechanism.drawing(self.state.par)
+        self._drawn_par = self.state.par
+        self.scene = Scene(server, drawing, self._posture(), shown_at_first(drawing))
+
+    def change(self, mechanism: Mechanism) -> None:
+        """Show another mechanism; where it has the same coordinates, they stay, and so do the layers shown."""
+        kept = self.state.q if mechanism.model.names.q == self.mechanism.model.names.q else None
+        self.mechanism = mechanism
+        self.first = mechanism.closed(mechanism.state())[0]
+        self.state = self.first if kept is None else mechanism.closed(self.first._replace(q=kept))[0]
+        self._draw(mechanism.drawing(self.state.par))
+
+    def paint(self, state: State) -> bool:
+        """Show a state; False where it is not finite, and the picture stays.
+
+        The mechanism is drawn anew where parameters have changed how it looks.
+        """
+        if not all(np.all(np.isfinite(array)) for array in state):
+            return False
+        self.state = state
+        if not np.array_equal(state.par, self._drawn_par):
+            drawing = self.mechanism.drawing(state.par)
+            if not alike(drawing, self.scene.drawing):
+                self._draw(drawing)
+                return True
+            self._drawn_par = state.par
+        self.scene.move(self._posture())
+        return True
+
+    @property
+    def sliders(self) -> tuple[Slider, ...]:
+        """What moves the mechanism: one a speed."""
+        return sliders_of(self.mechanism.model, self.mechanism.elastic)
+
+    @property
+    def values(self) -> Array:
+        """Where the sliders of the state stand (nv)."""
+        return values_of(self.mechanism.model, self.state.q)
+
+    def slid(self, changes: Mapping[int, float], par: Array | None = None) -> tuple[State, str]:
+        """The state with some sliders moved and the loops closed around them, and why they can't be: "" where they can.
+
+        Args:
+            changes: Values by the index of the slider.
+            par: Run-time parameters (npar); those of the state by default.
+        """
+        model, values = self.mechanism.model, self.values
+        for index, value in changes.items():
+            values[index] = value
+        guess = self.state._replace(q=coordinates_of(model, values), par=self.state.par if par is None else par)
+        return self.mechanism.closed(guess, tuple(model.names.v[index] for index in changes))
+
+    def by_name(self, values: Mapping[str, float], par: Mapping[str, float]) -> tuple[dict[int, float], Array]:
+        """Changes of sliders by index, and run-time parameters (npar), of what is given by labels and names.
+
+        Raises:
+            UnknownNameError: There is no such slider or parameter.
+        """
+        chosen = self.state.par.copy()
+        for name, value in par.items():
+            chosen[_index("parameter", self.mechanism.model.names.par, name)] = value
+        labels = [slider.label for slider in self.sliders]
+        return {_index("coordinate", labels, name): value for name, value in values.items()}, chosen
+
+    def _posture(self) -> Posture:
+        return self.mechanism.posture(self.state.q, self.state.u, self.state.par, self.exaggeration)
+
+    def _draw(self, drawing: Drawing) -> None:
+        """Draw anew; what is shown or hidden stays so."""
+        self._drawn_par = self.state.par
+        self.scene = Scene(self.server, drawing, self._posture(), self.scene.layers)
+
+
+def _index(what: str, names: Sequence[str], name: str) -> int:
+    if name not in names:
+        raise UnknownNameError(
+            Problem(
+                f"view: no {what} '{name}'",
+                ", ".join(names[:12]),
+                f"a {what} of the model",
+                did_you_mean(name, names),
+            )
+        )
+    return names.index(name)

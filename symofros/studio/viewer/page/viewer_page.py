@@ -1,0 +1,203 @@
+"""The picture in the browser with its controls: what is drawn, played, moved by sliders; for any thread."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Mapping
+from typing import Any
+
+from symofros.studio.viewer.drawing.meshes import Array
+from symofros.studio.viewer.drawing.poses import Mechanism, State
+from symofros.studio.viewer.page.panel import Panel
+from symofros.studio.viewer.page.scene_state import Stage
+from symofros.studio.viewer.playing.motion import finite, positive
+from symofros.studio.viewer.playing.player import Player
+from symofros.studio.viewer.playing.sliders import Slider
+
+_FOLLOWED = 0.1  # Seconds between updates of the controls: they cost more than the picture.
+
+
+class Screen:
+    """A mechanism on a server, and the controls beside it.
+
+    Args:
+        server: Server of viser.
+        mechanism: Mechanism that is shown.
+        exaggeration: Factor of the elastic coordinates.
+        controls: Whether there are sliders and buttons.
+
+    Attributes:
+        painted: Number of pictures shown.
+    """
+
+    def __init__(self, server: Any, mechanism: Mechanism, exaggeration: float, controls: bool) -> None:
+        self._server, self._controls = server, controls
+        self._painting = threading.RLock()  # Guards the picture, the player and the controls.
+        self._player: Player | None = None
+        self._followed = -_FOLLOWED
+        self.painted = 0
+        self._stage = Stage(server, mechanism, exaggeration)
+        self._panel = self._new_panel()
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """What is shown, as it is computed with."""
+        return self._stage.mechanism
+
+    @property
+    def state(self) -> State:
+        """The state that is shown."""
+        return self._stage.state
+
+    @property
+    def exaggeration(self) -> float:
+        """What multiplies elastic coordinates in the picture."""
+        return self._stage.exaggeration
+
+    @exaggeration.setter
+    def exaggeration(self, factor: float) -> None:
+        self.set_exaggeration(factor)
+
+    # What the controls on the page do.
+
+    def toggle(self) -> None:
+        """Play or pause the motion."""
+        with self._painting:
+            if self._player is not None:
+                if self._player.playing:
+                    self._player.playing = False
+                else:
+                    self._player.start()
+                self._follow()
+
+    def seek(self, time: float) -> None:
+        """Go to a time of the motion [s]."""
+        with self._painting:
+            if self._player is not None:
+                self._player.seek(time)
+                self._paint_motion()
+
+    def set_speed(self, speed: float) -> None:
+        """Play the motion at so many seconds a second."""
+        with self._painting:
+            if self._player is not None:
+                self._player.speed = positive("speed", speed)
+
+    def set_layer(self, layer: str, visible: bool) -> None:
+        """Show or hide a layer.
+
+        Args:
+            layer: "bodies", "inertias", "joints", "constraints", "paths", "visuals", "frames", "labels" or "ground".
+            visible: Whether it is to be seen.
+
+        Raises:
+            UnknownNameError: There is no such layer.
+        """
+        with self._painting:
+            self._stage.scene.show(layer, visible)
+            self._panel.show(self._stage.scene.layers, self._stage.exaggeration)
+
+    def set_exaggeration(self, factor: float) -> None:
+        """Multiply elastic coordinates in the picture."""
+        with self._painting:
+            self._stage.exaggeration = finite("exaggeration", factor)
+            self._paint(self._stage.state)
+            self._panel.show(self._stage.scene.layers, self._stage.exaggeration)
+
+    def slide(self, index: int, value: float) -> None:
+        """Move one degree of freedom, by the index of its speed; loops close around it where they can."""
+        self._slide({index: value})
+
+    def move(self, values: Mapping[str, float], par: Mapping[str, float] | None = None) -> str:
+        """Move some degrees of freedom, and change some run-time parameters; loops close around them where they can.
+
+        Args:
+            values: Values by the labels of `sliders` [rad or m].
+            par: Parameters by name; those that are not named stay as they are.
+
+        Returns:
+            Why the loops can't be closed there, and the picture stays: "" where they can.
+
+        Raises:
+            UnknownNameError: There is no such slider or parameter.
+        """
+        with self._painting:
+            return self._slide(*self._stage.by_name(values, par or {}))
+
+    @property
+    def sliders(self) -> tuple[Slider, ...]:
+        """What moves it: one slider a speed."""
+        return self._stage.sliders
+
+    @property
+    def values(self) -> Array:
+        """Where the sliders stand (nv)."""
+        return self._stage.values
+
+    def reset(self) -> None:
+        """Show the configuration that was shown first."""
+        with self._painting:
+            self._stand(self._stage.first)
+
+    # How it is painted; who calls these holds the lock.
+
+    def _slide(self, changes: Mapping[int, float], par: Array | None = None) -> str:
+        with self._painting:
+            state, why = self._stage.slid(changes, par)
+            self._stand(self._stage.state if why else state)
+            self._panel.say("The loops can't be closed there." if why else "")
+            return why
+
+    def _is_playing(self) -> bool:
+        return self._player is not None and self._player.playing
+
+    def _live(self, state: State, t: float) -> None:
+        """Show a state of something that goes on elsewhere, and its time [s]."""
+        model, (q, u, par) = self.mechanism.model, state
+        if (q.size, u.size, par.size) != (model.nq, model.nu, model.npar):
+            return  # It was pushed before the mechanism changed.
+        self._pause()
+        self._paint(state)
+        if time.monotonic() - self._followed > _FOLLOWED:
+            self._panel.say(f"t = {t:.2f} s")
+            self._follow()
+
+    def _paint_motion(self) -> None:
+        if self._player is not None:
+            motion = self._player.motion
+            q, u = motion.at(self._player.time)
+            self._paint(State(q, u, motion.par))
+            if time.monotonic() - self._followed > _FOLLOWED or not self._player.playing:
+                self._follow()
+
+    def _stand(self, state: State) -> None:
+        self._pause()
+        self._paint(state)
+        self._follow()
+
+    def _pause(self) -> None:
+        if self._player is not None:
+            self._player.playing = False
+
+    def _paint(self, state: State) -> None:
+        self.painted += self._stage.paint(state)
+
+    def _follow(self) -> None:
+        self._panel.follow(self._stage.values, self._player)
+        self._followed = time.monotonic()
+
+    def _new_panel(self) -> Panel:
+        stage, mechanism = self._stage, self._stage.mechanism
+        panel = Panel(
+            self._server,
+            self,
+            stage.scene.drawing,
+            stage.scene.layers,
+            self.sliders,
+            stage.exaggeration if mechanism.is_flexible else None,
+            self._player,
+            self._controls,
+        )
+        panel.follow(stage.values, self._player)
+        return panel

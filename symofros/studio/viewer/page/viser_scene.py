@@ -1,0 +1,209 @@
+"""A drawing as a viser scene, and its motion."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from itertools import count
+from typing import Any
+
+import numpy as np
+
+from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.mechanics.topology.tree import BASE
+from symofros.studio.viewer.drawing.drawing import Color, Drawing
+from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, cell_of, gravity_arrow
+from symofros.studio.viewer.drawing.layers import LAYERS
+from symofros.studio.viewer.drawing.meshes import Array, Mesh, tube, tube_stations
+from symofros.studio.viewer.drawing.poses import Posture, Sweep, bend_sweep, strut_sweep
+from symofros.studio.viewer.render.camera import Camera
+
+_ROOT, _TUBES = "/mechanism", "/tubes"
+SEE_THROUGH = 0.3  # Opacity of boxes of inertia.
+_TRIAD = 0.05  # Length of a frame's axes, of the mechanism's size.
+
+
+class Scene:
+    """The nodes of one drawing on a server, in place of those of the drawing before.
+
+    Args:
+        server: Server of viser.
+        drawing: Drawing to show.
+        posture: Posture of the mechanism.
+        layers: Layers that are shown.
+    """
+
+    def __init__(self, server: Any, drawing: Drawing, posture: Posture, layers: frozenset[str]) -> None:
+        self.server, self.drawing = server, drawing
+        self._rotation = import_module("viser.transforms").SO3
+        self._shown = layers
+        self._tubes = 0
+        self._nodes: dict[str, list[Any]] = {layer: [] for layer in LAYERS}
+        with server.atomic():
+            if server.scene.get_handle_by_name(_ROOT) is not None:
+                server.scene.remove_by_name(_ROOT)
+            server.scene.world_axes.visible = False
+            server.scene.add_frame(_ROOT, show_axes=False)
+            self._links = {
+                i: server.scene.add_frame(self._link(i), show_axes=False) for i in range(BASE, posture.p.shape[0] - 1)
+            }
+            for part in drawing.parts:
+                self._add_mesh(part.kind, f"{self._link(part.link)}/{_node(part.name)}", part.mesh, part.color)
+            self._bends = [
+                self._add_tube("bodies", bend.outline, bend_sweep(bend, posture), bend.color) for bend in drawing.bends
+            ]
+            self._struts = [
+                self._add_tube(strut.kind, strut.outline, strut_sweep(strut, posture), strut.color)
+                for strut in drawing.struts
+            ]
+            self._hide_spare_tubes()
+            self._add_frames()
+            self._add_ground()
+            self._aim()
+            self.move(posture)
+
+    def move(self, posture: Posture) -> None:
+        """Put everything where a posture has it; browsers show all of it at once."""
+        turns = self._rotation.from_matrix(posture.R).wxyz
+        with self.server.atomic():
+            for i, node in self._links.items():
+                node.position, node.wxyz = posture.p[i], turns[i]
+            for bend, node in zip(self.drawing.bends, self._bends, strict=True):
+                if bend.q[1]:
+                    self._pose(node, bend_sweep(bend, posture))
+            for strut, node in zip(self.drawing.struts, self._struts, strict=True):
+                self._pose(node, strut_sweep(strut, posture))
+
+    def _pose(self, node: Any, sweep: Sweep) -> None:
+        turns = self._rotation.from_matrix(sweep.axes).wxyz
+        for bone, point, turn in zip(node.bones, sweep.points, turns, strict=True):
+            bone.position, bone.wxyz = point, turn
+
+    @property
+    def layers(self) -> frozenset[str]:
+        """What is shown."""
+        return self._shown
+
+    def show(self, layer: str, visible: bool) -> None:
+        """Show or hide a layer.
+
+        Raises:
+            UnknownNameError: It is none of LAYERS.
+        """
+        if layer not in LAYERS:
+            raise UnknownNameError(
+                Problem(
+                    f"view: no layer '{layer}'",
+                    f"'{layer}'",
+                    f"one of {', '.join(LAYERS)}",
+                    did_you_mean(layer, LAYERS),
+                )
+            )
+        self._shown = self._shown | {layer} if visible else self._shown - {layer}
+        for node in self._nodes[layer]:
+            node.visible = visible
+
+    # Nodes.
+
+    def _link(self, index: int) -> str:
+        return f"{_ROOT}/link{index}" if index != BASE else f"{_ROOT}/world"
+
+    def _kept(self, layer: str, node: Any) -> Any:
+        node.visible = layer in self._shown
+        self._nodes[layer].append(node)
+        return node
+
+    def _add_mesh(self, layer: str, name: str, mesh: Mesh, color: Color) -> Any:
+        node = self.server.scene.add_mesh_simple(
+            name,
+            mesh.vertices,
+            mesh.faces,
+            color=color,
+            opacity=SEE_THROUGH if layer == "inertias" else None,
+            cast_shadow=layer != "inertias",
+        )
+        return self._kept(layer, node)
+
+    def _add_tube(self, layer: str, outline: Array, sweep: Sweep, color: Color) -> Any:
+        """A tube with a bone a station: browsers move bones at once with nodes, but vertices some pictures later.
+
+        It takes the place of a tube of the drawing before, if there was one: viser 1.1's page breaks down where a mesh
+        with bones is removed (its clean-up looks for a node that is gone), but not where it is replaced.
+        """
+        mesh, stations = tube(outline, *sweep), tube_stations(len(sweep.points), len(outline))
+        node = self.server.scene.add_mesh_skinned(
+            f"{_TUBES}/{self._tubes}",
+            mesh.vertices,
+            mesh.faces,
+            color=color,
+            bone_wxyzs=self._rotation.from_matrix(sweep.axes).wxyz,
+            bone_positions=sweep.points,
+            skin_weights=np.eye(len(sweep.points))[stations],
+        )
+        self._tubes += 1
+        return self._kept(layer, node)
+
+    def _hide_spare_tubes(self) -> None:
+        """Those of the drawing before that this one has no use for."""
+        for i in count(self._tubes):
+            spare = self.server.scene.get_handle_by_name(f"{_TUBES}/{i}")
+            if spare is None:
+                return
+            spare.visible = False
+
+    def _add_frames(self) -> None:
+        size = _TRIAD * self.drawing.size
+        for triad in self.drawing.triads:
+            name = f"{self._link(triad.link)}/frames/{_node(triad.name)}"
+            self._kept(
+                "frames",
+                self.server.scene.add_frame(
+                    name,
+                    axes_length=size,
+                    axes_radius=size / 20,
+                    position=triad.position,
+                    wxyz=self._rotation.from_matrix(triad.rotation).wxyz,
+                ),
+            )
+            label = self.server.scene.add_label(
+                f"{self._link(triad.link)}/labels/{_node(triad.name)}", triad.name, position=triad.position
+            )
+            self._kept("labels", label)
+
+    def _add_ground(self) -> None:
+        drawing, scene = self.drawing, self.server.scene
+        cell, cells = cell_of(drawing)
+        self._kept(
+            "ground",
+            scene.add_grid(
+                f"{_ROOT}/ground",
+                2 * cells * cell,
+                2 * cells * cell,
+                cell_size=cell,
+                section_size=cells * cell,
+                fade_distance=10 * drawing.size,
+            ),
+        )
+        arrow = gravity_arrow(drawing)
+        if arrow is not None:
+            length = float(np.linalg.norm(arrow[1] - arrow[0]))
+            self._kept(
+                "ground",
+                scene.add_arrows(
+                    f"{_ROOT}/gravity",
+                    arrow[None],
+                    np.array(GRAVITY_COLOR),
+                    shaft_radius=length / 25,
+                    head_radius=length / 10,
+                    head_length=length / 4,
+                ),
+            )
+
+    def _aim(self) -> None:
+        camera, initial = Camera.of(self.drawing), self.server.initial_camera
+        initial.position, initial.look_at, initial.up = camera.position, camera.target, camera.up
+        initial.fov, initial.near, initial.far = camera.fov, 1e-3 * self.drawing.size, 1e3 * self.drawing.size
+
+
+def _node(name: str) -> str:
+    """A name within one level of viser's tree of nodes."""
+    return name.replace("/", ".")

@@ -1,0 +1,59 @@
+"""What a run of a diagram shows: one of its mechanisms, and how that moved."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from symofros.description.system import System
+from symofros.diagrams.block import Block
+from symofros.diagrams.result import DiagramRun
+from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.studio.viewer.playing.motion import States
+
+
+def chosen_block(name: str, blocks: Mapping[str, Block], block: str = "") -> str:
+    """The block whose mechanism is shown.
+
+    Args:
+        name: Name of the diagram.
+        blocks: Name -> block.
+        block: Name of the block; "" for the only one that moves a mechanism.
+
+    Raises:
+        UnknownNameError: There is no such block, it moves no mechanism, or there are several to choose from.
+    """
+    moving = [key for key, item in blocks.items() if item.mechanism()]
+    if block in moving:
+        return block
+    if not block and len(moving) == 1:
+        return moving[0]
+    raise UnknownNameError(
+        Problem(
+            f"view of diagram '{name}': no mechanism '{block}'"
+            if block
+            else f"view of diagram '{name}': which mechanism?",
+            f"'{block}'" if block else f"{len(moving)} mechanisms",
+            f"blocks that move one: {', '.join(moving) or 'none'}",
+            (did_you_mean(block, moving) if block else "")
+            or ("name one of them" if moving else "add forward dynamics"),
+        )
+    )
+
+
+def shown_of(run: DiagramRun, block: str = "") -> tuple[System, States]:
+    """The mechanism that a block moves, and its states over time, with the run's own parameters.
+
+    Raises:
+        UnknownNameError: As `chosen_block`.
+    """
+    resolved = run.compiled.resolved
+    wired, layout = resolved.wired, resolved.layout
+    block = chosen_block(wired.name, wired.blocks, block)
+    model = wired.blocks[block].mechanism()
+    u = None
+    # Signals are computed by a function of their own: only where they move something is that worth its while.
+    if wired.models.record(model).driven and (block, "u") in wired.sources:
+        u = run[".".join(wired.sources[block, "u"])]
+    return wired.models.system(model), States(
+        run.t, run.motion(block)[0], u, run.par[layout.parameters["", model].slice]
+    )

@@ -1,0 +1,268 @@
+"""Motion: states over time that are to be shown, of a run or of a file."""
+
+from __future__ import annotations
+
+import csv
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import NamedTuple, NoReturn
+
+import numpy as np
+
+from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.trajectory import Trajectory
+from symofros.studio.viewer.drawing.meshes import Array
+
+SUFFIXES = (".npz", ".csv", ".parquet")
+
+
+@dataclass(frozen=True)
+class Motion:
+    """States over time.
+
+    Attributes:
+        model: Model whose configuration manifold the motion follows.
+        t: Times, rising (n) [s].
+        q: Configurations (n, nq).
+        u: Inputs, for prescribed motions (n, nu).
+        par: Run-time parameters (npar).
+    """
+
+    model: Model
+    t: Array
+    q: Array
+    u: Array
+    par: Array
+
+    @property
+    def start(self) -> float:
+        """First time [s]."""
+        return float(self.t[0])
+
+    @property
+    def end(self) -> float:
+        """Last time [s]."""
+        return float(self.t[-1])
+
+    def at(self, times: ArrayLike) -> tuple[Array, Array]:
+        """Coordinates (..., nq) and inputs (..., nu) at times (...,), interpolated along the manifold."""
+        times = np.asarray(times, dtype=np.float64)
+        if len(self.t) == 1:
+            shape = (*times.shape, 1)
+            return np.tile(self.q[0], shape), np.tile(self.u[0], shape)
+        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, len(self.t) - 2)
+        gap = self.t[i + 1] - self.t[i]
+        # Two states at one time stand before and after an event.
+        share = np.clip((times - self.t[i]) / np.where(gap > 0.0, gap, 1.0), 0.0, 1.0)[..., None]
+        q = self.model.integrate(self.q[i], share * self.model.difference(self.q[i], self.q[i + 1]))
+        return q, self.u[i] + share * (self.u[i + 1] - self.u[i])
+
+
+class States(NamedTuple):
+    """States over time of a mechanism that is yet to be compiled: t (n), q (n, nq), u (n, nu), par (npar)."""
+
+    t: ArrayLike
+    q: ArrayLike
+    u: ArrayLike | None = None
+    par: ArrayLike | None = None
+
+
+Played = Trajectory | Motion | States | tuple[ArrayLike, ArrayLike]
+
+
+def motion_of(model: Model, given: Played) -> Motion:
+    """A run, or times (n) and configurations (n, nq), as a motion of a model.
+
+    Raises:
+        ShapeError: It does not fit the model.
+    """
+    if isinstance(given, Motion):
+        return _checked(model, given.t, given.q, given.u, given.par, "motion")
+    if isinstance(given, Trajectory):
+        if given.model.names.q != model.names.q:
+            _refuse(
+                "trajectory",
+                f"coordinates {_some(given.model.names.q)}",
+                f"the model's are {_some(model.names.q)}",
+                "show it with the system that it was simulated with",
+            )
+        return _checked(model, given.t, given.q, given.u, given.par, "trajectory")
+    if isinstance(given, States):
+        return _checked(model, *given, "motion")
+    t, q = given
+    return _checked(model, t, q, None, None, "motion")
+
+
+def read_motion(path: str | Path, model: Model) -> Motion:
+    """A motion from a file that `Trajectory.save` wrote, or one like it.
+
+    Args:
+        path: .npz with t (n), q (n, nq) and, if it has them, u, par, names_q; .csv or .parquet with columns t and the
+            coordinates' names and, where motions are prescribed, the inputs'.
+        model: Model that moves.
+
+    Raises:
+        SymofrosError: There is no such file, or it can't be read.
+        ShapeError: It does not fit the model.
+    """
+    file = Path(path)
+    if file.suffix not in SUFFIXES:
+        raise SymofrosError(
+            Problem(
+                f"trajectory: can't read '{file.name}'",
+                file.suffix or "no suffix",
+                f"one of {', '.join(SUFFIXES)}",
+                "save it with Trajectory.save",
+            )
+        )
+    if not file.is_file():
+        raise SymofrosError(
+            Problem(
+                f"trajectory: '{file}' does not exist",
+                "no such file",
+                "a trajectory is an existing file",
+                "check the path; `symofros simulate MODEL T -o FILE` writes one",
+            )
+        )
+    readers = {".npz": _read_arrays, ".csv": _read_csv, ".parquet": _read_parquet}
+    try:
+        return readers[file.suffix](file, model)
+    except (OSError, ValueError, zipfile.BadZipFile) as error:
+        if isinstance(error, ShapeError):
+            raise
+        fault = Problem(
+            f"trajectory: '{file.name}' is not a {file.suffix} file",
+            str(error)[:200],
+            "what Trajectory.save writes, or alike",
+            "save it again",
+        )
+        raise SymofrosError(str(fault)) from None
+
+
+def _read_arrays(file: Path, model: Model) -> Motion:
+    with np.load(file, allow_pickle=False) as found:
+        for name in ("t", "q"):
+            if name not in found:
+                _refuse(file.name, f"arrays {_some(found.files)}", "arrays t (n) and q (n, nq)", f"add {name}")
+        names = tuple(found["names_q"].tolist()) if "names_q" in found else model.names.q
+        if names != model.names.q:
+            _refuse(
+                file.name,
+                f"coordinates {_some(names)}",
+                f"the model's are {_some(model.names.q)}",
+                "show it with the model that it was simulated with",
+            )
+        u, par = (found[name] if name in found else None for name in ("u", "par"))
+        return _checked(model, found["t"], found["q"], u, par, file.name)
+
+
+def _read_csv(file: Path, model: Model) -> Motion:
+    with file.open(newline="", encoding="utf-8") as stream:
+        rows = csv.reader(stream)
+        head = next(rows, [])
+        table = np.array([[float(x) for x in row] for row in rows if row]).reshape(-1, len(head) or 1)
+    return _from_columns(dict(zip(head, table.T, strict=True)) if head else {}, file, model)
+
+
+def _read_parquet(file: Path, model: Model) -> Motion:
+    try:
+        parquet = import_module("pyarrow.parquet")
+    except ImportError:
+        raise SymofrosError(
+            Problem(
+                "trajectory: Parquet needs pyarrow",
+                "it is not installed",
+                "pyarrow reads Parquet",
+                "pip install 'symofros[parquet]', or use .npz",
+            )
+        ) from None
+    table = parquet.read_table(file)
+    return _from_columns({name: table[name].to_numpy() for name in table.column_names}, file, model)
+
+
+def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> Motion:
+    missing = [name for name in ("t", *model.names.q) if name not in columns]
+    if missing:
+        _refuse(
+            file.name,
+            f"columns {_some(tuple(columns))}",
+            f"a column for t and each of {_some(model.names.q)}",
+            f"missing: {_some(missing)}; is it a motion of this model?",
+        )
+    n = len(columns["t"])
+    u = np.tile(np.array(model.record.u_default), (n, 1))
+    for i, name in enumerate(model.names.u):
+        column = f"u.{name}" if f"u.{name}" in columns else name
+        if column in columns and column not in model.names.q:
+            u[:, i] = columns[column]
+    q = np.stack([columns[name] for name in model.names.q], axis=1) if model.nq else np.zeros((n, 0))
+    return _checked(model, columns["t"], q, u, None, file.name)
+
+
+def _checked(model: Model, t: ArrayLike, q: ArrayLike, u: ArrayLike | None, par: ArrayLike | None, what: str) -> Motion:
+    t, q = np.array(t, dtype=np.float64), np.array(q, dtype=np.float64)
+    n = t.size
+    u = np.tile(np.array(model.record.u_default), (n, 1)) if u is None else np.array(u, dtype=np.float64)
+    par = np.array(model.parameter_values) if par is None else np.array(par, dtype=np.float64)
+    for name, array, shape in (
+        ("t", t, (n,)),
+        ("q", q, (n, model.nq)),
+        ("u", u, (n, model.nu)),
+        ("par", par, (model.npar,)),
+    ):
+        if array.shape != shape:
+            _refuse(
+                what,
+                f"{name} {array.shape}",
+                f"{name} has shape {shape}: nq is {model.nq}, nu {model.nu}, npar {model.npar}",
+                "show it with the model that it was simulated with",
+            )
+    # A run that diverged ends in states that can't be drawn.
+    finite = np.isfinite(t) & np.isfinite(q).all(axis=1) & np.isfinite(u).all(axis=1)
+    count = n if finite.all() else int(np.argmin(finite))
+    if not count:
+        _refuse(
+            what,
+            f"{n} states, the first not finite" if n else "no states",
+            "one finite state at least",
+            "look at how the run ended",
+        )
+    if np.any(np.diff(t[:count]) < 0.0):
+        _refuse(what, "times that fall", "times rise from state to state", "sort the states by time")
+    return Motion(model, t[:count], q[:count], u[:count], par)
+
+
+def finite(name: str, value: float) -> float:
+    """A finite number.
+
+    Raises:
+        SymofrosError: It is none.
+    """
+    if not np.isfinite(value):
+        raise SymofrosError(Problem(f"view: no such {name}", repr(value), f"{name} is a finite number", "give another"))
+    return float(value)
+
+
+def positive(name: str, value: float) -> float:
+    """A finite number above 0.
+
+    Raises:
+        SymofrosError: It is none.
+    """
+    if not (np.isfinite(value) and value > 0.0):
+        raise SymofrosError(
+            Problem(f"view: no such {name}", repr(value), f"{name} is a finite number above 0", "give another")
+        )
+    return float(value)
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
+
+
+def _refuse(what: str, found: str, rule: str, remedy: str) -> NoReturn:
+    raise ShapeError(Problem(f"{what}: does not fit the model", found, rule, remedy))

@@ -1,0 +1,123 @@
+"""What a document says: its diagram, and problems at the entries that they are about."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from symofros.studio.editor.document.analysis import analyse
+from symofros.studio.editor.document.diagram import diagram
+from tests.studio.editor.texts import DATA, FILES, ODD, TEXTS
+
+# A change of the four-bar, the path of the problem that follows, its block.
+FAULTS = (
+    (
+        "parent: crank, frame: end",
+        "parent: crank, frame: ennd",
+        ["bodies", "coupler", "joint", "frame"],
+        "bodies/coupler",
+    ),
+    ("parent: crank, frame", "parent: cra, frame", ["bodies", "coupler", "joint", "parent"], "bodies/coupler"),
+    ("[L/2, 0, 0]", "[K/2, 0, 0]", ["bodies", "crank", "inertia", "center_of_mass", 0], "bodies/crank"),
+    ("{mass: m,", "{mass: m+,", ["bodies", "crank", "inertia", "mass"], "bodies/crank"),
+    ("kind: revolute", "kind: revo", ["bodies", "crank", "joint", "kind"], "bodies/crank"),
+    ("axis: [0, -1, 0]", "axis: [0, 0, 0]", ["bodies", "crank", "joint", "axis"], "bodies/crank"),
+    ("axis: [0, -1, 0]", "axis: [0, 0]", ["bodies", "crank", "joint", "axis"], "bodies/crank"),
+    ("axis: [0, -1, 0]", "axes: [0, -1, 0]", ["bodies", "crank", "joint", "axes"], "bodies/crank"),
+    ("closures:", "closurs:", ["closurs"], ""),
+    ("[x, z]", "[x, w]", ["closures", "loop", "translations", 1], ""),
+    ("coupler, frame: end}, t", "coupler, frame: foo}, t", ["closures", "loop", "second", "frame"], ""),
+    ("rocker, frame: end}, s", "rock, frame: end}, s", ["closures", "loop", "first", "body"], ""),
+    ("L: {value: 1.0", "L: {value: abc", ["parameters", "L", "value"], ""),
+    ("system: {name", "system: {gravity: [0, 0, g], name", ["system", "gravity", 2], "world"),
+)
+
+
+@pytest.mark.parametrize(("old", "new", "path", "node"), FAULTS, ids=[fault[1] for fault in FAULTS])
+def test_a_problem_is_at_the_entry_that_it_is_about(old: str, new: str, path: list[str], node: str) -> None:
+    text = TEXTS["four_bar"].replace(old, new, 1)
+    assert text != TEXTS["four_bar"]
+    found = analyse(FILES["four_bar"], text)
+    problem = found.problems[0]
+    assert problem["path"] == path and problem["node"] == node
+    assert new.split()[0].strip("[{,") in text.splitlines()[problem["line"] - 1]
+    assert problem["object"] and problem["rule"] and problem["remedy"]
+    assert sum(block["problems"] for block in found.graph["nodes"]) == (node != "")
+
+
+def test_a_text_that_is_not_yaml_has_one_problem_with_its_line() -> None:
+    found = analyse(FILES["four_bar"], TEXTS["four_bar"].replace("bodies:", "bodies: ]"))
+    assert not found.readable and found.data is None
+    assert [(p["line"], p["path"]) for p in found.problems] == [(8, [])]
+
+
+def test_problems_of_included_files_name_them(tmp_path: Path) -> None:
+    (tmp_path / "hand.yaml").write_text("symofros: 1\nbodies: {b: {joint: {kind: what}}}\n")
+    problem = analyse(tmp_path / "a.yaml", "symofros: 1\ninclude: [hand.yaml]\n").problems[0]
+    assert "hand.yaml:2" in problem["object"] and problem["path"] == [] and problem["line"] == 0
+
+
+@pytest.mark.parametrize("name", sorted(FILES))
+def test_every_reference_model_is_drawn_whole(name: str) -> None:
+    found = analyse(FILES[name], TEXTS[name])
+    data, graph = DATA[name], found.graph
+    assert found.problems == []
+    blocks = {block["id"]: block for block in graph["nodes"]}
+    ports = {(key, port["name"]) for key, block in blocks.items() for port in block["ports"]}
+    bases = sum("joint" not in body for body in data["bodies"].values())
+    assert len(blocks) == len(graph["nodes"]) == len(data["bodies"]) + 1 - bases + len(data.get("nonholonomic", {}))
+    assert len([edge for edge in graph["edges"] if edge["kind"] == "joint"]) == len(data["bodies"]) - bases
+    assert len([edge for edge in graph["edges"] if edge["kind"] == "closure"]) == len(data.get("closures", {}))
+    for edge in graph["edges"]:
+        assert {(edge["source"], edge["source_port"]), (edge["target"], edge["target_port"])} <= ports
+        assert all(step in (data := data[step] and data) for step in edge["path"][:1])
+    assert len({edge["id"] for edge in graph["edges"]}) == len(graph["edges"])
+
+
+NO_DOCUMENTS = (
+    None,
+    3,
+    [],
+    {"bodies": 1},
+    {"bodies": {"a": None, "b": [], "c": {"joint": 1}}},
+    {"bodies": {"a": {"joint": {"parent": ["x"], "frame": {}}}}},
+    {"closures": {"c": {"first": {"body": {}}, "second": 4}}, "nonholonomic": {"n": {"rolling": 1}}},
+)
+
+
+@pytest.mark.parametrize("data", NO_DOCUMENTS)
+def test_whatever_stands_in_a_document_can_be_drawn(data: object) -> None:
+    found = diagram(data)
+    assert found["nodes"][0]["id"] == "world" and found["nodes"][0]["kind"] == "base"
+
+
+def test_a_broken_wire_goes_to_the_body_itself_and_one_to_nowhere_is_left_out() -> None:
+    body = {"joint": {"kind": "fixed", "parent": "a", "frame": "none"}}
+    found = diagram({"bodies": {"a": {"joint": {"kind": "fixed"}}, "b": body, "c": {"joint": {"parent": "zz"}}}})
+    assert [(edge["source"], edge["source_port"]) for edge in found["edges"]] == [("world", ""), ("bodies/a", "")]
+
+
+def test_frames_may_be_called_like_ports() -> None:
+    frames = {"root": {}, "body": {}}
+    found = diagram(
+        {"bodies": {"a": {"joint": {}, "frames": frames}, "b": {"joint": {"parent": "a", "frame": "body"}}}}
+    )
+    assert [(port["name"], port["kind"]) for port in found["nodes"][1]["ports"]] == [
+        ("/root", "root"),
+        ("", "origin"),
+        ("root", "frame"),
+        ("body", "frame"),
+    ]
+    assert found["edges"][1]["source_port"] == "body"
+
+
+def test_the_body_without_a_joint_is_the_ground() -> None:
+    found = diagram({"bodies": {"ground": {"frames": {"m": {}}}, "a": {"joint": {"parent": "ground", "frame": "m"}}}})
+    assert found["nodes"][0]["title"] == "ground" and found["nodes"][0]["path"] == ["bodies", "ground"]
+    assert found["edges"][0]["source_port"] == "m"
+
+
+def test_numbers_that_json_lacks_become_texts() -> None:
+    found = analyse(FILES["four_bar"], ODD.replace("value: 1,", "value: .inf,"))
+    assert found.data["parameters"]["L1"]["value"] == ".inf"

@@ -1,0 +1,137 @@
+"""Renaming: every reference follows, nothing else does, and renaming back gives the first text."""
+
+from __future__ import annotations
+
+import pytest
+
+import symofros as sf
+from symofros.studio.editor.document.analysis import analyse
+from symofros.studio.editor.editing.data_edits import Edit, EditError, Path
+from symofros.studio.editor.editing.formulas import formulas, names_in, with_names
+from symofros.studio.editor.editing.yaml_edits import with_references
+from symofros.studio.editor.editing.yaml_spans import Sheet
+from tests.studio.editor.texts import DATA, FILES, TEXTS
+
+
+def renamed(text: str, path: Path, to: str) -> str:
+    return with_references(text, [Edit("rename", path, key=to)])
+
+
+def names_of(name: str) -> list[tuple[Path, str]]:
+    """What can be renamed in a reference model, with its name as stated."""
+    data = DATA[name]
+    found: list[tuple[Path, str]] = [(("parameters", key), key) for key in data.get("parameters") or {}]
+    found += [(("inputs", key), key) for key in data.get("inputs") or {}]
+    for body, entry in data["bodies"].items():
+        found.append((("bodies", body), body))
+        found += [(("bodies", body, "frames", frame), frame) for frame in entry.get("frames") or {}]
+        joint = entry.get("joint", {})
+        found += [(("bodies", body, "joint"), joint["name"])] if "name" in joint else []
+        own = joint.get("coordinates", [])
+        found += [(("bodies", body, "joint", "coordinates", i), symbol) for i, symbol in enumerate(own)]
+    return found
+
+
+CASES = [(name, path, old) for name in sorted(FILES) for path, old in names_of(name)]
+
+
+@pytest.mark.parametrize(("name", "path", "old"), CASES[::9], ids=lambda x: str(x) if isinstance(x, str) else None)
+def test_there_and_back_gives_the_first_bytes_and_no_problems(name: str, path: Path, old: str) -> None:
+    there = renamed(TEXTS[name], path, "brand_new")
+    assert not analyse(FILES[name], there).problems
+    back = path if "joint" in path else (*path[:-1], "brand_new")
+    assert renamed(there, back, old) == TEXTS[name]
+
+
+def test_a_renamed_model_is_the_same_mechanism(tmp_path) -> None:
+    text = TEXTS["friction_arm"]
+    for path, old in reversed(names_of("friction_arm")):  # What is in a body before the body.
+        text = renamed(text, path, f"new_{old}")
+    file = tmp_path / "friction_arm.yaml"
+    file.write_text(text)
+    before, after = sf.load(FILES["friction_arm"]), sf.load(file)
+    models = [sf.compile(system, sf.Options(backend="interpreter")) for system in (before, after)]
+    q = models[0].neutral() + 0.3
+    assert models[1].names.q == tuple(f"new_{name}" for name in models[0].names.q)
+    assert (models[0].mass_matrix(q) == models[1].mass_matrix(q)).all()
+
+
+TEXT = """\
+symofros: 1
+parameters: {L: 1, Lx: 2}
+bodies:
+  arm:
+    joint: {kind: revolute, effort: ["-L*dq_arm - Lx*sin( q_arm )"]}   # q_arm
+    inertia: {mass: 'L + Lx', moments: [L*1e-3, L, L]}
+    frames: {tip: {position: [L, 0, 0]}}
+    loads: [{at: tip, force: [0, q_arm, 0]}]
+  hand:
+    joint: {kind: ball, parent: arm, frame: tip, rotors: []}
+    inertia: {mass: 1, moments: [1, 1, 1]}
+    frames: {tip: {}}
+connections:
+  c: {first: {body: world}, second: {body: arm, frame: tip}, stiffness: L}
+virtual_power:
+  p: {dq_arm: -dq_arm*L, q_hand.wx: q_hand.qx}
+potentials: {arm: L*cos(q_arm)}
+nonholonomic:
+  n: {coefficients: {dq_arm: L}, right: 0}
+"""
+
+
+def test_a_body_takes_its_references_and_its_coordinate_along() -> None:
+    done = renamed(TEXT, ("bodies", "arm"), "boom")
+    expected = (
+        TEXT.replace("  arm:\n", "  boom:\n").replace("parent: arm", "parent: boom").replace("body: arm", "body: boom")
+    )
+    expected = expected.replace("q_arm", "q_boom").replace("# q_boom", "# q_arm")
+    assert done == expected  # The potential that is also called arm, and the comment, stay.
+
+
+def test_a_joint_without_a_name_gets_one() -> None:
+    done = renamed(TEXT, ("bodies", "hand", "joint"), "wrist")
+    assert "joint: {kind: ball, parent: arm, frame: tip, rotors: [], name: wrist}" in done
+    assert "wrist.wx: wrist.qx" in done
+
+
+def test_a_parameter_is_renamed_by_tokens() -> None:
+    done = renamed(TEXT, ("parameters", "L"), "len")
+    assert "{len: 1, Lx: 2}" in done and "-len*dq_arm - Lx*sin( q_arm )" in done and "mass: 'len + Lx'" in done
+    assert "potentials: {arm: len*cos(q_arm)}" in done
+
+
+def test_a_frame_is_renamed_on_its_own_body_only() -> None:
+    done = renamed(TEXT, ("bodies", "arm", "frames", "tip"), "end")
+    assert done.count("end") == 4 and "frames: {tip: {}}" in done
+
+
+@pytest.mark.parametrize(
+    ("path", "to", "says"),
+    [
+        (("parameters", "L"), "Lx", "'Lx'"),
+        (("parameters", "L"), "q_arm", "'q_arm' is taken"),
+        (("parameters", "L"), "sin", "'sin' is taken"),
+        (("parameters", "L"), "a b", "'a b'"),
+        (("bodies", "arm"), "hand", "'hand'"),
+        (("bodies", "arm"), "world", "'world'"),
+        (("bodies", "arm", "joint"), "L", "'L' is taken"),
+        (("bodies", "arm", "joint"), "no-symbol", "'no-symbol'"),
+        (("bodies", "zz"), "y", "no 'zz'"),
+    ],
+)
+def test_a_name_that_would_be_confused_is_refused(path: Path, to: str, says: str) -> None:
+    with pytest.raises(EditError) as caught:
+        renamed(TEXT, path, to)
+    assert says in caught.value.problem.found
+
+
+def test_formulas_are_found_by_the_schema() -> None:
+    found = {text for _, text in formulas(Sheet(TEXT).root.plain())}
+    assert {"L + Lx", "L*1e-3", "-dq_arm*L", "L*cos(q_arm)", "q_arm", "L"} <= found
+    assert not found & {"arm", "tip", "revolute", "world"}
+
+
+def test_names_of_a_formula() -> None:
+    assert names_in("2*sin(q.x[1]) + sin*e - 1e5") == ["q.x[1]", "sin", "e"]
+    assert names_in("no formula #") == []
+    assert with_names(" a+ab *a ", {"a": "b"}) == " b+ab *b "

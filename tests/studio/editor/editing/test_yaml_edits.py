@@ -1,0 +1,214 @@
+"""Edits of text: they mean what the same edits of plain data mean, and change nothing else."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from symofros.studio.editor.editing.data_edits import Edit, EditError, edited, same
+from symofros.studio.editor.editing.yaml_edits import apply, trace
+from symofros.studio.editor.editing.yaml_spans import Sheet
+from tests.studio.editor.texts import DATA, FILES, KEYS, ODD, PATHS, TEXTS, at, values
+
+
+@st.composite
+def cases(draw: Any) -> tuple[str, Edit]:
+    """A text, and an edit of it that makes sense."""
+    name = draw(st.sampled_from(["odd", "crlf", "open end"]) | st.sampled_from(sorted(TEXTS)))
+    text, data, where = TEXTS[name], DATA[name], PATHS[name]
+    op = draw(st.sampled_from(["set", "set", "add", "insert", "remove", "rename", "move"]))
+    if op == "insert":
+        path = draw(st.sampled_from([p for p in where if isinstance(at(data, p), (dict, list))]))
+        owner = at(data, path)
+        index = draw(st.none() | st.integers(0, len(owner)))
+        key = draw(st.sampled_from([k for k in KEYS if k not in owner])) if isinstance(owner, dict) else ""
+        return text, Edit("insert", path, draw(values), key, index)
+    if op == "add":
+        path = draw(st.sampled_from([p for p in where if isinstance(at(data, p), dict)]))
+        deeper = draw(st.sampled_from([(), ("deep",), ("deep", "deeper")]))
+        return text, Edit("set", (*path, "added", *deeper), draw(values))
+    if op in ("rename", "move"):
+        path = draw(st.sampled_from([p for p in where if op == "move" or isinstance(p[-1], str)]))
+        owner = at(data, path[:-1])
+        key = draw(st.sampled_from([k for k in KEYS if k not in owner]))
+        return text, Edit(op, path, key=key, index=draw(st.integers(0, len(owner) - 1)))
+    path = draw(st.sampled_from(where))
+    return text, Edit(op, path, draw(values))
+
+
+def lines_around(text: str, edit: Edit) -> tuple[str, str]:
+    """The text before and after all that an edit may touch."""
+    sheet = Sheet(text)
+    path = edit.path
+    while sheet.node(path) is None:
+        path = path[:-1]
+    # An entry's own lines; of a collection that gets one more, or another order, or none at all, its owner's.
+    if edit.op == "move" or (edit.op == "remove" and len(at(sheet.root.plain(), path[:-1])) == 1):
+        path = path[:-1]
+    while path:
+        owner = sheet.node(path[:-1])
+        assert owner is not None
+        if owner.style == "block":
+            place = list(owner.value).index(path[-1]) if isinstance(owner.value, dict) else int(path[-1])
+            first, last = sheet.lines_of(owner, place)
+            return text[: sheet.line_start(first)], text[sheet.line_end(last - 1) :]
+        path = path[:-1]
+    return "", ""
+
+
+@settings(max_examples=200, deadline=None)
+@given(cases())
+def test_an_edit_of_text_is_the_edit_of_its_data_and_of_nothing_else(case: tuple[str, Edit]) -> None:
+    text, edit = case
+    data = Sheet(text).root.plain()
+    done, anew = trace(text, edit)
+    assert same(Sheet(done).root.plain(), edited(data, edit))
+    assert anew is None, "the entry had to be written anew: its comments and layout are lost"
+    before, after = lines_around(text, edit)
+    # One of two blank lines goes with what they stood around.
+    assert done.startswith(before.rstrip()) and done.rstrip().endswith(after.strip())
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.sampled_from(sorted(TEXTS)), values, st.data())
+def test_comments_elsewhere_survive_any_new_value(name: str, value: Any, data: st.DataObject) -> None:
+    text = TEXTS[name]
+    path = data.draw(st.sampled_from(PATHS[name]))
+    sheet = Sheet(text)
+    node = sheet.node(path)
+    assert node is not None
+    inside = text[node.start : sheet.end(node)]
+    comments = [line for line in text.splitlines() if line.strip().startswith("#") and line not in inside]
+    left = apply(text, Edit("set", path, value)).splitlines()
+    assert [line for line in left if line in comments] == comments
+
+
+@pytest.mark.parametrize("name", sorted(TEXTS))
+def test_setting_what_is_there_changes_no_byte(name: str) -> None:
+    text, data = TEXTS[name], DATA[name]
+    for path in PATHS[name][:: max(1, len(PATHS[name]) // 8)]:
+        assert apply(text, Edit("set", path, at(data, path))) == text
+
+
+@pytest.mark.parametrize("name", sorted(FILES))
+def test_a_number_changes_in_place(name: str) -> None:
+    """Some numbers of each reference model."""
+    text, data, sheet = TEXTS[name], DATA[name], Sheet(TEXTS[name])
+    numbers = [p for p in PATHS[name] if type(at(data, p)) in (int, float)]
+    for path in numbers[:: max(1, len(numbers) // 4)]:
+        node = sheet.node(path)
+        assert node is not None
+        changed = apply(text, Edit("set", path, 4711.5))
+        assert changed == text[: node.start] + "4711.5" + text[node.end :]
+
+
+def edit(op: Any, *path: str | int, value: Any = None, key: str = "", index: int | None = None) -> Edit:
+    return Edit(op, path, value, key, index)
+
+
+FIRST = """\
+          - force: [1, 2, 3]
+            # about axes
+            axes: world
+          -   at: body
+              torque: [0, "L1, 2", 0]
+"""
+SECOND = "          - {force: [0,0,1,], }\n"
+
+# What is written where: edit, a part of the odd text, what stands there afterwards.
+EXAMPLES = (
+    (
+        edit("set", "parameters", "L1", "value", value=2.5),
+        "{value: 1, unit: m}   # first",
+        "{value: 2.5, unit: m}   # first",
+    ),
+    (edit("set", "parameters", "L2", "unit", value="cm"), "unit: 'm'", "unit: 'cm'"),
+    (edit("set", "parameters", "L3", value={"value": 3, "unit": "kg"}), "  L3: 3\n", "  L3: {value: 3, unit: kg}\n"),
+    (edit("set", "parameters", "L2", value=7), "  L2:\n    # inner\n    value: 2.0e-1\n    unit: 'm'\n", "  L2: 7\n"),
+    (edit("remove", "parameters", "L3"), "  # about L3\n  L3: 3\n", ""),
+    (edit("remove", "parameters", "L2", "unit"), "    unit: 'm'\n    # tail of L2\n", "    # tail of L2\n"),
+    (edit("insert", "parameters", key="L0", value=1, index=0), "  # lengths\n", "  L0: 1\n  # lengths\n"),
+    (edit("insert", "parameters", key="L4", value=4), "  L3: 3\n", "  L3: 3\n\n  L4: 4\n"),
+    (edit("set", "inputs", "f", "unit", value="N"), "inputs: {}\n", "inputs:\n  f: {unit: N}\n"),
+    (edit("set", "inputs", value=None), "inputs: {}\n", "inputs: null\n"),
+    (edit("rename", "bodies", "b", key="c d"), "    b:    # the second", "    c d:    # the second"),
+    (edit("remove", "bodies", "a", "frames", "tip"), "            tip:\n", ""),
+    (
+        edit("set", "bodies", "a", "frames", "tip", "position", value=[1, 0, 0]),
+        "tip:\n",
+        "tip: {position: [1, 0, 0]}\n",
+    ),
+    (
+        edit("set", "bodies", "a", "joint", "axis", 1, value=1),
+        "[0,\n                       0, 1]",
+        "[0,\n                       1, 1]",
+    ),
+    (edit("remove", "bodies", "a", "joint", "name"), ",   # z\n                name: qa}", "}"),
+    (edit("remove", "bodies", "b", "loads", 2, "force"), "{force: [0,0,1,], }", "{}"),
+    (edit("remove", "bodies", "b", "loads", 1, "at"), "-   at: body\n              torque", "-   torque"),
+    (
+        edit("insert", "bodies", "b", "loads", 0, key="at", value="body", index=0),
+        "- force: [1, 2, 3]",
+        "- at: body\n            force: [1, 2, 3]",
+    ),
+    (edit("insert", "bodies", "b", "waive", value="massless_tip"), "waive: []", "waive: [massless_tip]"),
+    (edit("insert", "bodies", "b", "loads", 2, "force", value=5), "[0,0,1,]", "[0,0,1, 5,]"),
+    (edit("set", "system", "gravity", value=[0, 0, 0]), "-9.81  # down", "0  # down"),
+    (edit("move", "bodies", "b", "loads", 2, index=0), FIRST + SECOND, SECOND + FIRST),
+    (edit("set", "potentials", "v", value="L3"), "v: >\n    L1 * cos(qa)\n", "v: L3\n"),
+)
+
+
+@pytest.mark.parametrize(
+    ("change", "old", "new"), EXAMPLES, ids=lambda x: "/".join(map(str, x.path)) if isinstance(x, Edit) else ""
+)
+def test_what_is_written(change: Edit, old: str, new: str) -> None:
+    done = apply(ODD, change)
+    assert ODD.count(old) == 1
+    assert done == ODD.replace(old, new)
+
+
+def test_a_new_section_goes_to_its_place() -> None:
+    done = apply(TEXTS["four_bar"], Edit("set", ("inputs", "f"), {"unit": "N"}))
+    assert "  L: {value: 1.0, unit: m}\ninputs:\n  f: {unit: N}\nbodies:\n" in done
+
+
+def test_the_comment_above_an_entry_goes_with_it_and_the_head_stays() -> None:
+    text = "# head\nsymofros: 1\nbodies:\n  # first\n  a: {}\n\n  # second\n  b: {}\n"
+    assert apply(text, Edit("remove", ("bodies", "a"))) == "# head\nsymofros: 1\nbodies:\n\n  # second\n  b: {}\n"
+    assert apply(text, Edit("move", ("bodies", "b"), index=0)) == (
+        "# head\nsymofros: 1\nbodies:\n  # second\n  b: {}\n\n  # first\n  a: {}\n"
+    )
+    assert apply(text, Edit("remove", ("symofros",))).startswith("# head\nbodies:")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        (edit("set", "bodies", "a", "frames", 3, value=1), "no '3'"),
+        (edit("remove", "bodies", "zz"), "no 'zz'"),
+        (edit("remove"), "whole document"),
+        (edit("insert", "bodies", key="a", value={}), "key 'a'"),
+        (edit("insert", "system", "name", key="x", value=1), "a str"),
+        (edit("insert", "bodies", "b", "loads", value={}, index=9), "index 9"),
+        (edit("rename", "bodies", "a", key="b"), "'b'"),
+        (edit("rename", "bodies", "b", "loads", 0, key="x"), "an entry of a list"),
+        (edit("move", "bodies", "a", index=2), "index 2"),
+        (edit("set", "bodies", "a", value={"<<": 1}), "'<<'"),
+    ],
+)
+def test_an_edit_without_sense_is_refused(wrong: Edit, says: str) -> None:
+    with pytest.raises(EditError, match="can't be applied") as caught:
+        apply(ODD, wrong)
+    problem = caught.value.problem
+    assert says in problem.found and problem.rule and problem.remedy
+
+
+def test_what_surgery_does_not_foresee_is_written_anew_in_the_smallest_entry() -> None:
+    text = "symofros: 1\n# kept\nbodies:\n  a: {joint: [kind: fixed, 2]}\n  b: {}  # kept too\n"
+    done, anew = trace(text, Edit("insert", ("bodies", "a", "joint", 0), 3, "x"))
+    assert anew == ("bodies", "a", "joint", 0)
+    assert done == text.replace("[kind: fixed, 2]", "[{kind: fixed, x: 3}, 2]")

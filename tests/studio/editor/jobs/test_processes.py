@@ -1,0 +1,279 @@
+"""Work in processes of its own: done, failed, cancelled, crashed; the server goes on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from symofros.errors import DescriptionError, Problem, SymofrosError
+from symofros.studio.editor.editing.data_edits import EditError
+from symofros.studio.editor.jobs import processes
+from symofros.studio.editor.jobs.processes import Jobs
+from symofros.studio.editor.jobs.worker import error_of
+from tests.studio.editor.conftest import finished, over
+
+SLIDER = """\
+symofros: 1
+system: {gravity: [0, 0, 0]}
+inputs: {f: {unit: N}}
+bodies:
+  a:
+    joint: {name: x, kind: prismatic, effort: [f]}
+    inertia: {mass: 2}
+"""
+
+
+def test_compile(client: TestClient) -> None:
+    job = finished(client, "compile")
+    assert job["state"] == "done" and job["error"] is None and job["revision"] == 1
+    found = job["result"]
+    assert (found["nq"], found["nv"], found["nu"], found["npar"], found["nc"]) == (3, 3, 0, 2, 2)
+    assert found["q_names"] == ["q1", "q2", "q3"] and found["par_names"] == ["m", "L"]
+    cost = found["operations"]["mass_matrix"]
+    assert cost["total"] >= cost["mul"] + cost["add"] > 0 and "constraint_jacobian" in found["operations"]
+    assert found["generate_s"] > 0 and found["compile_s"] > 0
+
+
+def test_simulate(client: TestClient) -> None:
+    """The loop is closed first; its energy stays."""
+    job = finished(
+        client,
+        "simulate",
+        t_end=0.5,
+        method="dop853",
+        points=50,
+        q0={"q1": 1.2, "q2": -1.2, "q3": 1.2},
+        parameters={"m": 2.0},
+    )
+    assert job["state"] == "done", job
+    found = job["result"]
+    assert len(found["t"]) == 51 and found["t"][-1] == pytest.approx(0.5)
+    assert [(s["name"], s["kind"], s["unit"]) for s in found["series"]][:4] == [
+        ("q1", "q", "rad"),
+        ("q2", "q", "rad"),
+        ("q3", "q", "rad"),
+        ("dq1", "v", "rad/s"),
+    ]
+    assert all(len(s["values"]) == 51 for s in found["series"])
+    total = found["energy"]["total"]
+    assert max(total) - min(total) < 1e-4 * max(map(abs, found["energy"]["kinetic"]))
+    assert found["outcome"]["ok"] and found["method"] == "dop853" and found["steps"] > 3
+
+
+def test_simulate_with_inputs_on_prismatic_and_revolute_joints(client: TestClient, folder: Path) -> None:
+    client.post("/api/text", json={"revision": 1, "text": SLIDER})
+    job = finished(client, "simulate", t_end=1, v0={"dx": 1.0}, inputs={"f": "4*t"}, points=10)
+    x = job["result"]["series"][0]
+    assert x["unit"] == "m" and x["values"][-1] == pytest.approx(1 + 2 / 6)  # x = t + (4/2) t^3/6.
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"method": "rk99"}, "no method 'rk99'"),
+        ({"t_end": "soon"}, "t_end is not a number"),
+        ({"q0": {"q9": 1}}, "no coordinate 'q9'"),
+        ({"q0": {"q1": None}}, "q1 is not a number"),
+        ({"inputs": {"nothing": 1}}, "nothing"),
+        ({"dt": -1}, "not positive"),
+    ],
+)
+def test_what_can_not_be_simulated_says_why(client: TestClient, options: dict[str, Any], says: str) -> None:
+    job = finished(client, "simulate", **options)
+    assert job["state"] == "failed" and says in job["error"]["object"] and job["error"]["remedy"]
+
+
+def test_a_faulty_document_is_told_not_compiled(client: TestClient) -> None:
+    text = client.get("/api/document").json()["text"].replace("parent: crank", "parent: crnk")
+    client.post("/api/text", json={"revision": 1, "text": text})
+    error = finished(client, "compile")["error"]
+    assert "names a parent that does not exist" in error["object"] and error["remedy"] == "did you mean 'crank'?"
+
+
+def test_export_stays_in_the_workspace(client: TestClient, folder: Path) -> None:
+    beside = set(folder.parent.iterdir())
+    for target, sub, main in (("c", "out/c", "bar.c"), ("urdf", "out2", "bar.urdf")):
+        job = finished(client, "export", target=target, folder=sub, name="bar")
+        assert job["state"] == "done", job["error"]
+        files = job["result"]["files"]
+        assert f"{sub}/{main}" in files and all(file.startswith(f"{sub}/") for file in files)
+        assert all((folder / file).stat().st_size for file in files)
+    assert set(folder.parent.iterdir()) == beside
+    for outside in ("../out", "/tmp/out", ".git", ""):
+        answer = client.post("/api/jobs", json={"kind": "export", "options": {"target": "c", "folder": outside}})
+        assert answer.status_code == 422
+
+
+def test_an_unknown_job_is_refused(client: TestClient) -> None:
+    for body in ({"kind": "import"}, {"kind": "os.system"}, {}, {"kind": "compile", "options": [1]}):
+        assert client.post("/api/jobs", json=body).status_code == 422
+    assert client.get("/api/jobs/99").status_code == 422
+
+
+def test_import(client: TestClient, folder: Path) -> None:
+    inertia = '<mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    link = f'<link name="{{}}"><inertial>{inertia}</inertial></link>'
+    joint = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>'
+    urdf = f'<robot name="r">{link.format("a")}{link.format("b")}{joint}</robot>'
+    answer = client.post("/api/import", json={"name": "my robot.urdf", "text": urdf})
+    found = answer.json()
+    assert answer.status_code == 200 and found["path"] == "my_robot.yaml" and found["dirty"]
+    assert found["problems"] == [] and list(found["data"]["bodies"]) == ["a", "b"] and isinstance(found["notes"], list)
+    (folder / "r.urdf").write_text(urdf)
+    assert client.post("/api/import", json={"path": "r.urdf"}).json()["path"] == "r.yaml"
+    for wrong in (
+        {"name": "x.urdf", "text": "<robot"},
+        {"name": "x.exe", "text": ""},
+        {"path": "../r.urdf"},
+        {"name": "../../x.yaml", "text": "a: ]"},
+        {"name": "x.urdf"},
+    ):
+        assert client.post("/api/import", json=wrong).status_code == 422
+    assert client.get("/api/document").json()["path"] == "r.yaml"
+
+
+def test_a_cross_check_needs_the_harness_and_says_so(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In this process: the worker's finds it."""
+    from symofros.studio.editor.jobs import operations
+
+    monkeypatch.setattr(operations, "find_spec", lambda name: None)
+    request = {"file": "x.yaml", "text": client.get("/api/document").json()["text"]}
+    with pytest.raises(Exception, match="not installed") as caught:
+        operations.cross_check(request, lambda *_: None)
+    assert "pip install 'symofros[validation]'" in error_of(caught.value)["remedy"]
+
+
+def test_cross_check(client: TestClient) -> None:
+    job = finished(client, "crosscheck", states=2)
+    assert job["state"] == "done", job
+    rows = job["result"]["rows"]
+    assert job["result"]["ok"] and rows and all(row["passed"] and row["worst"] <= row["tolerance"] for row in rows)
+    assert {"quantity", "engine", "states"} <= rows[0].keys()
+
+
+def test_a_job_is_cancelled_with_all_that_it_started(client: TestClient) -> None:
+    key = client.post("/api/jobs", json={"kind": "simulate", "options": {"t_end": 1e7}}).json()["id"]
+    again = client.post("/api/jobs", json={"kind": "simulate", "options": {}})
+    assert again.status_code == 422 and "running already" in again.json()["error"]["object"]
+    began = time.monotonic()
+    job = client.delete(f"/api/jobs/{key}").json()
+    assert job["state"] == "cancelled" and time.monotonic() - began < 10
+    assert finished(client, "simulate", t_end=0.01)["state"] == "done"
+    assert client.delete(f"/api/jobs/{key}").json()["state"] == "cancelled"
+
+
+@pytest.mark.parametrize(
+    ("error", "expected"),
+    [
+        (DescriptionError(Problem("a", "b", "c", "d", "x:1")), ("a", "b", "c", "d")),
+        (DescriptionError([Problem("a"), Problem("b"), Problem("c")]), ("a (and 2 more)", "", "", "")),
+        (SymofrosError(Problem("a", "b: b", "", "d")), ("a", "b: b", "", "d")),
+        (ValueError("plain: words\n  and more"), ("plain: words\n  and more", "", "", "")),
+        (ValueError(), ("ValueError", "", "", "")),
+    ],
+)
+def test_an_error_is_taken_apart(error: Exception, expected: tuple[str, ...]) -> None:
+    assert tuple(error_of(error).values()) == expected
+
+
+# The machinery by itself, with workers that misbehave.
+
+
+def run(monkeypatch: pytest.MonkeyPatch, code: str) -> tuple[Jobs, Any, list[tuple[str, Any]]]:
+    """A job whose worker runs some code."""
+    real = processes.subprocess.Popen
+    told: list[tuple[str, Any]] = []
+    monkeypatch.setattr(processes.subprocess, "Popen", lambda command, **k: real([sys.executable, "-c", code], **k))
+    jobs = Jobs(lambda kind, data: told.append((kind, data)))
+    return jobs, jobs.start("x", {}), told
+
+
+@pytest.mark.parametrize(
+    ("code", "says"),
+    [
+        ("import os; os.kill(os.getpid(), 11)", "signal 11"),
+        ("raise SystemExit(3)", "exit code 3"),
+        ("import sys; sys.stderr.write('because'); raise SystemExit(1)", "because"),
+        ("print('no json')", "exit code 0"),
+        ("print('[' * 100000)", "exit code 0"),
+        ("print(3)", "exit code 0"),
+        ("print('{\"progress\"')", "exit code 0"),
+    ],
+)
+def test_a_worker_that_crashes_is_told_and_the_next_one_runs(
+    monkeypatch: pytest.MonkeyPatch, code: str, says: str
+) -> None:
+    jobs, job, told = run(monkeypatch, code)
+    assert job.over.wait(30)
+    assert job.state == "failed" and says in job.error["found"] and told[-1][1]["state"] == "failed"
+    assert jobs.start("x", {}).over.wait(30)
+
+
+def test_progress_is_told_as_it_comes(monkeypatch: pytest.MonkeyPatch) -> None:
+    code = """if True:
+        import json
+        for i in range(3):
+            print(json.dumps({"progress": {"done": i, "total": 2, "text": "x"}}), flush=True)
+        print(json.dumps({"result": {"a": 1}}))
+    """
+    _, job, told = run(monkeypatch, code)
+    assert job.over.wait(30) and job.state == "done" and job.result == {"a": 1}
+    assert [data["progress"]["done"] for _, data in told] == [0, 1, 2, 2] and "result" not in told[-1][1]
+
+
+def test_children_of_a_worker_end_with_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    mark = tmp_path / "pid"
+    code = f"""if True:
+        import subprocess, time
+        child = subprocess.Popen(['sleep', '600'])
+        open({str(mark)!r}, 'w').write(str(child.pid))
+        time.sleep(600)
+    """
+    jobs, job, _ = run(monkeypatch, code)
+    while not mark.exists() or not mark.read_text():
+        time.sleep(0.02)
+    jobs.cancel(job.key)
+    child = int(mark.read_text())
+    for _ in range(200):
+        try:
+            os.kill(child, 0)
+            if "Z" in Path(f"/proc/{child}/stat").read_text().split()[2]:
+                return
+        except (ProcessLookupError, FileNotFoundError):
+            return
+        time.sleep(0.02)
+    os.kill(child, signal.SIGKILL)
+    raise AssertionError("a child outlives its worker")
+
+
+def test_few_jobs_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(processes, "KEPT", 3)
+    jobs, first, _ = run(monkeypatch, "print('{\"result\": 1}')")
+    assert first.over.wait(30)
+    for _ in range(4):
+        assert jobs.start("x", {}).over.wait(30)
+    with pytest.raises(EditError, match="no job"):
+        jobs.get(first.key)
+
+
+def test_the_worker_takes_nothing_from_the_folder_it_works_in(
+    client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A module beside a model is not imported, however it is called."""
+    for name in ("numpy", "json", "sympy", "validation"):
+        (folder / f"{name}.py").write_text("raise SystemExit('taken from the workspace')")
+    monkeypatch.chdir(folder)
+    assert finished(client, "compile")["state"] == "done"
+    assert (
+        over(client, client.post("/api/jobs", json={"kind": "crosscheck", "options": {"states": 1}}).json()["id"])[
+            "state"
+        ]
+        == "done"
+    )

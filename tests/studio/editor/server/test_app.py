@@ -1,0 +1,228 @@
+"""The addresses: what a page sends, and what it gets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft202012Validator
+from starlette.testclient import TestClient
+
+import symofros as sf
+from symofros.simulation.methods import METHODS
+from symofros.studio.editor.document.analysis import analyse
+from symofros.studio.editor.document.palette import PALETTE
+from symofros.studio.editor.document.session import Session
+from symofros.studio.editor.editing.data_edits import Edit
+from symofros.studio.editor.editing.yaml_edits import apply
+from symofros.studio.editor.server.app import application
+from tests.studio.editor.conftest import BASE, GRANTED, PORT, TOKEN
+from tests.studio.editor.texts import FILES, TEXTS
+
+KEYS = {
+    "path",
+    "name",
+    "revision",
+    "dirty",
+    "can_undo",
+    "can_redo",
+    "undo_label",
+    "redo_label",
+    "text",
+    "data",
+    "layout",
+    "graph",
+    "problems",
+    "parameters",
+    "inputs",
+    "recovered",
+    "disk_changed",
+    "unkept",
+}
+
+
+def test_a_document_carries_what_the_contract_says(client: TestClient) -> None:
+    found = client.get("/api/document").json()
+    assert set(found) == KEYS
+    assert found["path"] == "four_bar.yaml" and found["text"] == TEXTS["four_bar"]
+    assert found["parameters"][0] == {"name": "m", "value": 1.0, "unit": "kg", "constant": False, "number": 1.0}
+
+
+def test_edit_undo_redo_save(client: TestClient, folder: Path) -> None:
+    edit = {"op": "set", "path": ["parameters", "m", "value"], "value": 3}
+    first = client.post("/api/edit", json={"revision": 1, "label": "mass", "edits": [edit]}).json()
+    assert first["dirty"] and first["undo_label"] == "mass" and first["data"]["parameters"]["m"]["value"] == 3
+    stale = client.post("/api/edit", json={"revision": 1, "label": "mass", "edits": [edit]})
+    assert stale.status_code == 409 and stale.json()["document"]["revision"] == first["revision"]
+    undone = client.post("/api/undo", json={"revision": first["revision"]}).json()
+    assert undone["text"] == TEXTS["four_bar"] and undone["can_redo"]
+    redone = client.post("/api/redo", json={"revision": undone["revision"]}).json()
+    saved = client.post("/api/save", json={"revision": redone["revision"]}).json()
+    assert not saved["dirty"] and (folder / "four_bar.yaml").read_text() == saved["text"]
+
+
+def test_an_edit_that_makes_no_sense_is_told_in_four_parts(client: TestClient) -> None:
+    edit = {"op": "remove", "path": ["bodies", "nobody"]}
+    answer = client.post("/api/edit", json={"revision": 1, "edits": [edit]})
+    assert answer.status_code == 422
+    assert answer.json()["error"] == {
+        "object": "bodies / nobody: the edit can't be applied",
+        "found": "no 'nobody'",
+        "rule": "the path leads to an entry that exists",
+        "remedy": "reload the document",
+    }
+
+
+def test_an_edit_of_a_text_that_is_not_yaml_is_refused(client: TestClient) -> None:
+    broken = client.post("/api/text", json={"revision": 1, "text": "a: ]"}).json()
+    edit = {"op": "set", "path": ["a"], "value": 1}
+    answer = client.post("/api/edit", json={"revision": broken["revision"], "edits": [edit]})
+    assert answer.status_code == 422 and "not YAML" in answer.json()["error"]["object"]
+
+
+def test_a_conflict_on_disk_carries_both_texts(client: TestClient, folder: Path) -> None:
+    changed = client.post("/api/text", json={"revision": 1, "text": TEXTS["four_bar"] + "# ours\n"}).json()
+    (folder / "four_bar.yaml").write_text("# theirs\n")
+    answer = client.post("/api/save", json={"revision": changed["revision"]})
+    found = answer.json()
+    assert answer.status_code == 409 and found["disk"] == "# theirs\n" and found["text"].endswith("# ours\n")
+    saved = client.post("/api/save", json={"revision": changed["revision"], "over": found["over"]})
+    assert saved.status_code == 200 and (folder / "four_bar.yaml").read_text().endswith("# ours\n")
+
+
+def test_files_open_new(client: TestClient, folder: Path) -> None:
+    assert [f["path"] for f in client.get("/api/files").json()["files"]] == ["double_pendulum.yaml", "four_bar.yaml"]
+    assert client.post("/api/open", json={"path": "double_pendulum.yaml"}).json()["name"] == "double_pendulum.yaml"
+    assert client.post("/api/open", json={"path": "../x.yaml"}).status_code == 422
+    made = client.post("/api/new", json={"path": "robot.yaml"}).json()
+    assert made["dirty"] and made["data"]["system"]["name"] == "robot" and not (folder / "robot.yaml").exists()
+    assert client.post("/api/new", json={"path": "four_bar.yaml"}).status_code == 422
+
+
+def test_a_double_pendulum_can_be_drawn_from_nothing(client: TestClient) -> None:
+    """As the page does it: templates from the palette, wired by edits; no problem is left at the end."""
+    palette = {part["kind"]: part["template"] for part in client.get("/api/schema").json()["palette"]}
+    document = client.post("/api/new", json={"path": "drawn.yaml"}).json()
+    assert any("nothing moves" in problem["object"] for problem in document["problems"])
+    for name, parent in (("upper", {}), ("lower", {"parent": "upper", "frame": "tip"})):
+        template = palette["rigid_body"]
+        body = {**template, "joint": {**template["joint"], **parent}}
+        edit = {"op": "insert", "path": ["bodies"], "key": name, "value": body}
+        document = client.post("/api/edit", json={"revision": document["revision"], "edits": [edit]}).json()
+    assert document["problems"] == []
+    joints = [(edge["source"], edge["source_port"], edge["target"]) for edge in document["graph"]["edges"]]
+    assert joints == [("world", "", "bodies/upper"), ("bodies/upper", "tip", "bodies/lower")]
+
+
+@pytest.mark.parametrize("part", PALETTE, ids=lambda part: f"{part['section']}/{part['name']}")
+def test_every_template_of_the_palette_is_valid_as_it_stands(client: TestClient, part: dict) -> None:
+    text = TEXTS["double_pendulum"]
+    path = (part["section"], part["name"])
+    done = apply(text, Edit("set", path, part["template"]))
+    # On the world alone, a massless body has nothing to carry, and constraints nothing to hold.
+    own = {
+        "massless_body": "massless",
+        "closure": "world",
+        "rod": "world",
+        "connection": "world",
+        "nonholonomic": "world",
+    }
+    problems = analyse(FILES["double_pendulum"], done).problems
+    assert all(tuple(problem["path"][:2]) == path and part["kind"] in own for problem in problems)
+    schema = client.get("/api/schema").json()["schema"]
+    assert not list(Draft202012Validator(schema).iter_errors(analyse(FILES["double_pendulum"], done).data))
+
+
+def test_the_catalogue_names_methods_units_targets(client: TestClient) -> None:
+    found = client.get("/api/schema").json()
+    assert [method["name"] for method in found["methods"]] == list(METHODS)
+    assert found["version"] == sf.__version__
+    assert {"kg", "N m"} <= set(found["units"]) and {"c", "fmu3"} <= set(found["targets"])
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "expected"),
+    [
+        ([], "2*(1+2)", {"ok": True, "names": [], "value": 6.0}),
+        ([], "2*q1 - L", {"ok": True, "names": ["L", "q1"]}),
+        (
+            ["bodies", "crank", "inertia", "mass"],
+            "2*L + pi",
+            {"ok": True, "names": ["L"], "value": 2 + 3.141592653589793},
+        ),
+        (["bodies", "crank", "joint", "armature"], "L", {"ok": True, "names": ["L"], "value": 1.0}),
+    ],
+)
+def test_a_good_formula(client: TestClient, path: list, text: str, expected: dict) -> None:
+    found = client.post("/api/expression", json={"path": path, "text": text}).json()
+    assert expected.items() <= found.items()
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "column", "says"),
+    [
+        ([], "2*L +", 6, "too early"),
+        ([], "2 L", 3, "unexpected"),
+        ([], "1/(2-2)", 0, "divi"),
+        (["bodies", "crank", "inertia", "mass"], "2*K", 3, "unknown symbol 'K'"),
+        (["bodies", "crank", "inertia", "mass"], "q1", 1, "may not be used"),
+        (["bodies", "crank", "joint", "axis", 0], "L*q2", 3, "may not be used"),
+        (["parameters", "L", "value"], "2*m", 0, "not a number"),
+    ],
+)
+def test_a_bad_formula_says_where(client: TestClient, path: list, text: str, column: int, says: str) -> None:
+    before = client.get("/api/document").json()
+    found = client.post("/api/expression", json={"path": path, "text": text}).json()
+    assert not found["ok"] and says in found["error"]["found"] and found["error"]["column"] == column
+    assert client.get("/api/document").json() == before
+
+
+def test_shape_functions(client: TestClient) -> None:
+    found = client.post("/api/shapes", json={"family": "polynomial", "modes": 2, "direction": "bend_y"}).json()
+    assert found["curves"][0]["values"] == [x * x for x in found["xi"]] and found["curves"][0]["length"]
+    user = {"family": "user", "modes": 1, "direction": "twist", "shapes": ["sin(xi)"]}
+    assert client.post("/api/shapes", json=user).json()["curves"][0]["values"][0] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"family": "fourier"},
+        {"direction": "x"},
+        {"modes": 41},
+        {"modes": "2"},
+        {"family": "hermite", "modes": 5},
+        {"family": "user", "modes": 1, "shapes": ["1/xi"]},
+        {"family": "user", "modes": 1, "shapes": [{"xi": 3}]},
+    ],
+)
+def test_shape_functions_that_there_are_not(client: TestClient, wrong: dict) -> None:
+    answer = client.post("/api/shapes", json=wrong)
+    assert answer.status_code == 422 and answer.json()["error"]["remedy"]
+
+
+def test_positions_are_remembered_without_a_revision(client: TestClient) -> None:
+    client.post("/api/layout", json={"positions": {"world": [3, 4]}})
+    found = client.get("/api/document").json()
+    assert found["layout"] == {"world": [3.0, 4.0]} and found["revision"] == 1 and not found["can_undo"]
+
+
+def test_parts(client: TestClient) -> None:
+    assert client.get("/api/parts").json() == {"parts": []}
+    kept = client.post("/api/parts", json={"name": "bar", "bodies": ["rocker"]}).json()
+    assert kept["parts"][0]["bodies"] == ["rocker"]
+    put = client.post(
+        "/api/parts/insert", json={"revision": 1, "name": "bar", "parent": "crank", "frame": "end"}
+    ).json()
+    assert put["data"]["bodies"]["rocker2"]["joint"]["parent"] == "crank" and put["problems"] == []
+    assert client.post("/api/parts/insert", json={"revision": put["revision"], "name": "no"}).status_code == 422
+
+
+def test_a_fault_of_the_server_s_own_is_told_and_it_goes_on(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    with TestClient(application(session, TOKEN, PORT), BASE, raise_server_exceptions=False, headers=GRANTED) as client:
+        with monkeypatch.context() as broken:
+            broken.setattr(session.storage, "place", lambda _: 1 // 0)
+            answer = client.post("/api/layout", json={})
+        assert answer.status_code == 500 and answer.json()["error"]["found"] == "ZeroDivisionError"
+        assert client.post("/api/layout", json={}).status_code == 200
+        assert client.get("/api/nothing").json()["error"]["object"] == "no such address"

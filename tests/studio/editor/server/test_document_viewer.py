@@ -1,0 +1,240 @@
+"""The 3-D view behind the guard: what it says, how it moves, who is refused."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient, WebSocketTestSession
+from starlette.websockets import WebSocketDisconnect
+
+from symofros.studio.editor.document.session import Session
+from symofros.studio.editor.server.app import application
+from symofros.studio.editor.server.relay import MAX_SOCKETS
+from tests.studio.editor.conftest import BASE, PORT, TOKEN
+from tests.studio.editor.texts import FILES
+
+Json = dict[str, Any]
+PROTOCOL = "viser-v1.1.1"
+OWN = f"127.0.0.1:{PORT}"
+
+
+def look(client: TestClient) -> Json:
+    answer = client.get("/api/view")
+    assert answer.status_code == 200, answer.text
+    found: Json = answer.json()
+    return found
+
+
+def pose(client: TestClient, **body: Any) -> Json:
+    answer = client.post("/api/pose", json=body)
+    assert answer.status_code == 200, answer.text
+    found: Json = answer.json()
+    return found
+
+
+def socket_at(client: TestClient, path: str, origin: str | None = BASE, **headers: str) -> WebSocketTestSession:
+    given = headers if origin is None else {"Origin": origin, **headers}
+    return client.websocket_connect(f"ws://127.0.0.1:{PORT}{path}", [PROTOCOL], headers=given)
+
+
+def edit(client: TestClient, *path: str | int, value: Any) -> None:
+    revision = client.get("/api/document").json()["revision"]
+    edits = [{"op": "set", "path": list(path), "value": value}]
+    answer = client.post("/api/edit", json={"revision": revision, "label": "edit", "edits": edits})
+    assert answer.status_code == 200, answer.text
+
+
+def test_it_says_what_moves_it(client: TestClient) -> None:
+    view = look(client)
+    assert view["address"].startswith("/view/") and TOKEN not in view["address"]
+    assert view["fault"] is None and not view["flexible"]
+    for one in view["coordinates"]:
+        assert set(one) == {"name", "unit", "low", "high", "elastic"} and one["low"] < one["high"]
+    assert {one["unit"] for one in view["coordinates"]} == {"rad"}
+    assert set(view["q"]) == {one["name"] for one in view["coordinates"]}
+
+
+def test_loops_close_around_what_is_moved(client: TestClient) -> None:
+    view = look(client)
+    name = view["coordinates"][0]["name"]
+    found = pose(client, q={name: view["q"][name] + 0.3})
+    assert found["q"][name] == pytest.approx(view["q"][name] + 0.3, abs=1e-12)
+    assert found["why"] == "" and found["gap"] < 1e-9
+    assert all(abs(found["q"][other] - view["q"][other]) > 1e-3 for other in found["q"])
+    assert pose(client, reset=True)["q"] == pytest.approx(view["q"])
+
+
+@pytest.fixture
+def crank(client: TestClient, folder: Path) -> TestClient:
+    """With a slider-crank open."""
+    shutil.copy(FILES["slider_crank"], folder)
+    assert client.post("/api/open", json={"path": "slider_crank.yaml"}).status_code == 200
+    return client
+
+
+def test_a_parameter_moves_it_before_the_document_changes(crank: TestClient) -> None:
+    view = look(crank)
+    assert [one["unit"] for one in view["coordinates"]] == ["rad", "rad", "m"] and "L1" in view["run_time"]
+    found = pose(crank, q={"turn": 0.0, "swing": 0.0}, par={"L1": 0.2})
+    assert found["why"] == "" and found["gap"] < 1e-9
+    assert found["q"]["slide"] == pytest.approx(0.2 + 0.3)
+    assert crank.get("/api/document").json()["dirty"] is False
+
+
+def test_where_loops_can_not_be_closed_it_stays(crank: TestClient) -> None:
+    view = look(crank)
+    found = pose(crank, q={"turn": 1.57}, par={"L2": 0.1})  # The crank's end is 0.15 m above the slider's axis.
+    assert found["why"] and found["q"] == view["q"] and found["gap"] < 1e-9
+    assert pose(crank, q={"turn": 1.57})["why"] == ""  # The rod is as long as it was.
+
+
+def test_it_follows_the_document_and_keeps_the_last_that_was_sound(client: TestClient) -> None:
+    first = look(client)
+    moved = pose(client, q={first["coordinates"][0]["name"]: first["q"][first["coordinates"][0]["name"]] + 0.2})
+    edit(client, "bodies", "crank", "inertia", "mass", value="nobody")
+    broken = look(client)
+    assert broken["fault"]["object"] == "the model has problems" and broken["q"] == moved["q"]
+    edit(client, "bodies", "crank", "inertia", "mass", value=2.0)
+    mended = look(client)
+    assert mended["fault"] is None and mended["q"] == pytest.approx(moved["q"])
+    client.post("/api/open", json={"path": "double_pendulum.yaml"})
+    assert set(look(client)["q"]) != set(first["q"])
+
+
+def test_nothing_is_shown_of_a_model_that_never_was_sound(client: TestClient) -> None:
+    edit(client, "bodies", "crank", "inertia", "mass", value="nobody")
+    answer = client.get("/api/view")
+    assert answer.status_code == 422 and answer.json()["error"]["object"] == "the model has problems"
+    assert client.post("/api/pose", json={"q": {}}).json()["error"]["object"] == "nothing is shown"
+
+
+def test_a_missing_package_is_named(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "viser", None)
+    answer = client.get("/api/view")
+    assert answer.status_code == 422
+    error = answer.json()["error"]
+    assert "viser is not installed" in error["object"] and error["remedy"] == "pip install 'symofros[view]'"
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"q": 3},
+        {"q": {"nobody": 1.0}},
+        {"par": {"nobody": 1.0}},
+        {"q": {"a": "1"}},
+        {"q": {"a": 10**400}},
+        {"q": {"a": True}},
+        {"exaggeration": 1e9},
+        {"exaggeration": "2"},
+        {"par": [1.0]},
+    ],
+)
+def test_odd_poses_are_refused(client: TestClient, body: Json) -> None:
+    before = look(client)["q"]
+    answer = client.post("/api/pose", json=body)
+    assert answer.status_code == 422 and set(answer.json()["error"]) == {"object", "found", "rule", "remedy"}
+    assert look(client)["q"] == before
+
+
+@pytest.fixture
+def bare(session: Session) -> Iterator[TestClient]:
+    """Without a token of its own."""
+    with TestClient(application(session, TOKEN, PORT), base_url=BASE) as found:
+        yield found
+
+
+@pytest.fixture
+def address(bare: TestClient) -> str:
+    answer = bare.get("/api/view", headers={"Authorization": f"Bearer {TOKEN}"})
+    found: str = answer.json()["address"]
+    return found
+
+
+def test_its_page_is_kept_apart_from_ours(bare: TestClient, address: str) -> None:
+    answer = bare.get(address)
+    assert answer.status_code == 200 and b"<title>Viser</title>" in answer.content
+    policies = [value for name, value in answer.headers.multi_items() if name == "content-security-policy"]
+    assert len(policies) == 1
+    assert policies[0].startswith("sandbox allow-scripts; default-src 'none';") and "allow-same" not in policies[0]
+    assert f"frame-ancestors http://127.0.0.1:{PORT} http://localhost:{PORT}" in policies[0]
+    assert answer.headers["cache-control"] == "no-store"
+
+
+@pytest.mark.parametrize("end", ["", "wrong/", "../view/wrong/", f"{TOKEN}/"])
+def test_its_page_needs_its_own_token(bare: TestClient, address: str, end: str) -> None:
+    for path in (f"/view/{end}", address[:-2] + "/", address + "more", address[:-1] + "x/"):
+        answer = bare.get(path)
+        assert answer.status_code == 401 and b"Viser" not in answer.content
+
+
+def test_its_token_opens_nothing_else(bare: TestClient, address: str) -> None:
+    token = address.split("/")[2]
+    for path in ("document", "view", f"events?token={token}"):
+        assert bare.get(f"/api/{path}", headers={"Authorization": f"Bearer {token}"}).status_code == 401
+    assert bare.post("/api/pose", json={}, headers={"Authorization": f"Bearer {token}"}).status_code == 401
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Host": "evil.example"},
+        {"Host": f"evil.example:{PORT}"},
+        {"Sec-Fetch-Site": "cross-site"},
+        {"Origin": "https://evil.example"},
+    ],
+)
+def test_its_page_is_for_ours_only(bare: TestClient, address: str, headers: dict[str, str]) -> None:
+    assert bare.get(address, headers=headers).status_code == 403
+
+
+def test_its_page_is_only_read(bare: TestClient, address: str) -> None:
+    assert bare.post(address, json={}).status_code == 405
+
+
+@pytest.mark.parametrize("origin", ["null", BASE])
+def test_the_socket_hands_on_what_the_viewer_says(bare: TestClient, address: str, origin: str) -> None:
+    with socket_at(bare, address[:-1], origin) as socket:
+        assert socket.accepted_subprotocol == PROTOCOL
+        assert len(socket.receive_bytes()) > 100
+
+
+@pytest.mark.parametrize(
+    ("cut", "origin", "host"),
+    [
+        (-1, "https://evil.example", OWN),
+        (-1, "http://127.0.0.1:1", OWN),
+        (-1, None, OWN),
+        (-1, BASE, "evil.example"),
+        (-1, "null", f"evil.example:{PORT}"),
+        (-2, BASE, OWN),
+        (-2, "null", OWN),
+        (6, BASE, OWN),
+    ],
+)
+def test_the_socket_is_for_who_has_its_address(
+    bare: TestClient, address: str, cut: int, origin: str | None, host: str
+) -> None:
+    with pytest.raises(WebSocketDisconnect), socket_at(bare, address[:cut], origin, Host=host):
+        pass
+
+
+@pytest.mark.parametrize("path", ["/", "/api/events", "/api/document"])
+def test_there_are_no_other_sockets(bare: TestClient, path: str) -> None:
+    with (
+        pytest.raises(WebSocketDisconnect),
+        socket_at(bare, path, Authorization=f"Bearer {TOKEN}"),
+    ):
+        pass
+
+
+def test_the_guard_goes_on_after_sockets(bare: TestClient, address: str) -> None:
+    """More in turn than may be open at once."""
+    for _ in range(MAX_SOCKETS + 2):
+        with socket_at(bare, address[:-1]) as socket:
+            socket.receive_bytes()

@@ -1,0 +1,68 @@
+"""The drawn axis of a beam: at its tip where the model has it, as long as the beam, tangent to its sections."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.polynomial import chebyshev
+
+import symofros as sf
+from symofros.description.beam import FAMILIES
+from symofros.mechanics.beams.deformation import small_coordinates
+from symofros.studio.viewer.drawing.centre_line import STATIONS, CentreLine
+
+LENGTH = 1.5
+
+
+def beam(family: str = "spline", **more: object) -> sf.Beam:
+    counts = {"bend_y": 2, "bend_z": 2, "twist": 1}
+    return sf.Beam("b", sf.Joint("clamp"), LENGTH, 1.0, 10.0, 20.0, 5.0, 0.1, family=family, **(counts | more))
+
+
+@pytest.mark.parametrize("family", [family for family in FAMILIES if family != "user"])
+@pytest.mark.parametrize("more", [{}, {"foreshortening": False, "retain": "zeroth_order"}], ids=["all", "linear"])
+def test_the_tip_is_where_the_model_has_it(family: str, more: dict, rng: np.random.Generator) -> None:
+    stated = beam(family, **more)
+    model = sf.compile(sf.System("s", [stated]), sf.Options(("frame_pose",), ("tip",), backend="interpreter"))
+    q = 3 * rng.uniform(-1, 1, (4, stated.modes)) * small_coordinates(stated, LENGTH)
+    p, R = model.frame_pose("tip", q)
+    line = CentreLine(stated)
+    assert np.allclose(line.points(LENGTH, q)[:, -1], p, atol=1e-13)
+    assert np.allclose(line.axes(LENGTH, q)[:, -1], R, atol=1e-13)
+
+
+def test_it_starts_at_the_root_and_is_straight_at_rest() -> None:
+    line = CentreLine(beam())
+    expected = np.zeros((STATIONS, 3))
+    expected[:, 0] = np.linspace(0.0, LENGTH, STATIONS)
+    assert np.allclose(line.points(LENGTH, np.zeros(5)), expected)
+    assert np.allclose(line.axes(LENGTH, np.zeros(5)), np.eye(3))
+
+
+def curve(q: np.ndarray) -> tuple[chebyshev.Chebyshev, ...]:
+    """The axis of a beam of polynomial shapes as the polynomials that it consists of."""
+    points, xi = CentreLine(beam("polynomial")).points(LENGTH, q), np.linspace(0, 1, STATIONS)
+    return tuple(chebyshev.Chebyshev.fit(xi, points[:, k], 8) for k in range(3))
+
+
+def length_of(q: np.ndarray) -> float:
+    xi, w = np.polynomial.legendre.leggauss(40)
+    slopes = [part.deriv()((xi + 1) / 2) for part in curve(q)]
+    return float(np.dot(w / 2, np.linalg.norm(slopes, axis=0)))
+
+
+def test_bending_keeps_its_length_up_to_the_fourth_order() -> None:
+    """Foreshortening is of second order, so that what is left of the change of length is of fourth."""
+    q = np.array([0.3, -0.1, 0.2, 0.1, 0.0])
+    errors = [abs(length_of(eps * q) - LENGTH) for eps in (0.5, 0.25)]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.1)
+
+
+def test_sections_stand_across_the_axis_up_to_the_third_order() -> None:
+    q = np.array([0.2, -0.1, 0.15, 0.1, 0.3])
+    errors = []
+    for eps in (0.4, 0.2):
+        slopes = np.stack([part.deriv()(np.linspace(0, 1, STATIONS)) for part in curve(eps * q)], axis=1)
+        across = CentreLine(beam("polynomial")).axes(LENGTH, eps * q)[:, :, 1:]
+        errors.append(float(np.abs(np.einsum("si,sij->sj", slopes, across)).max()))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(3.0, abs=0.15)

@@ -1,0 +1,117 @@
+"""COLLADA files: where their triangles are, and hostile ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from symofros.studio.viewer.drawing.collada import read_collada
+
+HEAD = '<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>{asset}</asset>'
+GEOMETRY = """<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="15">0 0 0  1 0 0  1 2 0  0 2 0  0 0 3</float_array>
+<technique_common><accessor source="#a" count="5" stride="3"/></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+{pieces}</mesh></geometry></library_geometries>"""
+TRIANGLES = """<triangles count="2"><input semantic="NORMAL" source="#n" offset="0"/>
+<input semantic="VERTEX" source="#v" offset="1"/><p>9 0 9 1 9 4  9 0 9 2 9 3</p></triangles>"""
+SCENE = """<library_visual_scenes><visual_scene id="s">{nodes}</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene>"""
+SHOWN = '<instance_geometry url="#g"/>'
+
+
+def document(
+    pieces: str = TRIANGLES, nodes: str | None = f"<node>{SHOWN}</node>", asset: str = "<up_axis>Z_UP</up_axis>"
+) -> bytes:
+    scene = "" if nodes is None else SCENE.format(nodes=nodes)
+    return f"{HEAD.format(asset=asset)}{GEOMETRY.format(pieces=pieces)}{scene}</COLLADA>".encode()
+
+
+def corners(data: bytes) -> np.ndarray:
+    """Of all triangles (F, 3, 3)."""
+    mesh = read_collada(data, 100)
+    return mesh.vertices[mesh.faces]
+
+
+PLAIN = np.array([[[0, 0, 0], [1, 0, 0], [0, 0, 3]], [[0, 0, 0], [1, 2, 0], [0, 2, 0]]], dtype=float)
+
+
+def test_triangles_are_where_they_are_stated() -> None:
+    assert np.array_equal(corners(document()), PLAIN)
+    assert np.array_equal(corners(document(nodes=None)), PLAIN)  # Without a scene, each stands once.
+
+
+@pytest.mark.parametrize(
+    "pieces",
+    [
+        '<polylist count="2"><input semantic="VERTEX" source="#v" offset="0"/><vcount>4 3</vcount>'
+        "<p>0 1 2 3  0 1 4</p></polylist>",
+        '<polygons count="2"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 3</p><p>0 1 4</p></polygons>',
+    ],
+)
+def test_polygons_become_triangles(pieces: str) -> None:
+    found = corners(document(pieces))
+    assert [face.tolist() for face in found] == [
+        [[0, 0, 0], [1, 0, 0], [1, 2, 0]],
+        [[0, 0, 0], [1, 2, 0], [0, 2, 0]],
+        [[0, 0, 0], [1, 0, 0], [0, 0, 3]],
+    ]
+
+
+def test_nodes_place_what_is_in_them() -> None:
+    inner = f"<node><rotate>0 0 1 90</rotate><scale>2 2 2</scale>{SHOWN}</node>"
+    found = corners(document(nodes=f"<node><translate>10 0 0</translate>{inner}</node>"))
+    assert np.allclose(found, np.stack([10 - 2 * PLAIN[..., 1], 2 * PLAIN[..., 0], 2 * PLAIN[..., 2]], axis=-1))
+    matrix = f"<node><matrix>1 0 0 5 0 1 0 6 0 0 -1 7 0 0 0 1</matrix>{SHOWN}</node>"
+    mirrored = corners(document(nodes=matrix))
+    assert np.allclose(mirrored[:, ::-1], PLAIN * [1, 1, -1] + [5, 6, 7])  # Seen from the same side as before.
+
+
+@pytest.mark.parametrize(
+    ("asset", "expected"),
+    [
+        ('<unit meter="0.01"/><up_axis>Z_UP</up_axis>', 0.01 * PLAIN),
+        ("<up_axis>Y_UP</up_axis>", PLAIN[..., [0, 2, 1]] * [1, -1, 1]),
+        ("", PLAIN[..., [0, 2, 1]] * [1, -1, 1]),  # As the format has it.
+        ("<up_axis>X_UP</up_axis>", PLAIN[..., [1, 2, 0]] * [-1, -1, 1]),
+        ("<contributor><authoring_tool>VCGLib | MeshLab</authoring_tool></contributor><up_axis>Y_UP</up_axis>", PLAIN),
+    ],
+)
+def test_units_and_axes(asset: str, expected: np.ndarray) -> None:
+    assert np.allclose(corners(document(asset=asset)), expected)
+
+
+def bomb() -> str:
+    """Nodes that show each other twice, thirty times over: a thousand million triangles."""
+    twice = '<instance_node url="#n{0}"/><instance_node url="#n{0}"/>'
+    return (
+        "".join(f'<node id="n{i}">{twice.format(i + 1)}</node>' for i in range(30)) + f'<node id="n30">{SHOWN}</node>'
+    )
+
+
+@pytest.mark.parametrize(
+    ("data", "expected"),
+    [
+        (b"", "no element found"),
+        (b"<COLLADA>", "no element found"),
+        (b"<a/>", "not <COLLADA>"),
+        (b'<!DOCTYPE a [<!ENTITY b "c">]><COLLADA/>', "document types are refused"),
+        (b"<COLLADA/>", "no triangles"),
+        (document(""), "no triangles"),
+        (document(TRIANGLES.replace("#v", "#w")), "KeyError"),
+        (document(TRIANGLES.replace("9 0 9 1", "9 0 9 x")), "invalid literal"),
+        (document(TRIANGLES.replace("9 0 9 1", "0 9 1")), "reshape"),
+        (
+            document('<polylist><input semantic="VERTEX" source="#v"/><vcount>9</vcount><p>0 1 2</p></polylist>'),
+            "more corners than are there",
+        ),
+        (document('<triangles><input semantic="VERTEX" source="#v" offset="x"/><p>0 1 2</p></triangles>'), "invalid"),
+        (document(nodes=f'<node id="n"><instance_node url="#n"/>{SHOWN}</node>'), "in each other"),
+        (document(nodes=bomb()), "more than 10000 nodes|too many triangles"),
+        (document(nodes=f"<node>{SHOWN * 60}</node>"), "too many triangles"),
+        (document(nodes=f"<node><matrix>1 2</matrix>{SHOWN}</node>"), "reshape"),
+    ],
+)
+def test_others_are_refused(data: bytes, expected: str) -> None:
+    with pytest.raises(ValueError, match=expected):
+        read_collada(data, 100)

@@ -1,0 +1,166 @@
+"""What is drawn of a mechanism."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from reference_models.closed.spatial import delta_guess
+from symofros.errors import ShapeError
+from symofros.studio.viewer.drawing.drawing import Drawing, alike
+from symofros.studio.viewer.drawing.poses import Mechanism, bend_sweep, strut_sweep
+
+
+@cache
+def mechanism(name: str) -> Mechanism:
+    return Mechanism(MODELS[name])
+
+
+@cache
+def drawing(name: str) -> Drawing:
+    return mechanism(name).drawing()
+
+
+@pytest.mark.parametrize("name", list(MODELS))
+def test_every_reference_model_is_drawn(name: str) -> None:
+    found, links = drawing(name), len(mechanism(name).tree.links)
+    names = [item.name for item in (*found.parts, *found.bends, *found.struts)]
+    assert len(names) == len(set(names))
+    assert all(-1 <= part.link < links and np.all(np.isfinite(part.mesh.vertices)) for part in found.parts)
+    assert all(part.mesh.faces.max() < len(part.mesh.vertices) for part in found.parts)
+    assert found.parts and 0.0 < found.size < 100.0
+    # Where loops can't be closed from the neutral configuration, it is that which is shown.
+    posture = mechanism(name).posture(mechanism(name).closed(mechanism(name).state())[0].q)
+    for sweep in (*(bend_sweep(x, posture) for x in found.bends), *(strut_sweep(x, posture) for x in found.struts)):
+        assert np.all(np.isfinite(sweep.points)) and np.all(np.isfinite(sweep.axes))
+
+
+def test_every_body_with_mass_has_its_box_and_every_joint_its_sign() -> None:
+    found = {part.name: part for part in drawing("puma560").parts}
+    assert {f"inertias/link{i}" for i in range(1, 7)} <= found.keys()
+    assert {f"joints/q{i}" for i in range(1, 7)} <= found.keys()
+    assert not drawing("puma560").inertias_fit  # Its first link's moments are a placeholder, of a cube of 1.4 m.
+    assert drawing("planar_robot").inertias_fit
+
+
+def test_a_revolute_joint_is_a_cylinder_along_its_axis() -> None:
+    pin = next(part for part in drawing("four_bar").parts if part.name == "joints/q1").mesh.vertices
+    across, along = np.ptp(pin[:, [0, 2]], axis=0), np.ptp(pin[:, 1])
+    assert along > 1.5 * across.max()  # About -y.
+
+
+def test_links_lead_from_joint_to_joint() -> None:
+    bar = next(part for part in drawing("four_bar").parts if part.name == "bodies/crank").mesh.vertices
+    assert bar[:, 0].min() == pytest.approx(0.0, abs=0.02) and bar[:, 0].max() == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_closure_shows_its_gap() -> None:
+    (gap,) = drawing("four_bar").struts
+    it = mechanism("four_bar")
+    ends = strut_sweep(gap, it.posture([1.2, -1.2, 1.2])).points
+    assert np.linalg.norm(ends[1] - ends[0]) < 1e-12
+    assert np.linalg.norm(np.diff(strut_sweep(gap, it.posture([1.2, -1.2, 1.0])).points, axis=0)) > 0.1
+
+
+def test_a_rod_is_as_long_as_it_is_stated_where_loops_are_closed() -> None:
+    it = mechanism("delta")
+    state, why = it.closed(it.state(delta_guess()))
+    assert not why
+    posture = it.posture(state.q)
+    lengths = {item.name: item.length for item in it.system.constraints if isinstance(item, sf.Rod)}
+    rods = [strut for strut in drawing("delta").struts if strut.name.removeprefix("constraints/") in lengths]
+    assert rods
+    for rod in rods:
+        stated = lengths[rod.name.removeprefix("constraints/")]
+        length = np.linalg.norm(np.diff(strut_sweep(rod, posture).points, axis=0))
+        assert length == pytest.approx(sf.evaluate(stated, it.system.parameter_values()), abs=1e-9)
+
+
+def test_a_rolling_disc_touches_the_ground() -> None:
+    system = MODELS["rolling_disc"]
+    it = mechanism("rolling_disc")
+    mark = next(part for part in drawing("rolling_disc").parts if part.name.startswith("constraints/"))
+    (contact,) = (item for item in system.constraints if isinstance(item, sf.Rolling))
+    assert np.linalg.norm(mark.mesh.vertices[:, :2], axis=1).max() == pytest.approx(
+        sf.evaluate(contact.radius, system.parameter_values())
+    )
+    assert it.model.nc == 3
+
+
+def test_a_beam_that_is_stiffer_one_way_is_drawn_wider_that_way() -> None:
+    def outline(**more: float) -> np.ndarray:
+        beam = sf.Beam("b", sf.Joint("clamp"), 1.0, 1.0, bend_y=1, bend_z=1, **({"EI_z": 4.0, "EI_y": 1.0} | more))
+        return np.ptp(Mechanism(sf.System("s", [beam])).drawing().bends[0].outline, axis=0)
+
+    wide = outline()
+    assert wide[0] / wide[1] == pytest.approx(2.0)
+    # A round bar of radius 0.02 m: A = rhoA for unit density, I = A r^2/4.
+    assert np.allclose(outline(rhoI_y=1e-4, rhoI_z=1e-4), 0.04)
+
+
+@pytest.mark.parametrize(
+    "name", ["planar_robot", "puma560", pytest.param("flexible_mss", marks=pytest.mark.slow), "joint_zoo"]
+)
+def test_links_are_where_the_whole_model_has_them(name: str, rng: np.random.Generator) -> None:
+    it, model = mechanism(name), sf.compile(MODELS[name])
+    q, _ = model.random_state(rng)
+    posture = it.posture(q)
+    for triad in drawing(name).triads:
+        p, R = model.frame_pose(triad.name, q)
+        assert np.allclose(posture.p[triad.link] + posture.R[triad.link] @ triad.position, p, atol=1e-12)
+        assert np.allclose(posture.R[triad.link] @ triad.rotation, R, atol=1e-12)
+
+
+def test_exaggeration_multiplies_elastic_coordinates_alone() -> None:
+    it = mechanism("planar_robot")
+    q = np.full(it.model.nq, 0.01)
+    drawn = it.posture(q, exaggeration=7.0).q
+    elastic = np.array(["[" in name for name in it.model.names.q])
+    assert np.allclose(drawn[elastic], 0.07) and np.allclose(drawn[~elastic], 0.01) and elastic.sum() == 6
+
+
+def test_what_a_beam_carries_stays_on_its_tip_however_exaggerated() -> None:
+    it = mechanism("planar_robot")
+    q = np.full(it.model.nq, 0.02)
+    posture, bend = it.posture(q, exaggeration=10.0), drawing("planar_robot").bends[0]
+    end = bend_sweep(bend, posture).points[-1]
+    tip = next(triad for triad in drawing("planar_robot").triads if triad.name == "link1.tip")
+    assert np.allclose(end, posture.p[tip.link] + posture.R[tip.link] @ tip.position, atol=1e-12)
+
+
+def test_parameters_change_the_drawing_where_it_depends_on_them() -> None:
+    it = mechanism("planar_robot")
+    names, par = it.model.names.par, np.array(it.model.parameter_values)
+    longer, stiffer = par.copy(), par.copy()
+    longer[names.index("L1")] *= 2
+    stiffer[names.index("k1")] *= 2
+    assert alike(it.drawing(), it.drawing(stiffer)) and not alike(it.drawing(), it.drawing(longer))
+    assert it.drawing(longer).bends[0].length == pytest.approx(1.0)
+
+
+def test_shapes_are_checked() -> None:
+    with pytest.raises(ShapeError, match=r"q has the wrong shape\n  found:  \(2,\)\n  rule:   q has shape \(3,\)"):
+        mechanism("four_bar").state([0.0, 0.0])
+
+
+def test_loops_that_can_not_be_closed_are_said_to_be() -> None:
+    it = mechanism("four_bar")
+    state, why = it.closed(it.state([0.5, -2.0, 2.5]), held=("q1", "q2"))
+    assert "can't be assembled" in why and np.array_equal(state.q, [0.5, -2.0, 2.5])
+
+
+def test_a_single_body_is_as_big_as_its_inertia() -> None:
+    body = sf.RigidBody("b", sf.Joint("j", "free"), sf.Inertia(6.0, moments=(1.0, 1.0, 1.0)))
+    found = Mechanism(sf.System("s", [body])).drawing()
+    assert found.size == pytest.approx(1.0) and found.inertias_fit
+
+
+def test_a_beam_without_a_frame_at_its_tip_is_drawn() -> None:
+    beam = replace(sf.Beam("b", sf.Joint("clamp"), 1.0, 1.0, EI_z=1.0, bend_y=2), frames=())
+    it = Mechanism(sf.System("s", [beam]))
+    assert bend_sweep(it.drawing().bends[0], it.posture([0.1, 0.2])).points[-1, 1] != 0.0

@@ -1,0 +1,127 @@
+"""Visual shapes as they are drawn: their extent, meshes of files, and what can't be read."""
+
+from __future__ import annotations
+
+import struct
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.description.visual import Visual
+from symofros.studio.viewer.drawing import visual_meshes
+from symofros.studio.viewer.drawing.layers import shown_at_first
+from symofros.studio.viewer.drawing.meshes import Mesh
+from symofros.studio.viewer.drawing.poses import Mechanism
+from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
+
+CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]])
+FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+
+
+def stl(file: Path) -> None:
+    rows = (struct.pack("<12fH", 0, 0, 0, *CORNERS[face].ravel(), 0) for face in FACES)
+    file.write_bytes(bytes(80) + struct.pack("<I", len(FACES)) + b"".join(rows))
+
+
+def obj(file: Path) -> None:
+    lines = ["mtllib /etc/passwd", *(f"v {x} {y} {z}" for x, y, z in CORNERS)]
+    file.write_text("\n".join([*lines, *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in FACES)]))
+
+
+def off(file: Path) -> None:
+    corners = "\n".join(f"{x} {y} {z}" for x, y, z in CORNERS)
+    file.write_text(f"OFF\n4 4 0\n{corners}\n" + "\n".join(f"3 {a} {b} {c}" for a, b, c in FACES))
+
+
+def volume(mesh: Mesh) -> float:
+    """Above zero where all triangles are seen from outside."""
+    a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
+    return float(np.einsum("ni,ni->", a, np.cross(b, c)) / 6)
+
+
+@pytest.mark.parametrize(
+    ("visual", "extent", "least"),
+    [
+        (Visual("box", (1.0, 2.0, 3.0)), (1, 2, 3), 6.0),
+        (Visual("sphere", (0.5,)), (1, 1, 1), 0.8 * np.pi / 6),
+        (Visual("ellipsoid", (0.5, 1.0, 1.5)), (1, 2, 3), 0.8 * np.pi),
+        (Visual("cylinder", (0.5, 3.0)), (1, 1, 3), 0.9 * 0.75 * np.pi),
+        (Visual("capsule", (0.5, 2.0)), (1, 1, 3), 0.8 * (0.5 + 1 / 6) * np.pi),
+    ],
+)
+def test_primitives_have_their_extent(visual: Visual, extent: tuple[float, ...], least: float) -> None:
+    mesh = visual_mesh(visual)
+    assert mesh is not None
+    assert np.ptp(mesh.vertices, axis=0) == pytest.approx(extent) and np.abs(mesh.vertices.mean(axis=0)).max() < 1e-9
+    assert least * 0.999 < volume(mesh) <= np.prod(extent) * 1.001
+
+
+@pytest.mark.parametrize("write", [stl, obj, off])
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (2.0, -1.0, 1.0)])
+def test_meshes_are_read(write: Callable[[Path], None], scale: tuple[float, ...], tmp_path: Path) -> None:
+    file = tmp_path / f"m.{write.__name__}"
+    write(file)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        mesh = visual_mesh(Visual("mesh", scale, file=str(file)))
+    assert mesh is not None and len(mesh.faces) == 4
+    assert volume(mesh) == pytest.approx(abs(np.prod(scale)))  # Seen from outside also where it is mirrored.
+    assert np.ptp(mesh.vertices, axis=0) == pytest.approx(np.abs(scale) * [1, 2, 3])
+
+
+def test_a_file_that_was_changed_is_read_again(tmp_path: Path) -> None:
+    file = tmp_path / "m.stl"
+    stl(file)
+    one = visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(file)))
+    file.write_bytes(b"")
+    with pytest.warns(UserWarning, match="'m.stl' is not drawn"):
+        assert one is not None and visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(file))) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "expected"),
+    [
+        ("m.fbx", b"x", ".fbx is none of"),
+        ("m.stl", b"", "not a .stl file|0 triangles"),
+        ("m.stl", bytes(80) + b"\xff\xff\xff\x7f", "not a .stl file|0 triangles"),
+        ("m.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "not a .obj file|0 triangles|without a corner"),
+        ("m.obj", b"v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n", "finite corners"),
+        ("m.dae", b"<COLLADA/>", "no triangles"),
+        ("m.ply", b"ply\nformat ascii 1.0\nelement vertex 99999999\nend_header\n", "not a .ply file|0 triangles"),
+    ],
+)
+def test_what_is_no_mesh_is_said_and_left_out(name: str, content: bytes, expected: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(content)
+    with pytest.warns(UserWarning, match=expected):
+        assert visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(tmp_path / name))) is None
+
+
+def test_too_large_ones_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stl(tmp_path / "m.stl")
+    monkeypatch.setattr(visual_meshes, "MOST_BYTES", 100)
+    with pytest.warns(UserWarning, match="284 bytes, 100 at most"):
+        assert visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(tmp_path / "m.stl"))) is None
+
+
+def test_bodies_look_as_their_file_says() -> None:
+    rotation = sf.Rotation.rpy(0.0, 0.0, np.pi / 2)
+    box = Visual("box", (0.2, 0.1, 0.1), (0.0, 0.0, 0.5), rotation, (1, 2, 3))
+    system = replace(MODELS["double_pendulum"], visuals={"lower": (box,)})
+    drawing = Mechanism(system).drawing()
+    (part,) = (part for part in drawing.parts if part.kind == "visuals")
+    assert part.link == 1 and part.color == (1, 2, 3)
+    low, high = part.mesh.vertices.min(axis=0), part.mesh.vertices.max(axis=0)
+    assert np.allclose([low, high], [[-0.05, -0.1, 0.45], [0.05, 0.1, 0.55]])
+    # Boxes of inertia would hide in them.
+    assert "inertias" not in shown_at_first(drawing) and "visuals" in shown_at_first(drawing)
+    assert "inertias" in shown_at_first(Mechanism(MODELS["double_pendulum"]).drawing())
+    # The skeleton stays until every link has a look of its own.
+    assert "bodies" in shown_at_first(drawing)
+    whole = Mechanism(replace(system, visuals={"upper": (box,), "lower": (box,)})).drawing()
+    assert not {"bodies", "joints"} & shown_at_first(whole)

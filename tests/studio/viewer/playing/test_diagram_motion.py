@@ -1,0 +1,97 @@
+"""What is shown of a diagram's run: the mechanism of one block, with the run's own states, inputs and parameters."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros import blocks
+from symofros.diagrams.result import DiagramRun
+from symofros.errors import SymofrosError, UnknownNameError
+from symofros.studio.viewer.drawing.poses import Mechanism
+from symofros.studio.viewer.playing.diagram_motion import shown_of
+
+
+def run_of(*names: str, system: str = "double_pendulum") -> DiagramRun:
+    """Arms that fall, one a name, from different angles."""
+    d = sf.Diagram("arms")
+    for i, name in enumerate(names):
+        d.add_model(f"{name}_model", MODELS[system], {"q1": 0.5 + i}, {"L1": 0.6 + i})
+        d.add(blocks.ForwardDynamics(name=name, model=f"{name}_model"))
+    return sf.Simulation(d).run(0.1, dt=1e-2)
+
+
+@pytest.fixture(scope="module")
+def one() -> DiagramRun:
+    return run_of("plant")
+
+
+@pytest.fixture(scope="module")
+def two() -> DiagramRun:
+    return run_of("left", "right")
+
+
+def test_the_chosen_mechanism_moves_as_it_did(two: DiagramRun) -> None:
+    for i, name in enumerate(("left", "right")):
+        system, states = shown_of(two, name)
+        assert system == MODELS["double_pendulum"] and np.array_equal(states.q, two[f"{name}.q"])
+        assert states.q[0, 0] == 0.5 + i and states.par[2] == 0.6 + i
+
+
+def test_parameters_are_those_of_the_run() -> None:
+    d = sf.Diagram("arm")
+    d.add_model("arm", MODELS["double_pendulum"], {"q1": 0.5})
+    d.add(blocks.ForwardDynamics(name="plant", model="arm"))
+    run = sf.Simulation(d).run(0.02, dt=1e-2, parameters={"arm.L1": 0.9})
+    with sf.view(run, port=0, browser=False) as viewer:
+        elbow = viewer._server.scene.get_handle_by_name("/mechanism/link1").position
+        assert np.linalg.norm(elbow) == pytest.approx(0.9)
+
+
+def test_inputs_that_prescribe_motion_are_those_of_the_run() -> None:
+    t = np.array([0.0, 1.0])
+    d = sf.Diagram("spin")
+    d.add_model("beam", MODELS["spinning_beam"])
+    d.add(blocks.Sequence(name="hub", t=t, values=np.stack([3 * t, 3 + 0 * t, 0 * t], axis=1)))
+    d.add(blocks.ForwardDynamics(name="plant", model="beam"), u="hub.y")
+    run = sf.Simulation(d).run(0.2, dt=1e-3, record=0.1)
+    system, states = shown_of(run)
+    assert np.allclose(states.u[:, 0], [0.0, 0.3, 0.6])
+    posture = Mechanism(system).posture(states.q, states.u)
+    assert np.allclose(posture.R[-1, 0, :2, 0], [np.cos(0.6), np.sin(0.6)])
+
+
+def test_a_mechanism_has_to_be_chosen_where_there_are_several(two: DiagramRun, one: DiagramRun) -> None:
+    with pytest.raises(UnknownNameError, match=r"which mechanism\?\n  found:  2 mechanisms\n.*: left, right\n"):
+        sf.view(two, port=0, browser=False)
+    with pytest.raises(UnknownNameError, match=r"no mechanism 'plan'\n(.*\n)*  remedy: did you mean 'plant'"):
+        sf.record(one, "r.png", block="plan")
+
+
+def test_a_run_is_played(one: DiagramRun) -> None:
+    with sf.view(one, port=0, browser=False, speed=0.5) as viewer:
+        viewer.toggle()
+        viewer.seek(0.1)
+        assert np.allclose(viewer.state.q, one["plant.q"][-1])
+
+
+def test_a_recording_of_a_run_is_that_of_its_motion(one: DiagramRun, tmp_path: Path) -> None:
+    images, size = import_module("PIL.Image"), (160, 120)
+    system, states = shown_of(one)
+    first = sf.record(one, tmp_path / "a.png", size=size)
+    second = sf.record(system, states, tmp_path / "b.png", size=size)
+    other = sf.record(system, (one.t, one["plant.q"]), tmp_path / "c.png", size=size)  # Of another length.
+    a, b, c = (np.asarray(images.open(file)) for file in (first, second, other))
+    assert np.array_equal(a, b) and not np.array_equal(a, c)
+
+
+def test_what_is_neither_is_refused(one: DiagramRun) -> None:
+    system = MODELS["double_pendulum"]
+    for given in ((system, (one.t, one["plant.q"])), (system, "r.png"), (one, (one.t, one["plant.q"]), "r.png")):
+        with pytest.raises(SymofrosError, match="a system, its motion and a path; or a diagram's run and a path"):
+            sf.record(*given)

@@ -1,0 +1,156 @@
+"""Motions: between states, and from files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.errors import ShapeError, SymofrosError
+from symofros.studio.viewer.playing.motion import Motion, motion_of, read_motion
+from symofros.studio.viewer.playing.player import Player
+
+
+@pytest.fixture(scope="module")
+def pendulum() -> sf.Model:
+    return sf.compile(MODELS["double_pendulum"], sf.Options(backend="interpreter"))
+
+
+@pytest.fixture(scope="module")
+def run(pendulum: sf.Model) -> sf.Trajectory:
+    return sf.simulate(sf.compile(MODELS["double_pendulum"]), [1.0, 0.5], None, 0.5, dt=0.01)
+
+
+def motion(model: sf.Model, t: object, q: object) -> Motion:
+    return motion_of(model, (t, q))
+
+
+def test_between_states_it_goes_straight(pendulum: sf.Model) -> None:
+    q, u = motion(pendulum, [0.0, 1.0, 3.0], [[0.0, 0.0], [1.0, 2.0], [0.0, 4.0]]).at([-1.0, 0.25, 2.0, 9.0])
+    assert np.allclose(q, [[0.0, 0.0], [0.25, 0.5], [0.5, 3.0], [0.0, 4.0]]) and u.shape == (4, pendulum.nu)
+
+
+def test_orientations_turn_on_the_shortest_way() -> None:
+    body = sf.RigidBody("b", sf.Joint("j", "ball"), sf.Inertia(1.0, moments=(1.0, 1.0, 1.0)))
+    model = sf.compile(sf.System("s", [body]), sf.Options(backend="interpreter"))
+    start, end = [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, np.sin(0.5), np.cos(0.5)]
+    q, _ = motion(model, [0.0, 2.0], [start, end]).at(1.0)
+    assert np.allclose(q, [0.0, 0.0, np.sin(0.25), np.cos(0.25)])
+
+
+def test_two_states_at_one_time_are_before_and_after(pendulum: sf.Model) -> None:
+    m = motion(pendulum, [0.0, 1.0, 1.0, 2.0], [[0, 0], [1, 1], [5, 5], [6, 6]])
+    assert np.allclose(m.at([1.0 - 1e-9, 1.0])[0], [[1, 1], [5, 5]], atol=1e-6)
+
+
+def test_one_state_stands(pendulum: sf.Model) -> None:
+    assert np.allclose(motion(pendulum, [3.0], [[0.1, 0.2]]).at([0.0, 9.0])[0], [[0.1, 0.2]] * 2)
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".csv", ".parquet"])
+def test_files_that_trajectories_write_are_read(
+    suffix: str, pendulum: sf.Model, run: sf.Trajectory, tmp_path: Path
+) -> None:
+    found = read_motion(run.save(tmp_path / f"run{suffix}"), pendulum)
+    assert np.array_equal(found.t, run.t) and np.array_equal(found.q, run.q) and found.u.shape == run.u.shape
+
+
+def test_prescribed_motions_are_read(tmp_path: Path) -> None:
+    joint = sf.Joint("lift", "prismatic", prescribed=True)
+    swing = sf.Joint("swing", "revolute", "cart", axis=(0, 1, 0))
+    bodies = [
+        sf.RigidBody("cart", joint, sf.Inertia(1.0)),
+        sf.RigidBody("rod", swing, sf.Inertia(1.0, (0, 0, -1), (1, 1, 1))),
+    ]
+    model = sf.compile(sf.System("s", bodies))
+    run = sf.simulate(model, t_end=0.2, u={"lift": "sin(t)"}, dt=0.01)
+    for suffix in (".npz", ".csv"):
+        found = read_motion(run.save(tmp_path / f"run{suffix}"), model)
+        assert np.allclose(found.u[:, 0], np.sin(run.t))
+
+
+def test_what_follows_a_state_that_is_not_finite_is_left_out(pendulum: sf.Model) -> None:
+    assert len(motion(pendulum, [0, 1, 2], [[0, 0], [1, np.nan], [2, 2]]).t) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "expected"),
+    [
+        ("a.txt", "", r"can't read 'a.txt'\n  found:  .txt\n  rule:   one of .npz, .csv, .parquet"),
+        ("a.csv", "t,q1\n0,1\n", r"does not fit the model\n  found:  columns t, q1\n.*\n  remedy: missing: q2"),
+        ("b.csv", "t,q1,q2\n0,1,two\n", "'b.csv' is not a .csv file"),
+        ("c.csv", "t,q1,q2\n0,1\n", "'c.csv' is not a .csv file"),
+        ("d.csv", "t,q1,q2\n", r"no states\n  rule:   one finite state at least"),
+        ("e.csv", "t,q1,q2\n1,0,0\n0,0,0\n", "times that fall"),
+        ("f.npz", "not an archive", "'f.npz' is not a .npz file"),
+        ("g.parquet", "not parquet", "'g.parquet' is not a .parquet file"),
+    ],
+)
+def test_other_files_are_refused(name: str, text: str, expected: str, pendulum: sf.Model, tmp_path: Path) -> None:
+    (tmp_path / name).write_text(text)
+    with pytest.raises(SymofrosError, match=expected):
+        read_motion(tmp_path / name, pendulum)
+
+
+def test_a_file_that_is_not_there_is_said_to_be(pendulum: sf.Model) -> None:
+    with pytest.raises(SymofrosError, match=r"'none.npz' does not exist\n.*\n.*\n  remedy: check the path"):
+        read_motion("none.npz", pendulum)
+
+
+def test_archives_are_checked(pendulum: sf.Model, tmp_path: Path) -> None:
+    for arrays, expected in (
+        ({"q": [[0.0, 0.0]]}, "add t"),
+        ({"t": [0.0], "q": [[0.0]]}, r"q \(1, 1\)"),
+        ({"t": [0.0], "q": [[0.0, 0.0]], "names_q": ["a", "b"]}, "coordinates a, b"),
+        ({"t": [0.0], "q": [[0.0, 0.0]], "par": [1.0]}, r"par \(1,\)"),
+    ):
+        np.savez(tmp_path / "m.npz", **{name: np.array(value) for name, value in arrays.items()})
+        with pytest.raises(ShapeError, match=expected):
+            read_motion(tmp_path / "m.npz", pendulum)
+
+
+def test_pickles_in_archives_are_not_opened(pendulum: sf.Model, tmp_path: Path) -> None:
+    np.savez(tmp_path / "m.npz", t=np.array([{"a": 1}], dtype=object), q=np.zeros((1, 2)))
+    with pytest.raises(SymofrosError, match=r"is not a .npz file\n.*allow_pickle"):
+        read_motion(tmp_path / "m.npz", pendulum)
+
+
+def test_a_run_of_another_system_is_refused(run: sf.Trajectory) -> None:
+    other = sf.compile(MODELS["four_bar"], sf.Options(backend="interpreter"))
+    with pytest.raises(ShapeError, match=r"coordinates q1, q2\n  rule:   the model's are q1, q2, q3"):
+        motion_of(other, run)
+
+
+class TestPlayer:
+    @pytest.fixture
+    def player(self, pendulum: sf.Model) -> Player:
+        return Player(motion(pendulum, [1.0, 3.0], [[0, 0], [1, 1]]), speed=0.5)
+
+    def test_it_stands_until_it_is_started(self, player: Player) -> None:
+        assert player.advance(1.0) == 1.0
+        player.start()
+        assert player.advance(1.0) == 1.5
+
+    def test_it_begins_again(self, player: Player) -> None:
+        player.start()
+        assert player.advance(5.0) == pytest.approx(1.5) and player.playing
+
+    def test_or_stops_at_the_end(self, player: Player) -> None:
+        player.loop = False
+        player.start()
+        assert player.advance(9.0) == 3.0 and not player.playing
+        player.start()
+        assert player.time == 1.0
+
+    @pytest.mark.parametrize("speed", [0.0, -1.0, float("nan")])
+    def test_it_goes_forward(self, speed: float, player: Player) -> None:
+        with pytest.raises(SymofrosError, match="speed is a finite number above 0"):
+            Player(player.motion, speed)
+
+    def test_it_goes_to_a_time_within_the_motion(self, player: Player) -> None:
+        for asked, found in ((2.2, 2.2), (0.0, 1.0), (9.0, 3.0)):
+            player.seek(asked)
+            assert player.time == found
