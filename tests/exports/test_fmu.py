@@ -242,7 +242,7 @@ def test_directional_derivatives_are_those_of_the_functions(unit: Any, name: str
 
 
 def test_states_are_saved_and_restored(unit: Any) -> None:
-    it = unit("panda", cosim=True)
+    it = unit("four_bar", cosim=True)
     it.start()
     it.fmu.doStep(0.0, 0.01)
     get, put = ("getFMUstate", "setFMUstate") if it.version == 2 else ("getFMUState", "setFMUState")

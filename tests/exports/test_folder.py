@@ -104,6 +104,6 @@ def test_a_failing_compiler_is_quoted(tmp_path: Path, monkeypatch: pytest.Monkey
     from symofros.runtime.toolchain import Toolchain
 
     monkeypatch.setattr(compiling, "find_toolchain", lambda _: Toolchain(("gcc", "-Dnq=1/0/"), "gcc"))
-    with pytest.raises(sf.CompileError, match=r"command: gcc -Dnq=1/0/ -O2[\s\S]*error"):
+    with pytest.raises(sf.CompileError, match=r"found:  gcc -Dnq=1/0/ -O2[\s\S]*error"):
         sf.export(PENDULUM, "fmu2", tmp_path)
     assert not any(tmp_path.iterdir())
