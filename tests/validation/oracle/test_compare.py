@@ -70,7 +70,7 @@ def pushed(system: sf.System) -> sf.System:
 DYNAMIC = ("mass_matrix", "bias", "kinetic_energy", "potential_energy")
 
 
-@pytest.mark.parametrize("derive", [lagrange.derive, kane.derive])
+@pytest.mark.parametrize("derive", [pytest.param(lagrange.derive, marks=pytest.mark.slow), kane.derive])
 @pytest.mark.parametrize(
     "name, change, functions",
     [

@@ -69,11 +69,20 @@ def test_casadis_recursions_agree_with_the_interpreter(label: str, name: str) ->
     assert error(evaluated(given, name), interpreted(given, name)) < TOLERANCE.get(name, 1e-12)
 
 
-@pytest.mark.parametrize("label", sampled(("planar2R", "panda"), ("planar2R",)))
-def test_casadis_c_agrees_with_ours(label: str) -> None:
-    """Every function, from the same loops that are timed; derivatives, too."""
+FEW = ("dynamics", "forward_dynamics", "frame_jacobian", "inverse_dynamics_derivatives")
+
+
+@pytest.mark.parametrize(
+    ("label", "names"),
+    [
+        ("planar2R", FEW),
+        pytest.param("planar2R", FUNCTIONS, marks=pytest.mark.slow),
+        pytest.param("panda", ("dynamics", "frame_jacobian"), marks=pytest.mark.slow),
+    ],
+)
+def test_casadis_c_agrees_with_ours(label: str, names: tuple[str, ...]) -> None:
+    """The same loops that are timed; derivatives, too."""
     given = task(label, 12)
-    names = FUNCTIONS if label == "planar2R" else ("dynamics", "frame_jacobian")
     ours = {loop.function: loop for loop in our_loops(given, names) if loop.variant == "symofros"}
     theirs = list(casadi_loops(given, names))
     assert len(theirs) >= 2 * len(names), "two builds by each compiler"
