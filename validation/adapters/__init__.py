@@ -102,8 +102,8 @@ def factory_of(name: str, overrides: Mapping[str, EngineFactory | Missing] | Non
 
 def differences() -> tuple[Difference, ...]:
     """Every difference of conventions, as the engines' folders state them; this imports no engine."""
-    folders = dict.fromkeys(route.module.rpartition(".")[0] for route in ROUTES.values() if route.package)
-    return tuple(row for folder in folders for row in import_module(folder).DIFFERENCES)
+    folders = dict.fromkeys(route.module.rpartition(".")[0] for route in ROUTES.values())
+    return tuple(row for folder in folders if folder != __name__ for row in import_module(folder).DIFFERENCES)
 
 
 def has_beams(system: sf.System) -> bool:

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import symofros as sf
 from validation.contract.interface import Unsupported
-from validation.contract.quantities import EVERYTHING
+from validation.contract.quantities import offered_by
 from validation.mechanics.assembly import Assembly, Mover
-from validation.mechanics.joint_kinds import SIMPLE_JOINTS, EngineName
+from validation.mechanics.joint_kinds import PartKind
 
 
-def unrepresented(system: sf.System, assembly: Assembly, engine: EngineName) -> Unsupported | None:
+def unrepresented(system: sf.System, assembly: Assembly, joints: Collection[PartKind]) -> Unsupported | None:
     """The first thing of a description that an engine can't be built for.
 
     Args:
         system: The description.
         assembly: The same as numbers.
-        engine: Name of the engine in the table of joint kinds.
+        joints: Kinds of simple joints that the engine has.
     """
     for mover in assembly.movers:
-        if engine not in SIMPLE_JOINTS[mover.kind].engines:
+        if mover.kind not in joints:
             return Unsupported(
                 f"joint '{mover.joint.name}': no {mover.kind} joint, and no series of simple ones for it"
             )
@@ -38,9 +40,14 @@ def armature(system: sf.System, mover: Mover) -> float:
     return float(sf.evaluate(mover.joint.armature, system.parameter_values()))
 
 
-def offered(system: sf.System) -> frozenset[str]:
-    """What an engine can be compared by: it knows the weight's potential energy, not that of springs."""
-    return EVERYTHING - {"potential_energy"} if stores_energy(system) else EVERYTHING
+def offered(engine: type, system: sf.System) -> frozenset[str]:
+    """Quantities that an engine can be compared by: it knows the weight's potential energy, not that of springs.
+
+    Args:
+        engine: The engine's class.
+        system: The description.
+    """
+    return offered_by(engine) - ({"potential_energy"} if stores_energy(system) else set())
 
 
 def stores_energy(system: sf.System) -> bool:

@@ -18,6 +18,7 @@ import numpy as np
 
 import symofros as sf
 from validation.contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
+from validation.contract.quantities import FORCES_STATED, TREE_QUANTITIES
 from validation.mechanics.assembly import assemble
 from validation.mechanics.geometry import Array
 
@@ -111,7 +112,9 @@ class RotorEngine:
     def __init__(self, plain: TreeEngine, explicit: TreeEngine, tied: Array, locked: Array, at: Array) -> None:
         self._plain, self._explicit, self._tied, self._locked, self._at = plain, explicit, tied, locked, at
         self._nq = len(at) + len(tied) - tied.shape[1]
-        self.name, self.version, self.capabilities = plain.name, plain.version, plain.capabilities
+        self.name, self.version = plain.name, plain.version
+        # What rotors do to further quantities is not stated here.
+        self.capabilities = plain.capabilities & (TREE_QUANTITIES | FORCES_STATED)
 
     def __getattr__(self, name: str) -> Callable[[States], Array]:
         """Quantities that rotors do not change."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from validation.adapters import ROUTES
 from validation.check import ModelResult, Settings
 from validation.comparison.errors import Comparison
 from validation.reporting.provenance import stamp
@@ -18,7 +19,7 @@ _BEFORE = ("load", "compile")
 # What a comparison states besides its further figures.
 _STATED = frozenset("model engine quantity states error tolerance ok median worst_state note".split())
 # Adapters that are our own code and have no version of their own.
-_OURS = frozenset({"interpreted", "description"})
+_OURS = frozenset(name for name, route in ROUTES.items() if not route.independent)
 
 # Quantity -> engine -> states in each bin of BIN_EDGES, all models together.
 Distributions = Mapping[str, Mapping[str, Sequence[int]]]

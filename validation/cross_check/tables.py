@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from validation.adapters import ROUTES
 from validation.check import ModelResult
 from validation.comparison.errors import Comparison
-from validation.contract.quantities import FRAME_QUANTITIES
+from validation.contract.quantities import MOTION_ENERGY, QUANTITIES
 from validation.cross_check.record import Record
 from validation.reporting.numbers import counted, digits
 from validation.reporting.record import Cell, Table
@@ -16,36 +16,31 @@ from validation.reporting.record import Cell, Table
 # Title of a column -> quantities that share it.
 Columns = dict[str, tuple[str, ...]]
 
-COLUMNS: Columns = {
-    "M": ("mass_matrix",),
-    "h": ("bias",),
-    "gravity": ("gravity",),
-    "Q": ("generalized_force",),
-    "T, V": ("kinetic_energy", "potential_energy"),
-    "inverse": ("inverse_dynamics",),
-    "forward": ("forward_dynamics",),
-    "poses": ("frame_pose",),
-    "twists": ("frame_velocity", "frame_acceleration"),
-    "J, dJ/dt": ("frame_jacobian", "frame_jacobian_rate"),
-    "phi, G, gamma": ("constraint", "constraint_jacobian", "constraint_bias", "closure_gap"),
-    "multipliers": ("multipliers", "constraint_force", "frame_response"),
-    "motion": ("motion_energy",),
-    "drift": ("energy_drift",),
-}
 
+def _columns(merged: Mapping[str, tuple[str, ...]]) -> Columns:
+    """The columns that quantities name, in their order, and the drift of our own free motion.
+
+    Args:
+        merged: Columns that become one, under its title.
+    """
+    becomes = {title: brief for brief, titles in merged.items() for title in titles}
+    columns: Columns = {}
+    for quantity in (*QUANTITIES.values(), MOTION_ENERGY):
+        own = quantity.column or quantity.symbol
+        title = becomes.get(own, own)
+        columns[title] = (*columns.get(title, ()), quantity.name)
+    return columns | {"drift": ("energy_drift",)}
+
+
+COLUMNS = _columns({})
 # The same with fewer columns, for a terminal.
-BRIEF: Columns = {
-    "M": ("mass_matrix",),
-    "h": ("bias",),
-    "gravity": ("gravity",),
-    "Q": ("generalized_force",),
-    "energy": ("kinetic_energy", "potential_energy", "motion_energy"),
-    "inverse": ("inverse_dynamics",),
-    "forward": ("forward_dynamics",),
-    "frames": tuple(sorted(FRAME_QUANTITIES)),
-    "loops": (*COLUMNS["phi, G, gamma"], *COLUMNS["multipliers"]),
-    "drift": ("energy_drift",),
-}
+BRIEF = _columns(
+    {
+        "energy": ("T, V", "motion"),
+        "frames": ("poses", "twists", "J, dJ/dt"),
+        "loops": ("phi, G, gamma", "multipliers"),
+    }
+)
 
 # Engines of rows that no other engine is behind: our own drift, and what was asked of any of them.
 _OURS = ("symofros", "any")

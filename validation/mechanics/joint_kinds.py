@@ -1,4 +1,4 @@
-"""The harness's own table of joint kinds: what each is a series of, and which engine represents which simple joint.
+"""The harness's own table of joint kinds: what each is a series of, and what the simple ones are.
 
 Written apart from the generator's table on purpose: names, sizes and series are checked by their agreement.
 """
@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import Literal, NamedTuple
 
 PartKind = Literal["revolute", "prismatic", "screw", "ball", "free", "general", "elastic"]
-EngineName = Literal["pinocchio", "mujoco", "casadi", "exudyn"]
 Sampling = Literal["angle", "slide", "deflection", "quaternion", "pose"]
 
 
@@ -18,25 +17,21 @@ class SimpleJoint(NamedTuple):
     Attributes:
         sampling: Distribution that states are drawn from: an "angle", a "slide", the "deflection" of a beam, a
             "quaternion" uniform on the sphere, or a "pose" of a slide in each direction and a quaternion.
-        engines: Numeric engines with such a joint.
         coordinates: Number of coordinates; of a general joint or a beam, as many as it has.
         speeds: Number of speeds.
     """
 
     sampling: Sampling
-    engines: frozenset[EngineName] = frozenset()
     coordinates: int = 1
     speeds: int = 1
 
 
-_ALL: frozenset[EngineName] = frozenset({"pinocchio", "mujoco", "casadi", "exudyn"})
-
 SIMPLE_JOINTS: dict[PartKind, SimpleJoint] = {
-    "revolute": SimpleJoint("angle", _ALL),
-    "prismatic": SimpleJoint("slide", _ALL),
-    "screw": SimpleJoint("angle", frozenset({"pinocchio"})),
-    "ball": SimpleJoint("quaternion", _ALL - {"casadi"}, 4, 3),
-    "free": SimpleJoint("pose", _ALL, 7, 6),
+    "revolute": SimpleJoint("angle"),
+    "prismatic": SimpleJoint("slide"),
+    "screw": SimpleJoint("angle"),
+    "ball": SimpleJoint("quaternion", 4, 3),
+    "free": SimpleJoint("pose", 7, 6),
     "general": SimpleJoint("slide"),
     "elastic": SimpleJoint("deflection"),
 }

@@ -9,7 +9,7 @@ from validation.adapters.pinocchio import tree as pinocchio
 from validation.check import Settings, check
 from validation.comparison.errors import compute, state_errors, typical_scales
 from validation.contract.interface import Subject, Unsupported
-from validation.contract.quantities import CONSTRAINED, EVERYTHING, LOOPS, QUANTITIES
+from validation.contract.quantities import CONSTRAINED, LOOPS, QUANTITIES, TREE_QUANTITIES
 
 FEW = Settings(states=40)
 
@@ -21,7 +21,7 @@ def test_pinocchio_agrees_with_mujoco(subject: Subject) -> None:
     ours, theirs = pinocchio.build(subject), mujoco.build(subject)
     assert not isinstance(ours, Unsupported) and not isinstance(theirs, Unsupported)
     scales = typical_scales(ours, states)
-    for name in EVERYTHING:
+    for name in TREE_QUANTITIES:
         quantity = QUANTITIES[name]
         errors = state_errors(quantity, compute(ours, quantity, states), compute(theirs, quantity, states), scales)
         assert errors.max() <= quantity.tolerance, name
@@ -31,7 +31,7 @@ def test_pinocchio_agrees_with_mujoco(subject: Subject) -> None:
 def test_our_c_agrees_with_all(subject: Subject) -> None:
     result = check(subject, FEW)
     assert result.ok, [row for row in result.comparisons if not row.ok]
-    assert {row.engine for row in result.comparisons} == {
+    assert {row.engine for row in result.comparisons} >= {
         "pinocchio",
         "mujoco",
         "interpreted",

@@ -46,6 +46,10 @@ from validation.adapters.casadi.links import (
 from validation.adapters.reach import unrepresented
 from validation.contract.interface import Unsupported
 from validation.mechanics.assembly import BASE, assemble
+from validation.mechanics.joint_kinds import PartKind
+
+# Kinds of simple joints that it has.
+_JOINTS: frozenset[PartKind] = frozenset({"revolute", "prismatic", "free"})
 
 
 class CasadiTree:
@@ -63,7 +67,7 @@ class CasadiTree:
 
     def __init__(self, system: sf.System) -> None:
         assembly = assemble(system)
-        obstacle = unrepresented(system, assembly, "casadi")
+        obstacle = unrepresented(system, assembly, _JOINTS)
         if isinstance(obstacle, Unsupported):
             raise ValueError(obstacle.reason)
         self.assembly = assembly

@@ -28,9 +28,12 @@ from validation.contract.interface import States, Subject, Unsupported
 from validation.mechanics.absolute import Moving, bodies, joint_accelerations, work_rows
 from validation.mechanics.assembly import BASE, Assembly, FrameSite, Mover, assemble
 from validation.mechanics.geometry import Array, Placement, matrix_quaternion
+from validation.mechanics.joint_kinds import PartKind
 
 NAME = "exudyn-loops"
 CAPABILITIES = frozenset({"forward_dynamics", "closure_gap", "frame_response"})
+# Kinds of simple joints that it has.
+_JOINTS: frozenset[PartKind] = frozenset({"revolute", "prismatic", "ball", "free"})
 # Conditions smaller than this share of the largest repeat others.
 _RANK = 1e-10
 # Of the difference along the motion, as a change of the coordinates: its sixth power is what is left for rods.
@@ -149,7 +152,7 @@ def _carried(at: _Solved, site: FrameSite) -> Array:
 def build(subject: Subject) -> JointedEngine | Unsupported:
     """Exudyn's system of a description with closures and rods."""
     assembly = assemble(subject.system)
-    obstacle = unrepresented(subject.system, assembly, "exudyn") or _obstacle(subject.system, assembly)
+    obstacle = unrepresented(subject.system, assembly, _JOINTS) or _obstacle(subject.system, assembly)
     if obstacle is not None:
         return obstacle
     container = exudyn.SystemContainer()

@@ -20,7 +20,7 @@ from validation.adapters.lagrangian.model import Translation
 from validation.adapters.lagrangian.motion import GROUND, Pose
 from validation.adapters.lagrangian.tree import WORLD, Lagrangian, rate_of, turning_of
 from validation.contract.interface import States, Subject, TreeEngine, Unsupported
-from validation.contract.quantities import EVERYTHING, FORCES_STATED
+from validation.contract.quantities import FORCES_STATED, TREE_QUANTITIES
 from validation.mechanics.assembly import Assembly, assemble
 from validation.mechanics.geometry import Array, skew
 from validation.mechanics.parts import coordinate_symbols, speed_symbols
@@ -204,7 +204,7 @@ def _frame(tree: Lagrangian, assembly: Assembly, name: str) -> Pose:
 
 def _offered(system: sf.System) -> frozenset[str]:
     """All but what it was not given: forces that the description states by frames or potentials."""
-    offered = EVERYTHING
+    offered = TREE_QUANTITIES
     if system.connections or system.potentials:
         return offered - {"potential_energy"}
     loaded = any(body.loads for body in system.bodies if isinstance(body, sf.RigidBody))

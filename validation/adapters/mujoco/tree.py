@@ -15,12 +15,15 @@ import numpy as np
 from validation.adapters.reach import armature, offered, unrepresented
 from validation.contract.conventions import Chart, Encoding, Slot, angular_first_to_linear_first, xyzw_to_wxyz
 from validation.contract.interface import States, Subject, TreeEngine, Unsupported
-from validation.contract.quantities import EVERYTHING
+from validation.contract.quantities import TREE_QUANTITIES
 from validation.mechanics.assembly import BASE, Assembly, Mover, assemble
 from validation.mechanics.geometry import Array, Placement, matrix_quaternion
+from validation.mechanics.joint_kinds import PartKind
 
 NAME = "mujoco"
 VERSION: str = mujoco.__version__
+# Kinds of simple joints that it has.
+_JOINTS: frozenset[PartKind] = frozenset({"revolute", "prismatic", "ball", "free"})
 
 _SITE = mujoco.mjtObj.mjOBJ_SITE
 _HINGE, _SLIDE = mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE
@@ -43,7 +46,7 @@ class MujocoEngine:
     model: Any
     chart: Chart
     sites: tuple[int, ...] = ()
-    capabilities: frozenset[str] = EVERYTHING
+    capabilities: frozenset[str] = TREE_QUANTITIES
     version: str = VERSION
 
     def write(self, path: Path) -> None:
@@ -190,7 +193,7 @@ class MujocoEngine:
 def build(subject: Subject) -> TreeEngine | Unsupported:
     """MuJoCo's model of a description, body by body, with everything fixed to a body merged into it."""
     assembly = assemble(subject.system)
-    obstacle = unrepresented(subject.system, assembly, "mujoco")
+    obstacle = unrepresented(subject.system, assembly, _JOINTS)
     if obstacle is not None:
         return obstacle
     for mover in assembly.movers:
@@ -219,7 +222,7 @@ def build(subject: Subject) -> TreeEngine | Unsupported:
     if isinstance(model, Unsupported):
         return model
     sites = tuple(mujoco.mj_name2id(model, _SITE, frame) for frame in subject.frames)
-    return MujocoEngine(NAME, model, chart_of(model, assembly), sites, offered(subject.system))
+    return MujocoEngine(NAME, model, chart_of(model, assembly), sites, offered(MujocoEngine, subject.system))
 
 
 def compiled(spec: Any) -> Any | Unsupported:

@@ -12,12 +12,15 @@ import pinocchio as pin
 from validation.adapters.reach import armature, offered, unrepresented
 from validation.contract.conventions import Chart
 from validation.contract.interface import States, Subject, Unsupported
-from validation.contract.quantities import EVERYTHING
+from validation.contract.quantities import TREE_QUANTITIES
 from validation.mechanics.assembly import FrameSite, Mass, Mover, assemble
 from validation.mechanics.geometry import Array, Placement
+from validation.mechanics.joint_kinds import PartKind
 
 NAME = "pinocchio"
 VERSION: str = pin.__version__
+# Kinds of simple joints that it has.
+_JOINTS: frozenset[PartKind] = frozenset({"revolute", "prismatic", "screw", "ball", "free"})
 _WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
 
@@ -37,7 +40,7 @@ class PinocchioEngine:
     model: Any
     chart: Chart
     frames: tuple[int, ...] = ()
-    capabilities: frozenset[str] = EVERYTHING
+    capabilities: frozenset[str] = TREE_QUANTITIES
     version: str = VERSION
 
     def _each(self, states: States, result: Callable[[Any, Array, Array, Array, Array], Any]) -> Array:
@@ -134,7 +137,7 @@ class PinocchioEngine:
 def build(subject: Subject) -> PinocchioEngine | Unsupported:
     """Pinocchio's model of a description; it merges what is fixed to a joint's body by itself."""
     assembly = assemble(subject.system)
-    obstacle = unrepresented(subject.system, assembly, "pinocchio")
+    obstacle = unrepresented(subject.system, assembly, _JOINTS)
     if obstacle is not None:
         return obstacle
     model = pin.Model()
@@ -151,7 +154,7 @@ def build(subject: Subject) -> PinocchioEngine | Unsupported:
     # Pinocchio 4.1 counts an armature in the energy of some joints (prismatic, free) and not of others (revolute about
     # a general axis), while its M counts all: with armatures, its kinetic energy is not one to compare with.
     silent = {"kinetic_energy"} if np.any(model.armature) else set()
-    return PinocchioEngine(NAME, model, chart, frames, offered(subject.system) - silent)
+    return PinocchioEngine(NAME, model, chart, frames, offered(PinocchioEngine, subject.system) - silent)
 
 
 def _se3(X: Placement) -> Any:
