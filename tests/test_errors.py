@@ -14,7 +14,7 @@ import symofros as sf
 from symofros.errors import MAX_PROBLEMS, did_you_mean, first_of, near_name
 
 # Plain texts become problems of one part in two places: where errors are defined, and where any exception is shown.
-_PLAIN = {"errors.py", "tasks.py"}
+_PLAIN = {"errors.py", "worker.py"}
 SOURCES = sorted(path for path in Path(sf.__file__).parent.rglob("*.py") if path.name not in _PLAIN)
 
 

@@ -193,13 +193,13 @@ class Bench:
             before: Trial | None = None
             for rtol in _LADDER:
                 stepping = Stepping(method, rtol=rtol)
-                found = self.trial(system, stepping)
-                if found.run is None:
-                    failure = failure or found.failure
+                trial = self.trial(system, stepping)
+                if trial.run is None:
+                    failure = failure or trial.failure
                     break
-                if before is not None and self.error(before, found) <= EXACT:
-                    return found, stepping
-                before = found
+                if before is not None and self.error(before, trial) <= EXACT:
+                    return trial, stepping
+                before = trial
         raise SymofrosError(
             Problem(
                 f"advise: the motion of '{system.name}' can't be computed to its tolerance",
@@ -209,20 +209,20 @@ class Bench:
             )
         )
 
-    def error(self, found: Trial, truth: Trial) -> float:
+    def error(self, trial: Trial, truth: Trial) -> float:
         """The largest error of an output, in units of what is allowed; infinite where there was no motion."""
-        return max(self.errors(found, truth).values())
+        return max(self.errors(trial, truth).values())
 
-    def errors(self, found: Trial, truth: Trial) -> dict[str, float]:
+    def errors(self, trial: Trial, truth: Trial) -> dict[str, float]:
         """Output's name -> its largest error in units of what is allowed."""
         shares = {}
         for output in self.scene.outputs:
             right = truth.values[output.name]
-            if found.run is None:
+            if trial.run is None:
                 shares[output.name] = math.inf
                 continue
             with np.errstate(over="ignore"):  # What diverges may be too far away to be squared.
-                off = float(np.linalg.norm(found.values[output.name] - right, axis=1).max())
+                off = float(np.linalg.norm(trial.values[output.name] - right, axis=1).max())
             bound = output.bound(right)
             if bound == 0.0:
                 shares[output.name] = 0.0 if off == 0.0 else math.inf
@@ -239,17 +239,17 @@ class Bench:
             known.update({name: counted[name, ""].total for name in new})
         return {name: known[name] for name in functions}
 
-    def cost(self, system: System, found: Trial, method: str) -> Cost:
+    def cost(self, system: System, trial: Trial, method: str) -> Cost:
         """What a run took, counted."""
-        assert found.run is not None
-        statistics, kind = found.run.statistics, METHODS[method].kind
-        n = found.run.model.nv + found.run.model.nc
+        assert trial.run is not None
+        statistics, kind = trial.run.statistics, METHODS[method].kind
+        n = trial.run.model.nv + trial.run.model.nc
         solve, factor = 2 * n**2, 2 * n**3 // 3
         of_step = "residual" if kind == "alpha" else "forward_dynamics"
         each = self.operations(system, (of_step,))[of_step]
         if statistics.jacobians == 0:
             # Trees have their factorisation in the generated code; constraints are solved for by a routine.
-            extra = solve + factor if found.run.model.nc else 0
+            extra = solve + factor if trial.run.model.nc else 0
             return Cost(each + extra, statistics.evaluations, 0, 0, statistics.seconds)
         slopes = self.operations(system, ("implicit_terms",))["implicit_terms"] + factor
         return Cost(each + solve, statistics.evaluations, slopes, statistics.jacobians, statistics.seconds)

@@ -61,20 +61,20 @@ class _Reader:
                     "a scene says how long it lasts and what matters",
                     f"add {needed}",
                 )
-        found: dict[str, Any] = {"t_end": self.number(entries["t_end"], "t_end")}
+        fields: dict[str, Any] = {"t_end": self.number(entries["t_end"], "t_end")}
         outputs = self.mapping(entries["outputs"], "outputs")
-        found["outputs"] = tuple(self.output(name, node) for name, node in outputs.items())
+        fields["outputs"] = tuple(self.output(name, node) for name, node in outputs.items())
         for section, read in (("inputs", self.input), ("start", self.number)):
             if section in entries:
                 given = self.mapping(entries[section], section)
-                found[section] = {name: read(node, f"{section}: '{name}'") for name, node in given.items()}
+                fields[section] = {name: read(node, f"{section}: '{name}'") for name, node in given.items()}
         if "keep" in entries:
-            found["keep"] = tuple(self.text(item, "keep") for item in self.listed(entries["keep"], "keep"))
+            fields["keep"] = tuple(self.text(item, "keep") for item in self.listed(entries["keep"], "keep"))
         if "fixed_step" in entries:
-            found["fixed_step"] = self.one_of(entries["fixed_step"], "fixed_step", (True, False))
+            fields["fixed_step"] = self.one_of(entries["fixed_step"], "fixed_step", (True, False))
         if "samples" in entries:
-            found["samples"] = int(self.number(entries["samples"], "samples"))
-        return self.built(root, lambda: Scene(**found))
+            fields["samples"] = int(self.number(entries["samples"], "samples"))
+        return self.built(root, lambda: Scene(**fields))
 
     def output(self, name: str, node: Node) -> Output:
         entries = self.mapping(node, f"output '{name}'", _OUTPUT)

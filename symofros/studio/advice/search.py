@@ -70,7 +70,7 @@ class _Search:
         stepping, _, _, methods = cheapest(self.bench, self.current, trial, STEPPING)
         full_trial, _ = self.bench.exact(self.full)
         full_stepping, _, _, _ = cheapest(self.bench, self.full, full_trial, STEPPING)
-        found = self.bench.trial(self.current, stepping)
+        stepped = self.bench.trial(self.current, stepping)
         self._remark()
         return Advice(
             self.scene,
@@ -81,7 +81,7 @@ class _Search:
             self.bench.timed(self.current, stepping),
             self.bench.timed(self.full, full_stepping),
             tuple(self.choices),
-            self.bench.errors(found, self.truth.trial),
+            self.bench.errors(stepped, self.truth.trial),
             self.bounds,
             self.truncation,
             Options(self.bench.functions(self.current, stepping.method), self.scene.frames),
@@ -190,9 +190,9 @@ class _Search:
         body = self.current.body(name)
         assert isinstance(body, Beam)
         softened = self.current.with_bodies(replace(body, foreshortening=False, retain="first_order"))
-        found = self._attempt(softened)
-        off = self.bench.error(found, self.truth.trial)
-        end = f"ends: {found.failure}" if found.failure else f"errs by {off:.3g} of the tolerance"
+        softened_trial = self._attempt(softened)
+        off = self.bench.error(softened_trial, self.truth.trial)
+        end = f"ends: {softened_trial.failure}" if softened_trial.failure else f"errs by {off:.3g} of the tolerance"
         reason = f"{one.reason}; a model that keeps the softening by the spin, without the stiffening, {end}"
         return replace(one, reason=reason, numbers={**one.numbers, "softened_error": off})
 

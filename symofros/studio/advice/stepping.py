@@ -42,14 +42,14 @@ def cheapest(bench: Bench, system: System, truth: Trial, share: float) -> tuple[
         if METHODS[method].family.implicit and not _small(bench, system):
             lines.append(f"{method}: not tried, derivatives of more than {LARGEST} operations")
             continue
-        found = _coarsest(bench, system, truth, share, method, None if best is None else best[1].total)
-        if found is None:
+        coarsest = _coarsest(bench, system, truth, share, method, None if best is None else best[1].total)
+        if coarsest is None:
             lines.append(f"{method}: dearer, or never within {share:.2g} of the tolerance")
             continue
-        stepping, cost, error = found
+        stepping, cost, error = coarsest
         lines.append(f"{stepping}: {cost.total} operations, error {error:.2g} of the tolerance")
         if best is None or cost.total < best[1].total:
-            best = found
+            best = coarsest
     if best is None:
         raise SymofrosError(
             Problem(
@@ -72,10 +72,10 @@ def _coarsest(
 ) -> tuple[Stepping, Cost, float] | None:
     """The coarsest setting of a method that will do; None where it costs more than `dearest` before it does."""
     for stepping in _ladder(bench.scene.t_end, method):
-        found = bench.trial(system, stepping)
-        if found.run is None:
+        trial = bench.trial(system, stepping)
+        if trial.run is None:
             continue
-        cost, error = bench.cost(system, found, method), bench.error(found, truth)
+        cost, error = bench.cost(system, trial, method), bench.error(trial, truth)
         if dearest is not None and cost.total >= dearest:
             return None
         if error <= share:

@@ -54,9 +54,9 @@ def analyse(file: Path, text: str) -> Analysis:
         sheet = sheet_of(text)
     except YamlFault as error:
         return Analysis(False, problems=[placed(error.problem, None, "", {})])
-    found, system = _checked(file, text)
+    problems, system = _checked(file, text)
     exact = schema_problems(sheet, str(file))
-    shown_problems = [placed(problem, sheet, str(file), exact) for problem in found]
+    shown_problems = [placed(problem, sheet, str(file), exact) for problem in problems]
     data = as_json(sheet.root.plain())
     graph = diagram(data)
     blocks = {node["id"]: node for node in graph["nodes"]}
@@ -81,10 +81,10 @@ def _checked(file: Path, text: str) -> tuple[list[Problem], System | None]:
     """Every problem of the file and of its mechanism."""
     try:
         reading = read_yaml(file, text)
-        found = find_problems(reading.system, reading.broken) if reading.system is not None else []
+        problems = find_problems(reading.system, reading.broken) if reading.system is not None else []
     except DescriptionError as error:
         return list(error.problems), None
-    return list(in_order([*reading.problems, *found])), reading.system
+    return list(in_order([*reading.problems, *problems])), reading.system
 
 
 def as_json(value: Any) -> Any:

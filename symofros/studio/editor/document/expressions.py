@@ -67,7 +67,7 @@ def _in_place(file: File, text: str, path: Path, typed: str) -> Json | None:
     except (EditError, YamlFault):
         return None  # The field is not in this document: its formula alone can be judged.
     here = list(path)
-    return next((found for found in analyse(file, tried).problems if found["path"] == here), None)
+    return next((problem for problem in analyse(file, tried).problems if problem["path"] == here), None)
 
 
 def _error(problem: Problem, column: int) -> Json:

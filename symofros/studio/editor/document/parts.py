@@ -77,14 +77,14 @@ def _belongs(section: str, name: str, entry: Any, bodies: set[str], own: set[str
 
 def _symbols(data: Any) -> set[str]:
     """What formulas call the coordinates and speeds of a document's bodies."""
-    found: set[str] = set()
+    symbols: set[str] = set()
     for name, body in _mapping(data, "bodies").items():
         joint = _mapping(body, "joint")
         stated = joint.get("coordinates") if joint.get("kind") == "general" else None
         if isinstance(stated, list):
-            found.update(f"{rate}{symbol}" for rate in ("", "d", "dd") for symbol in stated)
-        found.update(symbols_of(joint, str(joint.get("name", default_joint_name(name)))) if joint else ())
-    return found
+            symbols.update(f"{rate}{symbol}" for rate in ("", "d", "dd") for symbol in stated)
+        symbols.update(symbols_of(joint, str(joint.get("name", default_joint_name(name)))) if joint else ())
+    return symbols
 
 
 def insertion(data: Any, part: Json, parent: str | None, frame: str | None) -> list[Edit]:
@@ -171,5 +171,5 @@ def _free(name: str, known: Iterable[str]) -> str:
 
 
 def _mapping(data: Any, key: str) -> dict[str, Any]:
-    found = data.get(key) if isinstance(data, dict) else None
-    return found if isinstance(found, dict) else {}
+    section = data.get(key) if isinstance(data, dict) else None
+    return section if isinstance(section, dict) else {}

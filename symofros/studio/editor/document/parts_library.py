@@ -26,14 +26,14 @@ class Library:
 
     def listed(self) -> list[Json]:
         """Name, file and bodies of each part; files that are none can be opened and mended like any other."""
-        found = []
+        parts = []
         for file in sorted((self.workspace.root / FOLDER).glob("*.yaml"))[:MAX_PARTS]:
             try:
                 bodies = list(self.part(file.stem)["bodies"])
             except (FileError, YamlFault, EditError):
                 continue
-            found.append({"name": file.stem, "path": self.workspace.shown(file), "bodies": bodies})
-        return found
+            parts.append({"name": file.stem, "path": self.workspace.shown(file), "bodies": bodies})
+        return parts
 
     def part(self, name: str) -> Json:
         """The data of a part.

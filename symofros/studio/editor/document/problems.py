@@ -189,8 +189,8 @@ def _first(data: Any, matches: Callable[..., bool]) -> Path:
 
 
 def _mapping(data: Any, key: str) -> dict[str, Any]:
-    found = data.get(key) if isinstance(data, dict) else None
-    return found if isinstance(found, dict) else {}
+    section = data.get(key) if isinstance(data, dict) else None
+    return section if isinstance(section, dict) else {}
 
 
 def _at(data: Any, path: Path) -> Any:

@@ -30,8 +30,8 @@ def curves(body: dict[str, Any]) -> dict[str, Any]:
         raise _wrong("modes", count, f"0 to {MAX_MODES}", "give a number")
     stations = np.linspace(0.0, 1.0, POINTS).tolist()
     try:
-        found = shapes(family, direction, count, _user(body.get("shapes")))
-        lines = [{"values": shape.phi.rounded(stations), "length": shape.length} for shape in found]
+        functions = shapes(family, direction, count, _user(body.get("shapes")))
+        lines = [{"values": shape.phi.rounded(stations), "length": shape.length} for shape in functions]
     except FamilyError as error:
         raise _wrong(
             f"family '{family}'",

@@ -95,10 +95,10 @@ class Storage:
             FileError: There is one of that name, or its folder is missing.
         """
         if file.exists() or not file.parent.is_dir():
-            found = "a file of that name" if file.exists() else "no such folder"
+            obstacle = "a file of that name" if file.exists() else "no such folder"
             raise FileError(
                 Problem(
-                    f"'{file.name}' can't be begun", found, "a new file has a name of its own", "choose another name"
+                    f"'{file.name}' can't be begun", obstacle, "a new file has a name of its own", "choose another name"
                 )
             )
         self.begin(file)

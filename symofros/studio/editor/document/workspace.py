@@ -78,7 +78,7 @@ class Workspace:
 
     def files(self) -> list[dict[str, Any]]:
         """Descriptions in the workspace, by path; hidden folders are left out."""
-        found: list[dict[str, Any]] = []
+        files: list[dict[str, Any]] = []
         scanned = 0
         for folder, folders, names in os.walk(self.root):
             folders[:] = sorted(name for name in folders if not name.startswith((".", "__")))
@@ -86,10 +86,10 @@ class Workspace:
             for name in sorted(names):
                 path = Path(folder) / name
                 if path.suffix.lower() in READABLE and not name.startswith(".") and self._is_ours(path):
-                    found.append({"path": self.shown(path), "bytes": path.stat().st_size})
-            if len(found) >= MAX_LISTED or scanned > MAX_SCANNED:
+                    files.append({"path": self.shown(path), "bytes": path.stat().st_size})
+            if len(files) >= MAX_LISTED or scanned > MAX_SCANNED:
                 break
-        return found[:MAX_LISTED]
+        return files[:MAX_LISTED]
 
     def _is_ours(self, path: Path) -> bool:
         """Whether it is a file, and in here when links are followed."""
@@ -208,9 +208,9 @@ def read_layout(path: Path) -> dict[str, list[float]]:
 
 def positions(data: Any) -> dict[str, list[float]]:
     """What in some data is positions: name -> [x, y]."""
-    found: dict[str, list[float]] = {}
+    positions: dict[str, list[float]] = {}
     for name, place in data.items() if isinstance(data, dict) else ():
         numbers = isinstance(place, list) and len(place) == 2 and all(type(x) in (int, float) for x in place)
         if numbers and all(abs(x) < 1e7 for x in place):  # False of nan, too.
-            found[str(name)] = [float(x) for x in place]
-    return found
+            positions[str(name)] = [float(x) for x in place]
+    return positions

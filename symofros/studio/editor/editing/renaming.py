@@ -57,12 +57,12 @@ def _body(data: Any, at: Path, new: str) -> list[Edit]:
     old = str(at[1])
     if new == WORLD:
         raise fault(at, f"'{WORLD}'", f"'{WORLD}' is the ground's own name", "choose another")
-    found = [Edit("set", path, new) for path, name in _bodies_named(data) if name == old and old != WORLD]
+    edits = [Edit("set", path, new) for path, name in _bodies_named(data) if name == old and old != WORLD]
     joint = _mapping(_mapping(_mapping(data, "bodies"), old), "joint")
     if joint and "name" not in joint:
         before, after = (symbols_of(joint, default_joint_name(name)) for name in (old, new))
-        found += _symbols(data, at, dict(zip(before, after, strict=True)))
-    return found
+        edits += _symbols(data, at, dict(zip(before, after, strict=True)))
+    return edits
 
 
 def _bodies_named(data: Any) -> Iterator[tuple[Path, str]]:
@@ -98,19 +98,19 @@ def _frame(data: Any, body: str, old: str, new: str) -> list[Edit]:
     bodies = _mapping(data, "bodies")
     base = next((name for name, entry in bodies.items() if "joint" not in (entry or {})), WORLD)
     names = {body, WORLD} if body == base else {body}
-    found = []
+    edits = []
     for name, entry in bodies.items():
         joint = _mapping(entry, "joint")
         if joint.get("frame") == old and joint.get("parent", WORLD) in names:
-            found.append(Edit("set", ("bodies", name, "joint", "frame"), new))
+            edits.append(Edit("set", ("bodies", name, "joint", "frame"), new))
     for path, anchor in anchors(data):
         if anchor.get("frame") == old and anchor.get("body") in names:
-            found.append(Edit("set", (*path, "frame"), new))
+            edits.append(Edit("set", (*path, "frame"), new))
     loads = _mapping(bodies, body).get("loads")
     for i, load in enumerate(loads if isinstance(loads, list) else []):
         if isinstance(load, dict) and load.get("at") == old:
-            found.append(Edit("set", ("bodies", body, "loads", i, "at"), new))
-    return found
+            edits.append(Edit("set", ("bodies", body, "loads", i, "at"), new))
+    return edits
 
 
 def _joint(data: Any, path: Path, new: str) -> list[Edit]:
@@ -161,15 +161,15 @@ def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
     clash = sorted(set(new.values()) & (taken(data) - new.keys()))
     if clash:
         raise fault(at, f"'{clash[0][:50]}' is taken", "names that formulas use are unique", "choose another name")
-    found = []
+    edits = []
     for path, text in formulas(data):
         changed = with_names(text, new)
         if changed != text:
-            found.append(Edit("set", path, changed))
+            edits.append(Edit("set", path, changed))
     for path, speeds in speed_keys(data):
-        found += [Edit("rename", (*path, speed), key=new[speed]) for speed in speeds if speed in new]
+        edits += [Edit("rename", (*path, speed), key=new[speed]) for speed in speeds if speed in new]
     odd = [name for name in new.values() if not all(map(IDENTIFIER.match, name.split(".")))]
-    if odd and (found or at[0] in _BARE):
+    if odd and (edits or at[0] in _BARE):
         raise fault(
             at,
             f"'{odd[0][:50]}'",
@@ -177,7 +177,7 @@ def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
             "choose another name",
         )
     # A formula within a mapping is changed under its old key, before the key is.
-    return found
+    return edits
 
 
 def speed_keys(data: Any) -> Iterator[tuple[Path, list[str]]]:
@@ -190,8 +190,8 @@ def speed_keys(data: Any) -> Iterator[tuple[Path, list[str]]]:
 
 
 def _mapping(data: Any, key: str) -> dict[str, Any]:
-    found = data.get(key) if isinstance(data, dict) else None
-    return found if isinstance(found, dict) else {}
+    section = data.get(key) if isinstance(data, dict) else None
+    return section if isinstance(section, dict) else {}
 
 
 def _at(data: Any, path: Path) -> Any:

@@ -41,10 +41,10 @@ def text_of(body: dict[str, Any], key: str) -> str:
     Raises:
         EditError: It is something else.
     """
-    found = body.get(key, "")
-    if found is not None and not isinstance(found, str):
-        raise _malformed(key, found, "a text")
-    return found or ""
+    text = body.get(key, "")
+    if text is not None and not isinstance(text, str):
+        raise _malformed(key, text, "a text")
+    return text or ""
 
 
 def _edit(item: Any) -> Edit:
@@ -82,8 +82,8 @@ def _typed(text: Any) -> Any:
     """What somebody who types this into a field means: a number where it is one, otherwise a text."""
     if not isinstance(text, str):
         raise _malformed("text", text, "a text")
-    found = scalar_of(text.strip())
-    return Typed(text.strip()) if type(found) in (int, float) else found
+    value = scalar_of(text.strip())
+    return Typed(text.strip()) if type(value) in (int, float) else value
 
 
 def _malformed(what: str, found: Any, rule: str) -> EditError:

@@ -1,6 +1,6 @@
 """Edits of YAML text: only what an edit is about changes; all else keeps its bytes, comments included.
 
-Each edit is cut out of, or put into, the text at the places that the reader found (surgery.py). What comes out is read
+Each edit is cut out of, or put into, the text at the places that the reader found (yaml_text_edits.py). What comes out is read
 again and compared with the same edit of plain data; where they differ (a layout that is not foreseen), the smallest
 enclosing entry for which they agree is written anew.
 """
@@ -47,8 +47,7 @@ def _together(text: str, edits: list[Edit]) -> str:
     done, after, rest = text, sheet.root.plain(), []
     patches = [(patch(sheet, edit), edit) for edit in edits]
     # From the end of the text, so that positions and paths stay valid: a key stands before what is in it.
-    for found, edit in sorted(patches, key=lambda pair: pair[0][:2], reverse=True):
-        start, end, new = found
+    for (start, end, new), edit in sorted(patches, key=lambda pair: pair[0][:2], reverse=True):
         if start < 0:
             rest.append(edit)
         else:
@@ -113,7 +112,7 @@ def _written_anew(sheet: Sheet, path: Path, after: Any) -> str | None:
 
 
 def _operated(sheet: Sheet, edit: Edit) -> str | None:
-    """The text after surgery; None where it knows no way."""
+    """The text after one text edit; None where there is no such edit."""
     if edit.op == "set":
         return _set(sheet, edit.path, edit.value)
     if edit.op == "insert":

@@ -114,13 +114,13 @@ class Sheet:
 
     def line_end(self, at: int) -> int:
         """Where the line of a position ends, its break excluded."""
-        found = _BREAK.search(self.text, at)
-        return found.start() if found else len(self.text)
+        line_break = _BREAK.search(self.text, at)
+        return line_break.start() if line_break else len(self.text)
 
     def next_line(self, at: int) -> int:
         """Where the line after that of a position begins."""
-        found = _BREAK.search(self.text, at)
-        return found.end() if found else len(self.text)
+        line_break = _BREAK.search(self.text, at)
+        return line_break.end() if line_break else len(self.text)
 
     def column(self, at: int) -> int:
         """A position's column, from 0."""
@@ -148,8 +148,8 @@ class Sheet:
         # Comments deeper than the entry are about its inside; blank lines between them go with them.
         ahead = last
         while ahead < len(self.text):
-            found = self._comment_column(ahead)
-            if found is not None and found > column:
+            comment_column = self._comment_column(ahead)
+            if comment_column is not None and comment_column > column:
                 last = self.next_line(ahead)
             elif self.text[ahead : self.line_end(ahead)].strip():
                 break

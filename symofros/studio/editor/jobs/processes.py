@@ -38,7 +38,7 @@ class Job:
 
     def as_json(self, whole: bool = True) -> Json:
         """For the page; not whole: without the result, which may be large."""
-        found = {
+        summary = {
             "id": self.key,
             "kind": self.kind,
             "revision": self.revision,
@@ -46,7 +46,7 @@ class Job:
             "progress": self.progress,
             "error": self.error,
         }
-        return {**found, "result": self.result} if whole else found
+        return {**summary, "result": self.result} if whole else summary
 
 
 class Jobs:

@@ -23,7 +23,7 @@ def system_of(request: Json) -> System:
         DescriptionError: It is not a mechanism.
     """
     reading = read_yaml(Path(request["file"]), request["text"])
-    found = find_problems(reading.system, reading.broken) if reading.system is not None else []
-    if reading.system is None or reading.problems or found:
-        raise DescriptionError(in_order([*reading.problems, *found]))
+    problems = find_problems(reading.system, reading.broken) if reading.system is not None else []
+    if reading.system is None or reading.problems or problems:
+        raise DescriptionError(in_order([*reading.problems, *problems]))
     return reading.system

@@ -1,12 +1,16 @@
-"""Triangles of a COLLADA file (.dae), which many robots' files have for meshes.
+"""Triangles of a COLLADA file (.dae), read by pycollada.
 
-Read are geometries made of triangles and polygons, at the places that the scene has them, in metres, z upwards.
-Materials, skins and animations are not read.
+Robots come with meshes from anywhere, and pycollada trusts its file: it unpacks archives, opens what is referred to,
+follows instances of nodes without limit and ignores strides. So it is handed a copy of the part that is drawn, checked
+beforehand: geometries and the nodes that place them; no materials, images, lights, skins and animations.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import io
+import re
+from collections.abc import Iterator
+from importlib import import_module
 from typing import Any
 from xml.etree import ElementTree
 
@@ -14,7 +18,7 @@ import numpy as np
 
 from symofros.studio.viewer.drawing.meshes import Array, Faces, Mesh, merged
 
-# From axes with another one upwards to ours.
+# Rotations from the axes of a file to ours, z upwards.
 _UPWARDS = {
     "Y_UP": np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
     "X_UP": np.array([[0.0, -1, 0], [0, 0, -1], [1, 0, 0]]),
@@ -22,20 +26,39 @@ _UPWARDS = {
 # It writes Y_UP whatever the axes of the mesh are that it saves.
 _AXES_NOT_MEANT = "MeshLab"
 _MOST_NODES, _DEEPEST = 10_000, 50
+
+# What is kept of each element; elements that are not named keep all.
+_KEPT = {
+    "COLLADA": {"asset", "library_geometries", "library_nodes", "library_visual_scenes", "scene"},
+    "scene": {"instance_visual_scene"},
+    "visual_scene": {"node"},
+    "node": {"node", "instance_node", "instance_geometry", "matrix", "translate", "rotate", "scale", "skew", "lookat"},
+    "instance_geometry": set[str](),
+    "instance_node": set[str](),
+    "geometry": {"mesh"},
+    "mesh": {"source", "vertices", "triangles", "tristrips", "trifans", "polylist", "polygons"},
+}
+_NOT_NUMBERS = re.compile(r"[^\s\d.eE+-]\S*")
 Element = ElementTree.Element
 
 
 def read_collada(data: bytes, most_faces: int) -> Mesh:
-    """All triangles of a file as one mesh [m].
+    """All triangles of a file as one mesh [m], in single precision, z upwards.
 
     Raises:
-        ValueError: It is no such file, or has more triangles than that.
+        ValueError: It is no such file, has more triangles than that, or pycollada is not installed.
     """
     try:
-        root = ElementTree.fromstring(data, ElementTree.XMLParser(target=_Builder()))
-        return _Document(root, most_faces).mesh()
-    except (ElementTree.ParseError, KeyError, IndexError, TypeError, LookupError) as error:
-        raise ValueError(f"{type(error).__name__}: {error}") from None
+        collada = import_module("collada")
+    except ImportError:
+        raise ValueError("pycollada is not installed; pip install 'symofros[view]'") from None
+    try:
+        document = collada.Collada(io.BytesIO(_drawn_part(data)))
+        return _to_metres(merged(list(_placed(document, most_faces))), document.assetInfo)
+    except ValueError:
+        raise
+    except Exception as error:  # noqa: BLE001 - pycollada raises whatever a bad file makes it stumble over.
+        raise ValueError(f"{type(error).__name__}: {getattr(error, 'msg', error)}") from None
 
 
 class _Builder(ElementTree.TreeBuilder):
@@ -51,133 +74,121 @@ class _Builder(ElementTree.TreeBuilder):
         raise ValueError("document types are refused")
 
 
-class _Document:
-    def __init__(self, root: Element, most_faces: int) -> None:
-        if root.tag != "COLLADA":
-            raise ValueError(f"the root element is <{root.tag[:40]}>, not <COLLADA>")
-        self.root = root
-        self.by_id = {element.attrib["id"]: element for element in root.iter() if "id" in element.attrib}
-        self.left, self.nodes = most_faces, 0
-        self.known: dict[str, Mesh | None] = {}
+def _drawn_part(data: bytes) -> bytes:
+    """The XML text of geometries and nodes alone.
 
-    def mesh(self) -> Mesh:
-        unit, up = self.root.find("asset/unit"), self.root.findtext("asset/up_axis", "Y_UP").strip()
-        if _AXES_NOT_MEANT in self.root.findtext("asset/contributor/authoring_tool", ""):
-            up = "Z_UP"
-        scale = float(unit.get("meter", "1")) if unit is not None else 1.0
-        scene = self.root.find("scene/instance_visual_scene")
-        if scene is not None:
-            nodes = self.linked(scene, "url").findall("node")
-            found = [mesh for node in nodes for mesh in self.placed(node, np.eye(4), 0)]
-        else:
-            all_of = map(self.solid, self.root.iterfind("library_geometries/geometry"))
-            found = [mesh for mesh in all_of if mesh is not None]
-        if not found:
-            raise ValueError("no triangles")
-        whole = merged(found)
-        return Mesh(scale * whole.vertices @ _UPWARDS.get(up, np.eye(3)).T, whole.faces)
-
-    def linked(self, element: Element, attribute: str) -> Element:
-        """What an element refers to, in this file: nothing else is opened."""
-        return self.by_id[element.attrib[attribute].removeprefix("#")]
-
-    def placed(self, node: Element, above: Array, depth: int) -> Iterator[Mesh]:
-        """The meshes of a node and of those in it."""
-        self.nodes += 1
-        if depth > _DEEPEST or self.nodes > _MOST_NODES:
-            raise ValueError(f"more than {_MOST_NODES} nodes, or {_DEEPEST} in each other")
-        T = above
-        for element in node:
-            if element.tag in _STEPS:
-                T = T @ _STEPS[element.tag](_floats(element))
-        for element in node:
-            if element.tag == "instance_geometry":
-                mesh = self.solid(self.linked(element, "url"))
-                if mesh is not None:
-                    self.left -= len(mesh.faces)
-                    if self.left < 0:
-                        raise ValueError("too many triangles")
-                    faces = mesh.faces if np.linalg.det(T[:3, :3]) >= 0.0 else mesh.faces[:, ::-1]
-                    yield Mesh(mesh.vertices @ T[:3, :3].T + T[:3, 3], faces)
-            elif element.tag == "node":
-                yield from self.placed(element, T, depth + 1)
-            elif element.tag == "instance_node":
-                yield from self.placed(self.linked(element, "url"), T, depth + 1)
-
-    def solid(self, geometry: Element) -> Mesh | None:
-        """A geometry's triangles; None for lines and the like."""
-        key = geometry.get("id", "")
-        if key not in self.known:
-            pieces = [piece for element in geometry.iterfind("mesh/*") for piece in self.pieces(element)]
-            self.known[key] = merged(pieces) if pieces else None
-        return self.known[key]
-
-    def pieces(self, element: Element) -> Iterator[Mesh]:
-        if element.tag not in ("triangles", "polylist", "polygons"):
-            return
-        inputs = element.findall("input")
-        width = 1 + max(int(one.get("offset", "0")) for one in inputs)
-        vertex = next(one for one in inputs if one.get("semantic") == "VERTEX")
-        rows = [_whole(p).reshape(-1, width)[:, int(vertex.get("offset", "0"))] for p in element.iterfind("p")]
-        if not rows or not sum(map(len, rows)):
-            return
-        if element.tag == "polylist":
-            counts = _whole(element.find("vcount"))
-            corners = rows[0]
-        else:
-            counts = (
-                np.array([len(row) for row in rows]) if element.tag == "polygons" else np.full(len(rows[0]) // 3, 3)
-            )
-            corners = np.concatenate(rows)
-        yield Mesh(self.positions(vertex), corners[_fans(counts, len(corners))])
-
-    def positions(self, vertex: Element) -> Array:
-        vertices = self.linked(vertex, "source")
-        position = next(one for one in vertices.iterfind("input") if one.get("semantic") == "POSITION")
-        source = self.linked(position, "source")
-        accessor = source.find("technique_common/accessor")
-        stride, start = (int(accessor.get(name, value)) for name, value in (("stride", "3"), ("offset", "0")))  # type: ignore[union-attr]
-        numbers = _floats(source.find("float_array"))[start:]
-        return numbers[: len(numbers) // stride * stride].reshape(-1, stride)[:, :3]
+    Raises:
+        ValueError: Reading it would take without bound, or give another mesh than the file describes.
+        ElementTree.ParseError: It is no XML.
+    """
+    root = ElementTree.fromstring(data, ElementTree.XMLParser(target=_Builder()))
+    if root.tag != "COLLADA":
+        raise ValueError(f"the root element is <{root.tag[:40]}>, not <COLLADA>")
+    for element in list(root.iter()):
+        if element.tag in _KEPT:
+            element[:] = [child for child in element if child.tag in _KEPT[element.tag]]
+    for element in root.iter():
+        _check_element(element)
+    by_id = {node.get("id", ""): node for node in root.iter("node")}
+    total = 0
+    for scene in root.iter("visual_scene"):
+        for _ in _nodes_below(scene, by_id, 0):
+            total += 1
+            if total > _MOST_NODES:
+                raise ValueError(f"more than {_MOST_NODES} nodes")
+    root.set("xmlns", "http://www.collada.org/2005/11/COLLADASchema")
+    return ElementTree.tostring(root)
 
 
-def _fans(counts: Faces, size: int) -> Faces:
-    """Which corners make the triangles (F, 3) of polygons that have so many corners each, one after the other."""
-    if counts.sum() > size or counts.min(initial=1) < 0:
-        raise ValueError("polygons with more corners than are there")
-    first = np.cumsum(counts) - counts
-    fans = np.maximum(counts - 2, 0)
-    step = np.arange(fans.sum()) - np.repeat(np.cumsum(fans) - fans, fans)
-    start = np.repeat(first, fans)
-    return np.stack([start, start + step + 1, start + step + 2], axis=1)
+def _check_element(element: Element) -> None:
+    """Refuse what pycollada would pass over or allocate memory for.
+
+    Raises:
+        ValueError: As it says.
+    """
+    text = element.text or ""
+    if element.tag in ("float_array", "p", "vcount", "matrix", "translate", "rotate", "scale", "lookat"):
+        word = _NOT_NUMBERS.search(text)
+        if word is not None:
+            raise ValueError(f"'{word[0][:40]}' in <{element.tag}> is not a number")
+    elif element.tag == "up_axis":
+        element.text = text.strip()
+    elif element.tag == "skew":
+        raise ValueError("<skew> is not supported")
+    elif element.tag == "accessor":
+        parameters = len(element.findall("param"))
+        if int(element.get("stride", "1")) != parameters or int(element.get("offset", "0")) != 0:
+            raise ValueError("an accessor's stride is not the number of its parameters, or it has an offset")
+    elif element.tag == "polylist":
+        corners = [int(count) for count in element.findtext("vcount", "").split()]
+        if sum(corners) > len(element.findtext("p", "").split()):
+            raise ValueError("polygons with more corners than are there")
+        if min(corners, default=3) < 3:
+            raise ValueError("a polygon with fewer than three corners")
+    elif element.tag == "polygons" and any(not (p.text or "").strip() for p in element.iterfind("p")):
+        raise ValueError("a polygon without corners")
 
 
-def _floats(element: Element | None) -> Array:
-    return np.array((element.text or "").split() if element is not None else [], dtype=np.float64)
+def _nodes_below(element: Element, by_id: dict[str, Element], depth: int) -> Iterator[Element]:
+    """All nodes under an element, each as often as instances place it, and instances of geometries among them.
+
+    Raises:
+        ValueError: They are too deep in each other, as where one contains itself, or a node is missing.
+    """
+    if depth > _DEEPEST:
+        raise ValueError(f"more than {_DEEPEST} nodes in each other")
+    for child in element:
+        if child.tag == "instance_node":
+            name = child.get("url", "").removeprefix("#")
+            if name not in by_id:
+                raise ValueError(f"node '{name[:40]}' is not there")
+            child = by_id[name]
+        if child.tag in ("node", "instance_geometry"):
+            yield child
+            yield from _nodes_below(child, by_id, depth + 1)
 
 
-def _whole(element: Element | None) -> Faces:
-    return np.array((element.text or "").split() if element is not None else [], dtype=np.int64)
+def _placed(document: Any, most_faces: int) -> Iterator[Mesh]:
+    """The meshes of a document where its scene places them; each once at the origin where it has no scene.
+
+    Raises:
+        ValueError: There are no triangles, or too many.
+    """
+    if document.scene is not None:
+        instances = [(one.original, np.array(one.matrix, np.float64)) for one in document.scene.objects("geometry")]
+    else:
+        instances = [(geometry, np.eye(4)) for geometry in document.geometries]
+    meshes: dict[int, list[Mesh]] = {}
+    faces = 0
+    for geometry, T in instances:
+        if id(geometry) not in meshes:
+            meshes[id(geometry)] = [mesh for primitive in geometry.primitives for mesh in _triangles(primitive)]
+        for mesh in meshes[id(geometry)]:
+            faces += len(mesh.faces)
+            if faces > most_faces:
+                raise ValueError("too many triangles")
+            seen_from_outside = mesh.faces if np.linalg.det(T[:3, :3]) >= 0.0 else mesh.faces[:, ::-1]
+            yield Mesh(mesh.vertices @ T[:3, :3].T + T[:3, 3], seen_from_outside)
+    if faces == 0:
+        raise ValueError("no triangles")
 
 
-def _translation(x: Array) -> Array:
-    T = np.eye(4)
-    T[:3, 3] = x[:3]
-    return T
+def _triangles(primitive: Any) -> Iterator[Mesh]:
+    """The triangles of one set of triangles or polygons, with the vertices that they use; nothing for an empty set."""
+    triangles = primitive.triangleset() if hasattr(primitive, "triangleset") else primitive
+    if len(triangles) == 0:
+        return
+    corners: Faces = np.array(triangles.vertex_index, dtype=np.int64)
+    if corners.min() < 0:
+        raise ValueError("a vertex with a negative number")
+    used, faces = np.unique(corners, return_inverse=True)
+    vertices: Array = np.array(triangles.vertex, dtype=np.float64)[used]
+    yield Mesh(vertices, faces.reshape(-1, 3))
 
 
-def _turn(x: Array) -> Array:
-    """About an axis by an angle in degrees (4)."""
-    n = x[:3] / np.linalg.norm(x[:3])
-    K = np.array([[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]])
-    angle, T = np.radians(x[3]), np.eye(4)
-    T[:3, :3] += np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
-    return T
-
-
-_STEPS: dict[str, Callable[[Array], Array]] = {
-    "matrix": lambda x: x.reshape(4, 4),
-    "translate": _translation,
-    "rotate": _turn,
-    "scale": lambda x: np.diag([*x[:3], 1.0]),
-}
+def _to_metres(mesh: Mesh, asset: Any) -> Mesh:
+    """A mesh in the unit and the axes that a document states, in metres with z upwards."""
+    scale = 1.0 if asset.unitmeter is None else float(asset.unitmeter)
+    z_up = any(_AXES_NOT_MEANT in (contributor.authoring_tool or "") for contributor in asset.contributors)
+    rotation = np.eye(3) if z_up else _UPWARDS.get(asset.upaxis, np.eye(3))
+    return Mesh(scale * mesh.vertices @ rotation.T, mesh.faces)

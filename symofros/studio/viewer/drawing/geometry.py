@@ -135,9 +135,9 @@ class _Draughtsman:
         """Where a link's frames are and what it carries begins; its mass centre if that is all there is."""
         if link != BASE and self.tree.links[link].beam is not None:
             return  # The beam itself leads there.
-        found = [placed(frame.placement, self.numbers)[0] for frame in self.tree.frames if frame.link == link]
-        found += [placed(child.placement, self.numbers)[0] for child in self.tree.links if child.parent == link]
-        far = [p for p in found if np.linalg.norm(p) > _NEAR * self.size]
+        origins = [placed(frame.placement, self.numbers)[0] for frame in self.tree.frames if frame.link == link]
+        origins += [placed(child.placement, self.numbers)[0] for child in self.tree.links if child.parent == link]
+        far = [p for p in origins if np.linalg.norm(p) > _NEAR * self.size]
         if not far and link != BASE:
             far = [
                 place.position
@@ -162,15 +162,15 @@ class _Draughtsman:
 
     def _boxes(self) -> Iterator[Part]:
         for body in self.tree.system.bodies:
-            found = inertia_box(body, self.numbers) if isinstance(body, RigidBody) else None
-            if found is None:
+            inertia = inertia_box(body, self.numbers) if isinstance(body, RigidBody) else None
+            if inertia is None:
                 continue
             frame = frame_of(self.tree, body.name)
-            if np.any(found.edges > 0.0):
-                mesh = box(np.maximum(found.edges, _THIN * self.size))
+            if np.any(inertia.edges > 0.0):
+                mesh = box(np.maximum(inertia.edges, _THIN * self.size))
             else:
                 mesh = sphere(2 * _JOINT_RADIUS * self.size)  # A point mass.
-            mesh = mesh.moved(found.center, found.axes).moved(*placed(frame.placement, self.numbers))
+            mesh = mesh.moved(inertia.center, inertia.axes).moved(*placed(frame.placement, self.numbers))
             yield Part(f"inertias/{body.name}", "inertias", frame.link, mesh, self._color(frame.link))
 
     def _joints(self) -> Iterator[Part]:

@@ -45,7 +45,8 @@ def inertia_box(body: RigidBody, numbers: Numbers) -> InertiaBox | None:
     if body.inertia.about == "center_of_mass":
         R = numbers.rotation(body.inertia.rotation)
         J = R @ J @ R.T
-    moments, axes = (found[..., ::-1] for found in np.linalg.eigh((J + J.T) / 2))  # The largest moment first.
+    ascending, vectors = np.linalg.eigh((J + J.T) / 2)
+    moments, axes = ascending[::-1], vectors[:, ::-1]  # The largest moment first.
     if np.linalg.det(axes) < 0.0:
         axes = axes * np.array([1.0, 1.0, -1.0])
     edges = np.sqrt(np.maximum(6.0 * (moments.sum() - 2.0 * moments) / mass, 0.0))
@@ -55,4 +56,4 @@ def inertia_box(body: RigidBody, numbers: Numbers) -> InertiaBox | None:
 def longest_edges(system: System, numbers: Numbers) -> list[float]:
     """The longest edge of every body's box [m]."""
     boxes = (inertia_box(body, numbers) for body in system.bodies if isinstance(body, RigidBody))
-    return [float(found.edges.max()) for found in boxes if found is not None]
+    return [float(box.edges.max()) for box in boxes if box is not None]

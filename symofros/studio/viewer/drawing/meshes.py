@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from importlib import import_module
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
+from symofros.errors import Problem, SymofrosError
 
 Array = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]
 
 _SIDES = 12  # Of anything round: few enough for hundreds of them in a browser.
 _WHEEL = 48  # Of discs, which may be the largest thing there is.
-_RINGS = 7
+_SUBDIVISIONS = 2  # Of the icosahedron's faces in spheres; 320 triangles.
 
 
 class Mesh(NamedTuple):
@@ -41,43 +44,65 @@ def merged(meshes: list[Mesh]) -> Mesh:
 
 
 def box(sizes: Array) -> Mesh:
-    """A box about the origin, of these edges (3)."""
-    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-    sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-    # Each side has corners of its own, so that a viewer that smooths over shared corners keeps the edges sharp.
-    vertices = np.concatenate([corners[list(side)] for side in sides]) * sizes
-    faces = [(4 * k, 4 * k + i, 4 * k + i + 1) for k in range(6) for i in (1, 2)]
-    return Mesh(vertices, np.array(faces))
+    """A box about the origin, of these edges (3); each triangle has corners of its own, which keeps the edges sharp."""
+    solid = _creation().box(sizes)
+    solid.unmerge_vertices()
+    return Mesh(_vertices(solid), np.array(solid.faces, dtype=np.int64))
 
 
 def sphere(radius: float) -> Mesh:
     """A sphere about the origin."""
-    angles = np.linspace(0.0, np.pi, _RINGS)
-    rings = _circle(radius)[None] * np.sin(angles)[:, None, None]
-    vertices = np.concatenate(
-        [rings, np.broadcast_to((-radius * np.cos(angles))[:, None, None], (_RINGS, _SIDES, 1))], axis=2
-    )
-    return Mesh(vertices.reshape(-1, 3), _sleeve(_RINGS, _SIDES))
+    solid = _creation().icosphere(subdivisions=_SUBDIVISIONS, radius=radius)
+    return Mesh(_vertices(solid), np.array(solid.faces, dtype=np.int64))
 
 
-def cylinder(start: Array, end: Array, radius: float, sides: int = _SIDES) -> Mesh:
+def cylinder(start: Array, end: Array, radius: float) -> Mesh:
     """A closed cylinder between two points (3)."""
-    R = axes_along(end - start)
-    return tube(_circle(radius, sides), np.stack([start, end]), np.stack([R, R]))
+    length = float(np.linalg.norm(end - start))
+    return _turned(_creation().cylinder(radius, length, sections=_SIDES), (start + end) / 2, end - start)
 
 
 def cone(base: Array, tip: Array, radius: float) -> Mesh:
     """A closed cone between two points (3)."""
-    mesh = cylinder(base, tip, radius)
-    vertices = mesh.vertices.copy()
-    vertices[_SIDES : 2 * _SIDES] = vertices[3 * _SIDES :] = tip
-    return Mesh(vertices, mesh.faces)
+    length = float(np.linalg.norm(tip - base))
+    return _turned(_creation().cone(radius, length, sections=_SIDES), base, tip - base)
 
 
 def disc(radius: float, thickness: float) -> Mesh:
     """A flat cylinder about the origin, its axis along z."""
-    half = np.array([0.0, 0.0, thickness / 2])
-    return cylinder(-half, half, radius, _WHEEL)
+    solid = _creation().cylinder(radius, thickness, sections=_WHEEL)
+    return _turned(solid, np.zeros(3), np.array([0.0, 0.0, 1.0]))
+
+
+def _creation() -> Any:
+    """Trimesh's makers of primitives.
+
+    Raises:
+        SymofrosError: trimesh is not installed.
+    """
+    try:
+        return import_module("trimesh.creation")
+    except ImportError:
+        missing = "view: trimesh is not installed", "no module trimesh", "the viewer is an extra"
+        raise SymofrosError(Problem(*missing, "pip install 'symofros[view]'")) from None
+
+
+def _vertices(solid: Any) -> Array:
+    return np.array(solid.vertices, dtype=np.float64)
+
+
+def _turned(solid: Any, position: Array, direction: Array) -> Mesh:
+    """A solid of revolution about z, moved to a position (3) with its axis along a direction (3).
+
+    The flat ends get vertices of their own, so that a viewer that smooths over shared ones keeps their rims sharp.
+    """
+    end = np.round(solid.face_normals[:, 2])  # 1 and -1 on the ends, 0 on the mantle of anything that is not flat.
+    end[np.abs(solid.face_normals[:, 2]) < 1.0 - 1e-9] = 0.0
+    keys = np.stack([solid.faces, np.broadcast_to(end[:, None], solid.faces.shape)], axis=-1).reshape(-1, 2)
+    used, faces = np.unique(keys, axis=0, return_inverse=True)
+    # From z along the direction: x of axes_along is the direction, so its y and z stand for x and y of the solid.
+    R = axes_along(direction)[:, [1, 2, 0]]
+    return Mesh(_vertices(solid)[used[:, 0].astype(np.int64)], faces.reshape(-1, 3)).moved(position, R)
 
 
 def tube(outline: Array, points: Array, axes: Array) -> Mesh:

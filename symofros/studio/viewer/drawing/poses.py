@@ -45,8 +45,8 @@ class Posture:
 
     def point(self, place: Place) -> Array:
         """A point in the world (..., 3) [m]."""
-        found: Array = self.p[..., place.link, :] + self.R[..., place.link, :, :] @ place.position
-        return found
+        position: Array = self.p[..., place.link, :] + self.R[..., place.link, :, :] @ place.position
+        return position
 
 
 class State(NamedTuple):
@@ -176,10 +176,10 @@ class Mechanism:
         if not self.model.nc:
             return state, ""
         try:
-            found = assemble(self.model, state.q, held=held, u=state.u, par=state.par)
+            assembly = assemble(self.model, state.q, held=held, u=state.u, par=state.par)
         except AssemblyError as error:
             return state, str(error)
-        return state._replace(q=found.q), ""
+        return state._replace(q=assembly.q), ""
 
 
 class Sweep(NamedTuple):

@@ -33,7 +33,7 @@ def tracks_of(given: Sequence[Sequence[Any]]) -> tuple[Track, ...]:
         ShapeError: Points are not (n, 3) or (n, 2) finite numbers, n at least 2; a color is not three of 0 to 255; two
             tracks have one name.
     """
-    found: list[Track] = []
+    tracks: list[Track] = []
     for i, item in enumerate(given):
         if len(item) not in (2, 3):
             _refuse(f"path {i}", f"{len(item)} items", "a path is (name, points) or (name, points, color)")
@@ -45,11 +45,11 @@ def tracks_of(given: Sequence[Sequence[Any]]) -> tuple[Track, ...]:
         color = tuple(int(x) for x in item[2]) if len(item) == 3 else _COLORS[i % len(_COLORS)]
         if len(color) != 3 or not all(0 <= x <= 255 for x in color):
             _refuse(f"path '{name}'", f"color {color}", "a color is red, green and blue, 0 to 255")
-        if name in {other.name for other in found}:
+        if name in {other.name for other in tracks}:
             _refuse(f"path '{name}'", "two of that name", "names of paths are different")
         flat = points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
-        found.append(Track(name, flat, (color[0], color[1], color[2])))
-    return tuple(found)
+        tracks.append(Track(name, flat, (color[0], color[1], color[2])))
+    return tuple(tracks)
 
 
 def track_part(track: Track, size: float) -> Part:

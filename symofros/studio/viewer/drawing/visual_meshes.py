@@ -81,12 +81,12 @@ def _loaded(suffix: str, data: bytes) -> Mesh:
         raise ValueError("trimesh is not installed; pip install 'symofros[view]'") from None
     try:
         # Of bytes, without a resolver: nothing that the file refers to is opened.
-        found = trimesh.load(
+        surface = trimesh.load(
             io.BytesIO(data), file_type=suffix.lower()[1:], force="mesh", process=False, skip_materials=True
         )
         return Mesh(
-            np.array(found.vertices, dtype=np.float64).reshape(-1, 3),
-            np.array(found.faces, dtype=np.int64).reshape(-1, 3),
+            np.array(surface.vertices, dtype=np.float64).reshape(-1, 3),
+            np.array(surface.faces, dtype=np.int64).reshape(-1, 3),
         )
     except Exception as error:  # noqa: BLE001 - its readers raise whatever a bad file makes them stumble over.
         raise ValueError(f"not a {suffix} file: {error}") from None

@@ -27,7 +27,7 @@ def load_viser() -> Any:
         missing = Problem(
             "view: viser is not installed", "no module viser", "the viewer is an extra", "pip install 'symofros[view]'"
         )
-        raise SymofrosError(str(missing)) from None
+        raise SymofrosError(missing) from None
 
 
 def start_server(host: str, port: int) -> Any:

@@ -140,15 +140,15 @@ def read_motion(path: str | Path, model: Model) -> Motion:
             "what Trajectory.save writes, or alike",
             "save it again",
         )
-        raise SymofrosError(str(fault)) from None
+        raise SymofrosError(fault) from None
 
 
 def _read_arrays(file: Path, model: Model) -> Motion:
-    with np.load(file, allow_pickle=False) as found:
+    with np.load(file, allow_pickle=False) as arrays:
         for name in ("t", "q"):
-            if name not in found:
-                _refuse(file.name, f"arrays {_some(found.files)}", "arrays t (n) and q (n, nq)", f"add {name}")
-        names = tuple(found["names_q"].tolist()) if "names_q" in found else model.names.q
+            if name not in arrays:
+                _refuse(file.name, f"arrays {_some(arrays.files)}", "arrays t (n) and q (n, nq)", f"add {name}")
+        names = tuple(arrays["names_q"].tolist()) if "names_q" in arrays else model.names.q
         if names != model.names.q:
             _refuse(
                 file.name,
@@ -156,8 +156,8 @@ def _read_arrays(file: Path, model: Model) -> Motion:
                 f"the model's are {_some(model.names.q)}",
                 "show it with the model that it was simulated with",
             )
-        u, par = (found[name] if name in found else None for name in ("u", "par"))
-        return _checked(model, found["t"], found["q"], u, par, file.name)
+        u, par = (arrays[name] if name in arrays else None for name in ("u", "par"))
+        return _checked(model, arrays["t"], arrays["q"], u, par, file.name)
 
 
 def _read_csv(file: Path, model: Model) -> Motion:

@@ -36,19 +36,19 @@ def sliders_of(model: Model, elastic: tuple[bool, ...]) -> tuple[Slider, ...]:
         elastic: Mask of the elastic coordinates (nq).
     """
     bounds = model.record.sampling_bounds()
-    found: list[Slider] = []
+    sliders: list[Slider] = []
     for segment in model.record.segments:
         along = segment.translations
         for i in range(along):
             low, high = (float(f"{bound:.3g}") for bound in bounds[segment.q + i])  # For people to read.
-            found.append(
+            sliders.append(
                 Slider(model.names.q[segment.q + i], model.names.v[segment.v + i], low, high, elastic[segment.q + i])
             )
         if segment.kind != "linear":
             for i, axis in enumerate("xyz", start=segment.v + along):
                 joint = model.names.v[i].rpartition(".")[0]
-                found.append(Slider(f"{joint}.turn_{axis}", model.names.v[i], -3.14, 3.14, False))
-    return tuple(found)
+                sliders.append(Slider(f"{joint}.turn_{axis}", model.names.v[i], -3.14, 3.14, False))
+    return tuple(sliders)
 
 
 def values_of(model: Model, q: Array) -> Array:

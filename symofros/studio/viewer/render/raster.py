@@ -61,11 +61,11 @@ class _Canvas:
         colors = np.full((self.shape[0] * self.shape[1], 3), _BACKGROUND)
         nearness = np.zeros(len(colors))
         opaque, clear = self._surfaces(drawing, posture, layers)
-        found = [self._filled(mesh, color) for mesh, color in opaque]
+        fragments = [self._filled(mesh, color) for mesh, color in opaque]
         if "ground" in layers:
-            found += [self._line(line) for line in ground_lines(drawing)]
-        if found:
-            all_of = _Fragments(*(np.concatenate(arrays) for arrays in zip(*found, strict=True)))
+            fragments += [self._line(line) for line in ground_lines(drawing)]
+        if fragments:
+            all_of = _Fragments(*(np.concatenate(arrays) for arrays in zip(*fragments, strict=True)))
             # Where a pixel is given several times, the last stays: the nearest.
             order = np.argsort(all_of.nearness, kind="stable")
             colors[all_of.pixel[order]] = all_of.color[order]
@@ -143,8 +143,9 @@ def _inverse_depth(seen: Array, which: Indices, row: Indices, column: Indices) -
     twice = x1 * y2 - x2 * y1
     twice = np.where(twice == 0.0, 1.0, twice)  # Seen from its edge, it covers no pixel.
     by_x, by_y = (w1 * y2 - w2 * y1) / twice, (w2 * x1 - w1 * x2) / twice
-    found: Array = w[which, 0] + by_x[which] * (column + 0.5 - x[which, 0]) + by_y[which] * (row + 0.5 - y[which, 0])
-    return found
+    dx, dy = column + 0.5 - x[which, 0], row + 0.5 - y[which, 0]
+    interpolated: Array = w[which, 0] + by_x[which] * dx + by_y[which] * dy
+    return interpolated
 
 
 def _pixels(corners: Array, shape: tuple[int, int]) -> tuple[Indices, Indices, Indices]:

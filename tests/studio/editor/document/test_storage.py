@@ -281,7 +281,7 @@ def test_paths_stay_in_the_workspace(tmp_path: Path, path: str) -> None:
     for action in (session.open, session.create, lambda body: session.save({**body, **now(session)})):
         with pytest.raises((FileError, EditError)):
             if not path:
-                raise EditError(None)  # type: ignore[arg-type]  # An empty path means the document's own file.
+                raise EditError("no path")  # An empty path means the document's own file.
             action({"path": path})
     assert (outside / "x.yaml").read_text() == TEXT
     assert [entry["path"] for entry in session.workspace.files()] == []

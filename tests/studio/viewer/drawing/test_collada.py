@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
+
 import numpy as np
 import pytest
 
 from symofros.studio.viewer.drawing.collada import read_collada
 
 HEAD = '<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>{asset}</asset>'
-GEOMETRY = """<library_geometries><geometry id="g"><mesh>
-<source id="p"><float_array id="a" count="15">0 0 0  1 0 0  1 2 0  0 2 0  0 0 3</float_array>
-<technique_common><accessor source="#a" count="5" stride="3"/></technique_common></source>
+XYZ = '<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>'
+ACCESSOR = f'<technique_common><accessor stride="3">{XYZ}</accessor></technique_common>'
+GEOMETRY = f"""<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="15">0 0 0  1 0 0  1 2 0  0 2 0  0 0 3</float_array>{ACCESSOR}</source>
+<source id="n"><float_array id="b" count="3">0 0 1</float_array>{ACCESSOR}</source>
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-{pieces}</mesh></geometry></library_geometries>"""
+{{pieces}}</mesh></geometry></library_geometries>"""
 TRIANGLES = """<triangles count="2"><input semantic="NORMAL" source="#n" offset="0"/>
-<input semantic="VERTEX" source="#v" offset="1"/><p>9 0 9 1 9 4  9 0 9 2 9 3</p></triangles>"""
+<input semantic="VERTEX" source="#v" offset="1"/><p>0 0 0 1 0 4  0 0 0 2 0 3</p></triangles>"""
 SCENE = """<library_visual_scenes><visual_scene id="s">{nodes}</visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene>"""
 SHOWN = '<instance_geometry url="#g"/>'
@@ -50,8 +55,7 @@ def test_triangles_are_where_they_are_stated() -> None:
     ],
 )
 def test_polygons_become_triangles(pieces: str) -> None:
-    found = corners(document(pieces))
-    assert [face.tolist() for face in found] == [
+    assert [face.tolist() for face in corners(document(pieces))] == [
         [[0, 0, 0], [1, 0, 0], [1, 2, 0]],
         [[0, 0, 0], [1, 2, 0], [0, 2, 0]],
         [[0, 0, 0], [1, 0, 0], [0, 0, 3]],
@@ -60,8 +64,9 @@ def test_polygons_become_triangles(pieces: str) -> None:
 
 def test_nodes_place_what_is_in_them() -> None:
     inner = f"<node><rotate>0 0 1 90</rotate><scale>2 2 2</scale>{SHOWN}</node>"
-    found = corners(document(nodes=f"<node><translate>10 0 0</translate>{inner}</node>"))
-    assert np.allclose(found, np.stack([10 - 2 * PLAIN[..., 1], 2 * PLAIN[..., 0], 2 * PLAIN[..., 2]], axis=-1))
+    placed = corners(document(nodes=f"<node><translate>10 0 0</translate>{inner}</node>"))
+    expected = np.stack([10 - 2 * PLAIN[..., 1], 2 * PLAIN[..., 0], 2 * PLAIN[..., 2]], axis=-1)
+    assert np.allclose(placed, expected, atol=1e-6)  # In single precision.
     matrix = f"<node><matrix>1 0 0 5 0 1 0 6 0 0 -1 7 0 0 0 1</matrix>{SHOWN}</node>"
     mirrored = corners(document(nodes=matrix))
     assert np.allclose(mirrored[:, ::-1], PLAIN * [1, 1, -1] + [5, 6, 7])  # Seen from the same side as before.
@@ -89,6 +94,14 @@ def bomb() -> str:
     )
 
 
+def zipped(data: bytes) -> bytes:
+    """An archive with a file in it, which pycollada alone would unpack."""
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w") as file:
+        file.writestr("a.dae", data)
+    return archive.getvalue()
+
+
 @pytest.mark.parametrize(
     ("data", "expected"),
     [
@@ -98,18 +111,41 @@ def bomb() -> str:
         (b'<!DOCTYPE a [<!ENTITY b "c">]><COLLADA/>', "document types are refused"),
         (b"<COLLADA/>", "no triangles"),
         (document(""), "no triangles"),
-        (document(TRIANGLES.replace("#v", "#w")), "KeyError"),
-        (document(TRIANGLES.replace("9 0 9 1", "9 0 9 x")), "invalid literal"),
-        (document(TRIANGLES.replace("9 0 9 1", "0 9 1")), "reshape"),
+        (document(TRIANGLES.replace("#v", "#w")), "#w"),
+        (document(TRIANGLES.replace("0 0 0 1", "0 0 0 x")), "not a number"),
+        (document(TRIANGLES.replace("0 0 0 1", "0 0 1")), "cannot reshape"),
         (
             document('<polylist><input semantic="VERTEX" source="#v"/><vcount>9</vcount><p>0 1 2</p></polylist>'),
             "more corners than are there",
         ),
-        (document('<triangles><input semantic="VERTEX" source="#v" offset="x"/><p>0 1 2</p></triangles>'), "invalid"),
+        (
+            document('<triangles><input semantic="VERTEX" source="#v" offset="x"/><p>0 1 2</p></triangles>'),
+            "Corrupted offsets",
+        ),
         (document(nodes=f'<node id="n"><instance_node url="#n"/>{SHOWN}</node>'), "in each other"),
         (document(nodes=bomb()), "more than 10000 nodes|too many triangles"),
         (document(nodes=f"<node>{SHOWN * 60}</node>"), "too many triangles"),
-        (document(nodes=f"<node><matrix>1 2</matrix>{SHOWN}</node>"), "reshape"),
+        (document(nodes=f"<node><matrix>1 2</matrix>{SHOWN}</node>"), "matrix"),
+        (document().replace(b'stride="3"', b'stride="0"'), "stride"),
+        (document().replace(b'stride="3"', b'stride="4"'), "stride"),
+        (document().replace(b'stride="3"', b'stride="3" offset="3"'), "offset"),
+        (document().replace(b"accessor", b"other"), "accessor"),
+        (document().replace(b'"VERTEX"', b'"NORMAL"'), "vertex input|VERTEX"),
+        (document(TRIANGLES.replace("0 0 0 1", "0 0 0 4000000000")), "OverflowError|beyond|negative|Corrupted"),
+        (document(TRIANGLES.replace("0 0 0 1", f"0 0 0 {10**30}")), "OverflowError|beyond|negative|Corrupted"),
+        (document(TRIANGLES.replace("0 0 0 1", "0 0 0 -1")), "negative"),
+        (document(TRIANGLES.replace("0 0 0 1", "0 0 0 5")), "beyond"),
+        (
+            document(
+                '<polylist><input semantic="VERTEX" source="#v" offset="0"/>'
+                "<vcount>2000000000</vcount><p>0 1 2</p></polylist>"
+            ),
+            "more corners than are there",
+        ),
+        (document(nodes=f"<node>{'<node>' * 60}{SHOWN}{'</node>' * 60}</node>"), "in each other"),
+        (document(nodes=f'<node><instance_node url="file:///etc/passwd"/>{SHOWN}</node>'), "not there"),
+        (document(nodes='<node><instance_geometry url="http://host/a.dae#g"/></node>'), "Invalid url"),
+        (zipped(document()), "not well-formed"),
     ],
 )
 def test_others_are_refused(data: bytes, expected: str) -> None:
