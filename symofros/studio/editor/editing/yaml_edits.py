@@ -1,8 +1,8 @@
 """Edits of YAML text: only what an edit is about changes; all else keeps its bytes, comments included.
 
-Each edit is cut out of, or put into, the text at the places that the reader found (yaml_text_edits.py). What comes out is read
-again and compared with the same edit of plain data; where they differ (a layout that is not foreseen), the smallest
-enclosing entry for which they agree is written anew.
+Each edit is cut out of, or put into, the text at the spans that the reader gives (yaml_text_edits.py). What comes out
+is read again and compared with the same edit of plain data; where they differ (a layout that is not foreseen), the
+smallest enclosing entry for which they agree is written anew.
 """
 
 from __future__ import annotations

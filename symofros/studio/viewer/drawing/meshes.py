@@ -83,8 +83,13 @@ def _creation() -> Any:
     try:
         return import_module("trimesh.creation")
     except ImportError:
-        missing = "view: trimesh is not installed", "no module trimesh", "the viewer is an extra"
-        raise SymofrosError(Problem(*missing, "pip install 'symofros[view]'")) from None
+        missing = Problem(
+            "view: trimesh is not installed",
+            "no module trimesh",
+            "the viewer is an extra",
+            "pip install 'symofros[view]'",
+        )
+        raise SymofrosError(missing) from None
 
 
 def _vertices(solid: Any) -> Array:

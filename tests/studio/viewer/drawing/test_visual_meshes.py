@@ -93,6 +93,8 @@ def test_a_file_that_was_changed_is_read_again(tmp_path: Path) -> None:
         ("m.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "not a .obj file|0 triangles|without a corner"),
         ("m.obj", b"v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n", "finite corners"),
         ("m.dae", b"<COLLADA/>", "no triangles"),
+        ("m.dae", b"<COLLADA><library_geometries><geometry/></library_geometries></COLLADA>", "no triangles"),
+        ("m.dae", b'<COLLADA><accessor stride="0"/></COLLADA>', "no triangles"),
         ("m.ply", b"ply\nformat ascii 1.0\nelement vertex 99999999\nend_header\n", "not a .ply file|0 triangles"),
     ],
 )
