@@ -2,6 +2,7 @@ import { describe, expect, test } from "vitest";
 
 import published from "../../../../description/yaml/schema.json";
 import type { Edit, Graph, GraphNode, Json, JsonMap, Port } from "../src/api/types";
+import { beamGroups } from "../src/forms/beam";
 import { definition, field } from "../src/forms/schema";
 import { shown, typed } from "../src/forms/values";
 import { changes, keyOf } from "../src/model/changes";
@@ -233,6 +234,15 @@ describe("schema", () => {
       damping: "s",
       family: "",
     });
+  });
+
+  test("the window of a beam shows every property of the schema once", () => {
+    const { shape } = definition(root, "BeamEntry");
+    if (shape.kind !== "record") throw new Error("a beam is a record");
+    const { shapeFunctions, section, model } = beamGroups(root, shape.properties, "user");
+    expect([...shapeFunctions, ...section, ...model].sort()).toEqual(Object.keys(shape.properties).sort());
+    expect(section).toContain("rhoI_y");
+    expect(beamGroups(root, shape.properties, "spline").shapeFunctions).not.toContain("shapes");
   });
 });
 

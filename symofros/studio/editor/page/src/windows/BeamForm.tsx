@@ -2,16 +2,12 @@ import { useEffect, useState } from "react";
 
 import { post } from "../api/client";
 import type { Curves, Json, JsonMap, Path } from "../api/types";
+import { beamGroups, DIRECTIONS } from "../forms/beam";
 import { useForm } from "../forms/context";
 import { RecordField } from "../forms/Record";
 import { definition, label } from "../forms/schema";
 import { mapAt } from "../model/paths";
 import { Curve } from "../panels/Curve";
-
-const SECTION = ["length", "rhoA", "EI_z", "EI_y", "GJ", "rhoJ", "damping"];
-const MODES = ["bend_y", "bend_z", "twist", "family"];
-const OPTIONS = ["retain", "foreshortening", "rotary_inertia", "rhoI_y", "rhoI_z", "loads"];
-const DIRECTIONS = ["bend_y", "bend_z", "twist"] as const;
 
 /** Shape functions of one direction, drawn over the length. */
 function Shapes({ beam, direction }: { beam: JsonMap; direction: string }) {
@@ -60,13 +56,13 @@ export function BeamForm({ value, onChange, path }: Props) {
   const { shape } = definition(root, "BeamEntry");
   if (shape.kind !== "record") return null;
   const props = { shape, value, onChange, path };
+  const groups = beamGroups(root, shape.properties, value["family"]);
   const drawn = DIRECTIONS.filter((direction) => typeof value[direction] === "number" && value[direction] > 0);
-  const modes = value["family"] === "user" ? [...MODES, "shapes"] : MODES;
   return (
     <>
       <h3>Shape functions</h3>
       <div className="beside">
-        <RecordField {...props} only={modes} />
+        <RecordField {...props} only={groups.shapeFunctions} />
         <div className="figures">
           {drawn.map((direction) => (
             <Shapes key={direction} beam={value} direction={direction} />
@@ -75,9 +71,9 @@ export function BeamForm({ value, onChange, path }: Props) {
         </div>
       </div>
       <h3>Section</h3>
-      <RecordField {...props} only={SECTION} />
+      <RecordField {...props} only={groups.section} />
       <h3>Model</h3>
-      <RecordField {...props} only={OPTIONS} />
+      <RecordField {...props} only={groups.model} />
     </>
   );
 }
