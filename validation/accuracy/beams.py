@@ -41,7 +41,7 @@ def stiffness_and_mass(
     """K = d(h - Q)/dq and M (nv, nv) at rest in q, exactly.
 
     Args:
-        m: With the functions `LINEAR`.
+        m: Model with the functions `LINEAR`.
         q: Configuration (nq); undeformed if not given.
         u: Inputs: of prescribed motions.
         **par: Run-time parameters.
@@ -57,8 +57,8 @@ def squares(K: Array, M: Array) -> Array:
     """Squares of the frequencies of M x'' + K x = 0, rising; coordinates are scaled first, for monomials' sake."""
     scale = 1.0 / np.sqrt(np.diag(M))
     both = np.outer(scale, scale)
-    found: Array = scipy.linalg.eigvalsh((K + K.T) / 2 * both, M * both)
-    return found
+    eigenvalues: Array = scipy.linalg.eigvalsh((K + K.T) / 2 * both, M * both)
+    return eigenvalues
 
 
 def spinning(direction: str, modes: int, *carried: sf.Body, **changed: Any) -> sf.Model:
@@ -84,7 +84,7 @@ def motion(
     """Configurations (n, nq) and speeds (n, nv) at these times, by DOP853; coordinates whose rates are the speeds.
 
     Args:
-        m: With forward_dynamics.
+        m: Model with the function forward_dynamics.
         q0: Configuration at the first time.
         v0: Speeds at the first time.
         times: Rising (n).

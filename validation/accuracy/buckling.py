@@ -155,14 +155,14 @@ def axial(counts: Array, loads: dict[str, Array], quick: bool, reference: dict[s
         "number of functions  [1]",
         "relative error  [1]",
         tuple(
-            Curve(family, counts, np.maximum(found / EULER - 1.0, 1e-15), COLORS[family], "joined")
-            for family, found in loads.items()
+            Curve(family, counts, np.maximum(load / EULER - 1.0, 1e-15), COLORS[family], "joined")
+            for family, load in loads.items()
         ),
         (Mark("0.1 %", 1e-3),),
-        log_y=True,
+        log="y",
     )
     m, weights = heavy(8), np.linspace(-10.0, 10.0, 20 if quick else 201)
-    found = np.array([squares(*stiffness_and_mass(m, g=float(g)))[0] for g in weights])
+    squared = np.array([squares(*stiffness_and_mass(m, g=float(g)))[0] for g in weights])
     rows = [row for row in reference["gravity_frequencies_hanging_positive"] if row["gamma"] <= 10.0]
     exact = Curve(
         "exact", np.array([row["gamma"] for row in rows]), np.array([row["omega"][0] for row in rows]), 0, "points"
@@ -171,7 +171,7 @@ def axial(counts: Array, loads: dict[str, Array], quick: bool, reference: dict[s
         "first frequency under its weight",
         "weight ρA g L³/EI, positive if it hangs  [1]",
         "first frequency ω₁ √(ρA L⁴/EI)  [1]",
-        (Curve("our beam", weights, np.sqrt(np.where(found >= 0.0, found, np.nan)), 0), exact),
+        (Curve("our beam", weights, np.sqrt(np.where(squared >= 0.0, squared, np.nan)), 0), exact),
         (Mark("Greenhill: −7.8373", -7.8373, "x"),),
     )
     return Figure(

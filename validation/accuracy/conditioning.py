@@ -91,14 +91,14 @@ def figure(counts: Array, numbers: dict[str, Array], errors: dict[str, Array]) -
         "condition number  [1]",
         tuple(Curve(f, counts, y, COLORS[f], "joined") for f, y in numbers.items()),
         (Mark("refused", 1e12),),
-        log_y=True,
+        log="y",
     )
     first = Chart(
         "first frequency at rest",
         "number of functions  [1]",
         "relative error  [1]",
         tuple(Curve(f, counts, np.maximum(y, 1e-17), COLORS[f], "joined") for f, y in errors.items()),
-        log_y=True,
+        log="y",
     )
     return Figure(
         "Left: only monomials climb, and stop short of the red line, where they are refused; the other families can "

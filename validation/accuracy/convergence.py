@@ -82,13 +82,13 @@ def counts(family: str, quick: bool) -> list[int]:
 
 def relative(family: str, tried: list[int], exact: Array) -> tuple[Array, Array]:
     """The numbers of functions (k) and relative errors of frequencies 1 and 3 (k, 2); NaN where there are too few."""
-    found = np.full((len(tried), 2), np.nan)
+    errors = np.full((len(tried), 2), np.nan)
     for i, n in enumerate(tried):
         ours = np.sqrt(spinning_squares(spinning("bend_z", n, family=family), ETA, DELTA))
         for column, mode in enumerate((0, 2)):
             if n > mode:
-                found[i, column] = abs(ours[mode] / exact[mode] - 1.0)
-    return np.array(tried, dtype=float), found
+                errors[i, column] = abs(ours[mode] / exact[mode] - 1.0)
+    return np.array(tried, dtype=float), errors
 
 
 def figure(errors: dict[str, tuple[Array, Array]]) -> Figure:
@@ -109,7 +109,7 @@ def figure(errors: dict[str, tuple[Array, Array]]) -> Figure:
                 for family, (n, error) in errors.items()
                 if np.isfinite(error[:, column]).any()
             ),
-            log_y=True,
+            log="y",
         )
         for column, mode in enumerate((1, 3))
     )

@@ -19,12 +19,12 @@ def study(quick: bool) -> Study:
     """Answer."""
     beam = cantilever(bend_y=MODES, family="clamped_free", damping=TAU, retain="zeroth_order")
     m = sf.compile(sf.System("s", (beam,), gravity=(0, 0, 0)))
-    found = sf.modes(m, np.zeros(MODES))
+    modes = sf.modes(m, np.zeros(MODES))
     # Over-damped modes come as two real eigenvalues: the frequency is the root of their product.
     K, M = -m.linearize(np.zeros(MODES), np.zeros(MODES), ())[0][MODES:, :MODES], m.mass_matrix(np.zeros(MODES))
     omegas = np.sort(np.sqrt(np.linalg.eigvals(K).real))
     oscillating = TAU * omegas / 2 < 1.0
-    ratios = found.damping[found.eigenvalues.imag > 0.0]
+    ratios = modes.damping[modes.eigenvalues.imag > 0.0]
     expected = TAU * omegas[oscillating] / 2
     start = np.zeros(MODES)
     start[0] = 0.01
@@ -93,8 +93,7 @@ def figure(curve: Curve, zeta: float, omegas: Array, ratios: Array) -> Figure:
             Curve("modes that oscillate", omegas[: len(ratios)], ratios, 0, "points"),
         ),
         (Mark("critical", 1.0),),
-        log_x=True,
-        log_y=True,
+        log="xy",
     )
     return Figure(
         "The motion touches its exponential envelope at every extreme. At the right, the damping ratios of the modes "

@@ -130,8 +130,7 @@ def growth(ours: Array, rod: Array) -> Figure:
             Curve("shortening", rod[:, 0], error[:, 1], 1, "joined"),
         ),
         (Mark("1 %", 0.01), Mark("5 %", 0.05)),
-        log_x=True,
-        log_y=True,
+        log="xy",
     )
     return Figure(
         "Both errors are straight lines of slope two: half the deflection, a quarter of the error. Read off where the "

@@ -103,7 +103,7 @@ def figure(time: Array, kept: Array, runs: dict[float, Array], largest: Array) -
             *first,
         ),
         (Mark("bound for retain: all", KEPT),),
-        log_y=True,
+        log="y",
     )
     deflections = np.array(list(runs))
     against = Chart(
@@ -116,8 +116,7 @@ def figure(time: Array, kept: Array, runs: dict[float, Array], largest: Array) -
                 "square of the deflection", deflections, largest[1] * (deflections / deflections[1]) ** 2, 4, "dotted"
             ),
         ),
-        log_x=True,
-        log_y=True,
+        log="xy",
     )
     return Figure(
         "Left, the largest error of each period: first order stays level, eight decades above retain: all, which "

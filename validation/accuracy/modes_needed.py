@@ -68,8 +68,8 @@ def study(quick: bool) -> Study:
 def first(functions: int, family: str, etas: Array, exact: Array) -> Array:
     """Relative error of the first flap frequency at each speed, hub ratio 0."""
     m = spinning("bend_z", functions, family=family)
-    found = np.array([np.sqrt(spinning_squares(m, float(eta), 0.0)[0]) for eta in etas])
-    return np.asarray(np.abs(found / exact - 1.0))
+    frequencies = np.array([np.sqrt(spinning_squares(m, float(eta), 0.0)[0]) for eta in etas])
+    return np.asarray(np.abs(frequencies / exact - 1.0))
 
 
 def least(errors: Array, tolerance: float) -> Array:
@@ -95,7 +95,7 @@ def figure(etas: Array, needed: dict[tuple[str, float], Array], errors: dict[str
             for k, n in enumerate((1, 2, 3, 5))
             if n <= len(errors["clamped_free"])
         ),
-        log_y=True,
+        log="y",
     )
     choice = Chart(
         "functions needed",

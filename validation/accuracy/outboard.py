@@ -45,20 +45,20 @@ def ours(etas: Array, mass: float, **changed: object) -> Array:
 def study(quick: bool) -> Study:
     """Answer."""
     etas = np.linspace(0.0, 6.0, 7 if quick else 25)
-    found = {mass: ours(etas, mass) for mass in MASSES}
+    measured = {mass: ours(etas, mass) for mass in MASSES}
     expected = {mass: ritz(etas, mass) for mass in MASSES}
     without = ours(etas, MASSES[2], foreshortening=False, retain="all")
     findings = [
         Finding(
             f"mass ratio {mass:g}: largest relative error of the first flap frequency's square",
-            float(np.abs(found[mass] / expected[mass] - 1.0).max()),
+            float(np.abs(measured[mass] / expected[mass] - 1.0).max()),
             1e-9,
             reason="the same basis, by quadrature",
         )
         for mass in MASSES
     ]
-    slopes = {mass: float((squares[-1] - squares[0]) / etas[-1] ** 2) for mass, squares in found.items()}
-    ratio = {mass: float(np.sqrt(squares[-1] / squares[0])) for mass, squares in found.items()}
+    slopes = {mass: float((squares[-1] - squares[0]) / etas[-1] ** 2) for mass, squares in measured.items()}
+    ratio = {mass: float(np.sqrt(squares[-1] / squares[0])) for mass, squares in measured.items()}
     findings.append(
         Finding(
             "without foreshortening, mass ratio 1: change of the frequency with speed, relative",
@@ -74,16 +74,16 @@ def study(quick: bool) -> Study:
         "is not foreshortened loses all of it."
     )
     return Study(
-        "What does a mass carried outboard do?", answer, (figure(etas, found, expected, without),), tuple(findings)
+        "What does a mass carried outboard do?", answer, (figure(etas, measured, expected, without),), tuple(findings)
     )
 
 
-def figure(etas: Array, found: dict[float, Array], expected: dict[float, Array], without: Array) -> Figure:
+def figure(etas: Array, measured: dict[float, Array], expected: dict[float, Array], without: Array) -> Figure:
     """Frequencies, and how much they grow."""
     some = slice(None, None, max(1, len(etas) // 6))
     x = "speed η = Ω √(ρA L⁴/EI)  [1]"
     curves, growth = [], []
-    for color, (mass, squares) in enumerate(found.items()):
+    for color, (mass, squares) in enumerate(measured.items()):
         frequency, exact = np.sqrt(squares), np.sqrt(expected[mass])
         curves += [
             Curve(f"m/ρAL = {mass:g}", etas, frequency, color),

@@ -112,11 +112,11 @@ def study(quick: bool) -> Study:
         )
     for row in reference["energy_drift_in_10_s"]:
         if row["gamma"] in ((5.0,) if quick else (1.0, 2.0, 5.0)):
-            found = gained(models["first_order"], models["all"], GRAVITY / row["gamma"], 1e-8 if quick else 1e-10)
+            gain = gained(models["first_order"], models["all"], GRAVITY / row["gamma"], 1e-8 if quick else 1e-10)
             findings.append(
                 near(
                     f"first order, ρA g L³/EI = {row['gamma']:g}: untruncated energy gained in 10 s [J]",
-                    found,
+                    gain,
                     row["first_order_end"],
                     1e-3,
                     "an independent program of the same order",
@@ -167,7 +167,7 @@ def path(
         "distance  [m]",
         tuple(Curve(WORDS[name], known[1:], error[1:], COLORS[name], "joined") for name, error in errors.items()),
         (Mark("uncertainty of the rod", floor),),
-        log_y=True,
+        log="y",
     )
     return Figure(
         "Left, the tip passes through the points of the exact rod. Right, the consistent models stay below 0.1 mm; "
@@ -183,11 +183,10 @@ def softness(gammas: Array, ends: dict[str, Array], rows: list[dict[str, float]]
         "flexibility ρA g L³/EI  [1]",
         "distance  [m]",
         (
-            *(Curve(WORDS[name], gammas, found, COLORS[name], "joined") for name, found in ends.items()),
+            *(Curve(WORDS[name], gammas, gains, COLORS[name], "joined") for name, gains in ends.items()),
             Curve("uncertainty of the rod", gammas, np.array([row["uncertainty"] for row in rows]), 5, "dotted"),
         ),
-        log_x=True,
-        log_y=True,
+        log="xy",
     )
     return Figure(
         "The softer, the worse: from 2 on the model's own error stands clear of the uncertainty of the exact rod and "

@@ -64,8 +64,8 @@ def ours(m: sf.Model, load: float, angles: Array) -> tuple[Array, Array]:
 
 def exact(load: float, angles: Array) -> tuple[Array, Array]:
     """The same by Exudyn."""
-    found = [princeton(load, angle) for angle in angles.tolist()]
-    return np.array([p for p, _ in found]), np.array([twist(R) for _, R in found])
+    tips = [princeton(load, angle) for angle in angles.tolist()]
+    return np.array([p for p, _ in tips]), np.array([twist(R) for _, R in tips])
 
 
 def twist(R: Array) -> float:
@@ -79,7 +79,7 @@ def study(quick: bool) -> Study:
     loads = LOADS[1:2] if quick else LOADS
     m = {retain: strip_model(retain) for retain in ORDERS}
     reference = {load: exact(load, angles) for load in loads}
-    found = {load: ours(m["all"], load, angles) for load in loads}
+    tips = {load: ours(m["all"], load, angles) for load in loads}
     # A small to a large load at 60 degrees, where both bendings and the twist are at work.
     at, growing = np.radians([60.0]), np.geomspace(0.5, 9.0, 5 if quick else 15)
     rod = [exact(float(load), at) for load in growing]
@@ -139,7 +139,7 @@ def study(quick: bool) -> Study:
         "second-order strip finds no rest any more: its cubic strain energy has no bottom there. "
         "Ask a geometrically exact code."
     )
-    figures = (around(angles, loads, reference, found), growth(deflection, errors))
+    figures = (around(angles, loads, reference, tips), growth(deflection, errors))
     return Study(
         "Bent both ways and twisted, where does second order fail?",
         answer,
@@ -160,17 +160,17 @@ def first_without_rest(m: sf.Model, angle: float) -> float:
 Tips = dict[float, tuple[Array, Array]]
 
 
-def around(angles: Array, loads: tuple[float, ...], reference: Tips, found: Tips) -> Figure:
+def around(angles: Array, loads: tuple[float, ...], reference: Tips, tips: Tips) -> Figure:
     """Displacement and twist against the load's direction."""
     x, degrees = "angle of the load, from the stiff way to the soft  [°]", np.degrees(angles)
     soft, turned = [], []
     for k, load in enumerate(loads):
         soft += [
-            Curve(f"retain: all, {load:g} N", degrees, found[load][0][:, 2], k),
+            Curve(f"retain: all, {load:g} N", degrees, tips[load][0][:, 2], k),
             Curve(f"Exudyn, {load:g} N", degrees, reference[load][0][:, 2], k, "points"),
         ]
         turned += [
-            Curve(f"retain: all, {load:g} N", degrees, np.degrees(found[load][1]), k),
+            Curve(f"retain: all, {load:g} N", degrees, np.degrees(tips[load][1]), k),
             Curve(f"Exudyn, {load:g} N", degrees, np.degrees(reference[load][1]), k, "points"),
         ]
     turned.append(Curve("first order, any load", degrees, 0.0 * degrees, 4, "dashed"))
@@ -194,8 +194,7 @@ def growth(deflection: Array, errors: dict[str, Array]) -> Figure:
         "error over the displacement  [1]",
         tuple(Curve(words[name], deflection, error, k, "joined") for k, (name, error) in enumerate(errors.items())),
         (Mark("1 %", 0.01), Mark("5 %", 0.05)),
-        log_x=True,
-        log_y=True,
+        log="xy",
     )
     return Figure(
         "The error rises with the square of the deflection and crosses 1 % near a tenth of the length, as under a load "

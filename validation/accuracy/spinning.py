@@ -38,11 +38,11 @@ def study(quick: bool) -> Study:
     findings = [
         Finding(
             f"{plane}, {n} Legendre functions: largest relative error of three frequencies, η ≤ 12",
-            max(float(e.max()) for (p, _), e in found.items() if p == plane),
+            max(float(e.max()) for (p, _), e in errors_of_n.items() if p == plane),
             BOUNDS[n],
             reason="twice what a Ritz solution in this basis gives",
         )
-        for n, found in worst.items()
+        for n, errors_of_n in worst.items()
         for plane in PLANES
     ]
     findings.append(
@@ -56,12 +56,12 @@ def study(quick: bool) -> Study:
     findings += [
         near(
             f"speed of divergence without foreshortening, hub ratio {delta:g}",
-            found,
+            speed,
             FIRST,
             1e-3,
             "the first frequency at rest, whatever the hub",
         )
-        for delta, found in critical.items()
+        for delta, speed in critical.items()
     ]
     slow = next(row["chord"][0] for row in reference["table"] if (row["delta"], row["eta"]) == (0, 1))
     apart = engine((3.0, 12.0) if quick else (0.5, 3.0, 6.0, 9.0, 12.0))
@@ -91,15 +91,15 @@ def study(quick: bool) -> Study:
 
 def errors(modes: int, table: list[dict[str, Any]]) -> dict[tuple[str, int], Array]:
     """Largest relative error of the first three frequencies for each plane and hub ratio, at speeds 0 to 12."""
-    found = {}
+    largest = {}
     for plane, (direction, column) in PLANES.items():
         m = spinning(direction, modes)
         for delta in (0, 1):
             rows = [row for row in table if row["delta"] == delta]
             ours = np.array([np.sqrt(spinning_squares(m, row["eta"], delta)[:3]) for row in rows])
             theirs = np.array([row[column][:3] for row in rows])
-            found[plane, delta] = np.abs(ours / theirs - 1.0).max(axis=1)
-    return found
+            largest[plane, delta] = np.abs(ours / theirs - 1.0).max(axis=1)
+    return largest
 
 
 def engine(etas: tuple[float, ...]) -> float:
@@ -108,8 +108,8 @@ def engine(etas: tuple[float, ...]) -> float:
     worst = 0.0
     for eta in etas:
         for m, theirs in zip(models, spinning_frequencies(1.0, 1e7, eta, 1.0), strict=True):
-            found = np.sqrt(spinning_squares(m, eta, 1.0)[:3])
-            worst = max(worst, float(np.abs(found / theirs - 1.0).max()))
+            frequencies = np.sqrt(spinning_squares(m, eta, 1.0)[:3])
+            worst = max(worst, float(np.abs(frequencies / theirs - 1.0).max()))
     return worst
 
 
@@ -145,8 +145,8 @@ def frequencies(etas: Array, table: list[dict[str, Any]]) -> Figure:
 def first(direction: str, etas: Array, delta: float, **changed: object) -> Array:
     """The first frequency against speed; NaN where the beam diverges."""
     m = spinning(direction, 8, **changed)
-    found = np.array([spinning_squares(m, float(eta), delta)[0] for eta in etas])
-    return np.sqrt(np.where(found >= 0.0, found, np.nan))
+    squared = np.array([spinning_squares(m, float(eta), delta)[0] for eta in etas])
+    return np.sqrt(np.where(squared >= 0.0, squared, np.nan))
 
 
 def accuracy(worst: dict[int, dict[tuple[str, int], Array]]) -> Figure:
@@ -158,7 +158,7 @@ def accuracy(worst: dict[int, dict[tuple[str, int], Array]]) -> Figure:
     )
     marks = tuple(Mark(f"bound with {n} functions", bound) for n, bound in BOUNDS.items())
     chart = Chart(
-        "largest relative error of the first three frequencies", SPEED, "relative error  [1]", curves, marks, log_y=True
+        "largest relative error of the first three frequencies", SPEED, "relative error  [1]", curves, marks, log="y"
     )
     return Figure(
         "Errors grow with speed, because a fast beam bends in ever shorter waves near the root; two more functions "

@@ -53,7 +53,7 @@ def study(quick: bool) -> Study:
     exact = np.stack([rod["tip_x"], rod["tip_y"]], axis=-1)[: len(known)]
     at = np.searchsorted(times, known)
     ours = {n: tip(times, n) for n in ((1, 3) if quick else (1, 2, 3, 5, 8))}
-    errors = {n: np.abs(found[at] - exact) for n, found in ours.items()}
+    errors = {n: np.abs(deflection[at] - exact) for n, deflection in ours.items()}
     short = times[times <= 8.0]
     without = tip(short, 3, foreshortening=False, retain="all")
     zeroth = tip(times, 3, retain="zeroth_order")
@@ -178,7 +178,7 @@ def distance(known: Array, errors: dict[int, Array], apart: Array) -> Figure:
         )
         + (engine,),
         (floor,),
-        log_y=True,
+        log="y",
     )
     counts = np.array(list(errors), dtype=float)
     largest = Chart(
@@ -190,7 +190,7 @@ def distance(known: Array, errors: dict[int, Array], apart: Array) -> Figure:
             Curve("along", counts, np.array([error[:, 0].max() for error in errors.values()]), 1, "joined"),
         ),
         (floor,),
-        log_y=True,
+        log="y",
     )
     return Figure(
         "While the beam is bent most, around 6 s, three functions or eight make no difference: the error rests at the "

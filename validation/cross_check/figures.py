@@ -121,8 +121,7 @@ def error_against_condition(record: Record) -> Chart | None:
         "largest relative error  [1]",
         tuple(curves),
         (Mark("tolerance", SOLVE),),
-        log_x=True,
-        log_y=True,
+        log="xy",
     )
 
 
@@ -139,6 +138,6 @@ def errors_by_engine(record: Record) -> Chart:
         "largest relative error of a comparison  [1]",
         "share of the comparisons  [1]",
         tuple(curves),
-        log_x=True,
+        log="x",
         range_y=(0.0, 1.0),
     )

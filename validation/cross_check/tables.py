@@ -55,7 +55,7 @@ def by_model(record: Record, columns: Columns = COLUMNS) -> Table:
     rows = [
         (_name(m, rows), _speeds(m), str(_engines(rows)), *_cells(rows, columns), _status(rows)) for m, rows in lines
     ]
-    return _used((*head, *(f"#{title}" for title in columns), "verdict"), rows)
+    return Table((*head, *(f"#{title}" for title in columns), "verdict"), tuple(rows)).without_empty()
 
 
 def by_engine(record: Record, columns: Columns = COLUMNS, engines: Sequence[str] = (*ROUTES, *_OURS)) -> Table:
@@ -66,13 +66,9 @@ def by_engine(record: Record, columns: Columns = COLUMNS, engines: Sequence[str]
         for engine in engines
     ]
     rows = [(_name(m, rows), _speeds(m), e, *_cells(rows, columns), _status(rows)) for m, e, rows in lines if rows]
-    return _used(("model", "#nv", "engine", *(f"#{title}" for title in columns), "verdict"), rows)
-
-
-def _used(head: Sequence[str], rows: Sequence[tuple[str | Cell, ...]]) -> Table:
-    """The table without columns in which nothing was compared."""
-    kept = [k for k in range(len(head)) if k < 3 or any(row[k] != "" for row in rows)]
-    return Table(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
+    return Table(
+        ("model", "#nv", "engine", *(f"#{title}" for title in columns), "verdict"), tuple(rows)
+    ).without_empty()
 
 
 def _name(model: ModelResult, rows: Sequence[Comparison]) -> Cell:

@@ -31,7 +31,11 @@ class Outcome:
 
 def commands() -> dict[str, tuple[str, ...]]:
     """Report -> its command, for those that `--regenerate` writes."""
-    return {name: (name,) if topic.words is None else topic.words for name, topic in TOPICS.items() if topic.everyday}
+    return {
+        name: (name,) if topic.arguments is None else topic.arguments
+        for name, topic in TOPICS.items()
+        if topic.everyday
+    }
 
 
 def regenerate(folder: Path, starting: Callable[[str], None], done: Callable[[Outcome], None]) -> None:

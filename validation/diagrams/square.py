@@ -209,7 +209,7 @@ def _effects(distances: dict[int, float], runs: dict[int, sf.DiagramRun], flexib
         "shape functions in each link",
         "largest distance [m]",
         (Curve("difference", counts, np.array(list(distances.values())), 0, "joined"),),
-        log_y=True,
+        log="y",
     )
     seen = flexible.t >= T_END - 1.2
     resolved = flexible.compiled.resolved

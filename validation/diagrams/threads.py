@@ -73,7 +73,7 @@ def study(quick: bool) -> Study:
                 "sample period [s]",
                 "time of one thread over two",
                 (Curve("measured", shown, np.array(gains), 0, "joined"),),
-                log_x=True,
+                log="x",
             ),
         ),
     )

@@ -134,7 +134,7 @@ def _grip(run: sf.DiagramRun, gap: dict[str, Array]) -> Figure:
         "The hand's distance from its point: from the grip on it is zero to rounding. Then what the point feels:"
         " nothing before, the impact as the hand takes hold, and what the payload's motion asks for.",
         (
-            Chart("hand to point", "time [s]", "distance [m]", distance, mark, log_y=True),
+            Chart("hand to point", "time [s]", "distance [m]", distance, mark, log="y"),
             Chart("forces of the closure", "time [s]", "multiplier [N]", forces, mark),
             Chart("moments of the closure", "time [s]", "multiplier [N m]", moments, mark),
         ),

@@ -40,13 +40,13 @@ def models_chart(scene: Scene, result: Result) -> Chart:
     tags = tuple(Tag(name, p.seconds, p.error) for name, p in zip(letters(len(best)), best, strict=True))
     title = f"{scene.title}: every run, and the front"
     curves = (*_series(points, lambda p: p.model, "points"), line)
-    return Chart(title, TIME, scene.axis, curves, _marks(result, points), log_x=True, log_y=True, tags=tags)
+    return Chart(title, TIME, scene.axis, curves, _marks(result, points), log="xy", tags=tags)
 
 
 def _methods_chart(scene: Scene, result: Result, points: list[Point]) -> Chart:
     curves = _series(_finest(points), lambda p: p.method, "joined")
     title = "methods: each on its best model"
-    return Chart(title, TIME, scene.axis, curves, _marks(result, points), log_x=True, log_y=True)
+    return Chart(title, TIME, scene.axis, curves, _marks(result, points), log="xy")
 
 
 def _finest(points: list[Point]) -> list[Point]:

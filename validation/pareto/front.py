@@ -38,7 +38,7 @@ def seconds_at(points: Iterable[Point], error: float) -> float:
 
     Args:
         points: Points of one side.
-        error: To keep.
+        error: Error to keep.
 
     Returns:
         [s]; infinity where no point keeps it.
@@ -46,7 +46,7 @@ def seconds_at(points: Iterable[Point], error: float) -> float:
     series: dict[tuple[str, str, str], list[Point]] = {}
     for point in usable(points):
         series.setdefault(point.series, []).append(point)
-    return min((_within(front(found), error) for found in series.values()), default=math.inf)
+    return min((_within(front(members), error) for members in series.values()), default=math.inf)
 
 
 def _within(best: Sequence[Point], error: float) -> float:
@@ -59,14 +59,14 @@ def _within(best: Sequence[Point], error: float) -> float:
     return float(coarse.seconds * (fine.seconds / coarse.seconds) ** share)
 
 
-def ratio(points: Sequence[Point], ours: str, theirs: str, error: float) -> float:
-    """Their least time over ours at an error.
+def ratio(points: Sequence[Point], own: str, engine: str, error: float) -> float:
+    """The least time of an engine over that of our own models at an error.
 
     Returns:
         Infinity where only we keep it, 0 where we don't, NaN where nobody does.
     """
-    mine = seconds_at((p for p in points if p.who == ours), error)
-    other = seconds_at((p for p in points if p.who == theirs), error)
-    if math.isinf(mine):
-        return math.nan if math.isinf(other) else 0.0
-    return other / mine
+    own_seconds = seconds_at((p for p in points if p.who == own), error)
+    engine_seconds = seconds_at((p for p in points if p.who == engine), error)
+    if math.isinf(own_seconds):
+        return math.nan if math.isinf(engine_seconds) else 0.0
+    return engine_seconds / own_seconds

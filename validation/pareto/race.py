@@ -18,8 +18,10 @@ class Result:
     """A scene that was run.
 
     Attributes:
-        points: What came of each contestant.
-        agreement, references, floors: As prepared.
+        points: Error and time of each contestant.
+        agreement: Largest distance between the references.
+        references: Origin of the references, in words.
+        floors: Error that a beam model leaves at any step, by what it retains.
         seconds: Wall time of it all.
     """
 
@@ -46,12 +48,12 @@ def race(
 
 def _run(one: Contestant, repeats: int, enough: float) -> Point:
     began = time.perf_counter()
-    found = [one.run()]
-    while not found[0].ended and len(found) < repeats and time.perf_counter() - began < enough:
-        found.append(one.run())
-    seconds = min(run.seconds for run in found)
-    error = found[0].error
-    ended = found[0].ended
+    runs = [one.run()]
+    while not runs[0].ended and len(runs) < repeats and time.perf_counter() - began < enough:
+        runs.append(one.run())
+    seconds = min(run.seconds for run in runs)
+    error = runs[0].error
+    ended = runs[0].ended
     if not ended and not math.isfinite(error):
         ended = "its numbers grew beyond all bounds"
     return Point(one.who, one.model, one.method, one.setting, math.nan if ended else error, seconds, ended)

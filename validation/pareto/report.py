@@ -101,7 +101,7 @@ def scene_data(scene: Scene, result: Result, date: str) -> dict[str, Any]:
         "floors": dict(result.floors),
         "seconds": round(result.seconds, 1),
         "targets": [
-            asdict(v.target) | {"found": "only ours" if math.isinf(v.found) else finite(v.found), "ok": v.ok}
+            asdict(v.target) | {"found": "only ours" if math.isinf(v.ratio) else finite(v.ratio), "ok": v.ok}
             for v in judged
         ],
         "words": [*verdicts.compared(scene, result.points), *verdicts.advice(scene, result)],
@@ -168,9 +168,9 @@ def _targets(results: Mapping[str, tuple[Scene, Result]]) -> Table:
             f"[{scene.title}](#{name})",
             scene.shown(v.target.error),
             v.target.engine,
-            duration(v.ours),
-            duration(v.theirs),
-            Cell("only ours" if math.isinf(v.found) else f"{v.found:.3g}", v.ok),
+            duration(v.seconds),
+            duration(v.engine_seconds),
+            Cell("only ours" if math.isinf(v.ratio) else f"{v.ratio:.3g}", v.ok),
             short(v.target.ratio),
             verdict_word(v.ok),
         )

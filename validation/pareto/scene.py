@@ -48,9 +48,9 @@ class Point:
 
     Attributes:
         who, model, method, setting: As the contestant states them.
-        error: As measured.
+        error: Measured error.
         seconds: Time of the processor, least of the repeats.
-        ended: As measured.
+        ended: Reason of an early end; "" for none.
     """
 
     who: str
@@ -94,8 +94,8 @@ class Prepared:
     Attributes:
         contestants: Compiled and assembled, so that a run is stepping only.
         agreement: Distance of two independent references, in the unit of errors.
-        references: What they are, in words.
-        floors: What our beam models leave, however finely they are stepped, by what they retain.
+        references: Origin of the references, in words.
+        floors: Error that a beam model leaves at any step, by what it retains.
     """
 
     contestants: tuple[Contestant, ...]
@@ -109,13 +109,13 @@ class Scene:
     """One page.
 
     Attributes:
-        title: What moves.
-        setting: From where, for how long, at what output interval.
-        measure: What errors are of.
+        title: Name of the moving system.
+        setting: Start, duration and output interval, in words.
+        measure: Definition of the error, in words.
         axis: The same in a few words, with the unit.
         tuned: Tuning of each side, in words.
         prepare: Whether quickly -> what is to run.
-        targets: What is asked of us.
+        targets: Ratios that are asked for.
         trust: Errors above this must be above the references' disagreement.
         sources: Origins of parameters and references.
         percent: Whether errors are shares, and read best as such.

@@ -14,32 +14,33 @@ from validation.reporting.numbers import duration
 
 @dataclass(frozen=True)
 class Verdict:
-    """A target and what was found.
+    """A target and what was reached.
 
     Attributes:
-        target: As stated.
-        ours, theirs: Least seconds that keep the error; infinity where nothing does.
-        found: Their seconds over ours.
+        target: Ratio that is asked for, and at which error.
+        seconds: Least time of our models that keeps the error [s]; infinity where none does.
+        engine_seconds: Least time of the engine that keeps the error [s]; infinity where none does.
+        ratio: The least seconds of the engine over ours.
     """
 
     target: Target
-    ours: float
-    theirs: float
-    found: float
+    seconds: float
+    engine_seconds: float
+    ratio: float
 
     @property
     def ok(self) -> bool:
         """Whether it is met; NaN is not."""
-        return bool(self.found >= self.target.ratio)
+        return bool(self.ratio >= self.target.ratio)
 
 
 def verdicts(scene: Scene, points: tuple[Point, ...]) -> list[Verdict]:
-    """Of each target."""
-    found = []
+    """The verdict on each target."""
+    judged = []
     for target in scene.targets:
         sides = [seconds_at((p for p in points if p.who == who), target.error) for who in (OURS, target.engine)]
-        found.append(Verdict(target, sides[0], sides[1], ratio(points, OURS, target.engine, target.error)))
-    return found
+        judged.append(Verdict(target, sides[0], sides[1], ratio(points, OURS, target.engine, target.error)))
+    return judged
 
 
 def compared(scene: Scene, points: tuple[Point, ...]) -> list[str]:
@@ -49,16 +50,18 @@ def compared(scene: Scene, points: tuple[Point, ...]) -> list[str]:
 
 def _sentence(scene: Scene, verdict: Verdict) -> str:
     at, engine = scene.shown(verdict.target.error), verdict.target.engine
-    if math.isnan(verdict.found):
+    if math.isnan(verdict.ratio):
         return f"At {at} neither symofros nor {engine} has a run."
-    if verdict.found == 0.0:
-        return f"At {at} {engine} wins: no model of ours keeps it, and {engine} takes {duration(verdict.theirs)}."
-    if math.isinf(verdict.found):
-        return f"At {at} symofros wins with {duration(verdict.ours)}: no run of {engine} keeps it."
-    times = f"{duration(verdict.ours)} against {duration(verdict.theirs)}"
-    if verdict.found >= 1.0:
-        return f"At {at} symofros wins by {verdict.found:.3g}: {times} of {engine}'s best."
-    return f"At {at} {engine} wins by {1.0 / verdict.found:.3g}: symofros takes {times} of {engine}'s best."
+    if verdict.ratio == 0.0:
+        return (
+            f"At {at} {engine} wins: no model of ours keeps it, and {engine} takes {duration(verdict.engine_seconds)}."
+        )
+    if math.isinf(verdict.ratio):
+        return f"At {at} symofros wins with {duration(verdict.seconds)}: no run of {engine} keeps it."
+    times = f"{duration(verdict.seconds)} against {duration(verdict.engine_seconds)}"
+    if verdict.ratio >= 1.0:
+        return f"At {at} symofros wins by {verdict.ratio:.3g}: {times} of {engine}'s best."
+    return f"At {at} {engine} wins by {1.0 / verdict.ratio:.3g}: symofros takes {times} of {engine}'s best."
 
 
 def advice(scene: Scene, result: Result) -> list[str]:
@@ -143,11 +146,11 @@ def see(scene: Scene, result: Result) -> str:
 
 def refused(result: Result) -> list[str]:
     """Runs that did not come to their end: whose, how many, and the first one's reason."""
-    found: dict[tuple[str, str], list[Point]] = {}
+    ended: dict[tuple[str, str], list[Point]] = {}
     for p in result.points:
         if p.ended:
-            found.setdefault((p.who, p.method), []).append(p)
+            ended.setdefault((p.who, p.method), []).append(p)
     return [
         f"{who}, {method}: {len(runs)} ({runs[0].model}, {runs[0].setting}: {runs[0].ended})"
-        for (who, method), runs in found.items()
+        for (who, method), runs in ended.items()
     ]

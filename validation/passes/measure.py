@@ -18,9 +18,9 @@ import reference_models
 import symofros as sf
 from symofros.tools import ABLATIONS, count_program
 from validation.mechanics.geometry import Array
+from validation.timing.contestants.arrays import Arrays, loops
 from validation.timing.models import SCENES
 from validation.timing.race import error, race
-from validation.timing.sides.arrays import Arrays, loops
 from validation.timing.task import Loop
 
 STATES = 256

@@ -47,7 +47,7 @@ def _seen(curve: Curve, chart: Chart) -> tuple[Array, Array]:
     """The points that can be drawn; a gap is NaN in y."""
     x, y = np.asarray(curve.x, float), np.asarray(curve.y, float)
     y = np.where(np.isfinite(y), y, np.nan)
-    if chart.log_y:
+    if "y" in chart.log:
         y = np.where(y > 0.0, y, np.nan)
     if chart.range_y is not None:
         y = np.where((y >= chart.range_y[0]) & (y <= chart.range_y[1]), y, np.nan)
@@ -55,7 +55,7 @@ def _seen(curve: Curve, chart: Chart) -> tuple[Array, Array]:
 
 
 def _axis(values: list[Array], chart: Chart, name: str, start: float, end: float) -> Axis:
-    log = chart.log_x if name == "x" else chart.log_y
+    log = name in chart.log
     drawn = np.concatenate([*values, [mark.at for mark in chart.marks if mark.axis == name]])
     drawn = drawn[np.isfinite(drawn)]
     low, high = (float(drawn.min()), float(drawn.max())) if len(drawn) else (1.0, 10.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -11,7 +11,9 @@ import numpy as np
 from validation.mechanics.geometry import Array
 from validation.reporting.numbers import rounded
 
+Values = Array | Sequence[float]
 Kind = Literal["line", "dashed", "dotted", "points", "joined"]
+Logarithmic = Literal["", "x", "y", "xy"]
 # Colours of the page, and shapes of points: a pair of the two tells more series apart than colours alone.
 COLORS, SHAPES = 12, 4
 
@@ -31,8 +33,8 @@ class Curve:
     """
 
     label: str
-    x: Array
-    y: Array
+    x: Values
+    y: Values
     color: int = 0
     kind: Kind = "line"
     shape: int = 0
@@ -72,7 +74,7 @@ class Chart:
         x: Name and unit of the abscissa; y: of the ordinate.
         curves: In the order of the legend.
         marks: Limits and thresholds.
-        log_x, log_y: Whether an axis is logarithmic.
+        log: Names of the logarithmic axes.
         range_y: Part of the ordinate that is shown; None for all.
         tags: Names of points, in the figure's words.
         equal: Whether a unit is as long on both axes, as on a map.
@@ -83,8 +85,7 @@ class Chart:
     y: str
     curves: tuple[Curve, ...]
     marks: tuple[Mark, ...] = ()
-    log_x: bool = False
-    log_y: bool = False
+    log: Logarithmic = ""
     range_y: tuple[float, float] | None = None
     tags: tuple[Tag, ...] = ()
     equal: bool = False
@@ -102,7 +103,7 @@ class Chart:
             "title": self.title,
             "x": self.x,
             "y": self.y,
-            "log": [self.log_x, self.log_y],
+            "log": ["x" in self.log, "y" in self.log],
             "curves": curves,
             "marks": marks["y"],
             "marks_x": marks["x"],
@@ -121,14 +122,14 @@ class Chart:
         along = {"y": data["marks"], "x": data["marks_x"]} if "marks_x" in data else {}
         marks = [Mark(label, at, "x" if axis == "x" else "y") for axis, of in along.items() for label, at in of.items()]
         span = data.get("range_y")
+        logarithmic: Any = "".join(name for name, log in zip("xy", data["log"], strict=True) if log)
         return cls(
             data["title"],
             data["x"],
             data["y"],
             curves,
             tuple(marks),
-            log_x=data["log"][0],
-            log_y=data["log"][1],
+            log=logarithmic,
             range_y=None if span is None else (span[0], span[1]),
             tags=tuple(Tag(*tag) for tag in data.get("tags", ())),
             equal=data.get("equal", False),

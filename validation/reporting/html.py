@@ -141,6 +141,6 @@ def cell(item: str | Cell, is_number: bool) -> str:
     if isinstance(item, str):
         return f"<td{' class=n' if is_number else ''}>{prose(item)}</td>"
     kinds += ["wrong"] if item.ok is False else []
-    shade = f' style="background: rgba(var(--heat), {item.shade:.2f})"' if item.shade else ""
+    shade = f' style="background: rgba(var(--shade), {item.shade:.2f})"' if item.shade else ""
     hint = f' title="{escape(item.hint)}"' if item.hint else ""
     return f'<td class="{" ".join(kinds)}"{shade}{hint}>{prose(item.text)}</td>'

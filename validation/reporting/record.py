@@ -5,7 +5,7 @@ Texts may hold `code`, **bold** and [links](#anchor), as in Markdown, and nothin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -41,6 +41,10 @@ class Cell:
     hint: str = ""
 
 
+# What stands in a column: a format such as "{error:.1e}", or a function of the row.
+Column = str | Callable[[Any], str | Cell]
+
+
 @dataclass(frozen=True)
 class Table:
     """A table.
@@ -52,6 +56,23 @@ class Table:
 
     head: tuple[str, ...]
     rows: tuple[tuple[str | Cell, ...], ...]
+
+    @classmethod
+    def of(cls, rows: Iterable[Any], columns: Mapping[str, Column]) -> Table:
+        """A line for each row, a mapping or a record; a column formats its fields, or is a function of it."""
+
+        def cell(row: Any, column: Column) -> str | Cell:
+            if callable(column):
+                return column(row)
+            return column.format_map(row if isinstance(row, Mapping) else vars(row))
+
+        lines = tuple(tuple(cell(row, column) for column in columns.values()) for row in rows)
+        return cls(tuple(columns), lines)
+
+    def without_empty(self) -> Table:
+        """The table without the columns in which nothing is stated."""
+        kept = [k for k in range(len(self.head)) if any(row[k] not in ("", "-") for row in self.rows)]
+        return Table(tuple(self.head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in self.rows))
 
 
 @dataclass(frozen=True)
@@ -165,7 +186,7 @@ class Topic:
         group: Heading that it stands under in the index.
         question: What it answers.
         compose: JSON of the report -> report.
-        words: Words after `python -m validation` that write it; the name if None.
+        arguments: Arguments after `python -m validation` that write it; the name if None.
         everyday: Whether `dashboard --regenerate` writes it; one that takes a plan of one's own is left to hand.
     """
 
@@ -173,13 +194,13 @@ class Topic:
     group: str
     question: str
     compose: Compose
-    words: tuple[str, ...] | None = None
+    arguments: tuple[str, ...] | None = None
     everyday: bool = True
 
     @property
     def command(self) -> str:
         """What writes it."""
-        return " ".join(("python -m validation", *((self.name,) if self.words is None else self.words)))
+        return " ".join(("python -m validation", *((self.name,) if self.arguments is None else self.arguments)))
 
 
 def findings_table(findings: Sequence[Finding]) -> Table:

@@ -81,7 +81,7 @@ def scene_data(scene: Scene, quick: bool, run: Run) -> dict[str, Any]:
         "y": scene.y.name,
         "quantity": scene.quantity,
         "bound": scene.bound,
-        "verdict": verdict.words,
+        "verdict": verdict.statement,
         "see": verdict.see,
         "advice": scene.advice,
         "sources": scene.sources,
@@ -194,7 +194,7 @@ def _energies(scene: Data) -> list[Chart]:
         for k, (name, values) in enumerate(rows)
     )
     named = f"a pendulum's energy, {title}"
-    return [Chart(named, scene["x"], scene["quantity"], curves, log_x=True, log_y=True)] if curves else []
+    return [Chart(named, scene["x"], scene["quantity"], curves, log="xy")] if curves else []
 
 
 TOPIC = Topic("stability", "Stability", "Where do simulations fail?", compose)

@@ -26,7 +26,7 @@ class Grid:
     """The values of one parameter.
 
     Attributes:
-        name: With its unit.
+        name: Name and unit.
         values: Values of the whole map, rising.
         few: Values of the quick map.
         labels: Names of categories, whose values are 0, 1, 2, ...
@@ -72,7 +72,7 @@ class Cell:
     Attributes:
         value: Value of the criterion's quantity; NaN if the run did not come to its end.
         ended: The kind of its Outcome, or "refused".
-        note: What was said: the reason of the end, or the first line of the refusal.
+        note: Reason of the end, or first line of the refusal.
     """
 
     value: float
@@ -93,8 +93,8 @@ def cell(run: sf.Trajectory, value: Callable[[sf.Trajectory], float]) -> Cell:
         return Cell(math.nan, outcome.kind, note)
     # A criterion that overflows belongs to a run whose states grew without bound, but not to infinity.
     with np.errstate(over="ignore", invalid="ignore"):
-        found = float(value(run))
-    return Cell(found if math.isfinite(found) else 1e300, outcome.kind, note)
+        criterion = float(value(run))
+    return Cell(criterion if math.isfinite(criterion) else 1e300, outcome.kind, note)
 
 
 def simulate(model: sf.Model, *given: Any, **settings: Any) -> sf.Trajectory:
@@ -148,7 +148,7 @@ class Map:
         subject: Method, formulation or engine that was run.
         x: Values (nx).
         y: Values (ny).
-        cells: (ny, nx).
+        cells: Outcome of each run (ny, nx).
         bound: Bound of the criterion.
     """
 
@@ -196,12 +196,12 @@ class Map:
     def edge(self, axis: str) -> list[tuple[float, float, float]]:
         """(other parameter, last good, first bad) of each line along an axis that begins good and turns bad."""
         along, across, good = (self.y, self.x, self.good.T) if axis == "y" else (self.x, self.y, self.good)
-        found = []
+        edges = []
         for other, line in zip(across, good, strict=True):
             if line[0] and not line.all():
                 first = int(np.argmin(line))
-                found.append((float(other), float(along[first - 1]), float(along[first])))
-        return found
+                edges.append((float(other), float(along[first - 1]), float(along[first])))
+        return edges
 
     def miss(self, axis: str, limit: Callable[[float], float]) -> float:
         """The largest factor by which a closed form lies outside the steps of the grid where good turns bad.
@@ -222,12 +222,12 @@ class Verdict:
     """What follows from the maps.
 
     Attributes:
-        words: With the numbers found.
-        see: What to see in the maps.
+        statement: What was found, in words, with its numbers.
+        see: Caption of the maps.
         findings: Claims with bounds.
     """
 
-    words: str
+    statement: str
     see: str
     findings: tuple[Finding, ...]
 
@@ -240,14 +240,14 @@ class Scene:
     """One page of the atlas.
 
     Attributes:
-        question: What it asks.
-        setting: What moves, from where, for how long.
+        question: Question that the maps answer.
+        setting: System, start and duration, in words.
         x: Parameter along; y: across.
-        quantity: What the criterion bounds, with its unit.
+        quantity: Quantity that the criterion bounds, with its unit.
         bound: Bound of the criterion: at most so much is good.
         subjects: Who is asked.
         judge: Maps by subject -> verdict.
-        advice: What to do, and what to use instead.
+        advice: Remedy, and methods or models to use instead.
         sources: Origins of closed forms and reference numbers.
     """
 
@@ -272,9 +272,9 @@ def survey(scene: Scene, quick: bool, done: Callable[[], None] = lambda: None) -
     xs, ys = scene.x.chosen(quick), scene.y.chosen(quick)
 
     def measured(subject: Subject, x: float, y: float) -> Cell:
-        found = subject.measure(x, y)
+        measured = subject.measure(x, y)
         done()
-        return found
+        return measured
 
     return {
         subject.name: Map(

@@ -20,9 +20,9 @@ class Growth:
     """One quantity over the lengths of chains.
 
     Attributes:
-        function: Whose.
-        quantity: What grows, with its unit.
-        who: On which side.
+        function: Generated function.
+        quantity: Name of the growing quantity, with its unit.
+        who: Generator or engine.
         n: Numbers of joints.
         values: Values of the quantity.
         exponent: Slope on logarithmic axes from FROM joints on; NaN where two points are not to be had.
@@ -48,14 +48,14 @@ def exponent(n: Sequence[float], values: Sequence[float]) -> float:
 
 def growth(record: Record) -> list[Growth]:
     """Everything that was measured over the chains."""
-    found = []
+    curves = []
     for function in FUNCTIONS:
         for who, value in _times().items():
-            found.append(_curve(record, function, "time [ns]", who, value))
+            curves.append(_curve(record, function, "time [ns]", who, value))
         for who in ("symofros", "casadi"):
             for quantity, cost in _COSTS.items():
-                found.append(_curve(record, function, quantity, who, _of_cost(who, cost)))
-    return [curve for curve in found if len(curve.n) > 1]
+                curves.append(_curve(record, function, quantity, who, _of_cost(who, cost)))
+    return [curve for curve in curves if len(curve.n) > 1]
 
 
 _Value = Callable[[Record, str, str], float | None]

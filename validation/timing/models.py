@@ -35,9 +35,9 @@ class Scene:
     """A model that is timed.
 
     Attributes:
-        title: In tables.
+        title: Name in tables.
         make: Makes the description.
-        functions: What is timed of it.
+        functions: Functions that are timed.
     """
 
     title: str

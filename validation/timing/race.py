@@ -43,23 +43,23 @@ class Times:
 
 
 def race(loops: Mapping[str, Loop], states: int, repeats: int) -> dict[str, Times]:
-    """Time sides in turn.
+    """Time contestants in turn.
 
     Args:
-        loops: By the names of their sides.
+        loops: Name of a contestant -> its loop.
         states: Number of states of one round.
         repeats: Interleaved.
 
     Returns:
         Times by the same names.
     """
-    found: dict[str, list[float]] = {name: [] for name in loops}
+    times: dict[str, list[float]] = {name: [] for name in loops}
     with on_one_cpu():
         rounds = {name: _rounds(loop.run) for name, loop in loops.items()}
         for _ in range(repeats):
             for name, loop in loops.items():
-                found[name].append(_nanoseconds(loop.run, rounds[name]) / (rounds[name] * states))
-    return {name: summary(times) for name, times in found.items()}
+                times[name].append(_nanoseconds(loop.run, rounds[name]) / (rounds[name] * states))
+    return {name: summary(turns) for name, turns in times.items()}
 
 
 def summary(times: Sequence[float]) -> Times:
@@ -79,33 +79,33 @@ def _nanoseconds(run: Callable[[int], None], rounds: int) -> int:
     return thread_time_ns() - start
 
 
-def error(found: Array, expected: Array) -> float:
+def error(computed: Array, expected: Array) -> float:
     """The largest difference of a state, relative to the state's largest entry.
 
     States where everything vanishes are judged by the largest entry of all.
     """
     scale = np.abs(expected).max(axis=1)
     scale = np.maximum(scale, np.abs(expected).max() * np.finfo(float).eps)
-    largest = np.abs(found - expected).max(axis=1)
+    largest = np.abs(computed - expected).max(axis=1)
     return float(np.max(np.divide(largest, scale, out=largest.copy(), where=scale > 0.0)))
 
 
-def checked(function: str, name: str, found: Array, expected: Array, coarser: float = 1.0) -> float:
-    """The error of a side.
+def checked(function: str, name: str, computed: Array, expected: Array, coarser: float = 1.0) -> float:
+    """The error of a contestant.
 
     Args:
-        function: Which.
-        name: Name of the side.
-        found: What it computes (n, size).
-        expected: What we do.
+        function: Name of the function.
+        name: Name of the contestant.
+        computed: Results of the contestant (n, size).
+        expected: Results of symofros (n, size).
         coarser: Factor by which its rounding is larger.
 
     Raises:
         DisagreementError: It is more than rounding.
     """
-    if found.shape != expected.shape:
-        raise DisagreementError(f"{function} by {name}: {found.shape[1]} numbers a state, not {expected.shape[1]}")
-    off = error(found, expected)
+    if computed.shape != expected.shape:
+        raise DisagreementError(f"{function} by {name}: {computed.shape[1]} numbers a state, not {expected.shape[1]}")
+    off = error(computed, expected)
     if not off <= coarser * TOLERANCES.get(function, ROUNDING):
         raise DisagreementError(f"{function} by {name} differs from ours by {off:.1e}: their times mean nothing")
     return off

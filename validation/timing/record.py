@@ -25,13 +25,14 @@ class Entry:
     Attributes:
         model: Label of the model.
         nv: Degrees of freedom.
-        function: What was timed.
+        function: Timed function.
         peer: Whom we raced; variant: how it was built and which way it went.
         ours: Minimum and median, nanoseconds a state, state by state; theirs: likewise.
-        batch: Ours by vectors, row by row, if there is such code.
+        batch: Minimum and median of the generated C by vectors, row by row; None without such code.
         error: Largest relative difference of the results.
-        date: When (UTC).
-        columns: As `batch`, column by column; single: that in single precision.
+        date: Date of the race (UTC).
+        columns: The same column by column.
+        single: The same column by column in single precision.
     """
 
     model: str
@@ -97,12 +98,12 @@ class Made:
     """What a generated function costs to make and to run.
 
     Attributes:
-        model, nv, function: What.
+        model, nv, function: Generated function, with the degrees of freedom of its model.
         by: Who generated it; variant: how it was built.
         time: Median, nanoseconds a state.
         generation, compilation: Seconds.
         text, code, constants, memory: Bytes.
-        operations: By kind.
+        operations: Numbers of operations by kind.
     """
 
     model: str
@@ -134,10 +135,10 @@ class Record:
     """Everything measured so far.
 
     Attributes:
-        entries: Pairs of sides.
+        entries: Pairs of contestants.
         costs: Costs of generated functions.
-        skipped: What a peer has no side for: (model, function, peer, why).
-        failed: What should have been timed and was not: likewise.
+        skipped: Functions that a peer does not have: (model, function, peer, reason).
+        failed: Functions that could not be timed: (model, function, peer, reason).
         flexible: Rows of the flexible robot.
         machine: Facts of the last run: processor, peak rates, load, versions, flags.
     """
@@ -165,17 +166,17 @@ class Record:
 
     def best(self, model: str, function: str, peer: str, family: str = "") -> Entry | None:
         """The peer's fastest way by the median, of a compiler's family if one is named."""
-        found = [
+        alike = [
             x
             for x in self.entries
             if (x.model, x.function, x.peer) == (model, function, peer) and x.variant.startswith(family)
         ]
-        return min(found, key=lambda x: x.theirs[1], default=None)
+        return min(alike, key=lambda x: x.theirs[1], default=None)
 
     def cost(self, model: str, function: str, by: str) -> Made | None:
         """Of the fastest build."""
-        found = [x for x in self.costs if (x.model, x.function, x.by) == (model, function, by)]
-        return min(found, key=lambda x: x.time, default=None)
+        alike = [x for x in self.costs if (x.model, x.function, x.by) == (model, function, by)]
+        return min(alike, key=lambda x: x.time, default=None)
 
 
 def as_data(record: Record) -> dict[str, Any]:

@@ -8,19 +8,18 @@ from dataclasses import asdict
 from statistics import median
 from typing import Annotated, Any
 
-import numpy as np
 import typer
 
 from validation.reporting.command import Run, known
 from validation.reporting.figures import Chart, Curve, Mark
 from validation.reporting.numbers import counted, times
 from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
+from validation.timing.contestants.programs import BuildError
 from validation.timing.flexible.race import LABEL, run_flexible
 from validation.timing.flexible.report import flexible_section
 from validation.timing.models import FUNCTIONS, SCENES
 from validation.timing.record import Entry, Record, as_data, of, read
 from validation.timing.run import facts, jobs, load, prepare, run_job
-from validation.timing.sides.programs import BuildError
 from validation.timing.tables import sections, targets_table
 from validation.timing.targets import verdicts
 from validation.timing.task import STATES
@@ -125,17 +124,17 @@ def _time_flexible(record: Record, repeats: int, run: Run) -> None:
 def compose(data: Data) -> Report:
     """The report of its JSON."""
     record = of(data)
-    found = verdicts(record)
-    measured = [verdict for verdict in found if verdict.entry is not None]
+    judged = verdicts(record)
+    measured = [verdict for verdict in judged if verdict.entry is not None]
     met = sum(verdict.met for verdict in measured)
     best = _best(record)
     functions, models = ({getattr(row, name) for row in best} for name in ("function", "model"))
-    said = f"{met} of {len(found)} targets are met"
-    said += f", {len(found) - len(measured)} were not measured" if len(measured) < len(found) else ""
+    said = f"{met} of {len(judged)} targets are met"
+    said += f", {len(judged) - len(measured)} were not measured" if len(measured) < len(judged) else ""
     failed = f"; {len(record.failed)} could not be timed" if record.failed else ""
     cut = f" Interrupted: {', '.join(data['unfinished'])} not timed." if data.get("unfinished") else ""
     sizes = f"{counted(len(models), 'model')} and {counted(len(functions), 'function')}"
-    key = [Fact(f"{met} of {len(found)}", "targets are met", met == len(measured))]
+    key = [Fact(f"{met} of {len(judged)}", "targets are met", met == len(measured))]
     medians = []
     for peer in dict.fromkeys(row.peer for row in best):
         ratios = [row.ratio for row in best if row.peer == peer]
@@ -174,15 +173,14 @@ def _ratios(rows: Sequence[Entry], function: str) -> Chart:
     curves = []
     for k, peer in enumerate(dict.fromkeys(row.peer for row in chosen)):
         x, y = zip(*sorted((row.nv, row.ratio) for row in chosen if row.peer == peer), strict=True)
-        curves.append(Curve(peer, np.array(x, float), np.array(y), k, "points", k % 4))
+        curves.append(Curve(peer, x, y, k, "points", k % 4))
     return Chart(
         f"{FUNCTIONS[function]}: their time over ours, a point a model",
         "speeds of the model  [1]",
         "ratio of medians  [1]",
         tuple(curves),
         (Mark("as fast as we", 1.0),),
-        log_x=True,
-        log_y=True,
+        log="xy",
     )
 
 

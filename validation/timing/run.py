@@ -16,13 +16,13 @@ from typing import Any
 
 from symofros.tools import DEFAULT_FLAGS
 from validation.reporting.provenance import machine
+from validation.timing.contestants.arrays import first_compiler
+from validation.timing.contestants.engines import CLOSED, PINOCCHIO_FLAGS, pinocchio_builds
+from validation.timing.contestants.generated import BUILDS
+from validation.timing.contestants.programs import BuildError, Skipped, compilers, source
 from validation.timing.models import SCENES
 from validation.timing.race import pin_to_one_cpu
 from validation.timing.record import Record, entry, made
-from validation.timing.sides.arrays import first_compiler
-from validation.timing.sides.engines import CLOSED, PINOCCHIO_FLAGS, pinocchio_builds
-from validation.timing.sides.generated import BUILDS
-from validation.timing.sides.programs import BuildError, Skipped, compilers, source
 from validation.timing.worker import Job
 
 Done = Callable[[str, str], None]
@@ -32,8 +32,8 @@ def run_job(job: Job, record: Record, done: Done = lambda model, function: None)
     """Time one model in a process of its own; what was measured before it ended, or Ctrl-C, is kept.
 
     Args:
-        job: What.
-        record: Where results go.
+        job: Model, functions and peers to time.
+        record: Record that the results are added to.
         done: Told of each function that is being timed.
     """
     stated = {
@@ -90,13 +90,13 @@ def jobs(
 ) -> list[Job]:
     """What is to be done: each model's functions among those asked for, less what was done."""
     wanted = set(functions)
-    found = []
+    todo = []
     for model in models:
         left = [name for name in SCENES[model].functions if done is None or not done.has(model, name)]
         chosen = tuple(name for name in left if name in wanted)
         if chosen:
-            found.append(Job(model, peers, chosen, repeats, states))
-    return found
+            todo.append(Job(model, peers, chosen, repeats, states))
+    return todo
 
 
 def prepare(peers: Iterable[str]) -> list[str]:
@@ -142,7 +142,7 @@ def facts() -> Mapping[str, Any]:
     }
     return {
         **machine(),
-        "compilers": [found.version for found in compilers()],
+        "compilers": [compiler.version for compiler in compilers()],
         "versions": versions,
         "flags": flags,
         **peaks(),

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from validation.reporting.figures import Chart, Curve, Figure
 from validation.reporting.record import Cell, Section, Table
 from validation.timing.growth import Growth, growth
@@ -58,7 +56,7 @@ def _target(verdict: Verdict) -> tuple[str | Cell, ...]:
         Cell(f"{verdict.ratio:.2f}", verdict.met) if entry else "-",
         "" if verdict.by_rows is None else f"{verdict.by_rows:.2f}",
         f"{target.least:g}",
-        verdict.words,
+        verdict.statement,
         entry.variant if entry else "",
     )
 
@@ -83,12 +81,12 @@ def _function(record: Record, function: str) -> Section:
     blocks = (
         *notes,
         "Nanoseconds a state, minimum and median:",
-        _without_empty(("model", "#nv", "#ours", "#batch, rows", "#columns", "#floats", *engines), times),
+        Table(("model", "#nv", "#ours", "#batch, rows", "#columns", "#floats", *engines), tuple(times)).without_empty(),
         "Ratios of medians, theirs to ours:",
-        _without_empty(
+        Table(
             ("model", "#nv", "#Pinocchio", "#batch by rows", "#batch by columns", "#MuJoCo", "#CasADi", "#SymPy"),
-            ratios,
-        ),
+            tuple(ratios),
+        ).without_empty(),
     )
     return Section(_title(function), blocks, function)
 
@@ -97,12 +95,6 @@ def _title(function: str) -> str:
     """A sentence's beginning, unless it begins with a symbol."""
     name = FUNCTIONS[function]
     return name if len(name.split()[0]) == 1 else name[0].upper() + name[1:]
-
-
-def _without_empty(head: Sequence[str], rows: Sequence[tuple[str, ...]]) -> Table:
-    """A table without the columns in which nothing was measured."""
-    kept = [k for k in range(len(head)) if any(row[k] != "-" for row in rows)]
-    return Table(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
 
 
 _NOTES = {
@@ -235,13 +227,10 @@ def _growth_figure(curves: Sequence[Growth], function: str) -> Figure:
 
 
 def _chart(curves: Sequence[Growth]) -> Chart:
-    drawn = tuple(
-        Curve(f"{c.who}, n^{c.exponent:.1f}", np.array(c.n, float), np.array(c.values), COLORS[c.who], "joined")
-        for c in curves
-    )
+    drawn = tuple(Curve(f"{c.who}, n^{c.exponent:.1f}", c.n, c.values, COLORS[c.who], "joined") for c in curves)
     quantity = curves[0].quantity if curves else ""
     axis = quantity if "[" in quantity else f"{quantity}  [1]"
-    return Chart(quantity.partition(" [")[0].capitalize(), "joints n  [1]", axis, drawn, log_x=True, log_y=True)
+    return Chart(quantity.partition(" [")[0].capitalize(), "joints n  [1]", axis, drawn, log="xy")
 
 
 def _skipped(record: Record) -> Section:

@@ -15,7 +15,7 @@ class Target:
     Attributes:
         model, function, peer: Race that the target is of.
         least: The ratio.
-        how: Ours state by state, or by vectors, column by column.
+        how: Generated C state by state ("scalar"), or by vectors, column by column ("columns").
         family: Family of the peer's compiler; "" for its best.
     """
 
@@ -33,8 +33,8 @@ class Verdict:
 
     Attributes:
         target: The target.
-        entry: What it was measured by; None where it was not.
-        ratio: Found; 0 where it was not measured.
+        entry: Race that measured it; None where there is none.
+        ratio: Measured ratio; 0 where it was not measured.
         by_rows: The ratio of vectors row by row, beside that of columns.
     """
 
@@ -49,7 +49,7 @@ class Verdict:
         return self.ratio >= self.target.least
 
     @property
-    def words(self) -> str:
+    def statement(self) -> str:
         """Met or missed, and by how much."""
         if self.entry is None:
             return "not measured"
@@ -81,11 +81,11 @@ TARGETS: tuple[Target, ...] = (
 
 def verdicts(record: Record) -> list[Verdict]:
     """Each target against the peer's fastest way, which depends on nothing of ours."""
-    found = []
+    judged = []
     for target in TARGETS:
         entry = record.best(target.model, target.function, target.peer, target.family)
         in_columns = target.how == "columns"
         ratio = None if entry is None else entry.columns_ratio if in_columns else entry.ratio
         by_rows = entry.batch_ratio if entry is not None and in_columns else None
-        found.append(Verdict(target, entry if ratio is not None else None, ratio or 0.0, by_rows))
-    return found
+        judged.append(Verdict(target, entry if ratio is not None else None, ratio or 0.0, by_rows))
+    return judged

@@ -27,8 +27,8 @@ class Cost:
     """What it takes to make a function, and what it takes to run it.
 
     Attributes:
-        generation: From the description to C text [s].
-        compilation: From C text to machine code [s].
+        generation: Time from the description to C text [s].
+        compilation: Time from C text to machine code [s].
         text: Bytes of C.
         code: Bytes of machine code; constants: of constants.
         operations: Executed: "mul", "add", "div", "call".
@@ -49,11 +49,11 @@ class Loop:
     """One function of one model by one side, ready to be timed.
 
     Attributes:
-        function: Which.
+        function: Name of the function.
         variant: Build and algorithm; "" where there is one.
         run: So many rounds over all states, results left behind.
-        results: What it computes, in our conventions (n, size).
-        cost: What making it took, of generated code.
+        results: Results in the conventions of symofros (n, size).
+        cost: Cost of making it, for generated code.
     """
 
     function: str
@@ -71,7 +71,7 @@ class Task:
         label: Name on the command line.
         system: The description.
         assembly: The same as numbers.
-        states: With u, and in `applied` the forces that it makes.
+        states: States with u, and in `applied` the forces that u makes.
         body: The moving body whose Jacobian is timed: the one that most joints carry.
     """
 

@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
+from validation.timing.contestants.arrays import first_compiler
+from validation.timing.contestants.engines import mujoco_loops, pinocchio_loops
+from validation.timing.contestants.generated import casadi_loops, sympy_loops
+from validation.timing.contestants.programs import BuildError, Skipped
+from validation.timing.contestants.symofros import BATCH, COLUMNS, NAME, SINGLE, our_loops
 from validation.timing.race import OF_FLOATS, DisagreementError, checked, race
 from validation.timing.record import Entry, Made
-from validation.timing.sides.arrays import first_compiler
-from validation.timing.sides.engines import mujoco_loops, pinocchio_loops
-from validation.timing.sides.generated import casadi_loops, sympy_loops
-from validation.timing.sides.ours import BATCH, COLUMNS, NAME, SINGLE, our_loops
-from validation.timing.sides.programs import BuildError, Skipped
 from validation.timing.task import Loop, Task, task
 
 Say = Callable[[str, Any], None]
@@ -36,9 +36,9 @@ class Job:
     Attributes:
         model: Label of the model.
         peers: Whom it races.
-        functions: At what.
+        functions: Names of the functions.
         repeats: Interleaved.
-        states: In a round.
+        states: Number of states in a round.
     """
 
     model: str

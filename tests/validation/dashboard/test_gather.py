@@ -18,7 +18,17 @@ FUZZ: dict[str, Any] = {
     "inputs": 10,
     "peak_memory_mib": 50,
     "faults": [],
-    "kinds": {"yaml": {"slowest": 0.5}},
+    "kinds": {
+        "yaml": {
+            "inputs": 10,
+            "refused": 9,
+            "read": 1,
+            "compiled": 1,
+            "faults": 0,
+            "slowest": 0.5,
+            "slowest_input": 3,
+        }
+    },
     "date": "2026-11-20 10:00 UTC",
     "versions": {"numpy": "2.0"},
     "flags": "-O2",

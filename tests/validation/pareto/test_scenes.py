@@ -59,16 +59,18 @@ def test_the_chain_of_links_converges_with_the_square_of_their_length() -> None:
 
 
 def test_the_spin_up_is_one_motion() -> None:
-    mine = spin_up.ours("3 modes", spin_up.model(3)).measured(method="rk4", dt=0.02)
+    mine = spin_up.judged_model("3 modes", spin_up.model(3)).measured(method="rk4", dt=0.02)
     assert 5e-4 < mine.error < 2e-3 and mine.seconds < 0.05
-    lost = spin_up.ours("x", spin_up.model(3, foreshortening=False, retain="all")).measured(method="rk4", dt=0.02)
+    lost = spin_up.judged_model("x", spin_up.model(3, foreshortening=False, retain="all")).measured(
+        method="rk4", dt=0.02
+    )
     assert lost.ended or not lost.error < 1.0, "without foreshortening it runs away"
 
 
 def test_what_is_refused_says_why() -> None:
-    refused = spin_up.ours("1 mode", spin_up.model(1)).measured(method="variational", dt=0.1)
+    refused = spin_up.judged_model("1 mode", spin_up.model(1)).measured(method="variational", dt=0.1)
     assert "variational" in refused.ended and math.isnan(refused.error)
-    explicit = [one for one in spin_up.theirs_all(quick=False) if one.method == "RK44"]
+    explicit = [one for one in spin_up.exudyn_all(quick=False) if one.method == "RK44"]
     assert "constraints" in explicit[0].run().ended
 
 

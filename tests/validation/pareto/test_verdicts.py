@@ -38,7 +38,7 @@ def test_the_winner_is_named(mine: float, theirs: float, winner: str, met: bool)
     found = result(mine, theirs)
     (said,), (verdict,) = verdicts.compared(SCENE, found.points), verdicts.verdicts(SCENE, found.points)
     assert f"{winner} wins by {max(theirs / mine, mine / theirs):.3g}" in said and verdict.ok is met
-    assert verdict.found == pytest.approx(theirs / mine)
+    assert verdict.ratio == pytest.approx(theirs / mine)
 
 
 def test_who_alone_keeps_an_error_wins() -> None:
@@ -66,7 +66,7 @@ def test_the_front_is_tagged_and_the_floor_drawn() -> None:
     assert isinstance(every, Chart) and isinstance(methods, Chart)
     best = front(charted(SCENE, (far_off, *found.points)))
     assert [(t.label, t.y) for t in every.tags] == [(letters(k + 1)[k], p.error) for k, p in enumerate(best)]
-    assert [tag.label for tag in every.tags] == letters(2) and every.log_x and every.log_y
+    assert [tag.label for tag in every.tags] == letters(2) and every.log == "xy"
     legend = [name for _, name in draw(every).legend]
     assert "floor of our beams, first order; below it use Exudyn: 0.002" in legend and 'class="tag"' in draw(every).svg
     assert all("[s]" in chart.x and "[1]" in chart.y for chart in (every, methods))

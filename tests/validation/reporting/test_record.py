@@ -83,3 +83,15 @@ def test_names_of_limits_stand_beside_the_chart() -> None:
 )
 def test_numbers_are_read_with_ease(number: int, says: str) -> None:
     assert counted(number, "run") == says
+
+
+def test_columns_format_mappings_and_records_alike() -> None:
+    columns = {"gap": "{quantity}", "#value": "{value:.1f}", "#ok": lambda row: Cell("", row.ok)}
+    table = Table.of(FINDINGS, columns)
+    assert table.head == ("gap", "#value", "#ok") and table.rows[0] == ("gap [m]", "2.0", Cell("", False))
+    assert Table.of([{"quantity": "rate", "value": 1}], {"#n": "{value}"}).rows == (("1",),)
+
+
+def test_a_column_in_which_nothing_is_stated_is_left_out() -> None:
+    table = Table(("model", "#a", "#b"), (("x", "-", "1"), ("y", "", "-")))
+    assert table.without_empty() == Table(("model", "#b"), (("x", "1"), ("y", "-")))

@@ -88,7 +88,7 @@ def test_a_verdict_follows_from_its_maps(maps: dict[str, Maps], name: str) -> No
         for key, one in maps[name].items()
     }
     verdict, other = scene.judge(maps[name]), scene.judge(flat)
-    assert other.words != verdict.words and all(finding.ok for finding in verdict.findings)
+    assert other.statement != verdict.statement and all(finding.ok for finding in verdict.findings)
     assert not all(finding.ok for finding in other.findings) or name == "deflection"
 
 

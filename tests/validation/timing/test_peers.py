@@ -16,11 +16,11 @@ from validation.adapters.casadi.links import in_world
 from validation.adapters.casadi.tree import CasadiTree
 from validation.mechanics.assembly import assemble
 from validation.mechanics.geometry import Array
+from validation.timing.contestants.engines import tree_text
+from validation.timing.contestants.generated import casadi_loops
+from validation.timing.contestants.symofros import our_loops
 from validation.timing.models import arm
 from validation.timing.race import error
-from validation.timing.sides.engines import tree_text
-from validation.timing.sides.generated import casadi_loops
-from validation.timing.sides.ours import our_loops
 from validation.timing.task import Task, task
 
 FUNCTIONS = (
@@ -144,7 +144,7 @@ def test_what_recursions_are_not_for_is_named() -> None:
 
 @pytest.mark.parametrize("joints", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_kanes_c_agrees_with_ours(joints: int) -> None:
-    from validation.timing.sides.generated import sympy_loops
+    from validation.timing.contestants.generated import sympy_loops
 
     given = task(f"planar{joints}R", 12)
     names = ("mass_matrix", "bias", "dynamics", "forward_dynamics")

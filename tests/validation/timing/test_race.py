@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from validation.timing import race as racing
+from validation.timing.contestants.arrays import Turns
 from validation.timing.race import DisagreementError, checked, error, race, summary
-from validation.timing.sides.arrays import Turns
 from validation.timing.task import Loop
 
 

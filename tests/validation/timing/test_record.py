@@ -58,13 +58,13 @@ def test_growth_is_of_each_side_and_quantity() -> None:
 @pytest.mark.parametrize(("ratio", "words"), [(7.0, "met, 0% above"), (8.4, "met, 20% above"), (6.3, "missed by 10%")])
 def test_a_verdict_says_by_how_much(ratio: float, words: str) -> None:
     found = Verdict(Target("panda", "dynamics", "pinocchio", 7.0), entry(), ratio)
-    assert found.words == words and found.met == words.startswith("met")
+    assert found.statement == words and found.met == words.startswith("met")
 
 
 def test_what_was_not_measured_is_not_met() -> None:
     found = verdicts(Record())
     assert len(found) == len(TARGETS)
-    assert all(not verdict.met and verdict.words == "not measured" for verdict in found)
+    assert all(not verdict.met and verdict.statement == "not measured" for verdict in found)
 
 
 def test_targets_use_the_family_and_the_batch_they_name() -> None:

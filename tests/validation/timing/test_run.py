@@ -14,11 +14,11 @@ from validation.__main__ import app
 from validation.reporting.command import write
 from validation.reporting.record import Table
 from validation.timing import report, worker
+from validation.timing.contestants import engines
+from validation.timing.contestants.programs import BuildError, Built, Compiler, Skipped, build, compilers
 from validation.timing.models import FUNCTIONS, SCENES
 from validation.timing.record import Record, as_data
 from validation.timing.run import jobs, peaks, take
-from validation.timing.sides import engines
-from validation.timing.sides.programs import BuildError, Built, Compiler, Skipped, build, compilers
 from validation.timing.tables import sections
 from validation.timing.worker import Job
 
@@ -107,7 +107,7 @@ def test_a_compiler_that_fails_is_told_and_the_other_goes_on(monkeypatch: pytest
 def test_one_compiler_of_each_family_and_the_newest_clang(monkeypatch: pytest.MonkeyPatch) -> None:
     there = {"gcc": "gcc 12.2.0", "clang": "clang 14.0.6", "clang-19": "clang 19.1.7", "clang-16": "clang 16.0.0"}
     monkeypatch.setattr(
-        "validation.timing.sides.programs._compiler",
+        "validation.timing.contestants.programs._compiler",
         lambda name: Compiler(name, there[name], "") if name in there else None,
     )
     assert [found.name for found in compilers()] == ["gcc 12.2.0", "clang 19.1.7"]

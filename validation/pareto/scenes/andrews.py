@@ -13,10 +13,10 @@ from validation import studies
 from validation.adapters.exudyn.scenes import joint_angles, looped
 from validation.adapters.exudyn.steps import Solver
 from validation.mechanics.geometry import Array
+from validation.pareto.contestants.exudyn import ExudynModel
+from validation.pareto.contestants.symofros import SymofrosModel
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
 from validation.pareto.scenes.four_bar import CLOSED
-from validation.pareto.sides.exudyn import Theirs
-from validation.pareto.sides.ours import Ours
 from validation.reporting.references import References
 
 END, OUTPUT = 0.03, 1e-3
@@ -27,8 +27,8 @@ TORQUE = 0.033
 @cache
 def known() -> dict[str, dict[str, float]]:
     """Angles of the hinges at the start and the end, of the IVP test set."""
-    found: dict[str, dict[str, float]] = References(Path(studies.__file__).parent / "data").data("iftomm")["andrews"]
-    return found
+    solution: dict[str, dict[str, float]] = References(Path(studies.__file__).parent / "data").data("iftomm")["andrews"]
+    return solution
 
 
 def system() -> sf.System:
@@ -45,25 +45,25 @@ def prepare(quick: bool) -> Prepared:
     """Published angles; a second way to solve for the accelerations at a tight tolerance."""
     rtols = (1e-4, 1e-8) if quick else (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
     steps = (1e-4,) if quick else (2e-4, 1e-4, 5e-5, 2e-5, 1e-5)
-    found: list[Contestant] = []
+    contestants: list[Contestant] = []
     agreement = 0.0
     for option, label in CLOSED.items():
         m = sf.compile(system(), sf.Options(constraints=option))  # type: ignore[arg-type]
         q0 = np.array([known()["start"][name] for name in m.names.q])
         given = {"q0": q0, "t_end": END, "output": TIMES}
-        one = Ours(f"{label}, projected", m, given, lambda run, m=m: far(run.q[-1], m.names.q))  # type: ignore[misc]
+        one = SymofrosModel(f"{label}, projected", m, given, lambda run, m=m: far(run.q[-1], m.names.q))  # type: ignore[misc]
         agreement = max(agreement, one.measured(method="dop853", rtol=1e-12, atol=1e-13).error)
-        found += one.by("dop853", rtols) + one.by("rk4", steps)
+        contestants += one.by("dop853", rtols) + one.by("rk4", steps)
         if quick:
             continue
-        held = Ours(f"{label}, Baumgarte", m, given | {"stabilisation": "baumgarte"}, one.judge)
-        found += one.by("dopri5", rtols) + held.by("dop853", rtols)
+        held = SymofrosModel(f"{label}, Baumgarte", m, given | {"stabilisation": "baumgarte"}, one.judge)
+        contestants += one.by("dopri5", rtols) + held.by("dop853", rtols)
         if label == "multipliers":
-            found += one.by("rodas4", rtols[:6]) + one.by("generalized_alpha", steps) + held.by("cvode", rtols)
-            found += one.by("semi_implicit_euler", steps) + one.by("implicit_euler", steps)
+            contestants += one.by("rodas4", rtols[:6]) + one.by("generalized_alpha", steps) + held.by("cvode", rtols)
+            contestants += one.by("semi_implicit_euler", steps) + one.by("implicit_euler", steps)
     start = known()["start"]
     order = m.names.q
-    exudyn = Theirs(
+    exudyn = ExudynModel(
         "absolute coordinates",
         looped(system(), start, TORQUE),
         END,
@@ -71,16 +71,16 @@ def prepare(quick: bool) -> Prepared:
         lambda r: far(joint_angles(system(), start, r.values)[-1], order),
     )
     coarse = (5e-5,) if quick else (1e-4, 5e-5, 2e-5, 1e-5, 5e-6)
-    found += exudyn.by(Solver(radius=0.9, tolerance=1e-8), coarse)
+    contestants += exudyn.by(Solver(radius=0.9, tolerance=1e-8), coarse)
     if not quick:
-        found += exudyn.by(Solver(radius=0.9, tolerance=1e-8, full=False), coarse)
-        found += exudyn.by(Solver(radius=1.0, tolerance=1e-8), coarse) + exudyn.by(Solver("RK44"), (1e-5,))
-        found += exudyn.by(Solver("TrapezoidalIndex2", tolerance=1e-8, bisecting=True), coarse)
-    words = (
+        contestants += exudyn.by(Solver(radius=0.9, tolerance=1e-8, full=False), coarse)
+        contestants += exudyn.by(Solver(radius=1.0, tolerance=1e-8), coarse) + exudyn.by(Solver("RK44"), (1e-5,))
+        contestants += exudyn.by(Solver("TrapezoidalIndex2", tolerance=1e-8, bisecting=True), coarse)
+    origin = (
         "the angles published with the IVP test set; and our dop853 at 1e-12, by multipliers and partitioned, of which "
         "the worse counts"
     )
-    return Prepared(tuple(found), agreement, words)
+    return Prepared(tuple(contestants), agreement, origin)
 
 
 SCENE = Scene(

@@ -18,10 +18,10 @@ from validation.adapters.pinocchio import steps as pinocchio_steps
 from validation.adapters.pinocchio import tree as pinocchio
 from validation.contract.interface import Subject, Unsupported
 from validation.mechanics.geometry import Array
+from validation.pareto.contestants.exudyn import ExudynModel
+from validation.pareto.contestants.mujoco import MujocoModel
+from validation.pareto.contestants.symofros import SymofrosModel, milliseconds
 from validation.pareto.scene import Contestant, Measured, Prepared, Scene, Target
-from validation.pareto.sides.exudyn import Theirs
-from validation.pareto.sides.mujoco import InMujoco
-from validation.pareto.sides.ours import Ours, milliseconds
 from validation.studies.simulation import DAMPING, STIFFNESS, TARGET
 from validation.timing.models import panda7
 
@@ -89,34 +89,34 @@ def far(q: Array) -> float:
     return float(np.abs(q - reference()).max())
 
 
-def ours() -> Ours:
+def judged_model() -> SymofrosModel:
     """Our side, with the law as formulas that are compiled."""
     m = sf.compile(system())
     joints = dict(zip(m.names.u, m.names.q, strict=True))
     law = {u: f"{STIFFNESS}*({TARGET} - {q}) - {DAMPING}*d{q}" for u, q in joints.items()}
-    return Ours(MODEL, m, {"q0": start(), "t_end": END, "u": law, "output": TIMES}, lambda run: far(run.q))
+    return SymofrosModel(MODEL, m, {"q0": start(), "t_end": END, "u": law, "output": TIMES}, lambda run: far(run.q))
 
 
-def ours_all(quick: bool) -> list[Contestant]:
+def symofros_all(quick: bool) -> list[Contestant]:
     """Every method."""
-    one = ours()
+    one = judged_model()
     rtols = (1e-5, 1e-8) if quick else (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
-    found = one.by("dop853", rtols)
+    contestants = one.by("dop853", rtols)
     # Finer bounds of the error than floats can tell make steps shorter, not better.
-    found += one.in_single_precision("dop853", (1e-4,) if quick else (1e-3, 1e-4, 1e-5, 1e-6))
+    contestants += one.in_single_precision("dop853", (1e-4,) if quick else (1e-3, 1e-4, 1e-5, 1e-6))
     if not quick:
-        found += one.in_single_precision("rk4", (1e-2, 5e-3, 2e-3, 1e-3, 5e-4))
+        contestants += one.in_single_precision("rk4", (1e-2, 5e-3, 2e-3, 1e-3, 5e-4))
     if quick:
-        return found
+        return contestants
     for method in ("dopri5", "rodas4", "cvode", "cvode_adams"):
-        found += one.by(method, rtols if method != "rodas4" else rtols[:6])
-    found += one.by("rk4", (1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2.5e-4))
+        contestants += one.by(method, rtols if method != "rodas4" else rtols[:6])
+    contestants += one.by("rk4", (1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2.5e-4))
     for method in ("euler", "semi_implicit_euler", "implicit_euler", "generalized_alpha", "variational"):
-        found += one.by(method, (5e-3, 1e-3, 2e-4))
-    return found
+        contestants += one.by(method, (5e-3, 1e-3, 2e-4))
+    return contestants
 
 
-def in_mujoco() -> InMujoco:
+def in_mujoco() -> MujocoModel:
     """MuJoCo's side."""
     made = possible(mujoco.build(subject()))
     assert isinstance(made, mujoco.MujocoEngine)
@@ -124,7 +124,7 @@ def in_mujoco() -> InMujoco:
     q0 = made.chart.coordinates(start()[None])[0]
     # Coordinates of hinges are those of the speeds: the chart's transform reorders both.
     order = made.chart.transform(start()[None])[0]
-    return InMujoco(MODEL, lambda _: m, q0, np.zeros(7), len(TIMES) - 1, OUTPUT, lambda q: far(q @ order))
+    return MujocoModel(MODEL, lambda _: m, q0, np.zeros(7), len(TIMES) - 1, OUTPUT, lambda q: far(q @ order))
 
 
 def mujoco_all(quick: bool) -> list[Contestant]:
@@ -132,10 +132,10 @@ def mujoco_all(quick: bool) -> list[Contestant]:
     one = in_mujoco()
     if quick:
         return one.by("RK4", (2e-3, 1e-3))
-    found = one.by("RK4", (1e-2, 5e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4))
+    contestants = one.by("RK4", (1e-2, 5e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4))
     for integrator in ("Euler", "implicit", "implicitfast"):
-        found += one.by(integrator, (5e-3, 1e-3, 2e-4))
-    return found
+        contestants += one.by(integrator, (5e-3, 1e-3, 2e-4))
+    return contestants
 
 
 def pinocchio_all(quick: bool) -> list[Contestant]:
@@ -165,14 +165,18 @@ def pinocchio_all(quick: bool) -> list[Contestant]:
 def exudyn_all(quick: bool) -> list[Contestant]:
     """A kinematic tree, which has no constraints, by explicit and implicit solvers."""
     made = exudyn_held(system(), start(), np.full(7, TARGET), STIFFNESS, DAMPING)
-    one = Theirs(MODEL, made, END, OUTPUT, lambda r: float(np.abs(r.values - motion()(np.minimum(r.t, END))).max()))
+    one = ExudynModel(
+        MODEL, made, END, OUTPUT, lambda r: float(np.abs(r.values - motion()(np.minimum(r.t, END))).max())
+    )
     if quick:
         return one.by(Solver("RK67"), (5e-3,))
-    found = one.by(Solver("RK44"), (1e-2, 5e-3, 2e-3, 1e-3)) + one.by(Solver("RK67"), (1e-2, 5e-3, 4e-3, 2e-3, 1e-3))
-    found += one.by(Solver("DOPRI5"), (1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10))
+    contestants = one.by(Solver("RK44"), (1e-2, 5e-3, 2e-3, 1e-3)) + one.by(
+        Solver("RK67"), (1e-2, 5e-3, 4e-3, 2e-3, 1e-3)
+    )
+    contestants += one.by(Solver("DOPRI5"), (1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10))
     for solver in (Solver(), Solver(full=False), Solver("TrapezoidalIndex2"), Solver(radius=1.0)):
-        found += one.by(solver, (5e-3, 1e-3))
-    return found
+        contestants += one.by(solver, (5e-3, 1e-3))
+    return contestants
 
 
 def prepare(quick: bool) -> Prepared:
@@ -180,8 +184,10 @@ def prepare(quick: bool) -> Prepared:
     h = 2.5e-4 if quick else 1e-4
     (tiny,) = in_mujoco().by("RK4", (h,))
     agreement = tiny.run().error
-    words = f"Pinocchio's articulated bodies in SciPy's DOP853 at 1e-12; and MuJoCo's RK4 with steps of {1e3 * h:g} ms"
-    return Prepared((*ours_all(quick), *mujoco_all(quick), *exudyn_all(quick), *pinocchio_all(quick)), agreement, words)
+    origin = f"Pinocchio's articulated bodies in SciPy's DOP853 at 1e-12; and MuJoCo's RK4 with steps of {1e3 * h:g} ms"
+    return Prepared(
+        (*symofros_all(quick), *mujoco_all(quick), *exudyn_all(quick), *pinocchio_all(quick)), agreement, origin
+    )
 
 
 SCENE = Scene(

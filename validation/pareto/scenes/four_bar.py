@@ -12,11 +12,11 @@ from validation.adapters.exudyn.scenes import bars
 from validation.adapters.exudyn.steps import Solver
 from validation.adapters.mujoco.steps import loaded
 from validation.mechanics.geometry import Array
+from validation.pareto.contestants.exudyn import ExudynModel
+from validation.pareto.contestants.mujoco import MujocoModel
+from validation.pareto.contestants.symofros import SymofrosModel
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
 from validation.pareto.scenes.closed_forms import turning
-from validation.pareto.sides.exudyn import Theirs
-from validation.pareto.sides.mujoco import InMujoco
-from validation.pareto.sides.ours import Ours
 from validation.stability.scenes import four_bars
 from validation.stability.scenes.soft_closures import DEFAULT, SOLIMP
 
@@ -38,25 +38,27 @@ def far(angle: Array) -> float:
     return float(np.abs(2.0 * np.sin((angle - reference()) / 2.0)).max())
 
 
-def ours_all(quick: bool) -> list[Contestant]:
+def symofros_all(quick: bool) -> list[Contestant]:
     """Both ways to solve, both ways to hold."""
     steps = (1e-2, 5e-3) if quick else (2e-2, 1e-2, 5e-3, 2e-3, 1e-3)
     rtols = (1e-6,) if quick else (1e-4, 1e-6, 1e-8, 1e-10)
-    found: list[Contestant] = []
+    contestants: list[Contestant] = []
     for option, label in CLOSED.items():
         m = sf.compile(four_bars.system(1), sf.Options(constraints=option))  # type: ignore[arg-type]
         q, v = four_bars.state(m, *four_bars.START)
         given: dict[str, Any] = {"q0": q, "v0": v, "t_end": END, "output": TIMES}
-        one = Ours(f"{label}, projected", m, given, lambda run: far(run["a0"]))
-        found += one.by("rk4", steps) + one.by("dop853", rtols)
+        one = SymofrosModel(f"{label}, projected", m, given, lambda run: far(run["a0"]))
+        contestants += one.by("rk4", steps) + one.by("dop853", rtols)
         if quick:
             continue
-        found += one.by("dopri5", rtols) + one.by("generalized_alpha", steps)
-        held = Ours(f"{label}, Baumgarte", m, given | {"stabilisation": "baumgarte"}, one.judge)
-        found += held.by("rk4", steps) + held.by("dop853", rtols)
+        contestants += one.by("dopri5", rtols) + one.by("generalized_alpha", steps)
+        held = SymofrosModel(f"{label}, Baumgarte", m, given | {"stabilisation": "baumgarte"}, one.judge)
+        contestants += held.by("rk4", steps) + held.by("dop853", rtols)
         if label == "multipliers":
-            found += one.by("rodas4", rtols) + one.by("semi_implicit_euler", steps) + one.by("implicit_euler", steps)
-    return found
+            contestants += (
+                one.by("rodas4", rtols) + one.by("semi_implicit_euler", steps) + one.by("implicit_euler", steps)
+            )
+    return contestants
 
 
 def mujoco_all(quick: bool) -> list[Contestant]:
@@ -65,28 +67,30 @@ def mujoco_all(quick: bool) -> list[Contestant]:
     _, v = four_bars.state(m, *four_bars.START)
     start = four_bars.START[0]
 
-    def side(label: str, stiff: bool) -> InMujoco:
+    def side(label: str, stiff: bool) -> MujocoModel:
         def model(h: float) -> Any:
             solref, solimp = (f"{2 * h!r} 1", SOLIMP) if stiff else DEFAULT
             return loaded(four_bars.mjcf(1, "RK4", h, solref, solimp))
 
-        return InMujoco(label, model, np.zeros(m.nq), v, len(TIMES) - 1, OUTPUT, lambda q: far(start + q[:, 0]))
+        return MujocoModel(label, model, np.zeros(m.nq), v, len(TIMES) - 1, OUTPUT, lambda q: far(start + q[:, 0]))
 
     steps = (1e-3, 5e-4) if quick else (5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)
-    found = side("stiff closures", True).by("RK4", steps)
+    contestants = side("stiff closures", True).by("RK4", steps)
     if quick:
-        return found
+        return contestants
     for integrator in ("Euler", "implicit", "implicitfast"):
-        found += side("stiff closures", True).by(integrator, steps[1:5])
-    return found + side("default closures", False).by("RK4", steps[:4])
+        contestants += side("stiff closures", True).by(integrator, steps[1:5])
+    return contestants + side("default closures", False).by("RK4", steps[:4])
 
 
 def exudyn_all(quick: bool) -> list[Contestant]:
     """Bodies in absolute coordinates."""
     made = bars(four_bars.links(1), HINGES, (0, 1))
-    one = Theirs("absolute coordinates", made, END, OUTPUT, lambda r: far(np.arctan2(r.values[:, 1], r.values[:, 0])))
+    one = ExudynModel(
+        "absolute coordinates", made, END, OUTPUT, lambda r: far(np.arctan2(r.values[:, 1], r.values[:, 0]))
+    )
     steps = (5e-3,) if quick else (1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)
-    found = one.by(Solver(tolerance=1e-8, bisecting=True), steps)
+    contestants = one.by(Solver(tolerance=1e-8, bisecting=True), steps)
     if not quick:
         for solver in (
             Solver(tolerance=1e-8),
@@ -94,19 +98,19 @@ def exudyn_all(quick: bool) -> list[Contestant]:
             Solver(tolerance=1e-8, full=False, bisecting=True),
             Solver("TrapezoidalIndex2", tolerance=1e-8, bisecting=True),
         ):
-            found += one.by(solver, steps)
-        found += one.by(Solver("RK44"), (1e-3,))
-    return found
+            contestants += one.by(solver, steps)
+        contestants += one.by(Solver("RK44"), (1e-3,))
+    return contestants
 
 
 def prepare(quick: bool) -> Prepared:
     """The closed form, and SciPy's DOP853 on the reduced equation."""
     solved = four_bars.exact(1, tuple(TIMES.tolist()))[0]
-    words = (
+    origin = (
         "the closed form of the motion as a parallelogram, by elliptic functions; and SciPy's DOP853 at 1e-13 on its "
         "reduced equation"
     )
-    return Prepared((*ours_all(quick), *mujoco_all(quick), *exudyn_all(quick)), far(solved), words)
+    return Prepared((*symofros_all(quick), *mujoco_all(quick), *exudyn_all(quick)), far(solved), origin)
 
 
 SCENE = Scene(

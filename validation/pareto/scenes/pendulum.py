@@ -9,11 +9,11 @@ from validation.adapters.exudyn.scenes import pendulum as exudyn_pendulum
 from validation.adapters.exudyn.steps import Solver
 from validation.adapters.mujoco.steps import loaded
 from validation.mechanics.geometry import Array
+from validation.pareto.contestants.exudyn import ExudynModel
+from validation.pareto.contestants.mujoco import MujocoModel
+from validation.pareto.contestants.symofros import SymofrosModel
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
 from validation.pareto.scenes.closed_forms import swinging
-from validation.pareto.sides.exudyn import Theirs
-from validation.pareto.sides.mujoco import InMujoco
-from validation.pareto.sides.ours import Ours
 from validation.stability.scenes import energy
 
 END, OUTPUT, GRAVITY = 1000.0, 1.0, 9.81
@@ -37,30 +37,34 @@ def prepare(quick: bool) -> Prepared:
         lambda t, y: [y[1], GRAVITY * np.cos(y[0])], (0, END), [0.0, 0.0], "DOP853", TIMES, rtol=1e-13, atol=1e-13
     )
     given = {"q0": [0.0], "t_end": END, "output": TIMES}
-    one = Ours(MODEL, energy.pendulum(), given, lambda run: far(run.q[:, 0]))
+    one = SymofrosModel(MODEL, energy.pendulum(), given, lambda run: far(run.q[:, 0]))
     rtols = (1e-8,) if quick else (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
-    found: list[Contestant] = one.by("dop853", rtols)
+    contestants: list[Contestant] = one.by("dop853", rtols)
     model = loaded(mjcf())
-    mujoco = InMujoco(MODEL, lambda _: model, np.zeros(1), np.zeros(1), len(TIMES) - 1, OUTPUT, lambda q: far(q[:, 0]))
-    exudyn = Theirs(MODEL, exudyn_pendulum(GRAVITY), END, OUTPUT, lambda r: far(r.values[:, 0], r.t))
+    mujoco = MujocoModel(
+        MODEL, lambda _: model, np.zeros(1), np.zeros(1), len(TIMES) - 1, OUTPUT, lambda q: far(q[:, 0])
+    )
+    exudyn = ExudynModel(MODEL, exudyn_pendulum(GRAVITY), END, OUTPUT, lambda r: far(r.values[:, 0], r.t))
     if quick:
-        found += mujoco.by("RK4", (1e-2,)) + exudyn.by(Solver("RK44"), (2e-2,))
+        contestants += mujoco.by("RK4", (1e-2,)) + exudyn.by(Solver("RK44"), (2e-2,))
     else:
         for method in ("dopri5", "rodas4", "cvode", "cvode_adams"):
-            found += one.by(method, rtols if method == "dopri5" else rtols[:6])
-        found += one.by("rk4", (0.05, 0.02, 0.01, 5e-3, 2e-3))
+            contestants += one.by(method, rtols if method == "dopri5" else rtols[:6])
+        contestants += one.by("rk4", (0.05, 0.02, 0.01, 5e-3, 2e-3))
         for method in ("variational", "semi_implicit_euler", "generalized_alpha"):
-            found += one.by(method, (0.02, 5e-3, 1e-3))
-        found += one.by("euler", (1e-3,)) + one.by("implicit_euler", (1e-3,))
-        found += mujoco.by("RK4", (0.05, 0.02, 0.01, 5e-3, 2e-3))
+            contestants += one.by(method, (0.02, 5e-3, 1e-3))
+        contestants += one.by("euler", (1e-3,)) + one.by("implicit_euler", (1e-3,))
+        contestants += mujoco.by("RK4", (0.05, 0.02, 0.01, 5e-3, 2e-3))
         for integrator in ("Euler", "implicit", "implicitfast"):
-            found += mujoco.by(integrator, (0.01, 1e-3))
-        found += exudyn.by(Solver("RK44"), (0.05, 0.02, 0.01))
-        found += exudyn.by(Solver("RK67"), (0.1, 0.05, 0.04, 0.025, 0.02))
-        found += exudyn.by(Solver("DOPRI5"), (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10))
-        found += exudyn.by(Solver(radius=1.0), (0.02, 5e-3)) + exudyn.by(Solver("TrapezoidalIndex2"), (0.02, 5e-3))
-    words = "the closed form, by elliptic functions; and SciPy's DOP853 at 1e-13 on the equation of the pendulum"
-    return Prepared(tuple(found), far(run.y[0]), words)
+            contestants += mujoco.by(integrator, (0.01, 1e-3))
+        contestants += exudyn.by(Solver("RK44"), (0.05, 0.02, 0.01))
+        contestants += exudyn.by(Solver("RK67"), (0.1, 0.05, 0.04, 0.025, 0.02))
+        contestants += exudyn.by(Solver("DOPRI5"), (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10))
+        contestants += exudyn.by(Solver(radius=1.0), (0.02, 5e-3)) + exudyn.by(
+            Solver("TrapezoidalIndex2"), (0.02, 5e-3)
+        )
+    origin = "the closed form, by elliptic functions; and SciPy's DOP853 at 1e-13 on the equation of the pendulum"
+    return Prepared(tuple(contestants), far(run.y[0]), origin)
 
 
 SCENE = Scene(

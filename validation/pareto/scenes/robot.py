@@ -14,9 +14,9 @@ from validation.adapters.exudyn.planar import Cable
 from validation.adapters.exudyn.scenes import planar
 from validation.adapters.exudyn.steps import Solver
 from validation.mechanics.geometry import Array
+from validation.pareto.contestants.exudyn import ExudynModel
+from validation.pareto.contestants.symofros import SymofrosModel
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
-from validation.pareto.sides.exudyn import Theirs
-from validation.pareto.sides.ours import Ours
 from validation.timing.flexible.equal_accuracy import EA
 
 END, OUTPUT = 2.0, 0.02
@@ -46,11 +46,11 @@ def _body(body: sf.Body, count: int, changed: dict[str, Any]) -> sf.Body:
     return replace(body, joint=replace(body.joint, elements=(sf.Spring(stiffness, rest), sf.Damper(damping))))
 
 
-def exudyn(elements: int) -> Theirs:
+def exudyn(elements: int) -> ExudynModel:
     """Exudyn's model, whose strips stretch as steel does."""
     cables = {name: Cable(elements, stiffness) for name, stiffness in EA.items()}
     label = f"{elements} element{'s' * (elements > 1)} a strip"
-    return Theirs(label, planar(system(3), START, cables, TOOL), END, OUTPUT, lambda r: far(r.values[:, :2]))
+    return ExudynModel(label, planar(system(3), START, cables, TOOL), END, OUTPUT, lambda r: far(r.values[:, :2]))
 
 
 def path(m: sf.Model, **settings: Any) -> Array:
@@ -84,10 +84,10 @@ def far(tool: Array) -> float:
     return float(np.linalg.norm(tool - reference(), axis=1).max()) / size()
 
 
-def ours(label: str, m: sf.Model) -> Ours:
+def judged_model(label: str, m: sf.Model) -> SymofrosModel:
     """A model of ours, to be judged by its tool."""
     given = {"q0": first(m), "t_end": END, "output": TIMES}
-    return Ours(label, m, given, lambda run: far(run.frames["tool"][0][:, :2]))
+    return SymofrosModel(label, m, given, lambda run: far(run.frames["tool"][0][:, :2]))
 
 
 def splines(count: int) -> str:
@@ -97,20 +97,22 @@ def splines(count: int) -> str:
 
 def prepare(quick: bool) -> Prepared:
     """References first."""
-    first_order = ours("4 splines", sf.compile(system(4))).measured(method="rodas4", rtol=1e-8, atol=1e-10).error
+    first_order = (
+        judged_model("4 splines", sf.compile(system(4))).measured(method="rodas4", rtol=1e-8, atol=1e-10).error
+    )
     all_terms = far(path(sf.compile(system(4, retain="all")), method="rodas4", rtol=1e-8, atol=1e-10))
-    found: list[Contestant] = []
+    contestants: list[Contestant] = []
     rtols = (1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
     retained = {"": "first_order", ", all terms": "all"}
     for label, retain in retained.items():
         for count in (2,) if quick else (1, 2, 3):
-            one = ours(f"{splines(count)}{label}", sf.compile(system(count, retain=retain)))
-            found += one.by("rodas4", rtols) + one.by("generalized_alpha", (0.02, 0.01, 5e-3, 2e-3, 1e-3))
-            found += [] if quick else one.by("rk4", (2e-3, 1e-3, 5e-4, 2e-4))
+            one = judged_model(f"{splines(count)}{label}", sf.compile(system(count, retain=retain)))
+            contestants += one.by("rodas4", rtols) + one.by("generalized_alpha", (0.02, 0.01, 5e-3, 2e-3, 1e-3))
+            contestants += [] if quick else one.by("rk4", (2e-3, 1e-3, 5e-4, 2e-4))
             if count == 2 and not quick:
-                found += one.by("dop853", rtols[1:4]) + one.by("dopri5", rtols[1:4]) + one.by("cvode", rtols)
-                found += one.by("implicit_euler", (5e-3, 1e-3, 2e-4))
-                found += one.by("semi_implicit_euler", (2e-3, 1e-3, 5e-4, 2e-4, 1e-4))
+                contestants += one.by("dop853", rtols[1:4]) + one.by("dopri5", rtols[1:4]) + one.by("cvode", rtols)
+                contestants += one.by("implicit_euler", (5e-3, 1e-3, 2e-4))
+                contestants += one.by("semi_implicit_euler", (2e-3, 1e-3, 5e-4, 2e-4, 1e-4))
     if not quick:
         changes: dict[str, dict[str, Any]] = {
             "2 splines, zeroth order": {"retain": "zeroth_order"},
@@ -118,25 +120,25 @@ def prepare(quick: bool) -> Prepared:
             "2 Hermite": {"family": "hermite"},
         }
         for label, change in changes.items():
-            one = ours(label, sf.compile(system(2, **change)))
-            found += one.by("rodas4", rtols[:4]) + one.by("generalized_alpha", (0.02, 0.01, 5e-3))
-        found += ours("rigid strips", sf.compile(system(0))).by("rk4", (0.02, 0.01))
+            one = judged_model(label, sf.compile(system(2, **change)))
+            contestants += one.by("rodas4", rtols[:4]) + one.by("generalized_alpha", (0.02, 0.01, 5e-3))
+        contestants += judged_model("rigid strips", sf.compile(system(0))).by("rk4", (0.02, 0.01))
     for elements in (1, 2) if quick else (1, 2, 3, 4):
         steps = (0.01, 2e-3) if quick else (0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4)
-        found += exudyn(elements).by(Solver(tolerance=TOLERANCE), steps)
+        contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE), steps)
         if not quick:
-            found += exudyn(elements).by(Solver(tolerance=TOLERANCE, full=False), steps)
-            found += exudyn(elements).by(Solver(tolerance=TOLERANCE, full=False, sparse=True), steps[1:5])
-            found += exudyn(elements).by(Solver(tolerance=TOLERANCE, radius=0.6), steps[:4])
+            contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE, full=False), steps)
+            contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE, full=False, sparse=True), steps[1:5])
+            contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE, radius=0.6), steps[:4])
     if not quick:
-        found += exudyn(1).by(Solver("TrapezoidalIndex2", tolerance=TOLERANCE), (5e-3, 1e-3))
-        found += exudyn(1).by(Solver("RK44"), (1e-4,))
-    words = (
+        contestants += exudyn(1).by(Solver("TrapezoidalIndex2", tolerance=TOLERANCE), (5e-3, 1e-3))
+        contestants += exudyn(1).by(Solver("RK44"), (1e-4,))
+    origin = (
         f"Exudyn, {FINE} ANCFCable2D elements a strip, extrapolated from steps of {1e3 * FINE_STEP:g} and "
         f"{500 * FINE_STEP:g} ms; and, sharing no code with it, our model of 4 splines with all terms by rodas4 at "
         "1e-8: their distance counts what the theory leaves, too"
     )
-    return Prepared(tuple(found), all_terms, words, {"first order": first_order, "all terms": all_terms})
+    return Prepared(tuple(contestants), all_terms, origin, {"first order": first_order, "all terms": all_terms})
 
 
 SCENE = Scene(

@@ -46,16 +46,16 @@ def linked(rod: Rod, times: Array, links: int) -> Array:
     # The fastest vibration of the chain is near 4 sqrt(EI/(rhoA h^4)).
     interval = float(times[1] - times[0])
     parts = int(np.ceil(interval * 4.0 * np.sqrt(rod.EI / rod.rhoA) / h**2 / 1.5))
-    dt, y, found = interval / parts, np.zeros((2, links)), []
+    dt, y, angles_of_links = interval / parts, np.zeros((2, links)), []
     for t in times[:-1]:
-        found.append(y[0])
+        angles_of_links.append(y[0])
         for part in range(parts):
             s = float(t) + part * dt
             k1 = rate(s, y)
             k2 = rate(s + dt / 2, y + dt / 2 * k1)
             k3 = rate(s + dt / 2, y + dt / 2 * k2)
             y = y + dt / 6 * (k1 + 2 * k2 + 2 * k3 + rate(s + dt, y + dt * k3))
-    angles = np.array([*found, y[0]]) - rod.angle(times)[:, None]
+    angles = np.array([*angles_of_links, y[0]]) - rod.angle(times)[:, None]
     spin = rod.rate / rod.duration * (times - np.sin(2 * np.pi * times / rod.duration) * rod.duration / (2 * np.pi))
     stretch = rod.rhoA * spin**2 * rod.length**3 / (3.0 * rod.EA)
     along = h * np.cos(angles).sum(axis=1) - rod.length + stretch * np.cos(angles[:, -1])

@@ -12,10 +12,10 @@ import symofros as sf
 from validation.adapters.exudyn.scenes import Rod, spinning
 from validation.adapters.exudyn.steps import Recorded, Solver
 from validation.mechanics.geometry import Array
+from validation.pareto.contestants.exudyn import ExudynModel
+from validation.pareto.contestants.symofros import SymofrosModel
 from validation.pareto.scene import Contestant, Prepared, Scene, Target
 from validation.pareto.scenes import rod
-from validation.pareto.sides.exudyn import Theirs
-from validation.pareto.sides.ours import Ours
 
 ROD = Rod(length=10.0, EI=1.4e4, EA=2.8e7, rhoA=1.2, duration=15.0, rate=6.0)
 RHO_I = 6e-4  # Moment of inertia of sections per length [kg m].
@@ -61,10 +61,10 @@ def reference() -> Array:
     return np.asarray((4.0 * seen_from_hub(fine.values) - seen_from_hub(coarse.values)) / 3.0)
 
 
-def ours(label: str, m: sf.Model) -> Ours:
+def judged_model(label: str, m: sf.Model) -> SymofrosModel:
     """A model of ours, to be judged by its tip."""
     given = {"t_end": END, "u": DRIVE, "output": TIMES}
-    return Ours(label, m, given, lambda run: far(seen_from_hub(run.frames["tip"][0]), reference()))
+    return SymofrosModel(label, m, given, lambda run: far(seen_from_hub(run.frames["tip"][0]), reference()))
 
 
 def modes(n: int) -> str:
@@ -72,25 +72,25 @@ def modes(n: int) -> str:
     return f"{n} mode{'s' * (n > 1)}"
 
 
-def ours_all(quick: bool) -> list[Contestant]:
+def symofros_all(quick: bool) -> list[Contestant]:
     """Modes, families, what is left out; every method on three modes."""
     steps = (0.05, 0.02) if quick else (0.1, 0.05, 0.04, 0.03, 0.025, 0.02, 0.01)
     rtols = (1e-4,) if quick else (1e-2, 1e-3, 1e-4, 1e-5, 1e-7)
-    found: list[Contestant] = []
+    contestants: list[Contestant] = []
     counts = (1, 3) if quick else (1, 2, 3, 4)
     for n in counts:
-        one = ours(modes(n), model(n))
-        found += one.by("rk4", steps) + one.by("semi_implicit_euler", steps[-3:] + (5e-3, 2.5e-3)[: 3 - quick])
-        found += one.by("generalized_alpha", steps) + one.by("dopri5", rtols)
+        one = judged_model(modes(n), model(n))
+        contestants += one.by("rk4", steps) + one.by("semi_implicit_euler", steps[-3:] + (5e-3, 2.5e-3)[: 3 - quick])
+        contestants += one.by("generalized_alpha", steps) + one.by("dopri5", rtols)
         if n == 3 and not quick:
-            found += one.by("dop853", rtols) + one.by("cvode", rtols) + one.by("cvode_adams", rtols)
-            found += one.by("rodas4", rtols) + one.by("implicit_euler", (0.02, 5e-3, 1e-3))
-            found += one.by("euler", (1e-3, 2e-4)) + one.by("variational", (0.02,))
+            contestants += one.by("dop853", rtols) + one.by("cvode", rtols) + one.by("cvode_adams", rtols)
+            contestants += one.by("rodas4", rtols) + one.by("implicit_euler", (0.02, 5e-3, 1e-3))
+            contestants += one.by("euler", (1e-3, 2e-4)) + one.by("variational", (0.02,))
     if quick:
-        return found
+        return contestants
     for family in ("spline", "legendre", "polynomial", "hermite"):
         n = 2 if family == "hermite" else 3
-        found += ours(f"{modes(n)}, {family}", model(n, family=family)).by("rk4", (0.02, 0.01, 5e-3))
+        contestants += judged_model(f"{modes(n)}, {family}", model(n, family=family)).by("rk4", (0.02, 0.01, 5e-3))
     changes: dict[str, dict[str, Any]] = {
         "3 modes, zeroth order": {"retain": "zeroth_order"},
         "3 modes, all terms": {"retain": "all"},
@@ -98,28 +98,28 @@ def ours_all(quick: bool) -> list[Contestant]:
         "3 modes, not foreshortened": {"foreshortening": False, "retain": "all"},
     }
     for label, change in changes.items():
-        found += ours(label, model(3, **change)).by("rk4", (0.025, 0.02, 0.01))
-    return found
+        contestants += judged_model(label, model(3, **change)).by("rk4", (0.025, 0.02, 0.01))
+    return contestants
 
 
-def theirs_all(quick: bool) -> list[Contestant]:
+def exudyn_all(quick: bool) -> list[Contestant]:
     """Meshes, steps, both kinds of Newton's method, and both of its implicit solvers."""
-    found: list[Contestant] = []
+    contestants: list[Contestant] = []
     if quick:
-        return Theirs("4 elements", spinning(ROD, 4), END, OUTPUT, judged).by(
+        return ExudynModel("4 elements", spinning(ROD, 4), END, OUTPUT, judged).by(
             Solver(tolerance=TOLERANCE), (0.025, 5e-3)
         )
     for elements in (2, 3, 4, 6, 8, 16):
-        one = Theirs(f"{elements} elements", spinning(ROD, elements), END, OUTPUT, judged)
+        one = ExudynModel(f"{elements} elements", spinning(ROD, elements), END, OUTPUT, judged)
         steps = (0.05, 0.025, 0.02, 0.0125, 0.01, 5e-3, 2.5e-3)
-        found += one.by(Solver(tolerance=TOLERANCE), steps[:5] if elements < 8 else steps[2:6])
-        found += one.by(Solver(tolerance=TOLERANCE, full=False), steps[2:])
-        found += one.by(Solver(tolerance=TOLERANCE, full=False, sparse=True), steps[3:]) if elements >= 8 else []
-    four = Theirs("4 elements", spinning(ROD, 4), END, OUTPUT, judged)
+        contestants += one.by(Solver(tolerance=TOLERANCE), steps[:5] if elements < 8 else steps[2:6])
+        contestants += one.by(Solver(tolerance=TOLERANCE, full=False), steps[2:])
+        contestants += one.by(Solver(tolerance=TOLERANCE, full=False, sparse=True), steps[3:]) if elements >= 8 else []
+    four = ExudynModel("4 elements", spinning(ROD, 4), END, OUTPUT, judged)
     for radius in (0.5, 0.7):
-        found += four.by(Solver(tolerance=TOLERANCE, radius=radius), (0.05, 0.025, 0.0125, 5e-3))
-    found += four.by(Solver("TrapezoidalIndex2", tolerance=TOLERANCE), (5e-3,))
-    return found + four.by(Solver("RK44"), (1e-3,))
+        contestants += four.by(Solver(tolerance=TOLERANCE, radius=radius), (0.05, 0.025, 0.0125, 5e-3))
+    contestants += four.by(Solver("TrapezoidalIndex2", tolerance=TOLERANCE), (5e-3,))
+    return contestants + four.by(Solver("RK44"), (1e-3,))
 
 
 def judged(recorded: Recorded) -> float:
@@ -132,15 +132,15 @@ def prepare(quick: bool) -> Prepared:
     links = 8 if quick else 16
     agreement = far(rod.tip(ROD, TIMES, links), reference())
     floors = {
-        name: ours(name, model(5, retain=retain)).measured(method="dop853", rtol=1e-9, atol=1e-11).error
+        name: judged_model(name, model(5, retain=retain)).measured(method="dop853", rtol=1e-9, atol=1e-11).error
         for name, retain in (("first order", "first_order"), ("all terms", "all"))
     }
-    words = (
+    origin = (
         f"Exudyn, {FINE} ANCFCable2D elements, extrapolated from steps of {1e3 * FINE_STEP:g} and "
         f"{500 * FINE_STEP:g} ms; and a rod of rigid links with springs between them, extrapolated from {links} and "
         f"{2 * links} links, with the stretch added, by a program that shares nothing with it"
     )
-    return Prepared((*ours_all(quick), *theirs_all(quick)), agreement, words, floors)
+    return Prepared((*symofros_all(quick), *exudyn_all(quick)), agreement, origin, floors)
 
 
 SCENE = Scene(

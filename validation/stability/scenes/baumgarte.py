@@ -80,7 +80,7 @@ def limit(method: str) -> Limit:
 
 
 def judge(maps: Maps) -> Verdict:
-    """From the edges of the maps, and from edges found by bisection."""
+    """From the edges of the maps, and from edges runs by bisection."""
     steps = np.array([1e-2, 1e-3, 1e-4])
     edges = np.array([largest("rk4", h) for h in steps])
     gaps = REAL["rk4"] / edges - 1.0
@@ -106,11 +106,11 @@ def judge(maps: Maps) -> Verdict:
         + [
             Finding(
                 f"{method}: factor by which α h = {REAL[method]:.3f} misses the edge of its map",
-                found.miss("y", lambda h, m=method: REAL[m] / h),  # type: ignore[misc]
+                runs.miss("y", lambda h, m=method: REAL[m] / h),  # type: ignore[misc]
                 1.25,
                 reason="a step of the grid, and the square-root gap",
             )
-            for method, found in maps.items()
+            for method, runs in maps.items()
             if method != "euler"  # Which fails at small gains, too: it has two edges.
         ]
         + [

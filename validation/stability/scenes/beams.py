@@ -47,16 +47,16 @@ def strip(modes: int) -> sf.Model:
 def frequencies(modes: int) -> Array:
     """Of the model (modes) [rad/s]."""
     m = strip(modes)
-    found: Array = sf.modes(m, np.zeros(modes)).frequencies
-    return found
+    frequencies: Array = sf.modes(m, np.zeros(modes)).frequencies
+    return frequencies
 
 
 def growth(run: sf.Trajectory) -> float:
     """Largest energy of the second half over the energy at the start."""
     with np.errstate(over="ignore", invalid="ignore"):
-        found = float(np.max(run.energy[len(run) // 2 :]) / run.energy[0])
+        ratio = float(np.max(run.energy[len(run) // 2 :]) / run.energy[0])
     # Kinetic and potential energy may both overflow while speeds do not yet.
-    return found if np.isfinite(found) else np.inf
+    return ratio if np.isfinite(ratio) else np.inf
 
 
 def ring(modes: int, method: str, h: float, c: float = 0.0) -> sf.Trajectory:
@@ -161,8 +161,8 @@ def judge(maps: Maps) -> Verdict:
 
 def judge_damped(maps: Maps) -> Verdict:
     """The edge against the exact stability boundary."""
-    found = maps["rk4"]
-    missed = found.miss("y", closed_form)
+    runs = maps["rk4"]
+    missed = runs.miss("y", closed_form)
     heavy = float(RETARDATION.values[-3])
     edge = longest(lambda h: ring(3, "rk4", h, heavy), closed_form(heavy) / 2, closed_form(heavy) * 2)
     omega = float(frequencies(3)[-1])
@@ -194,7 +194,7 @@ def judge_damped(maps: Maps) -> Verdict:
         f"{closed_form(RETARDATION.values[0]):.4f} s with c = {RETARDATION.values[0]:g} s, {closed_form(best):.4f} "
         f"s at best (c = {best:.2g} s), and from c = 2/ω_max = {2 / omega:.2g} s on it falls as 2.785/(c ω_max²), "
         f"to {closed_form(RETARDATION.values[-1]):.1e} s with c = {RETARDATION.values[-1]:g} s. Of RK4's "
-        f"{found.values.size} runs {found.stopped} diverge. Implicit Euler holds in "
+        f"{runs.values.size} runs {runs.stopped} diverge. Implicit Euler holds in "
         f"{maps['implicit_euler'].good.mean():.0%}."
     )
     see = (

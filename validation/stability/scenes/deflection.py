@@ -44,19 +44,19 @@ def measure(name: str) -> Callable[[float, float], Cell]:
     return run
 
 
-def reach(found: Map, row: int) -> float:
+def reach(runs: Map, row: int) -> float:
     """The flexibility up to which a row is good."""
-    line = found.good[row]
+    line = runs.good[row]
     last = len(line) if line.all() else int(np.argmin(line))
-    return float(found.x[last - 1]) if last else 0.0
+    return float(runs.x[last - 1]) if last else 0.0
 
 
 def judge(maps: Maps) -> Verdict:
     """Where each model leaves the rod."""
     excess = 0.0
-    for name, found in maps.items():
+    for name, runs in maps.items():
         key = next(k for k, words in WORDS.items() if words == name)
-        known = [(row_of(float(g)), v) for g, v in zip(found.x, found.at(y=3.0), strict=True)]
+        known = [(row_of(float(g)), v) for g, v in zip(runs.x, runs.at(y=3.0), strict=True)]
         # At two seconds the error is one of those whose largest is known.
         excess = max(
             [
@@ -94,7 +94,7 @@ def judge(maps: Maps) -> Verdict:
         f"of L up to ρA g L³/EI = {softest:g}, where the beam bends by {bends:.2f} L, with one mode up to {one:g}. "
         f"Without foreshortening the limit is {stiffest:g}, and beyond it the model breaks down: its largest error "
         f"is {np.nanmax(without.values):.1e} m, {without.stopped} runs stop. No number of modes helps beyond the "
-        f"edge; {sum(found.wrong for found in maps.values())} runs come to their end and miss, which only the "
+        f"edge; {sum(runs.wrong for runs in maps.values())} runs come to their end and miss, which only the "
         "deflection tells."
     )
     see = (

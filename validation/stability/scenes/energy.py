@@ -70,8 +70,8 @@ def judge(maps: Maps) -> Verdict:
     factors = []
     for row in data("pendulum")["energy"]:
         if row["method"] != "explicit_euler" and row["h"] >= 5e-3:
-            found = 9.81 * excursion(swing(row["method"], row["h"], round(100 / row["h"])))
-            factors.append(max(found / row["max_dE_100s"], row["max_dE_100s"] / found))
+            change = 9.81 * excursion(swing(row["method"], row["h"], round(100 / row["h"])))
+            factors.append(max(change / row["max_dE_100s"], row["max_dE_100s"] / change))
     level = ["semi_implicit_euler", "variational"]
     findings = [
         Finding(

@@ -105,8 +105,8 @@ def judge(maps: Maps) -> Verdict:
     rows = [row for row in data("euler_angles")["rows"] if row["min_cos_pitch"] in (0.3, 0.1, 0.01)]
     factors = []
     for row in rows:
-        found = textbook(row["min_cos_pitch"], 0.01).value
-        factors.append(max(found / row["err_rk4_h0p01"], row["err_rk4_h0p01"] / found))
+        error = textbook(row["min_cos_pitch"], 0.01).value
+        factors.append(max(error / row["err_rk4_h0p01"], row["err_rk4_h0p01"] / error))
     far, near = effort(by_angles(), 0.3), effort(by_angles(), 1e-4)
     steady = effort(by_quaternion(), 0.3), effort(by_quaternion(), 1e-4)
     spread = float(np.ptp(np.log10(np.maximum(quaternion.values, 1e-16)), axis=1).max())

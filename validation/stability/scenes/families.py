@@ -33,8 +33,8 @@ def frequency(m: sf.Model) -> float:
     """Relative error of the first frequency, from M and K as they are."""
     zero = np.zeros(m.nv)
     K, _ = m.inverse_dynamics_derivatives(zero, zero, zero)
-    found = np.linalg.eigvals(np.linalg.solve(m.mass_matrix(zero), (K + K.T) / 2))
-    lowest = np.sqrt(np.abs(found.real).min())
+    squares = np.linalg.eigvals(np.linalg.solve(m.mass_matrix(zero), (K + K.T) / 2))
+    lowest = np.sqrt(np.abs(squares.real).min())
     return float(abs(lowest / 3.5160152685001513 - 1.0))
 
 

@@ -151,40 +151,40 @@ def acceleration(angle: float, inertia: float) -> Cell:
     """Relative error of the accelerations under a unit torque on the second hinge, against fifty digits."""
     a = math.radians(angle)
     m = cross().with_parameters(a=a, J=inertia)
-    found = m.forward_dynamics(np.zeros(2), np.zeros(2), np.ones(1))
+    accelerations = m.forward_dynamics(np.zeros(2), np.zeros(2), np.ones(1))
     with mpmath.workdps(50):
         c, s, J = mpmath.cos(a), mpmath.sin(a), mpmath.mpf(inertia)
         determinant = J + s * s
         exact = np.array([float(-c / determinant), float((1 + J) / determinant)])
-    if not np.isfinite(found).all():
+    if not np.isfinite(accelerations).all():
         return Cell(math.nan, "singular", "accelerations are not finite")
-    return Cell(float(np.abs(found - exact).max() / np.abs(exact).max()))
+    return Cell(float(np.abs(accelerations - exact).max() / np.abs(exact).max()))
 
 
 def condition(degrees: float) -> float:
     """Of M, massless cross."""
-    found: Array = cross().with_parameters(a=math.radians(degrees), J=0.0).mass_matrix(np.zeros(2))
-    return float(np.linalg.cond(found))
+    mass_matrix: Array = cross().with_parameters(a=math.radians(degrees), J=0.0).mass_matrix(np.zeros(2))
+    return float(np.linalg.cond(mass_matrix))
 
 
 def judge_cross(maps: Maps) -> Verdict:
     """Errors against the condition."""
-    (found,) = maps.values()
+    (runs,) = maps.values()
     apart = max(abs(condition(row["axis_angle_deg"]) / row["cond"] - 1) for row in data("massless")["cross"])
-    bare = found.at(y=0.0)
-    first = max((float(x) for x, ok in zip(found.x, found.good[0], strict=True) if not ok), default=0.0)
-    scaled = float((bare * np.radians(found.x) ** 2)[~np.isnan(bare)].max())
+    bare = runs.at(y=0.0)
+    first = max((float(x) for x, ok in zip(runs.x, runs.good[0], strict=True) if not ok), default=0.0)
+    scaled = float((bare * np.radians(runs.x) ** 2)[~np.isnan(bare)].max())
     findings = (
         Finding("condition of M against the known one, relative", apart, 1e-6, reason="(1 + cos a)/(1 - cos a)"),
         Finding("massless cross: largest error times a²", scaled, 1e-14, reason="rounding times the condition, 4/a²"),
-        Finding("right angle, massless cross: error", float(found.at(x=90.0, y=0.0)[0]), 1e-14, reason="rounding"),
+        Finding("right angle, massless cross: error", float(runs.at(x=90.0, y=0.0)[0]), 1e-14, reason="rounding"),
     )
     words = (
         "A massless cross is legal: the body behind it bears both hinges. As they become parallel the mass matrix "
         f"degenerates as 4/a², and digits go with it: at 1 degree, a condition of {condition(1.0):.0f}, nothing is "
         f"lost that matters; {'from ' + format(first, '.1e') + ' degrees down' if first else 'nowhere on the map'} "
-        f"the error passes {found.bound:g}. A cross of 1e-6 of the body's inertia bounds it to "
-        f"{float(np.nanmax(found.at(y=float(CROSS.values.index(1e-6))))):.0e} at any angle."
+        f"the error passes {runs.bound:g}. A cross of 1e-6 of the body's inertia bounds it to "
+        f"{float(np.nanmax(runs.at(y=float(CROSS.values.index(1e-6))))):.0e} at any angle."
     )
     see = "Bottom row, no mass: errors grow to the left as 1/a². Every row above is level left of a = √J."
     return Verdict(words, see, findings)

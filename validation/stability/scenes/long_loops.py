@@ -47,12 +47,12 @@ def measure(method: str, kind: str) -> Callable[[float, float], Cell]:
 
 def slope(maps: Maps, method: str) -> float:
     """Exponent of the drift in h, over all numbers of loops, where it stands clear of rounding and of order one."""
-    found = maps[method]
+    runs = maps[method]
     slopes = []
-    for row in found.values:
+    for row in runs.values:
         clear = (row > 1e-11) & (row < 1e-2)
         if clear.sum() >= 2:
-            slopes.append(-exponent(found.x[clear], row[clear]))
+            slopes.append(-exponent(runs.x[clear], row[clear]))
     return float(np.mean(slopes))
 
 
@@ -67,9 +67,9 @@ def judge(maps: Maps) -> Verdict:
         for method, order in ORDERS.items()
     ] + [Finding(f"{PROJECTED}: largest violation [m]", kept, 1e-9, reason="what projection is asked for")]
     longest = {}
-    for method, found in maps.items():
-        held = np.asarray(found.good).all(axis=0)
-        longest[method] = float(found.x[held].max(initial=0.0))
+    for method, runs in maps.items():
+        held = np.asarray(runs.good).all(axis=0)
+        longest[method] = float(runs.x[held].max(initial=0.0))
     words = (
         f"Kept by accelerations alone, loops drift as h to the power {slopes['semi_implicit_euler']:.1f} with "
         f"semi-implicit Euler, {slopes['rk4']:.1f} with RK4, {slopes['dopri5']:.1f} with Dormand-Prince. With RK4 "

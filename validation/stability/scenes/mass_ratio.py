@@ -77,8 +77,8 @@ def exact(links: int, ratio: float) -> Array:
             M[i, i] += mpmath.mpf(MOMENT)
             # A turn about +y takes x to -z: a level rod falls with a positive angle.
             force[i] += beyond[i] * mpmath.mpf(GRAVITY) * mpmath.cos(t[i])
-        found = mpmath.lu_solve(M, force)
-        absolute = [found[i] for i in range(links)]
+        solution = mpmath.lu_solve(M, force)
+        absolute = [solution[i] for i in range(links)]
         return np.array([float(absolute[i] - (absolute[i - 1] if i else 0)) for i in range(links)])
 
 
@@ -134,9 +134,9 @@ def drift(ratio: float, links: float) -> Cell:
 
 def judge(maps: Maps) -> Verdict:
     """Who loses digits to mass ratios."""
-    worst = {name: float(np.nanmax(found.values)) for name, found in maps.items()}
-    heavy = {name: float(np.nanmax(found.values[:, -1])) for name, found in maps.items() if name != DRIFT}
-    light = {name: float(np.nanmax(found.values[:, 0])) for name, found in maps.items()}
+    worst = {name: float(np.nanmax(runs.values)) for name, runs in maps.items()}
+    heavy = {name: float(np.nanmax(runs.values[:, -1])) for name, runs in maps.items() if name != DRIFT}
+    light = {name: float(np.nanmax(runs.values[:, 0])) for name, runs in maps.items()}
     slow = maps[DRIFT].count("interrupted")
     findings = (
         Finding(

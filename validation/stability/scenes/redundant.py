@@ -89,8 +89,8 @@ def judge(maps: Maps) -> Verdict:
     for kind, (rows, rank) in RANKS.items():
         m = linkage(kind)
         q, v = four_bars.state(m, 1.0, 0.5)
-        found = sf.assemble(m, q, v)
-        wrong_ranks += (m.nc, found.rank) != (rows, rank)
+        assembled = sf.assemble(m, q, v)
+        wrong_ranks += (m.nc, assembled.rank) != (rows, rank)
         if kind in (BALL, HINGE):
             a, b = (each.forward_dynamics(q, v, np.zeros(0)) for each in (m, linkage(PIN)))
             spread = max(spread, float(np.abs(a - b).max()))
@@ -101,13 +101,13 @@ def judge(maps: Maps) -> Verdict:
     accelerations = bricard.forward_dynamics(rest, still, np.zeros(bricard.nu))
     apart = float(np.abs(accelerations - known["accelerations"]).max())
     projected = maps["projection"]
-    silent = sum(found.wrong for found in maps.values())
+    silent = sum(runs.wrong for runs in maps.values())
     rows_good = {kind: projected.good[k] for k, kind in enumerate(ROWS)}
     refusals = {
         kind: [x for x, c in zip(projected.x, projected.cells[k], strict=True) if c.ended == "refused"]
         for k, kind in enumerate(ROWS)
     }
-    first = {kind: min(found, default=np.inf) for kind, found in refusals.items()}
+    first = {kind: min(sizes, default=np.inf) for kind, sizes in refusals.items()}
     findings = (
         Finding("kinds of closure whose number of rows and rank are not as they should be", float(wrong_ranks), 0.0),
         Finding(

@@ -102,7 +102,7 @@ def exudyn(loops: int, h: float) -> Cell:
 def rows(maps: Maps) -> tuple[list[str], list[str], list[str]]:
     """The ways that hold at every step of every map, at some, and at none."""
     first = next(iter(maps.values()))
-    share = np.mean([found.good.mean(axis=1) for found in maps.values()], axis=0)
+    share = np.mean([runs.good.mean(axis=1) for runs in maps.values()], axis=0)
     named = [(WAYS.label(way), float(held)) for way, held in zip(first.y, share, strict=True)]
     return (
         [n for n, held in named if held == 1.0],
@@ -115,8 +115,8 @@ def passages_told(maps: Maps) -> float:
     """Share of our own stabilised runs that hold whose notes name the posture."""
     cells = [
         c
-        for found in maps.values()
-        for way, line in zip(found.y, found.cells, strict=True)
+        for runs in maps.values()
+        for way, line in zip(runs.y, runs.cells, strict=True)
         if WAYS.label(way) == "projection" or WAYS.label(way).startswith("Baumgarte")
         for c in line
     ]
@@ -125,7 +125,7 @@ def passages_told(maps: Maps) -> float:
 
 
 def unlucky() -> dict[str, float]:
-    """Largest distance over steps that all but land in the flat posture, found among 172 steps of about 1.3 ms [m]."""
+    """Largest distance over steps that all but land in the flat posture, runs among 172 steps of about 1.3 ms [m]."""
     return {
         name: max(off(2, ours(2, END / n, name, gain)) for n in UNLUCKY)
         for name, gain in (("projection", None), ("baumgarte", 20.0))
@@ -151,7 +151,7 @@ def judge(maps: Maps) -> Verdict:
     reported = float(any("singular posture" in note for note in still.outcome.notes))
     told = passages_told(maps)
     level = WAYS.labels.index("projection")
-    errors = np.concatenate([found.at(y=level) for found in maps.values()])
+    errors = np.concatenate([runs.at(y=level) for runs in maps.values()])
     findings = (
         Finding(
             "projection: largest distance over all steps [m]",
@@ -182,7 +182,7 @@ def judge(maps: Maps) -> Verdict:
         ),
         Finding(
             "share of runs without stabilisation that meet the criterion",
-            float(np.mean([found.good[0].mean() for found in maps.values()])),
+            float(np.mean([runs.good[0].mean() for runs in maps.values()])),
             0.2,
             reason="drift decides, at times rightly",
         ),
@@ -196,8 +196,8 @@ def judge(maps: Maps) -> Verdict:
         Finding("share of our runs through it that hold and say so", told, 1.0, 1.0, "nothing is silently wrong"),
         Finding("exact motion against the known one, largest distance [m]", exact, 1e-9, reason="the same equation"),
     )
-    wrong = sum(found.wrong for found in maps.values())
-    stopped = sum(found.stopped for found in maps.values())
+    wrong = sum(runs.wrong for runs in maps.values())
+    stopped = sum(runs.stopped for runs in maps.values())
     defaults = two.at(y=WAYS.labels.index("MuJoCo, its defaults"))
     words = (
         "Flat, the linkage may leave on another branch, and what drift or rounding has left by then decides. "

@@ -75,7 +75,7 @@ def judge(maps: Maps) -> Verdict:
     m = four_bars.linkage(1)
     ours = simulate(m, *four_bars.state(m, *four_bars.START), END, dt=float(H.chosen(True)[0]), output=[0.0, END])
     held = four_bars.tip_error(1, END, ours.frames["crank0.end"][0][-1, [0, 2]])
-    best = {name: float(np.nanmin(found.values)) for name, found in maps.items()}
+    best = {name: float(np.nanmin(runs.values)) for name, runs in maps.items()}
     findings = (
         Finding(
             "factor between known and found energies and distances",

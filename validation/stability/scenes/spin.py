@@ -66,8 +66,8 @@ def judge(maps: Maps) -> Verdict:
     without = maps[WITHOUT]
     missed = without.miss("x", lambda hub: CRITICAL)
     known = {row["eta"]: row["growth_rate"] for row in data("spin")["rows"] if row["eta"] in (4.0, 6.0)}
-    found = {eta: rate(eta) for eta in known}
-    apart = max(abs(found[eta] / known[eta] - 1.0) for eta in known)
+    rates = {eta: rate(eta) for eta in known}
+    apart = max(abs(rates[eta] / known[eta] - 1.0) for eta in known)
     stiff, ruthless = maps["foreshortened, first order"], maps["zeroth order"]
     edges = [low for _, low, _ in without.edge("x")], [high for _, _, high in without.edge("x")]
     findings = (
@@ -86,7 +86,7 @@ def judge(maps: Maps) -> Verdict:
     words = (
         "Without foreshortening the softening term of rotation is kept and the stiffening one lost: between η = "
         f"{max(edges[0], default=0.0):g} and {min(edges[1], default=0.0):g}, for every hub, the beam begins to fly "
-        f"away, at a rate of {found[6.0]:.2f} /s at η = 6, where a real one only gets stiffer. {without.wrong} of "
+        f"away, at a rate of {rates[6.0]:.2f} /s at η = 6, where a real one only gets stiffer. {without.wrong} of "
         f"{without.values.size} such runs come to their end with deflections up to {np.nanmax(without.values):.0e} "
         f"times the first; {without.stopped} stop. With foreshortening all {stiff.values.size} stay bounded; zeroth "
         "order, too, at the frequency of rest."

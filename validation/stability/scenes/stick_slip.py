@@ -98,10 +98,10 @@ def limit(bound: float) -> Limit:
 LIMITS = {"rk4": 2.7853, "semi_implicit_euler": 2.0}
 
 
-def reach(found: Map) -> list[tuple[float, float]]:
+def reach(runs: Map) -> list[tuple[float, float]]:
     """(v0, longest step below which every run is good), where there is one."""
-    lines = zip(found.x, found.good.T, strict=True)
-    return [(float(v0), float(found.y[int(np.argmin(line)) - 1])) for v0, line in lines if line[0] and not line.all()]
+    lines = zip(runs.x, runs.good.T, strict=True)
+    return [(float(v0), float(runs.y[int(np.argmin(line)) - 1])) for v0, line in lines if line[0] and not line.all()]
 
 
 def judge(maps: Maps) -> Verdict:
@@ -109,15 +109,15 @@ def judge(maps: Maps) -> Verdict:
     rk4, implicit = maps["rk4"], maps["implicit_euler"]
     below = 0
     for name, bound in LIMITS.items():
-        found = maps[name]
-        safe = (found.y[:, None] <= bound * found.x / STATED) & (found.x <= SHARP)
-        below += int((safe & ~found.good).sum())
+        runs = maps[name]
+        safe = (runs.y[:, None] <= bound * runs.x / STATED) & (runs.x <= SHARP)
+        below += int((safe & ~runs.good).sum())
     edges = reach(rk4)
     ratios = [h / (LIMITS["rk4"] * v0 / STATED) for v0, h in edges]
     finest = rk4.values[0]
     blunt = [float(v0) for v0, error in zip(rk4.x, finest, strict=True) if error > BOUND]
     adaptive = steady(1e-4)
-    stopped = sum(found.stopped for found in maps.values())
+    stopped = sum(runs.stopped for runs in maps.values())
     findings = (
         Finding(
             "explicit runs below the closed form, v₀ at most 0.1 mm/s, that miss the criterion",

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Annotated
 
-import numpy as np
 import typer
 
 from validation.reporting.command import Run
@@ -40,9 +39,14 @@ def compose(data: Data) -> Report:
             for where, row in overheads.items()
         ),
     )
-    worst = Table(
-        ("call", "#median [ns]", "#99.9 % [ns]", "#longest [ns]"),
-        tuple((row["name"], *(f"{row[k]:.0f}" for k in ("median", "high", "worst"))) for row in latencies),
+    worst = Table.of(
+        latencies,
+        {
+            "call": "{name}",
+            "#median [ns]": "{median:.0f}",
+            "#99.9 % [ns]": "{high:.0f}",
+            "#longest [ns]": "{worst:.0f}",
+        },
     )
     bins = [row["bins"] for row in latencies]
     used = [i for i in range(len(bins[0])) if any(one[i] for one in bins)]
@@ -55,18 +59,10 @@ def compose(data: Data) -> Report:
         "time of a call, upper end of its bin  [ns]",
         "calls  [1]",
         tuple(
-            Curve(
-                row["name"],
-                np.array([2.0 * 2**i for i in used]),
-                np.array([row["bins"][i] for i in used], float),
-                k,
-                "joined",
-                k % 4,
-            )
+            Curve(row["name"], [2 << i for i in used], [row["bins"][i] for i in used], k, "joined", k % 4)
             for k, row in enumerate(latencies)
         ),
-        log_x=True,
-        log_y=True,
+        log="xy",
     )
     sizes = Table(("part", "#size [bytes]"), tuple((part, f"{size:,}") for part, size in data["bytes"].items()))
     see = (

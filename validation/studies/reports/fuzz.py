@@ -12,7 +12,7 @@ import typer
 from validation.reporting.command import Run
 from validation.reporting.numbers import counted
 from validation.reporting.provenance import stamp
-from validation.reporting.record import Bullets, Cell, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.record import Bullets, Cell, Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies.fuzz import COMPILED, SLOWEST, fuzz
 
 INPUTS = 120_000
@@ -61,19 +61,14 @@ def compose(data: Data) -> Report:
     kinds, faults = data["kinds"], data["faults"]
     slowest = max(row["slowest"] for row in kinds.values())
     read, refused = (sum(row.get(answer, 0) for row in kinds.values()) for answer in ("read", "refused"))
-    columns = ("inputs", "refused", "read", "compiled", "faults")
-    table = Table(
-        ("kind", *(f"#{name}" for name in columns), "#slowest [ms]", "#its number"),
-        tuple(
-            (
-                kind,
-                *(Cell(str(row.get(n, "")), not row.get(n) if n == "faults" else None) for n in columns),
-                f"{1e3 * row['slowest']:.0f}",
-                str(row.get("slowest_input", "")),
-            )
-            for kind, row in kinds.items()
-        ),
-    )
+    columns: dict[str, Column] = {
+        "kind": "{kind}",
+        **{f"#{answer}": f"{{{answer}}}" for answer in ("inputs", "refused", "read", "compiled")},
+        "#faults": lambda row: Cell(str(row["faults"]), not row["faults"]),
+        "#slowest [ms]": lambda row: f"{1e3 * row['slowest']:.0f}",
+        "#its number": "{slowest_input}",
+    }
+    table = Table.of(({"kind": kind, **row} for kind, row in kinds.items()), columns)
     text = (
         "An input is one of the package's own descriptions with one to four random changes: of bytes, words, numbers, "
         "pieces, lines, or a hostile snippet (code, bombs, document types, endless numbers) put in. A fault is any "

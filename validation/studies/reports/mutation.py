@@ -13,7 +13,7 @@ from validation.inputs.cases import standard_set
 from validation.reporting.command import Run
 from validation.reporting.numbers import counted
 from validation.reporting.provenance import stamp
-from validation.reporting.record import Bullets, Cell, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.record import Bullets, Cell, Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies.mutation import MutationScore, mutate
 
 # Models that an independent engine can represent whole, small and large, fixed and floating.
@@ -72,22 +72,11 @@ def compose(data: Data) -> Report:
     silent, small = (sum(row[fate] for row in models) for fate in ("silent", "too_small"))
     matter = data["planted"] - silent - small
     largest = max((row.get("largest_too_small", 0.0) for row in models), default=0.0)
-    by_model = Table(
-        ("model", "reference", "#planted", "#caught", "#silent", "#too small", "#survived"),
-        tuple(
-            (
-                row["model"],
-                row.get("engine", ""),
-                *(str(row.get(fate, "")) for fate in _FATES),
-                Cell(str(len(row["survived"])), not row["survived"]),
-            )
-            for row in models
-        ),
-    )
-    by_kind = Table(
-        ("kind of fault", "#planted", "#caught", "#silent", "#too small"),
-        tuple((kind, *(str(n[fate]) for fate in _FATES)) for kind, n in data.get("kinds", {}).items()),
-    )
+    fates: dict[str, Column] = {f"#{fate.replace('_', ' ')}": f"{{{fate}}}" for fate in _FATES}
+    survived: dict[str, Column] = {"#survived": lambda row: Cell(str(len(row["survived"])), not row["survived"])}
+    by_model = Table.of(models, {"model": "{model}", "reference": "{engine}"} | fates | survived)
+    kinds = [{"kind": kind} | numbers for kind, numbers in data["kinds"].items()]
+    by_kind = Table.of(kinds, {"kind of fault": "{kind}"} | fates)
     text = (
         "A fault replaces one operation of the generated program. It is caught if any output then differs from the "
         "independent engine's by more than the cross-check's own tolerance over 60 random states. "

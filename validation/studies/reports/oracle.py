@@ -10,7 +10,7 @@ import typer
 from validation.reporting.command import Run, known
 from validation.reporting.numbers import counted
 from validation.reporting.provenance import stamp
-from validation.reporting.record import Cell, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.record import Cell, Column, Data, Fact, Report, Section, Table, Topic
 
 
 def measure(
@@ -52,18 +52,13 @@ def compose(data: Data) -> Report:
     least = min((digits for row in rows for digits in row["digits"].values()), default=0.0)
     required = min((row["required"] for row in rows), default=0.0)
     functions = list(rows[0]["digits"]) if rows else []
-    table = Table(
-        ("model", "derivation", *(f"#{name.replace('_', ' ')}" for name in functions), "#required"),
-        tuple(
-            (
-                row["model"],
-                row["derivation"],
-                *(Cell(f"{x:.0f}", x >= row["required"]) for x in row["digits"].values()),
-                f"{row['required']:.0f}",
-            )
-            for row in rows
-        ),
-    )
+
+    def agreeing(function: str) -> Column:
+        return lambda row: Cell(f"{row['digits'][function]:.0f}", row["digits"][function] >= row["required"])
+
+    by_function = {f"#{function.replace('_', ' ')}": agreeing(function) for function in functions}
+    columns = {"model": "{model}", "derivation": "{derivation}", **by_function, "#required": "{required:.0f}"}
+    table = Table.of(rows, columns)
     failed = [row for row in rows if any(x < row["required"] for x in row["digits"].values())]
     names = ", ".join(f"{row['model']} ({row['derivation']})" for row in failed)
     verdict = "all agree" if ok else f"not all agree{': ' if names else ''}{names}"

@@ -13,7 +13,7 @@ from validation.mechanics.geometry import Array
 from validation.reporting.command import Run
 from validation.reporting.figures import Chart, Curve, Figure, Mark
 from validation.reporting.provenance import stamp
-from validation.reporting.record import Cell, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.record import Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies import realtime
 
 _LIMITS = (
@@ -67,19 +67,18 @@ def compose(data: Data) -> Report:
     scenes = data["scenes"]
     best = [row for row in scenes if row["first"]] or scenes
     least, most = (pick(1e6 * row["median"] for row in best) for pick in (min, max))
-    numbers = ("minimum", "median", "p999", "maximum")
-    table = Table(
-        ("scene", "thread", "#least", "#median", "#99.9 %", "#worst", "#missed", "#busy"),
-        tuple(
-            (
-                row["what"],
-                _thread(row["first"]),
-                *(f"{1e6 * row[name]:.1f}" for name in numbers),
-                Cell(f"{row['missed']} of {row['instants']}"),
-                f"{1e6 * row['busy']:.1f}",
-            )
-            for row in scenes
-        ),
+    table = Table.of(
+        scenes,
+        {
+            "scene": "{what}",
+            "thread": lambda row: _thread(row["first"]),
+            "#least": _microseconds("minimum"),
+            "#median": _microseconds("median"),
+            "#99.9 %": _microseconds("p999"),
+            "#worst": _microseconds("maximum"),
+            "#missed": "{missed} of {instants}",
+            "#busy": _microseconds("busy"),
+        },
     )
     charts = [
         _chart([row for row in scenes if row["first"] is first and "late" in row], first) for first in (False, True)
@@ -102,18 +101,20 @@ def compose(data: Data) -> Report:
     )
 
 
+def _microseconds(name: str) -> Column:
+    return lambda row: f"{1e6 * row[name]:.1f}"
+
+
 def _thread(first: bool) -> str:
     return "first" if first else "ordinary"
 
 
 def _chart(rows: list[dict[str, Any]], first: bool) -> Chart:
-    curves = tuple(
-        Curve(row["what"], np.array(row["late"]["us"]), np.array(row["late"]["share"]), k) for k, row in enumerate(rows)
-    )
+    curves = tuple(Curve(row["what"], row["late"]["us"], row["late"]["share"], k) for k, row in enumerate(rows))
     periods = dict.fromkeys(1e6 * row["period"] for row in rows)
     marks = tuple(Mark(f"next instant due at {1e3 / period:g} kHz [us]", period, "x") for period in periods)
     title = f"{_thread(first)} thread: share of instants that began later"
-    return Chart(title, "late by  [us]", "share of the instants  [1]", curves, marks, log_x=True, log_y=True)
+    return Chart(title, "late by  [us]", "share of the instants  [1]", curves, marks, log="xy")
 
 
 TOPIC = Topic("realtime", "Speed", "How late do instants of diagrams begin?", compose)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import asdict
 from typing import Annotated
 
@@ -11,7 +11,7 @@ import typer
 from validation.reporting.command import Run, known
 from validation.reporting.numbers import counted, times
 from validation.reporting.provenance import stamp
-from validation.reporting.record import Cell, Data, Fact, Report, Section, Table, Topic
+from validation.reporting.record import Cell, Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies import simulation
 
 _SCENES = {
@@ -59,12 +59,14 @@ def compose(data: Data) -> Report:
     fastest = max(row["real_time"] for row in races)
     beyond = f"; {len(missed)} of the IFToMM benchmarks are beyond their thresholds" if missed else ""
     facts = [Fact(times(row["ratio"]), f"{row['engine']}'s time over ours: {row['scene']}") for row in raced]
-    sections = [Section("Times real time, and against engines at equal accuracy", (_LIMITS, _races(races)))]
+    sections = [Section("Times real time, and against engines at equal accuracy", (_LIMITS, Table.of(races, _RACES)))]
     if benchmarks:
         facts.append(
             Fact(str(len(benchmarks)), f"IFToMM benchmarks, {len(missed)} beyond their thresholds", not missed)
         )
-        sections.append(Section("Multibody benchmarks of the IFToMM library", (_IFTOMM, _benchmarks(benchmarks))))
+        sections.append(
+            Section("Multibody benchmarks of the IFToMM library", (_IFTOMM, Table.of(benchmarks, _BENCHMARKS)))
+        )
     return Report(
         "Motions: times real time, and against engines at equal accuracy",
         f"Motions run up to {fastest:.0f} times real time; {counted(len(raced), 'race')} at equal accuracy{beyond}.",
@@ -76,48 +78,35 @@ def compose(data: Data) -> Report:
     )
 
 
-def _races(rows: Sequence[Data]) -> Table:
-    cells = []
-    for row in rows:
-        ours, theirs = row["ours"], row["theirs"]
-        other = ("", "", "", "")
-        if theirs:
-            who = f"{row['engine']}: {theirs['how']}"
-            other = (who, f"{theirs['error']:.1e}", _milliseconds(theirs["seconds"]), f"**{row['ratio']:.1f}**")
-        ours_cells = (
-            ours["how"],
-            f"{ours['error']:.1e}",
-            _milliseconds(ours["seconds"]),
-            f"**{row['real_time']:.0f}**",
-        )
-        cells.append((row["scene"], f"{row['span']:g}", row["measure"], *ours_cells, *other))
-    ours_head = ("ours", "#error", "#ms (min, median)", "#times real time")
-    return Table(
-        ("scene", "#seconds of motion", "error of", *ours_head, "other", "#error", "#ms (min, median)", "#ratio"),
-        tuple(cells),
-    )
+def _milliseconds(row: Data) -> str:
+    return ", ".join(f"{1e3 * x:.3g}" for x in row["seconds"])
 
 
-def _benchmarks(rows: Sequence[Data]) -> Table:
-    return Table(
-        ("benchmark", "#seconds of motion", "ours", "error of", "#error", "#threshold", "#ms"),
-        tuple(
-            (
-                row["name"],
-                f"{row['span']:g}",
-                row["how"],
-                row["measure"],
-                Cell(f"{row['error']:.1e}", row["error"] <= row["threshold"]),
-                f"{row['threshold']:.0e}",
-                f"{1e3 * row['seconds']:.3g}",
-            )
-            for row in rows
-        ),
-    )
+def _of_other(cell: Callable[[Data], str]) -> Column:
+    """A column that is empty where there is no other engine."""
+    return lambda row: cell(row) if row["theirs"] else ""
 
 
-def _milliseconds(seconds: Sequence[float]) -> str:
-    return ", ".join(f"{1e3 * x:.3g}" for x in seconds)
-
-
+_RACES: dict[str, Column] = {
+    "scene": "{scene}",
+    "#seconds of motion": "{span:g}",
+    "error of": "{measure}",
+    "ours": "{ours[how]}",
+    "#error": "{ours[error]:.1e}",
+    "#ms (min, median)": lambda row: _milliseconds(row["ours"]),
+    "#times real time": "**{real_time:.0f}**",
+    "other": _of_other("{engine}: {theirs[how]}".format_map),
+    "#its error": _of_other("{theirs[error]:.1e}".format_map),
+    "#its ms": _of_other(lambda row: _milliseconds(row["theirs"])),
+    "#ratio": _of_other("**{ratio:.1f}**".format_map),
+}
+_BENCHMARKS: dict[str, Column] = {
+    "benchmark": "{name}",
+    "#seconds of motion": "{span:g}",
+    "ours": "{how}",
+    "error of": "{measure}",
+    "#error": lambda row: Cell(f"{row['error']:.1e}", row["error"] <= row["threshold"]),
+    "#threshold": "{threshold:.0e}",
+    "#ms": lambda row: f"{1e3 * row['seconds']:.3g}",
+}
 TOPIC = Topic("simulation", "Speed", "How fast are motions at equal accuracy?", compose)

@@ -17,7 +17,7 @@ class Source:
         sizes: Sizes of its outputs.
         scratch: Doubles and integers it works with.
         operations: Executed.
-        seconds: From the description to the text.
+        seconds: Time from the description to the text [s].
     """
 
     name: str

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.tools import Numbers, Strided, columns
 from validation.mechanics.geometry import Array
-from validation.timing.sides.arrays import loops, room
+from validation.timing.contestants.arrays import loops, room
 
 
 class Blocks:
@@ -52,10 +52,10 @@ class Blocks:
         return Strided.of(block, self._dtype)
 
     def _room(self, n: int) -> list[Numbers]:
-        found = [columns(n, size, self._dtype) for size in self._sizes]
-        for array in found:
+        results = [columns(n, size, self._dtype) for size in self._sizes]
+        for array in results:
             array[...] = 0.0
-        return found
+        return results
 
     def overwritten(self) -> Any:
         """Blocks of a race: the results of each lie over those before."""
@@ -84,8 +84,8 @@ class Blocks:
 
     def _arrays(self, blocks: Sequence[Sequence[Strided]]) -> Any:
         self._keep(blocks)
-        found = [x.from_state(0) for block in blocks for x in block]
-        return self._keep(self._ffi.new("sym_strided[]", [(self._ffi.cast("void *", a), *by) for a, *by in found]))
+        rows = [x.from_state(0) for block in blocks for x in block]
+        return self._keep(self._ffi.new("sym_strided[]", [(self._ffi.cast("void *", a), *by) for a, *by in rows]))
 
     def _keep(self, value: Any) -> Any:
         self._kept.append(value)

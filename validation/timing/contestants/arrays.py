@@ -10,7 +10,7 @@ import cffi
 import numpy as np
 
 from validation.mechanics.geometry import Array
-from validation.timing.sides.programs import BuildError, Compiler, build, compilers, declared, source
+from validation.timing.contestants.programs import BuildError, Compiler, build, compilers, declared, source
 
 _FLAGS = ("-O3", "-march=native", "-std=gnu99", "-Wall", "-Wextra")
 _PROTOTYPES = """
@@ -37,10 +37,10 @@ def first_compiler(language: str = "c") -> Compiler:
     Raises:
         BuildError: There is neither.
     """
-    found = compilers(language)
-    if not found:
+    installed = compilers(language)
+    if not installed:
         raise BuildError(f"no compiler of {language.upper()} was found: install gcc or clang")
-    return found[0]
+    return installed[0]
 
 
 # Bytes of a line of the cache.

@@ -19,7 +19,7 @@ from validation.contract.conventions import Chart
 from validation.contract.interface import Subject, Unsupported
 from validation.mechanics.assembly import Assembly
 from validation.mechanics.geometry import Array, matrix_quaternion, quaternion_product
-from validation.timing.sides.programs import (
+from validation.timing.contestants.programs import (
     BuildError,
     Built,
     Compiler,
@@ -63,7 +63,7 @@ def pinocchio_builds(program: str = TREES) -> tuple[list[tuple[Compiler, Built]]
     """Pinocchio by each compiler of this machine, and why others failed.
 
     Args:
-        program: For trees, or for closed loops: each takes minutes to compile.
+        program: Program for trees or for closed loops; each takes minutes to compile.
 
     Raises:
         Skipped: Headers are missing, or no compiler could.
@@ -88,14 +88,14 @@ def pinocchio_builds(program: str = TREES) -> tuple[list[tuple[Compiler, Built]]
 
 def _includes() -> list[Path]:
     """Where the headers of Pinocchio, Boost and Eigen are: in wheels; Eigen's in Debian's place otherwise."""
-    found = [_headers("libpinocchio", "pinocchio/algorithm/crba.hpp")]
+    headers = [_headers("libpinocchio", "pinocchio/algorithm/crba.hpp")]
     try:
-        found.append(_headers("cmeel-eigen", "Eigen/Core"))
+        headers.append(_headers("cmeel-eigen", "Eigen/Core"))
     except Skipped:
         if not (_SYSTEM_EIGEN / "Eigen/Core").exists():
             raise
-        found.append(_SYSTEM_EIGEN)
-    return list(dict.fromkeys(found))
+        headers.append(_SYSTEM_EIGEN)
+    return list(dict.fromkeys(headers))
 
 
 def _headers(package: str, header: str) -> Path:
@@ -114,7 +114,7 @@ def pinocchio_loops(task: Task, functions: Sequence[str], warn: Callable[[str], 
 
     Args:
         task: The model.
-        functions: Which.
+        functions: Names of the functions.
         warn: Told of compilers that failed, if others did not.
 
     Raises:
@@ -173,18 +173,22 @@ def mujoco_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
 
 
 def _mujoco_built() -> Built:
-    spec, found = find_spec("mujoco"), compilers()
+    spec, available = find_spec("mujoco"), compilers()
     if spec is None or spec.origin is None:
         raise Skipped("the package mujoco is not installed: pip install 'symofros[timing]'")
     package = Path(spec.origin).parent
     libraries = sorted(package.glob("libmujoco.so*"))
-    if not libraries or not found:
-        raise Skipped(f"MuJoCo's wheel has no libmujoco.so in {package}" if found else "no C compiler was found")
+    if not libraries or not available:
+        raise Skipped(f"MuJoCo's wheel has no libmujoco.so in {package}" if available else "no C compiler was found")
     sources = {name: source(name) for name in ("loop_mujoco.c", "loop.h")}
     link = (str(libraries[-1]), f"-Wl,-rpath,{package}")
     try:
         return build(
-            found[0], sources, (*MUJOCO_FLAGS, f"-isystem{package / 'include'}"), link, (metadata.version("mujoco"),)
+            available[0],
+            sources,
+            (*MUJOCO_FLAGS, f"-isystem{package / 'include'}"),
+            link,
+            (metadata.version("mujoco"),),
         )
     except BuildError as error:
         raise Skipped(str(error)) from None
@@ -223,9 +227,9 @@ def _run(function: Any, engine: Any, states: Any, rounds: int) -> None:
 
 
 def _results(function: Any, engine: Any, states: Any, convert: Callable[[Array], Array], given: _States) -> Array:
-    found = np.zeros((1 if function.once else given.count, function.size))
-    function.run(engine, states, 1, _interface().from_buffer("double[]", found))
-    return convert(found)
+    computed = np.zeros((1 if function.once else given.count, function.size))
+    function.run(engine, states, 1, _interface().from_buffer("double[]", computed))
+    return convert(computed)
 
 
 class _States:
@@ -254,35 +258,35 @@ class _Converted:
     chart: Chart | None
     task: Task
 
-    def __call__(self, function: str, found: Array) -> Array:
+    def __call__(self, function: str, computed: Array) -> Array:
         chart, q, v, nv = self.chart, self.task.states.q, self.task.states.v, self.task.assembly.nv
         if chart is None:
-            return found
+            return computed
         if function in ("mass_matrix", "dynamics"):
-            M_e = found[:, : nv * nv].reshape(-1, nv, nv)
+            M_e = computed[:, : nv * nv].reshape(-1, nv, nv)
             M = chart.mass_matrix(q, M_e)
-            return flat(M) if function == "mass_matrix" else flat(M, chart.bias(q, v, found[:, nv * nv :], M_e))
+            return flat(M) if function == "mass_matrix" else flat(M, chart.bias(q, v, computed[:, nv * nv :], M_e))
         if function == "frame_jacobian":
-            return flat(chart.jacobian(q, found.reshape(-1, 1, 6, nv)))
+            return flat(chart.jacobian(q, computed.reshape(-1, 1, 6, nv)))
         if function == "bias":
-            return self._bias(found)
+            return self._bias(computed)
         if function == "forward_dynamics":
-            return chart.our_accelerations(q, v, found)
-        return chart.our_forces(q, found) if function == "inverse_dynamics" else self._ended(found)
+            return chart.our_accelerations(q, v, computed)
+        return chart.our_forces(q, computed) if function == "inverse_dynamics" else self._ended(computed)
 
-    def _ended(self, found: Array) -> Array:
+    def _ended(self, computed: Array) -> Array:
         """Where a motion ends: q and v from the engine's."""
         assert self.chart is not None
         q = np.zeros((1, self.task.assembly.nq))
         for slot in self.chart.slots:
             part = slot.mover.q
-            own = found[:, slot.q : slot.q + part.stop - part.start]
+            own = computed[:, slot.q : slot.q + part.stop - part.start]
             if slot.encoding == "free_in_world":
                 X = slot.mover.X_AP
                 back = quaternion_product(matrix_quaternion(X.R.T)[None], np.roll(own[:, 3:], -1, axis=1))
                 own = np.concatenate([(own[:, :3] - X.p) @ X.R, back], axis=1)
             q[:, part] = own
-        v = np.linalg.solve(self.chart.transform(q), found[:, self.chart.nq :, None])[..., 0]
+        v = np.linalg.solve(self.chart.transform(q), computed[:, self.chart.nq :, None])[..., 0]
         return flat(q, np.asarray(v, dtype=np.float64))
 
     def _bias(self, h_e: Array) -> Array:

@@ -14,9 +14,9 @@ import numpy as np
 import symofros as sf
 from symofros.tools import DEFAULT_FLAGS, Precision, count_program, find_toolchain, fixed_step_loop
 from validation.mechanics.geometry import Array
-from validation.timing.sides.arrays import Arrays, Turns, loops
-from validation.timing.sides.blocks import Blocks
-from validation.timing.sides.programs import BuildError, Compiler, build, copies, source
+from validation.timing.contestants.arrays import Arrays, Turns, loops
+from validation.timing.contestants.blocks import Blocks
+from validation.timing.contestants.programs import BuildError, Compiler, build, copies, source
 from validation.timing.task import START, STEP, Cost, Loop, Task
 
 NAME = "symofros"

@@ -12,7 +12,7 @@ from sympy.printing.c import C99CodePrinter
 
 import symofros as sf
 from validation.oracle.kane import derive
-from validation.timing.sides.source import Source
+from validation.timing.contestants.source import Source
 
 FUNCTIONS = ("mass_matrix", "bias", "dynamics", "forward_dynamics")
 # Digits of numbers in the text: a double, exactly.

@@ -43,7 +43,7 @@ class Compiler:
     Attributes:
         path: Path of the program.
         name: Family and version: "gcc 12.2.0".
-        version: What it says of itself.
+        version: First line of its `--version`.
     """
 
     path: str
@@ -56,8 +56,8 @@ class Built:
     """A shared library.
 
     Attributes:
-        path: In the cache.
-        seconds: That compiling it took, when it was.
+        path: File in the cache.
+        seconds: Time of the compilation when it was made [s].
         text: Bytes of machine code.
         constants: Bytes of constants.
     """
@@ -72,8 +72,8 @@ def compilers(language: str = "c") -> list[Compiler]:
     """gcc, and the newest clang; "c" or "c++"."""
     gcc, clang = {"c": ("gcc", "clang"), "c++": ("g++", "clang++")}[language]
     newest = [f"{clang}-{version}" for version in range(_NEWEST, _OLDEST - 1, -1)]
-    clangs = [found for found in map(_compiler, (*newest, clang)) if found is not None]
-    clangs.sort(key=lambda found: _number(found.name), reverse=True)
+    clangs = [compiler for compiler in map(_compiler, (*newest, clang)) if compiler is not None]
+    clangs.sort(key=lambda compiler: _number(compiler.name), reverse=True)
     first = _compiler(gcc)
     return [*([first] if first else []), *clangs[:1]]
 
@@ -116,11 +116,11 @@ def build(
     """The shared library of the first of some sources, compiled unless it is in the cache.
 
     Args:
-        compiler: Which.
+        compiler: Compiler to use.
         sources: File name -> text; the others are what the first includes.
-        flags: For compiling.
-        link: For linking.
-        depends: What else it depends on: versions of packages.
+        flags: Flags for compiling.
+        link: Flags for linking.
+        depends: Further dependencies: versions of packages.
 
     Raises:
         BuildError: The compiler refused, with its words.
@@ -141,12 +141,12 @@ def build(
 
 def copies(library: Path, count: int = COPIES) -> list[Path]:
     """The same library in files of its own; they go with the process."""
-    found = []
+    private_copies = []
     for k in range(count):
         private = Path(_PRIVATE.name) / f"{next(_NUMBERS)}-{library.stem}-{k}{library.suffix}"
         shutil.copyfile(library, private)
-        found.append(private)
-    return found
+        private_copies.append(private)
+    return private_copies
 
 
 def _compiled(

@@ -1,4 +1,4 @@
-"""Our side of every scene: a compiled model, stepped by each of our methods."""
+"""Contestants of symofros: a compiled model, stepped by each method."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ _DIGITS = 3
 
 
 @dataclass(frozen=True)
-class Ours:
-    """A model of ours, ready to run.
+class SymofrosModel:
+    """A compiled model, ready to run.
 
     Attributes:
-        label: What is particular about the model.
-        model: Compiled.
-        given: What `sf.simulate` takes besides method, step and tolerance: state, span, inputs, output.
+        label: Name of the model among those of the scene.
+        model: Compiled model.
+        arguments: Arguments of `sf.simulate` besides method, step and tolerance: state, span, inputs, output.
         judge: Trajectory -> error.
-        alone: Whether by `sf.simulate`; else as a batch of one, where precision may be chosen.
+        alone: Whether `sf.simulate` runs it; else a batch of one does, whose precision may be chosen.
     """
 
     label: str
     model: sf.Model
-    given: Mapping[str, Any]
+    arguments: Mapping[str, Any]
     judge: Judge
     alone: bool = True
 
@@ -70,9 +70,9 @@ class Ours:
     def _run(self, settings: Mapping[str, Any]) -> tuple[sf.Trajectory, float]:
         """With the seconds of the processor."""
         if self.alone:
-            run = sf.simulate(self.model, **self.given, **settings)
+            run = sf.simulate(self.model, **self.arguments, **settings)
             return run, run.statistics.worked
-        runs = sf.simulate_batch(self.model, **self.given, **settings)
+        runs = sf.simulate_batch(self.model, **self.arguments, **settings)
         return runs[()], runs.processor_seconds
 
 

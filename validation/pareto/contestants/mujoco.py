@@ -1,4 +1,4 @@
-"""MuJoCo's side of a scene: a model, stepped by each of its integrators."""
+"""MuJoCo's contestants of a scene: a model, stepped by each of its integrators."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ import numpy as np
 
 from validation.adapters.mujoco.steps import stepped
 from validation.mechanics.geometry import Array
+from validation.pareto.contestants.symofros import milliseconds
 from validation.pareto.scene import Contestant, Measured
-from validation.pareto.sides.ours import milliseconds
 
 
 @dataclass(frozen=True)
-class InMujoco:
+class MujocoModel:
     """A model of MuJoCo's, ready to run.
 
     Attributes:
-        label: What is particular about the model.
+        label: Name of the model among those of the scene.
         model: Step [s] -> MuJoCo's model; most do not depend on the step, soft closures do.
         q0: Positions at the start (nq).
         v0: Speeds at the start (nv).
         times: Number of records, the start not counted.
-        output: Their interval [s].
+        output: Interval of the records [s].
         judge: Positions at the records (times + 1, nq) -> error.
     """
 

@@ -10,9 +10,9 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 from validation.mechanics.geometry import Array
-from validation.timing.sides.arrays import Arrays, Turns, loops
-from validation.timing.sides.programs import Built, Compiler, Skipped, build, compilers, copies
-from validation.timing.sides.source import Source
+from validation.timing.contestants.arrays import Arrays, Turns, loops
+from validation.timing.contestants.programs import Built, Compiler, Skipped, build, compilers, copies
+from validation.timing.contestants.source import Source
 from validation.timing.task import Cost, Loop, Task
 
 # Straight-line code is erratic: between builds of one source, times differ by half. The best of these counts.
@@ -68,7 +68,7 @@ def sympy_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
             f"{task.assembly.nv} degrees of freedom: Kane's equations by SymPy are made up to {MOST_KANE}, "
             "beyond which generation takes minutes; see the costs"
         )
-    from validation.timing.sides.kane import FUNCTIONS, kane_source
+    from validation.timing.contestants.kane import FUNCTIONS, kane_source
 
     yield from _built(task, [name for name in functions if name in FUNCTIONS], partial(kane_source, task.system))
 

@@ -1,4 +1,4 @@
-"""Exudyn's side of a scene: a system, stepped by each of its solvers."""
+"""Exudyn's contestants of a scene: a system, stepped by each of its solvers."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.adapters.exudyn.steps import ADAPTIVE, Recorded, Solver, Timed
+from validation.pareto.contestants.symofros import milliseconds
 from validation.pareto.scene import Contestant, Measured
-from validation.pareto.sides.ours import milliseconds
 
 
 @dataclass(frozen=True)
-class Theirs:
+class ExudynModel:
     """A system of Exudyn's, ready to run.
 
     Attributes:
-        label: What is particular about the model.
+        label: Name of the model among those of the scene.
         system: Built afresh for each run, which is not timed.
         end: Duration [s].
         output: Interval of what is recorded [s].
-        judge: What was recorded -> error. Solvers that choose their steps record at the first step after each time due,
+        judge: Record of a run -> error. Solvers that choose their steps record at the first step after each time due,
             so that the times count.
     """
 
