@@ -72,7 +72,7 @@ def study(quick: bool) -> Study:
 
 def figure(curve: Curve, zeta: float, omegas: Array, ratios: Array) -> Figure:
     """Decay, and ratios against frequency."""
-    envelope = np.exp(-zeta * FIRST * curve.x)
+    envelope = np.exp(-zeta * FIRST * np.asarray(curve.x))
     decay = Chart(
         "decay of the first mode",
         "time  [√(ρA L⁴/EI)]",

@@ -79,7 +79,7 @@ def study(quick: bool) -> Study:
     loads = LOADS[1:2] if quick else LOADS
     m = {retain: strip_model(retain) for retain in ORDERS}
     reference = {load: exact(load, angles) for load in loads}
-    tips = {load: ours(m["all"], load, angles) for load in loads}
+    tips_of_loads = {load: ours(m["all"], load, angles) for load in loads}
     # A small to a large load at 60 degrees, where both bendings and the twist are at work.
     at, growing = np.radians([60.0]), np.geomspace(0.5, 9.0, 5 if quick else 15)
     rod = [exact(float(load), at) for load in growing]
@@ -139,7 +139,7 @@ def study(quick: bool) -> Study:
         "second-order strip finds no rest any more: its cubic strain energy has no bottom there. "
         "Ask a geometrically exact code."
     )
-    figures = (around(angles, loads, reference, tips), growth(deflection, errors))
+    figures = (around(angles, loads, reference, tips_of_loads), growth(deflection, errors))
     return Study(
         "Bent both ways and twisted, where does second order fail?",
         answer,
