@@ -60,9 +60,9 @@ from symofros.blocks.middleware import ZenohSubscriber as ZenohSubscriber
 from symofros.blocks.network import UdpReceiver as UdpReceiver
 from symofros.blocks.network import UdpTransmitter as UdpTransmitter
 from symofros.blocks.view import View3D as View3D
-from symofros.diagrams.block import At as At
 from symofros.diagrams.block import Block as Block
-from symofros.diagrams.block import Known as Known
+from symofros.diagrams.block import Environment as Environment
+from symofros.diagrams.block import EvaluationContext as EvaluationContext
 from symofros.diagrams.block import Port as Port
 from symofros.diagrams.block import Ports as Ports
 from symofros.diagrams.block import Values as Values

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from symofros.blocks.quantities import frame_ports, joint_units
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Terms, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Terms, Values
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.diagrams.variants import FRICTION
 from symofros.errors import DescriptionError, Problem
@@ -35,14 +35,14 @@ class ForwardDynamics(Block):
         """The input that says which constraints hold."""
         return ("engaged",) if self.engaged else ()
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Efforts and prescribed motions u (nu); q, v, a, friction (nv), under constraints lam (nc)."""
-        record = known.model(self.model)
+        record = environment.model(self.model)
         q, v, a, effort = joint_units(record)
         nv = len(record.v_names)
         inputs = [Port("u", (len(record.u_names),), effort, record.u_default)]
         for port, frame in frame_ports(self.name, "wrench_", self.perturbed).items():
-            known.frame(self.model, frame)
+            environment.frame(self.model, frame)
             inputs.append(Port(port, (6,), "", 0.0))
         names = _constraints(record.constraint_names)
         if self.engaged:
@@ -64,44 +64,45 @@ class ForwardDynamics(Block):
         ]
         return Ports(tuple(inputs), (*outputs, Port("lam", (record.nc,))) if record.nc else tuple(outputs))
 
-    def motion(self, at: At) -> Terms:
+    def motion(self, context: EvaluationContext) -> Terms:
         """M v' = r + G^T lam."""
-        record, u = at.known.model(self.model), at.inputs["u"]
-        given = {"q": at.q, "v": at.v, "u": u, "t": at.t}
+        record, u = context.environment.model(self.model), context.inputs["u"]
+        given = {"q": context.q, "v": context.v, "u": u, "t": context.t}
         if not record.nc and not self.perturbed:
-            return Terms(a=at.call(self.model, "forward_dynamics", **given)["a"])
-        push = self._push(at)
+            return Terms(a=context.call(self.model, "forward_dynamics", **given)["a"])
+        push = self._push(context)
         if not record.nc:
-            found = at.call(self.model, "dynamics", **given)
-            return Terms(a=at.solved(found["M"], found["Q"] - found["h"] + push))
-        found = at.call(self.model, "forward_dynamics", gains=at.gains, **given)
-        phi = at.call(self.model, "constraint", q=at.q, u=u, t=at.t)["phi"]
-        rate = at.call(self.model, "constraint_rate", q=at.q, v=at.v, u=u, t=at.t)["phi_rate"]
+            found = context.call(self.model, "dynamics", **given)
+            return Terms(a=context.solved(found["M"], found["Q"] - found["h"] + push))
+        found = context.call(self.model, "forward_dynamics", gains=context.gains, **given)
+        phi = context.call(self.model, "constraint", q=context.q, u=u, t=context.t)["phi"]
+        rate = context.call(self.model, "constraint_rate", q=context.q, v=context.v, u=u, t=context.t)["phi_rate"]
         G, c = found["G"], found["c"]
         if self.engaged:
-            holds = self._holds(at)
+            holds = self._holds(context)
             G, c, phi, rate = G * holds.reshape(-1, 1), c * holds, phi * holds, rate * holds
         return Terms(M=found["M"], r=found["r"] + push, G=G, c=c, phi=phi, rate=rate)
 
-    def _push(self, at: At) -> Tensor:
+    def _push(self, context: EvaluationContext) -> Tensor:
         """Generalized forces of the external wrenches (nv)."""
-        total = at.numbers([0.0] * len(at.v))
+        total = context.numbers([0.0] * len(context.v))
         for port, frame in frame_ports(self.name, "wrench_", self.perturbed).items():
-            J = at.call(self.model, "frame_jacobian", frame, q=at.q, u=at.inputs["u"])["J"]
-            total = total + J.T @ at.inputs[port]
+            J = context.call(self.model, "frame_jacobian", frame, q=context.q, u=context.inputs["u"])["J"]
+            total = total + J.T @ context.inputs[port]
         return total
 
-    def _holds(self, at: At) -> Tensor:
+    def _holds(self, context: EvaluationContext) -> Tensor:
         """1 for each condition that holds now (nc)."""
-        names = _constraints(at.known.model(self.model).constraint_names)
+        names = _constraints(context.environment.model(self.model).constraint_names)
         order = list(dict.fromkeys(names))
-        return joined([at.inputs["engaged"][order.index(name)] for name in names])
+        return joined([context.inputs["engaged"][order.index(name)] for name in names])
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """States, accelerations and forces."""
-        record = at.known.model(self.model)
-        found = {"q": at.q, "v": at.v, "a": at.a, "friction": friction(at, self.model, at.q, at.v)}
-        return found | ({"lam": at.lam} if record.nc else {})
+        record = context.environment.model(self.model)
+        effort = friction(context, self.model, context.q, context.v)
+        signals = {"q": context.q, "v": context.v, "a": context.a, "friction": effort}
+        return signals | ({"lam": context.lam} if record.nc else {})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,9 +117,9 @@ class InverseDynamics(Block):
     model: str
     with_friction: bool = True
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Motion in: q (nq), v and a (nv). Efforts out: tau (nv)."""
-        record = known.model(self.model)
+        record = environment.model(self.model)
         q, v, a, effort = joint_units(record)
         nv = len(record.v_names)
         return Ports(
@@ -126,19 +127,19 @@ class InverseDynamics(Block):
             (Port("tau", (nv,), effort),),
         )
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """By the model's own inverse dynamics."""
-        q, v, a = (at.inputs[name] for name in ("q", "v", "a"))
-        tau = at.call(self.model, "inverse_dynamics", q=q, v=v, a=a, t=at.t)["tau"]
-        return {"tau": tau if self.with_friction else tau + friction(at, self.model, q, v)}
+        q, v, a = (context.inputs[name] for name in ("q", "v", "a"))
+        tau = context.call(self.model, "inverse_dynamics", q=q, v=v, a=a, t=context.t)["tau"]
+        return {"tau": tau if self.with_friction else tau + friction(context, self.model, q, v)}
 
 
-def friction(at: At, model: str, q: Tensor, v: Tensor) -> Tensor:
+def friction(context: EvaluationContext, model: str, q: Tensor, v: Tensor) -> Tensor:
     """The friction forces on a model's joints (nv), as generalized forces: against the motion."""
-    rubbing = at.known.rubbing(model)
+    rubbing = context.environment.rubbing(model)
     if not any(rubbing):
-        return at.numbers([0.0] * len(rubbing))
-    found = at.call(model + FRICTION, "generalized_force", q=q, v=v, t=at.t)["Q"]
+        return context.numbers([0.0] * len(rubbing))
+    found = context.call(model + FRICTION, "generalized_force", q=q, v=v, t=context.t)["Q"]
     return found * [float(rubs) for rubs in rubbing]
 
 

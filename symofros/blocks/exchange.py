@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from symofros.blocks.packets import MAX_VALUES, Reception, Silence, receiver_ports
-from symofros.diagrams.block import Known, Port, Ports
+from symofros.diagrams.block import Environment, Port, Ports
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.kernel import Array
@@ -69,10 +69,10 @@ class Exchange(OpaqueBlock):
 class Transmitter(Exchange):
     """Sends its input at each sample, as one packet (`symofros.blocks.packets`)."""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """A signal of any shape; entries go row by row."""
         self.check()
-        shape = known.inputs.get("signal")
+        shape = environment.inputs.get("signal")
         check_size(self.name, math.prod(shape) if shape is not None else 1)
         return Ports((Port("signal", shape),))
 
@@ -95,7 +95,7 @@ class Receiver(Exchange):
     fallback: Any = 0.0
     unit: str = ""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """No inputs; the signal (size), its stamp and age [s], packets lost, and 1 while the sender is alive."""
         self.check()
         check_size(self.name, self.size)

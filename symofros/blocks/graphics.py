@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from symofros.blocks.quantities import frame_ports, joint_units
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.settings import Plot
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.kernel import Array
 
 
-def open_ports(name: str, signals: tuple[str, ...], known: Known) -> Ports:
+def open_ports(name: str, signals: tuple[str, ...], environment: Environment) -> Ports:
     """An input for each name, of any shape."""
     if not signals or len(set(signals)) < len(signals) or not all(signal.isidentifier() for signal in signals):
         raise DescriptionError(
@@ -28,7 +28,7 @@ def open_ports(name: str, signals: tuple[str, ...], known: Known) -> Ports:
                 "for example [desired, actual]",
             )
         )
-    return Ports(tuple(Port(signal, known.inputs.get(signal)) for signal in signals))
+    return Ports(tuple(Port(signal, environment.inputs.get(signal)) for signal in signals))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,9 +43,9 @@ class Scope(Block):
     signals: tuple[str, ...]
     title: str = ""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """The signals."""
-        return open_ports(self.name, self.signals, known)
+        return open_ports(self.name, self.signals, environment)
 
     def shown(self) -> tuple[Plot, ...]:
         """All of them together."""
@@ -66,7 +66,7 @@ class Store(OpaqueBlock):
     signals: tuple[str, ...]
     most: int = 1_000_000
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """The signals."""
         if "t" in self.signals or self.most < 1:
             raise DescriptionError(
@@ -77,9 +77,9 @@ class Store(OpaqueBlock):
                     "rename the signal",
                 )
             )
-        return open_ports(self.name, self.signals, known)
+        return open_ports(self.name, self.signals, environment)
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         """Nothing is stored yet."""
         return _Stored(self.signals, self.most)
 
@@ -112,9 +112,9 @@ class StatePlot(Block):
 
     model: str
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Coordinates q (nq) and speeds v (nv)."""
-        record = known.model(self.model)
+        record = environment.model(self.model)
         q, v, _, _ = joint_units(record)
         return Ports((Port("q", (len(record.q_names),), q), Port("v", (len(record.v_names),), v)))
 
@@ -135,19 +135,20 @@ class ExtremityPlot(Block):
     model: str
     frames: tuple[str, ...]
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Coordinates q (nq) in; out "p_FRAME" (3), the frame's origin in the world [m], dots read as underscores."""
-        record = known.model(self.model)
+        record = environment.model(self.model)
         for frame in self.frames:
-            known.frame(self.model, frame)
+            environment.frame(self.model, frame)
         outputs = tuple(Port(port, (3,), "m") for port in self._frames())
         return Ports((Port("q", (len(record.q_names),), joint_units(record)[0]),), outputs)
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Positions by the model's own kinematics."""
-        q = at.inputs["q"]
+        q = context.inputs["q"]
         return {
-            port: at.call(self.model, "frame_pose", frame, q=q, t=at.t)["p"] for port, frame in self._frames().items()
+            port: context.call(self.model, "frame_pose", frame, q=q, t=context.t)["p"]
+            for port, frame in self._frames().items()
         }
 
     def shown(self) -> tuple[Plot, ...]:

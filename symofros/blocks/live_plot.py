@@ -19,7 +19,7 @@ from symofros.blocks.exchange import LOCALHOST, check_size
 from symofros.blocks.graphics import open_ports
 from symofros.blocks.packets import pack
 from symofros.blocks.turns import Turn
-from symofros.diagrams.block import Known, Ports
+from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.signals import entries
 from symofros.errors import Problem, SymofrosError
@@ -47,13 +47,13 @@ class LivePlot(OpaqueBlock):
     window: float = 10.0
     open_browser: bool = True
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """The signals."""
-        found = open_ports(self.name, self.signals, known)
+        found = open_ports(self.name, self.signals, environment)
         check_size(self.name, max(1, sum(int(np.prod(port.shape)) for port in found.inputs if port.shape is not None)))
         return found
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         """Start the page, or take over that of the run before.
 
         Raises:

@@ -17,7 +17,7 @@ import numpy as np
 
 from symofros.blocks.exchange import MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
 from symofros.blocks.packets import pack
-from symofros.diagrams.block import Known
+from symofros.diagrams.block import Environment
 from symofros.diagrams.opaque_block import Running
 from symofros.errors import DescriptionError, Problem, SymofrosError
 from symofros.runtime.kernel import Array
@@ -67,7 +67,7 @@ class ZenohPublisher(_ByZenoh, Transmitter):
         listens: Whether the peer comes to that address; else it is gone to, as soon as somebody listens.
     """
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         """Open a session.
 
         Raises:
@@ -115,7 +115,7 @@ class ZenohSubscriber(_ByZenoh, Receiver):
 
     listens: bool = True
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         """Open a session; packets wait in a queue whose oldest are dropped.
 
         Raises:

@@ -16,7 +16,7 @@ import numpy as np
 
 from symofros.blocks.exchange import LOCALHOST, MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
 from symofros.blocks.packets import pack
-from symofros.diagrams.block import Known
+from symofros.diagrams.block import Environment
 from symofros.diagrams.opaque_block import Running
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array
@@ -49,7 +49,7 @@ class UdpTransmitter(_ByUdp, Transmitter):
         host: Machine to send to; this one by default.
     """
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         """Open a socket; packets of this run are a stream of their own."""
         return _Sending(self)
 
@@ -98,7 +98,7 @@ class UdpReceiver(_ByUdp, Receiver):
         unit: Unit of the values.
     """
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         """Listen.
 
         Raises:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from symofros.blocks.checks import refuse
-from symofros.diagrams.block import Known, Shape
+from symofros.diagrams.block import Environment, Shape
 from symofros.runtime.record import ModelRecord
 
 
@@ -17,9 +17,9 @@ def joint_units(record: ModelRecord) -> tuple[str, str, str, str]:
     return ("rad", "rad/s", "rad/s^2", "N m" if efforts else "") if turns else ("", "", "", "")
 
 
-def common_shape(known: Known, names: Sequence[str]) -> Shape | None:
+def common_shape(environment: Environment, names: Sequence[str]) -> Shape | None:
     """The shape that inputs of one shape have, as soon as one of them is known."""
-    return next((known.inputs[name] for name in names if name in known.inputs), None)
+    return next((environment.inputs[name] for name in names if name in environment.inputs), None)
 
 
 def frame_ports(block: str, prefix: str, frames: Sequence[str]) -> dict[str, str]:

@@ -15,7 +15,7 @@ import numpy as np
 from symofros.blocks.quantities import joint_units
 from symofros.blocks.turns import Turn
 from symofros.description.system import System
-from symofros.diagrams.block import Known, Port, Ports
+from symofros.diagrams.block import Environment, Port, Ports
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.errors import DescriptionError, Problem
@@ -52,7 +52,7 @@ class View3D(OpaqueBlock):
     stays: bool = True
     open_browser: bool = True
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Coordinates q (nq); inputs u (nu), which matter where they prescribe motion."""
         if not (np.isfinite(self.exaggeration) and 0 <= self.port <= 65535):
             raise DescriptionError(
@@ -63,13 +63,13 @@ class View3D(OpaqueBlock):
                     "port 0 is any free one",
                 )
             )
-        record = known.model(self.model)
+        record = environment.model(self.model)
         q, _, _, effort = joint_units(record)
         return Ports(
             (Port("q", (len(record.q_names),), q), Port("u", (len(record.u_names),), effort, record.u_default))
         )
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         """Serve the page, or take over that of the run before.
 
         Raises:
@@ -78,8 +78,8 @@ class View3D(OpaqueBlock):
         turn: Turn = self.__dict__.setdefault("_turn", Turn())
         turn.take(self.name)
         try:
-            viewer, par = self._serve(known.system(self.model)), known.parameters(self.model)
-            viewer.show(known.start(self.model)[0], par=par)
+            viewer, par = self._serve(environment.system(self.model)), environment.parameters(self.model)
+            viewer.show(environment.start(self.model)[0], par=par)
         except BaseException:
             turn.leave()
             raise

@@ -50,7 +50,7 @@ class Ports:
     outputs: tuple[Port, ...] = ()
 
 
-class Known(Protocol):
+class Environment(Protocol):
     """What is known of a block's surroundings while its ports are found."""
 
     @property
@@ -104,7 +104,7 @@ class Terms:
         M: Else M a = r + G^T lam, G a = c: (nv, nv).
         r: (nv).
         G: (nc, nv).
-        c: (nc), Baumgarte's terms with the gains of `At.gains` included.
+        c: (nc), Baumgarte's terms with the gains of `EvaluationContext.gains` included.
         phi: Residual of each condition (nc), zero for those on speeds only.
         rate: G v - b (nc).
     """
@@ -136,7 +136,7 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class At:
+class EvaluationContext:
     """The point at which a block's formulas are written.
 
     Attributes:
@@ -153,7 +153,7 @@ class At:
         solved: (M, r) -> M^-1 r for a mass matrix.
         a: V' of its mechanism; under constraints known at samples and afterwards only.
         lam: Multipliers of its mechanism's constraints (nc), likewise.
-        known: Models and starts.
+        environment: Models and their first states.
     """
 
     g: Graph
@@ -169,7 +169,7 @@ class At:
     solved: Callable[[Tensor, Tensor], Tensor]
     a: Tensor
     lam: Tensor
-    known: Known
+    environment: Environment
 
     def numbers(self, values: Any) -> Tensor:
         """An array of numbers."""
@@ -195,7 +195,7 @@ class Block:
     # Fields of text that name files: in a diagram's file relative to it, and inside its folder.
     paths: ClassVar[tuple[str, ...]] = ("file",)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Its ports; asked again while shapes of inputs become known."""
         return Ports()
 
@@ -207,11 +207,11 @@ class Block:
         """Inputs, held between samples, whose change takes its mechanism onto its constraints at once."""
         return ()
 
-    def states(self, known: Known) -> Mapping[str, Any]:
+    def states(self, environment: Environment) -> Mapping[str, Any]:
         """Continuous states -> their first values."""
         return {}
 
-    def memory(self, known: Known) -> Mapping[str, Any]:
+    def memory(self, environment: Environment) -> Mapping[str, Any]:
         """What is kept from sample to sample -> its first values."""
         return {}
 
@@ -219,27 +219,27 @@ class Block:
         """Outputs that are given by samples over time, one signal (n) or (n, size) each."""
         return {}
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Output port -> its signal; those of `samples` left out."""
         return {}
 
-    def rates(self, at: At) -> Values:
+    def rates(self, context: EvaluationContext) -> Values:
         """Continuous state -> its rate of change."""
         return {}
 
-    def update(self, at: At) -> Values:
+    def update(self, context: EvaluationContext) -> Values:
         """Memory -> what it is after a sample."""
         return {}
 
-    def motion(self, at: At) -> Terms:
+    def motion(self, context: EvaluationContext) -> Terms:
         """How its mechanism moves."""
         return Terms()
 
-    def crossings(self, at: At) -> Mapping[str, Crossing]:
+    def crossings(self, context: EvaluationContext) -> Mapping[str, Crossing]:
         """Values whose zeros are located."""
         return {}
 
-    def crossed(self, at: At, which: str) -> Values:
+    def crossed(self, context: EvaluationContext, which: str) -> Values:
         """Memory and continuous states, "q" and "v" of its mechanism included, that a crossing changes."""
         return {}
 

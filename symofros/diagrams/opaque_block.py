@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from symofros.diagrams.block import Block, Known
+from symofros.diagrams.block import Block, Environment
 from symofros.runtime.kernel import Array
 
 
@@ -36,5 +36,5 @@ class OpaqueBlock(Block, ABC):
     """A block that the loop calls at its samples; its formulas are not known, so all outputs need all inputs."""
 
     @abstractmethod
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         """Before a run: open what is needed. Several runs of one block may go on at once."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from symofros.diagrams.block import At, Block, Crossing, Port, Terms, Values
+from symofros.diagrams.block import Block, Crossing, EvaluationContext, Port, Terms, Values
 from symofros.diagrams.opaque_block import OpaqueBlock
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Wired, surroundings
@@ -125,7 +125,7 @@ def piece_of(wired: Wired, name: str) -> Piece:
         record = wired.models.record(mechanism)
         nq, nv, nc = len(record.q_names), len(record.v_names), record.nc
         q0, v0 = known.start(mechanism)
-    at = At(
+    at = EvaluationContext(
         g,
         Tensor.inputs(g, "t", ()),
         {port.name: _given(g, wired, name, port) for port in wired.ports[name].inputs},

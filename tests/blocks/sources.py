@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import joined
 
 
@@ -12,8 +12,8 @@ from symofros.diagrams.tensor import joined
 class Ramp(Block):
     """Time, and twice of it."""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((), (Port("y", (2,), "s"),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": joined([at.t, 2.0 * at.t])}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": joined([context.t, 2.0 * context.t])}

@@ -17,7 +17,7 @@ import pytest
 
 import symofros as sf
 from symofros.blocks import UdpReceiver, UdpTransmitter, ZenohPublisher, ZenohSubscriber
-from symofros.diagrams.block import Block, Known
+from symofros.diagrams.block import Block, Environment
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.result import DiagramRun
 from tests.blocks.sockets import free_port
@@ -215,7 +215,7 @@ class Flood(OpaqueBlock):
 
     port: int
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         return Flooding(self.port)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 import symofros as sf
 from symofros import blocks
-from symofros.diagrams.block import At, Block, Crossing, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.simulation.inputs import Signal
 
@@ -23,22 +23,22 @@ class Number(Block):
     unit: str = ""
     tunable: ClassVar[tuple[str, ...]] = ("value",)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((), (Port("y", np.shape(self.value), self.unit),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": at.parameters["value"]}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.parameters["value"]}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Wave(Block):
     """The sine of time."""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((), (Port("y"),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": (at.t * 7.0).apply("sin")}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": (context.t * 7.0).apply("sin")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,11 +47,11 @@ class After(Block):
 
     time: float
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((), (Port("y", (1,)),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": (at.t - self.time).apply("step").reshape(1)}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": (context.t - self.time).apply("step").reshape(1)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,57 +60,57 @@ class Lag(Block):
 
     tau: float = 0.1
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((Port("x"),), (Port("y"),))
 
-    def states(self, known: Known) -> Mapping[str, Any]:
+    def states(self, environment: Environment) -> Mapping[str, Any]:
         return {"s": 0.0}
 
-    def compute(self, at: At) -> Values:
-        return {"y": at.states["s"]}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.states["s"]}
 
-    def rates(self, at: At) -> Values:
-        return {"s": (at.inputs["x"] - at.states["s"]) / self.tau}
+    def rates(self, context: EvaluationContext) -> Values:
+        return {"s": (context.inputs["x"] - context.states["s"]) / self.tau}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Hold(Block):
     """Its input at the last sample."""
 
-    def ports(self, known: Known) -> Ports:
-        shape = known.inputs.get("x")
+    def ports(self, environment: Environment) -> Ports:
+        shape = environment.inputs.get("x")
         return Ports((Port("x", shape),), (Port("y", shape),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": at.inputs["x"]}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.inputs["x"]}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Counter(Block):
     """How many samples there have been."""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((), (Port("n"),))
 
-    def memory(self, known: Known) -> Mapping[str, Any]:
+    def memory(self, environment: Environment) -> Mapping[str, Any]:
         return {"n": 0.0}
 
-    def compute(self, at: At) -> Values:
-        return {"n": at.memory["n"]}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"n": context.memory["n"]}
 
-    def update(self, at: At) -> Values:
-        return {"n": at.memory["n"] + 1.0}
+    def update(self, context: EvaluationContext) -> Values:
+        return {"n": context.memory["n"] + 1.0}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Twice(Block):
     """Two inputs' sum: it passes its inputs on at once."""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((Port("a", (), "m"), Port("b", (), "m", 0.0)), (Port("y", (), "m"),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": at.inputs["a"] + at.inputs["b"]}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.inputs["a"] + context.inputs["b"]}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,10 +119,10 @@ class Spoken(OpaqueBlock):
 
     heard: list[float]
 
-    def ports(self, known: Known) -> Ports:
-        return Ports((Port("x", known.inputs.get("x")),), (Port("y", known.inputs.get("x")),))
+    def ports(self, environment: Environment) -> Ports:
+        return Ports((Port("x", environment.inputs.get("x")),), (Port("y", environment.inputs.get("x")),))
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         return Speaking(self.heard)
 
 
@@ -143,26 +143,26 @@ class Ball(Block):
 
     restitution: float = 0.5
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((), (Port("height"), Port("bounces")))
 
-    def states(self, known: Known) -> Mapping[str, Any]:
+    def states(self, environment: Environment) -> Mapping[str, Any]:
         return {"h": 1.0, "w": 0.0}
 
-    def memory(self, known: Known) -> Mapping[str, Any]:
+    def memory(self, environment: Environment) -> Mapping[str, Any]:
         return {"n": 0.0}
 
-    def compute(self, at: At) -> Values:
-        return {"height": at.states["h"], "bounces": at.memory["n"]}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"height": context.states["h"], "bounces": context.memory["n"]}
 
-    def rates(self, at: At) -> Values:
-        return {"h": at.states["w"], "w": at.numbers(-9.81)}
+    def rates(self, context: EvaluationContext) -> Values:
+        return {"h": context.states["w"], "w": context.numbers(-9.81)}
 
-    def crossings(self, at: At) -> Mapping[str, Crossing]:
-        return {"floor": Crossing(at.states["h"], "falling")}
+    def crossings(self, context: EvaluationContext) -> Mapping[str, Crossing]:
+        return {"floor": Crossing(context.states["h"], "falling")}
 
-    def crossed(self, at: At, which: str) -> Values:
-        return {"w": -self.restitution * at.states["w"], "h": at.numbers(0.0), "n": at.memory["n"] + 1.0}
+    def crossed(self, context: EvaluationContext, which: str) -> Values:
+        return {"w": -self.restitution * context.states["w"], "h": context.numbers(0.0), "n": context.memory["n"] + 1.0}
 
 
 def arm(model: sf.System, period: float | None = 1e-3, **start: float) -> sf.Diagram:

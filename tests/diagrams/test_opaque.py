@@ -11,7 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros.blocks import LivePlot, PythonBlock, Store, UdpReceiver
-from symofros.diagrams.block import Block, Known, Port, Ports
+from symofros.diagrams.block import Block, Environment, Port, Ports
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from tests.blocks.sockets import free_port
 from tests.blocks.sources import Ramp
@@ -81,10 +81,10 @@ class Promising(OpaqueBlock):
 
     returned: Any
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((Port("x", (), "", 0.5),), (Port("y", (2,)),))
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         return Returning(self.returned)
 
 

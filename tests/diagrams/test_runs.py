@@ -12,7 +12,7 @@ import pytest
 
 import symofros as sf
 from symofros import blocks
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Speaking, Spoken, Twice, Wave, arm, table
 
 MODELS = Path(__file__).parents[2] / "reference_models"
@@ -135,7 +135,7 @@ def test_samples_of_several_rates() -> None:
 class Given(Block):
     """Two signals by samples."""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((), (Port("y", (2,)),))
 
     def samples(self) -> Mapping[str, Any]:
@@ -146,11 +146,11 @@ class Given(Block):
 class First(Block):
     """The first entry."""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((Port("x", (2,)),), (Port("y"),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": at.inputs["x"][0]}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.inputs["x"][0]}
 
 
 def test_tables_are_read_between_their_samples() -> None:
@@ -182,7 +182,7 @@ def test_blocks_of_pythons_are_called_at_their_samples() -> None:
 def test_what_a_block_of_pythons_raises_ends_the_run() -> None:
     @dataclass(frozen=True, kw_only=True)
     class Failing(Spoken):
-        def begin(self, known: Known) -> Speaking:
+        def begin(self, environment: Environment) -> Speaking:
             return Cut([])
 
     class Cut(Speaking):

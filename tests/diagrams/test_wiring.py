@@ -11,7 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros import blocks
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from tests.diagrams.parts import Counter, Hold, Lag, Number, Twice, arm
 
 PENDULUM = sf.load(Path(__file__).parents[2] / "reference_models" / "rigid" / "double_pendulum.yaml")
@@ -95,11 +95,11 @@ def test_a_loop_through_a_state_is_none() -> None:
 class Mix(Block):
     """The difference of two signals."""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((Port("a"), Port("b")), (Port("y"),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": at.inputs["a"] - at.inputs["b"]}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.inputs["a"] - context.inputs["b"]}
 
 
 @pytest.mark.parametrize(("period", "offset"), [(0.0, 0.0), (-1.0, 0.0), (0.1, 0.1), (0.1, -0.05), (float("nan"), 0.0)])
@@ -158,11 +158,11 @@ def test_names() -> None:
 class Liar(Block):
     """Its formulas do not have the shapes that its ports promise."""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((), (Port("y", (2,)),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": at.t}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.t}
 
 
 def test_a_block_that_does_not_keep_its_word() -> None:
@@ -186,11 +186,11 @@ def test_accelerations_under_constraints_are_for_samples() -> None:
 class Norm(Block):
     """The size of a signal."""
 
-    def ports(self, known: Known) -> Ports:
-        return Ports((Port("x", known.inputs.get("x")),), (Port("y"),))
+    def ports(self, environment: Environment) -> Ports:
+        return Ports((Port("x", environment.inputs.get("x")),), (Port("y"),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": at.inputs["x"].norm()}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.inputs["x"].norm()}
 
 
 def part() -> sf.Diagram:
@@ -223,8 +223,8 @@ def test_parts_have_the_inlets_they_state() -> None:
 def test_memory_is_a_mapping_of_arrays() -> None:
     @dataclass(frozen=True, kw_only=True)
     class Odd(Counter):
-        def update(self, at: At) -> Mapping[str, Any]:
-            return {"m": at.t}
+        def update(self, context: EvaluationContext) -> Mapping[str, Any]:
+            return {"m": context.t}
 
     diagram = sf.Diagram("odd")
     diagram.add(Odd(name="odd", period=0.1))

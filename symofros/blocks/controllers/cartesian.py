@@ -10,7 +10,7 @@ import numpy as np
 from symofros.blocks.checks import number, numbers, refuse
 from symofros.blocks.kinematics.tasks import Task, near_singular, rows_of
 from symofros.blocks.quantities import joint_units
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, solved, stacked
 
 
@@ -29,14 +29,13 @@ class _Cartesian(Block):
             value = getattr(self, field)
             numbers(self.name, field, value, (size,) if np.ndim(value) else ())
 
-    def _task(self, known: Known) -> Task:
-        columns = list(range(len(known.model(self.model).v_names)))
-        return Task(
-            self.model, known.frame(self.model, self.frame), rows_of(self.name, self.rows), columns, suffix="_desired"
-        )
+    def _task(self, environment: Environment) -> Task:
+        columns = list(range(len(environment.model(self.model).v_names)))
+        frame, rows = environment.frame(self.model, self.frame), rows_of(self.name, self.rows)
+        return Task(self.model, frame, rows, columns, suffix="_desired")
 
-    def _ports(self, known: Known, result: str) -> Ports:
-        record, task = known.model(self.model), self._task(known)
+    def _ports(self, environment: Environment, result: str) -> Ports:
+        record, task = environment.model(self.model), self._task(environment)
         units, nv, m = joint_units(record), len(record.v_names), len(task.rows)
         inputs = (*task.ports(), Port("q", (len(record.q_names),), units[0]), Port("v", (nv,), units[1]))
         return Ports(inputs, (Port(result, (nv,), units[3]), Port("wrench", (m,)), Port("error", (m,))))
@@ -60,17 +59,17 @@ class CartesianLinear(_Cartesian):
     damping: Any
     tunable: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Desired p, angle or R, v; actual q, v in; effort (nv), wrench and error of the rows out."""
-        found = self._ports(known, "effort")
+        found = self._ports(environment, "effort")
         return Ports(tuple(port for port in found.inputs if port.name != "a_desired"), found.outputs)
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The wrench, and the efforts that make it."""
-        task, q = self._task(at.known), at.inputs["q"]
-        J, error = task.jacobian(at, q), task.error(at, q)
-        rate = at.inputs["v_desired"] - J @ at.inputs["v"]
-        wrench = at.parameters["stiffness"] * error + at.parameters["damping"] * rate
+        task, q = self._task(context.environment), context.inputs["q"]
+        J, error = task.jacobian(context, q), task.error(context, q)
+        rate = context.inputs["v_desired"] - J @ context.inputs["v"]
+        wrench = context.parameters["stiffness"] * error + context.parameters["damping"] * rate
         return {"effort": J.T @ wrench, "wrench": wrench, "error": error}
 
 
@@ -107,9 +106,9 @@ class CartesianFeedback(_Cartesian):
         number(self.name, "regular", self.regular, 0.0)
         number(self.name, "near", self.near, 0.0, exclusive=True)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Desired p, angle or R, v, a; actual q, v in; tau (nv), wrench and error of the rows out."""
-        record = known.model(self.model)
+        record = environment.model(self.model)
         if record.nc:
             raise refuse(
                 self.name,
@@ -118,22 +117,23 @@ class CartesianFeedback(_Cartesian):
                 "feedback of dynamics is for trees of joints",
                 "use CartesianLinear, or a model without",
             )
-        return self._ports(known, "tau")
+        return self._ports(environment, "tau")
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Inverse dynamics of the frame."""
-        task, q, v = self._task(at.known), at.inputs["q"], at.inputs["v"]
-        J, error = task.jacobian(at, q), task.error(at, q)
+        task, q, v = self._task(context.environment), context.inputs["q"], context.inputs["v"]
+        J, error = task.jacobian(context, q), task.error(context, q)
         x = (
-            at.inputs["a_desired"]
-            + at.parameters["kd"] * (at.inputs["v_desired"] - J @ v)
-            + at.parameters["kp"] * error
+            context.inputs["a_desired"]
+            + context.parameters["kd"] * (context.inputs["v_desired"] - J @ v)
+            + context.parameters["kp"] * error
         )
-        M = at.call(self.model, "mass_matrix", q=q, t=at.t)["M"]
-        mobility = self._regular(J, J @ stacked([at.solved(M, row) for row in J]).T)
+        M = context.call(self.model, "mass_matrix", q=q, t=context.t)["M"]
+        mobility = self._regular(J, J @ stacked([context.solved(M, row) for row in J]).T)
         idle = -self.idle * v
-        F = solved(mobility, x - task.drift(at, q, v) - J @ idle)
-        bias = at.call(self.model, "inverse_dynamics", q=q, v=v, a=at.numbers(np.zeros(len(v))), t=at.t)["tau"]
+        F = solved(mobility, x - task.drift(context, q, v) - J @ idle)
+        at_rest = context.numbers(np.zeros(len(v)))
+        bias = context.call(self.model, "inverse_dynamics", q=q, v=v, a=at_rest, t=context.t)["tau"]
         return {"tau": J.T @ F + M @ idle + bias, "wrench": F, "error": error}
 
     def _regular(self, J: Tensor, mobility: Tensor) -> Tensor:

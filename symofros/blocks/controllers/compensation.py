@@ -10,7 +10,7 @@ import numpy as np
 from symofros.blocks.checks import numbers
 from symofros.blocks.dynamics import friction
 from symofros.blocks.quantities import joint_units
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,18 +30,19 @@ class FrictionCompensation(Block):
         """Factors are numbers."""
         numbers(self.name, "factor", self.factor)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Motion q, v in; effort (nv) out, zero where there is no friction."""
-        q, v, _, effort = joint_units(known.model(self.model))
-        record = known.model(self.model)
+        q, v, _, effort = joint_units(environment.model(self.model))
+        record = environment.model(self.model)
         nv = len(record.v_names)
         if np.ndim(self.factor):
             numbers(self.name, "factor", self.factor, (nv,))
         return Ports((Port("q", (len(record.q_names),), q), Port("v", (nv,), v)), (Port("effort", (nv,), effort),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The opposite of the friction."""
-        return {"effort": -at.parameters["factor"] * friction(at, self.model, at.inputs["q"], at.inputs["v"])}
+        effort = friction(context, self.model, context.inputs["q"], context.inputs["v"])
+        return {"effort": -context.parameters["factor"] * effort}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,14 +55,14 @@ class GravityCompensation(Block):
 
     model: str
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Configuration q in; effort (nv) out."""
-        record = known.model(self.model)
+        record = environment.model(self.model)
         q, _, _, effort = joint_units(record)
         return Ports((Port("q", (len(record.q_names),), q),), (Port("effort", (len(record.v_names),), effort),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Inverse dynamics at rest."""
-        rest = at.numbers(np.zeros(len(at.known.model(self.model).v_names)))
-        tau = at.call(self.model, "inverse_dynamics", q=at.inputs["q"], v=rest, a=rest, t=at.t)["tau"]
+        rest = context.numbers(np.zeros(len(context.environment.model(self.model).v_names)))
+        tau = context.call(self.model, "inverse_dynamics", q=context.inputs["q"], v=rest, a=rest, t=context.t)["tau"]
         return {"effort": tau}

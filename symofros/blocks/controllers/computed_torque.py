@@ -10,7 +10,7 @@ import numpy as np
 from symofros.blocks.checks import numbers
 from symofros.blocks.manifold import difference
 from symofros.blocks.quantities import joint_units
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,9 +36,9 @@ class ComputedTorque(Block):
         numbers(self.name, "kp", self.kp)
         numbers(self.name, "kd", self.kd)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Desired q, v, a and actual q, v in; tau (nv) and the error (nv) out."""
-        record = known.model(self.model)
+        record = environment.model(self.model)
         q, v, a, effort = joint_units(record)
         nq, nv = len(record.q_names), len(record.v_names)
         for field in ("kp", "kd"):
@@ -53,10 +53,10 @@ class ComputedTorque(Block):
         )
         return Ports(inputs, (Port("tau", (nv,), effort), Port("error", (nv,), q)))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Inverse dynamics at the acceleration that the errors ask for."""
-        q, v = at.inputs["q"], at.inputs["v"]
-        error = difference(at.known.model(self.model), q, at.inputs["q_desired"])
-        rate = at.inputs["v_desired"] - v
-        a = at.inputs["a_desired"] + at.parameters["kp"] * error + at.parameters["kd"] * rate
-        return {"tau": at.call(self.model, "inverse_dynamics", q=q, v=v, a=a, t=at.t)["tau"], "error": error}
+        q, v = context.inputs["q"], context.inputs["v"]
+        error = difference(context.environment.model(self.model), q, context.inputs["q_desired"])
+        rate = context.inputs["v_desired"] - v
+        a = context.inputs["a_desired"] + context.parameters["kp"] * error + context.parameters["kd"] * rate
+        return {"tau": context.call(self.model, "inverse_dynamics", q=q, v=v, a=a, t=context.t)["tau"], "error": error}

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from symofros.blocks.checks import number, numbers, refuse
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Shape, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
 from symofros.diagrams.tensor import Tensor
 
 
@@ -30,14 +30,14 @@ class JointPD(Block):
         """Gains are numbers."""
         _gains(self)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Desired and actual motion of one size; the effort alike."""
-        return _joint_ports(self, known)
+        return _joint_ports(self, environment)
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Proportional and derivative terms."""
-        error, rate = _errors(at)
-        return {"effort": at.parameters["kp"] * error + at.parameters["kd"] * rate}
+        error, rate = _errors(context)
+        return {"effort": context.parameters["kp"] * error + context.parameters["kd"] * rate}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,40 +72,40 @@ class JointPID(Block):
                 self.name, "low is above high", f"{self.low} and {self.high}", "limits in order", "exchange them"
             )
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Desired and actual motion of one size; the effort alike."""
-        return _joint_ports(self, known)
+        return _joint_ports(self, environment)
 
-    def _first(self, known: Known) -> dict[str, Any]:
-        return {"i": np.zeros(known.inputs["q"])}
+    def _first(self, environment: Environment) -> dict[str, Any]:
+        return {"i": np.zeros(environment.inputs["q"])}
 
-    def states(self, known: Known) -> dict[str, Any]:
+    def states(self, environment: Environment) -> dict[str, Any]:
         """Continuous: the integral."""
-        return self._first(known) if self.period is None else {}
+        return self._first(environment) if self.period is None else {}
 
-    def memory(self, known: Known) -> dict[str, Any]:
+    def memory(self, environment: Environment) -> dict[str, Any]:
         """Sampled: the integral."""
-        return {} if self.period is None else self._first(known)
+        return {} if self.period is None else self._first(environment)
 
-    def _terms(self, at: At) -> tuple[Tensor, Tensor]:
+    def _terms(self, context: EvaluationContext) -> tuple[Tensor, Tensor]:
         """The effort, and the rate of the integral."""
-        par, (error, rate) = at.parameters, _errors(at)
-        i = at.states["i"] if self.period is None else at.memory["i"]
+        par, (error, rate) = context.parameters, _errors(context)
+        i = context.states["i"] if self.period is None else context.memory["i"]
         wanted = par["kp"] * error + i + par["kd"] * rate
         effort = wanted.clipped(par["low"], par["high"])
         return effort, par["ki"] * error + (effort - wanted) / self.tracking
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Within limits."""
-        return {"effort": self._terms(at)[0]}
+        return {"effort": self._terms(context)[0]}
 
-    def rates(self, at: At) -> Values:
+    def rates(self, context: EvaluationContext) -> Values:
         """Continuous: of the integral."""
-        return {"i": self._terms(at)[1]} if self.period is None else {}
+        return {"i": self._terms(context)[1]} if self.period is None else {}
 
-    def update(self, at: At) -> Values:
+    def update(self, context: EvaluationContext) -> Values:
         """Sampled: the integral, one period further."""
-        return {} if self.period is None else {"i": at.memory["i"] + self.period * self._terms(at)[1]}
+        return {} if self.period is None else {"i": context.memory["i"] + self.period * self._terms(context)[1]}
 
 
 def _gains(block: Block) -> None:
@@ -120,8 +120,8 @@ def _gains(block: Block) -> None:
             )
 
 
-def _joint_ports(block: Block, known: Known) -> Ports:
-    size: Shape | None = known.inputs.get("q", known.inputs.get("q_desired"))
+def _joint_ports(block: Block, environment: Environment) -> Ports:
+    size: Shape | None = environment.inputs.get("q", environment.inputs.get("q_desired"))
     for field in block.tunable:
         own = np.shape(getattr(block, field))
         if own and size is not None and own != size:
@@ -132,6 +132,6 @@ def _joint_ports(block: Block, known: Known) -> Ports:
     return Ports(inputs, (Port("effort", size),))
 
 
-def _errors(at: At) -> tuple[Tensor, Tensor]:
-    inputs = at.inputs
+def _errors(context: EvaluationContext) -> tuple[Tensor, Tensor]:
+    inputs = context.inputs
     return inputs["q_desired"] - inputs["q"], inputs["v_desired"] - inputs["v"]

@@ -11,7 +11,7 @@ from symofros.blocks.checks import numbers, refuse
 from symofros.blocks.controllers.riccati import continuous_gain, held_inputs, sampled_gain
 from symofros.blocks.manifold import difference
 from symofros.blocks.quantities import joint_units
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import joined
 from symofros.runtime.kernel import Array
 
@@ -36,9 +36,9 @@ class LQR(Block):
     input_weights: Any = 1.0
     nominal: Any = None
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Actual q, v, and desired ones, the first state by default, in; u (nu) and x (2 nv) out."""
-        record = known.model(self.model)
+        record = environment.model(self.model)
         q, v, _, effort = joint_units(record)
         nq, nv, nu = len(record.q_names), len(record.v_names), len(record.u_names)
         if not nu:
@@ -53,7 +53,7 @@ class LQR(Block):
             numbers(self.name, "nominal", self.nominal, (nu,))
         self._weights("state_weights", 2 * nv)
         self._weights("input_weights", nu)
-        q0, v0 = known.start(self.model)
+        q0, v0 = environment.start(self.model)
         inputs = (
             Port("q", (nq,), q),
             Port("v", (nv,), v),
@@ -77,17 +77,17 @@ class LQR(Block):
             )
         return whole
 
-    def _nominal(self, known: Known) -> Array:
-        given = known.model(self.model).u_default if self.nominal is None else self.nominal
+    def _nominal(self, environment: Environment) -> Array:
+        given = environment.model(self.model).u_default if self.nominal is None else self.nominal
         return np.asarray(given, dtype=np.float64)
 
-    def gain(self, known: Known) -> Array:
+    def gain(self, environment: Environment) -> Array:
         """K (nu, 2 nv).
 
         Raises:
             DescriptionError: Nothing stabilises the model.
         """
-        linear = known.linear(self.model, self._nominal(known))
+        linear = environment.linear(self.model, self._nominal(environment))
         Q, R = self._weights("state_weights", len(linear.basis)), self._weights("input_weights", linear.B.shape[1])
         Q = linear.basis.T @ Q @ linear.basis
         if self.period is None:
@@ -104,8 +104,8 @@ class LQR(Block):
             )
         return K @ linear.basis.T
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The gain on the state's error."""
-        record, inputs = at.known.model(self.model), at.inputs
+        record, inputs = context.environment.model(self.model), context.inputs
         x = joined([difference(record, inputs["q_desired"], inputs["q"]), inputs["v"] - inputs["v_desired"]])
-        return {"u": self._nominal(at.known) - at.numbers(self.gain(at.known)) @ x, "x": x}
+        return {"u": self._nominal(context.environment) - context.numbers(self.gain(context.environment)) @ x, "x": x}

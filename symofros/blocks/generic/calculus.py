@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.blocks.checks import choice, number, numbers, refuse
 from symofros.blocks.generic.nonlinear import ordered
-from symofros.diagrams.block import At, Block, Crossing, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor
 
 _DIRECTIONS = ("none", "rising", "falling", "both")
@@ -50,70 +50,70 @@ class Integrator(Block):
         ordered(self, "start", "high")
         choice(self.name, "reset", self.reset, _DIRECTIONS)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Inputs u, and reset (scalar) if asked for; output y."""
-        shape = np.shape(self.start) or known.inputs.get("u")
+        shape = np.shape(self.start) or environment.inputs.get("u")
         inputs = (Port("u", shape, self.unit_in), *([Port("reset", ())] if self.reset != "none" else []))
         return Ports(inputs, (Port("y", shape, self.unit_out),))
 
-    def _first(self, known: Known) -> Any:
-        return np.broadcast_to(np.asarray(self.start, dtype=np.float64), known.inputs["u"])
+    def _first(self, environment: Environment) -> Any:
+        return np.broadcast_to(np.asarray(self.start, dtype=np.float64), environment.inputs["u"])
 
-    def states(self, known: Known) -> dict[str, Any]:
+    def states(self, environment: Environment) -> dict[str, Any]:
         """Continuous: y."""
-        return {"x": self._first(known)} if self.period is None else {}
+        return {"x": self._first(environment)} if self.period is None else {}
 
-    def memory(self, known: Known) -> dict[str, Any]:
+    def memory(self, environment: Environment) -> dict[str, Any]:
         """Sampled: y, and the reset signal at the sample before."""
         if self.period is None:
             return {}
-        return {"x": self._first(known)} | ({} if self.reset == "none" else {"before": 0.0})
+        return {"x": self._first(environment)} | ({} if self.reset == "none" else {"before": 0.0})
 
     def _limited(self, x: Tensor) -> Tensor:
         x = x if self.low == -math.inf else x.apply("max", self.low)
         return x if self.high == math.inf else x.apply("min", self.high)
 
-    def _now(self, at: At) -> Tensor:
+    def _now(self, context: EvaluationContext) -> Tensor:
         """At a sample: what was reached, or the start."""
-        x = at.memory["x"]
+        x = context.memory["x"]
         if self.reset == "none":
             return x
-        before, now = at.memory["before"], at.inputs["reset"]
+        before, now = context.memory["before"], context.inputs["reset"]
         rises, falls = _rises(before, now), _rises(-before, -now)
         hit = {"rising": rises, "falling": falls, "both": rises.apply("max", falls)}[self.reset]
         return x * (1.0 - hit) + hit * np.asarray(self.start, dtype=np.float64)
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The integral, within limits."""
-        return {"y": self._limited(at.states["x"]) if self.period is None else self._now(at)}
+        return {"y": self._limited(context.states["x"]) if self.period is None else self._now(context)}
 
-    def rates(self, at: At) -> Values:
+    def rates(self, context: EvaluationContext) -> Values:
         """U, unless it pushes against a limit."""
         if self.period is not None:
             return {}
-        x, rate = at.states["x"], at.inputs["u"]
+        x, rate = context.states["x"], context.inputs["u"]
         if self.high < math.inf:
             rate = rate * (1.0 - (x - self.high).apply("step") * rate.apply("step"))
         if self.low > -math.inf:
             rate = rate * (1.0 - (self.low - x).apply("step") * (-rate).apply("step"))
         return {"x": rate}
 
-    def update(self, at: At) -> Values:
+    def update(self, context: EvaluationContext) -> Values:
         """One sample's share further."""
         if self.period is None:
             return {}
-        found = {"x": self._limited(self._now(at) + float(self.period) * at.inputs["u"])}
-        return found if self.reset == "none" else {**found, "before": at.inputs["reset"]}
+        found = {"x": self._limited(self._now(context) + float(self.period) * context.inputs["u"])}
+        return found if self.reset == "none" else {**found, "before": context.inputs["reset"]}
 
-    def crossings(self, at: At) -> dict[str, Crossing]:
+    def crossings(self, context: EvaluationContext) -> dict[str, Crossing]:
         """Continuous: zeros of the reset signal."""
         if self.period is not None or self.reset == "none":
             return {}
-        return {"reset": Crossing(at.inputs["reset"], self.reset)}  # type: ignore[arg-type]
+        return {"reset": Crossing(context.inputs["reset"], self.reset)}  # type: ignore[arg-type]
 
-    def crossed(self, at: At, which: str) -> Values:
+    def crossed(self, context: EvaluationContext, which: str) -> Values:
         """Back to the start."""
-        return {"x": at.states["x"] * 0.0 + np.asarray(self.start, dtype=np.float64)}
+        return {"x": context.states["x"] * 0.0 + np.asarray(self.start, dtype=np.float64)}
 
 
 def _rises(before: Tensor, now: Tensor) -> Tensor:
@@ -142,33 +142,33 @@ class Derivative(Block):
         number(self.name, "tau", self.tau, 0.0, exclusive=self.period is None)
         numbers(self.name, "start", self.start)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
-        shape = known.inputs.get("u", np.shape(self.start) or None)
+        shape = environment.inputs.get("u", np.shape(self.start) or None)
         return Ports((Port("u", shape, self.unit_in),), (Port("y", shape, self.unit_out),))
 
-    def _first(self, known: Known) -> Any:
-        return np.broadcast_to(np.asarray(self.start, dtype=np.float64), known.inputs["u"])
+    def _first(self, environment: Environment) -> Any:
+        return np.broadcast_to(np.asarray(self.start, dtype=np.float64), environment.inputs["u"])
 
-    def states(self, known: Known) -> dict[str, Any]:
+    def states(self, environment: Environment) -> dict[str, Any]:
         """Continuous: u, late by the filter."""
-        return {"x": self._first(known)} if self.period is None else {}
+        return {"x": self._first(environment)} if self.period is None else {}
 
-    def memory(self, known: Known) -> dict[str, Any]:
+    def memory(self, environment: Environment) -> dict[str, Any]:
         """Sampled: u and y of the sample before."""
-        return {} if self.period is None else {"u": self._first(known), "y": np.zeros(known.inputs["u"])}
+        return {} if self.period is None else {"u": self._first(environment), "y": np.zeros(environment.inputs["u"])}
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """How fast u moves."""
         if self.period is None:
-            return {"y": (at.inputs["u"] - at.states["x"]) / self.tau}
+            return {"y": (context.inputs["u"] - context.states["x"]) / self.tau}
         a = math.exp(-self.period / self.tau) if self.tau else 0.0
-        return {"y": a * at.memory["y"] + (1.0 - a) * (at.inputs["u"] - at.memory["u"]) / self.period}
+        return {"y": a * context.memory["y"] + (1.0 - a) * (context.inputs["u"] - context.memory["u"]) / self.period}
 
-    def rates(self, at: At) -> Values:
+    def rates(self, context: EvaluationContext) -> Values:
         """Continuous: u is followed."""
-        return {"x": (at.inputs["u"] - at.states["x"]) / self.tau} if self.period is None else {}
+        return {"x": (context.inputs["u"] - context.states["x"]) / self.tau} if self.period is None else {}
 
-    def update(self, at: At) -> Values:
+    def update(self, context: EvaluationContext) -> Values:
         """Sampled: u and y are kept."""
-        return {} if self.period is None else {"u": at.inputs["u"], "y": self.compute(at)["y"]}
+        return {} if self.period is None else {"u": context.inputs["u"], "y": self.compute(context)["y"]}

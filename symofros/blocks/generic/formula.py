@@ -13,7 +13,7 @@ import numpy as np
 from symofros.blocks.checks import numbers, refuse
 from symofros.blocks.generic.sampling import needs_period
 from symofros.description.parser import ExpressionError, parse
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError
@@ -110,12 +110,12 @@ class Formula(Block):
             found[name] = size if size is None else max(size, found.get(name) or 0)
         return found
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """An input for each name, an output for each formula."""
         units = dict(self.units or {})
         inputs = []
         for name, least in self._entries.items():
-            shape = known.inputs.get(name) if least is not None else ()
+            shape = environment.inputs.get(name) if least is not None else ()
             if least is not None and shape is not None and (len(shape) != 1 or shape[0] < least):
                 raise refuse(
                     self.name,
@@ -135,19 +135,19 @@ class Formula(Block):
         """The constants."""
         return {name: np.asarray(value, dtype=np.float64) for name, value in dict(self.constants or {}).items()}
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The formulas, lowered into the graph."""
-        bindings = {"t": at.t.flat[0], **{name: value.flat[0] for name, value in at.parameters.items()}}
-        for name, value in at.inputs.items():
+        bindings = {"t": context.t.flat[0], **{name: value.flat[0] for name, value in context.parameters.items()}}
+        for name, value in context.inputs.items():
             if value.shape:
                 bindings |= {f"{name}[{i}]": edge for i, edge in enumerate(value.flat)}
             else:
                 bindings[name] = value.flat[0]
         try:
             found = {
-                name: ([lower(item, at.g, bindings) for item in value], (len(value),))
+                name: ([lower(item, context.g, bindings) for item in value], (len(value),))
                 if isinstance(value, list)
-                else ([lower(value, at.g, bindings)], ())
+                else ([lower(value, context.g, bindings)], ())
                 for name, value in self._parsed.items()
             }
         except ArithmeticError as error:
@@ -158,7 +158,7 @@ class Formula(Block):
                 "constant parts are within the domain of functions",
                 "mend the formula",
             ) from None
-        return {name: Tensor.of(at.g, edges, shape) for name, (edges, shape) in found.items()}
+        return {name: Tensor.of(context.g, edges, shape) for name, (edges, shape) in found.items()}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -189,10 +189,10 @@ class PythonBlock(OpaqueBlock):
             )
         needs_period(self)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """As stated."""
         given = {
-            name: known.inputs.get(name) if shape is None else tuple(shape)
+            name: environment.inputs.get(name) if shape is None else tuple(shape)
             for name, shape in dict(self.inputs or {}).items()
         }
         return Ports(
@@ -200,7 +200,7 @@ class PythonBlock(OpaqueBlock):
             tuple(Port(name, tuple(shape)) for name, shape in dict(self.outputs).items()),
         )
 
-    def begin(self, known: Known) -> Running:
+    def begin(self, environment: Environment) -> Running:
         """By the user's function."""
         if self.on_begin:
             self.on_begin()

@@ -18,7 +18,7 @@ from symofros.blocks.rotations import (
     quaternion_of_matrix,
     vector_of_matrix,
 )
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Shape, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
 from symofros.diagrams.tensor import Tensor, joined
 
 QUANTITIES = ("point", "vector", "velocity", "wrench")
@@ -64,14 +64,14 @@ class Transform(Block):
         """A known quantity."""
         choice(self.name, "quantity", self.quantity, QUANTITIES)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Inputs p (3), the origin of B in A, R_AB (3, 3), u; output y."""
         size = _size(self.quantity)
         return Ports((Port("p", (3,), "m", 0.0), Port("R", (3, 3)), Port("u", size)), (Port("y", size),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """By the pose."""
-        p, R, u = (at.inputs[name] for name in ("p", "R", "u"))
+        p, R, u = (context.inputs[name] for name in ("p", "R", "u"))
         if self.inverse:
             p, R = -(R.T @ p), R.T
         return {"y": transformed(self.quantity, p, R, u)}
@@ -97,22 +97,23 @@ class FrameTransform(Block):
         """A known quantity."""
         choice(self.name, "quantity", self.quantity, QUANTITIES)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Inputs q (nq), u; outputs y, and the source in the target: p (3), R (3, 3)."""
         for frame in (self.source, self.target):
-            known.frame(self.model, frame)
-        record, size = known.model(self.model), _size(self.quantity)
+            environment.frame(self.model, frame)
+        record, size = environment.model(self.model), _size(self.quantity)
         inputs = (Port("q", (len(record.q_names),), joint_units(record)[0]), Port("u", size, "", 0.0))
         return Ports(inputs, (Port("y", size), Port("p", (3,), "m"), Port("R", (3, 3))))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """By both poses in the world."""
         source, target = (
-            at.call(self.model, "frame_pose", frame, q=at.inputs["q"], t=at.t) for frame in (self.source, self.target)
+            context.call(self.model, "frame_pose", frame, q=context.inputs["q"], t=context.t)
+            for frame in (self.source, self.target)
         )
         R = target["R"].T @ source["R"]
         p = target["R"].T @ (source["p"] - target["p"])
-        return {"y": transformed(self.quantity, p, R, at.inputs["u"]), "p": p, "R": R}
+        return {"y": transformed(self.quantity, p, R, context.inputs["u"]), "p": p, "R": R}
 
 
 def _axis_angle(u: Tensor) -> Tensor:
@@ -165,13 +166,13 @@ class Orientation(Block):
         choice(self.name, "source", self.source, FORMS)
         choice(self.name, "target", self.target, FORMS)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
         return Ports((Port("u", FORMS[self.source][0]),), (Port("y", FORMS[self.target][0]),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """By way of the matrix."""
-        return {"y": FORMS[self.target][2](FORMS[self.source][1](at.inputs["u"]))}
+        return {"y": FORMS[self.target][2](FORMS[self.source][1](context.inputs["u"]))}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -191,13 +192,13 @@ class OrientationError(Block):
         choice(self.name, "kind", self.kind, FORMS)
         choice(self.name, "axes", self.axes, ("world", "body"))
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Inputs desired and actual; output error (3)."""
         shape = FORMS[self.kind][0]
         return Ports((Port("desired", shape), Port("actual", shape)), (Port("error", (3,), "rad"),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The logarithm of R_d R^T."""
-        desired, actual = (FORMS[self.kind][1](at.inputs[name]) for name in ("desired", "actual"))
+        desired, actual = (FORMS[self.kind][1](context.inputs[name]) for name in ("desired", "actual"))
         error = error_vector(desired, actual)
         return {"error": error if self.axes == "world" else actual.T @ error}

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from symofros.blocks.checks import numbers, refuse
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor
 from symofros.runtime.kernel import Array
 
@@ -29,34 +29,34 @@ class _Linear(Block, ABC):
         """The first x (n)."""
         return np.zeros(len(self.matrices()[0]))
 
-    def states(self, known: Known) -> dict[str, Any]:
+    def states(self, environment: Environment) -> dict[str, Any]:
         """Continuous: x."""
         return {"x": self.first()} if self.period is None else {}
 
-    def memory(self, known: Known) -> dict[str, Any]:
+    def memory(self, environment: Environment) -> dict[str, Any]:
         """Sampled: x."""
         return {} if self.period is None else {"x": self.first()}
 
-    def _next(self, at: At) -> Values:
+    def _next(self, context: EvaluationContext) -> Values:
         A, B, _, _ = self.matrices()
-        return {"x": at.numbers(A) @ self._x(at) + at.numbers(B) @ at.inputs["u"].reshape(-1)}
+        return {"x": context.numbers(A) @ self._x(context) + context.numbers(B) @ context.inputs["u"].reshape(-1)}
 
-    def _x(self, at: At) -> Tensor:
-        return at.states["x"] if self.period is None else at.memory["x"]
+    def _x(self, context: EvaluationContext) -> Tensor:
+        return context.states["x"] if self.period is None else context.memory["x"]
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """C x + D u."""
         _, _, C, D = self.matrices()
-        y = at.numbers(C) @ self._x(at) + at.numbers(D) @ at.inputs["u"].reshape(-1)
-        return {"y": y.reshape(*(len(C),) if at.inputs["u"].shape else ())}
+        y = context.numbers(C) @ self._x(context) + context.numbers(D) @ context.inputs["u"].reshape(-1)
+        return {"y": y.reshape(*(len(C),) if context.inputs["u"].shape else ())}
 
-    def rates(self, at: At) -> Values:
+    def rates(self, context: EvaluationContext) -> Values:
         """Continuous: A x + B u."""
-        return self._next(at) if self.period is None else {}
+        return self._next(context) if self.period is None else {}
 
-    def update(self, at: At) -> Values:
+    def update(self, context: EvaluationContext) -> Values:
         """Sampled: A x + B u."""
-        return {} if self.period is None else self._next(at)
+        return {} if self.period is None else self._next(context)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,7 +99,7 @@ class StateSpace(_Linear):
         """The start."""
         return np.zeros(len(self.A)) + np.asarray(self.start, dtype=np.float64)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u (m), output y (p)."""
         p, m = self.matrices()[3].shape
         return Ports((Port("u", (m,)),), (Port("y", (p,)),))
@@ -139,6 +139,6 @@ class TransferFunction(_Linear):
             A[0] = -a
         return A, B, (num[1:] - num[0] * a).reshape(1, n), num[:1].reshape(1, 1)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u and output y, scalars."""
         return Ports((Port("u", ()),), (Port("y", ()),))

@@ -15,7 +15,7 @@ import numpy as np
 
 from symofros.blocks.checks import choice, numbers, whole
 from symofros.blocks.generic.sampling import needs_period
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, stacked
 
 _M1, _M2 = 4294967087, 4294944443
@@ -88,31 +88,31 @@ class Noise(Block):
             numbers(self.name, field, value, (self.size,) if np.ndim(value) else ())
         needs_period(self)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Output y."""
         return Ports((), (Port("y", (self.size,) if self.size else (), self.unit),))
 
-    def memory(self, known: Known) -> dict[str, Any]:
+    def memory(self, environment: Environment) -> dict[str, Any]:
         """The state of each component's generator (6, n)."""
         return {"state": np.array([stream(self.seed, i) for i in range(max(1, self.size))], dtype=np.float64).T}
 
-    def _drawn(self, at: At) -> tuple[Tensor, Tensor]:
+    def _drawn(self, context: EvaluationContext) -> tuple[Tensor, Tensor]:
         """Numbers (n), and the state after."""
-        state, first = _advance(at.memory["state"])
+        state, first = _advance(context.memory["state"])
         if self.kind == "uniform":
             return 2.0 * first - 1.0, state
         state, second = _advance(state)
         angle = (2.0 * math.pi) * second
         return (-2.0 * first.apply("log")).apply("sqrt") * angle.apply("cos"), state
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The next numbers."""
-        drawn = self._drawn(at)[0].reshape(*(self.size,) if self.size else ())
-        return {"y": at.parameters["mean"] + at.parameters["scale"] * drawn}
+        drawn = self._drawn(context)[0].reshape(*(self.size,) if self.size else ())
+        return {"y": context.parameters["mean"] + context.parameters["scale"] * drawn}
 
-    def update(self, at: At) -> Values:
+    def update(self, context: EvaluationContext) -> Values:
         """The state after them."""
-        return {"state": self._drawn(at)[1]}
+        return {"state": self._drawn(context)[1]}
 
 
 def _advance(state: Tensor) -> tuple[Tensor, Tensor]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.blocks.checks import choice, increasing, numbers, refuse
 from symofros.blocks.quantities import common_shape
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Shape, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
 
 # Of a table, whose formula grows with its points.
 MOST_POINTS = 1000
@@ -26,9 +26,9 @@ class _OneToOne(Block):
         for field in self.tunable:
             numbers(self.name, field, getattr(self, field))
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
-        shape: Shape | None = known.inputs.get("u")
+        shape: Shape | None = environment.inputs.get("u")
         for field in self.tunable:
             own = np.shape(getattr(self, field))
             if own and shape is not None and own != shape:
@@ -78,9 +78,9 @@ class Saturation(_Bounded):
         unit: Unit of input and output.
     """
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The nearest value within."""
-        return {"y": at.inputs["u"].clipped(at.parameters["low"], at.parameters["high"])}
+        return {"y": context.inputs["u"].clipped(context.parameters["low"], context.parameters["high"])}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,10 +93,10 @@ class DeadZone(_Bounded):
         unit: Unit of input and output.
     """
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """What sticks out."""
-        u = at.inputs["u"]
-        return {"y": u - u.clipped(at.parameters["low"], at.parameters["high"])}
+        u = context.inputs["u"]
+        return {"y": u - u.clipped(context.parameters["low"], context.parameters["high"])}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,10 +117,10 @@ class Quantizer(_OneToOne):
         if np.min(self.step) <= 0.0:
             raise refuse(self.name, "step", self.step, "a number above zero", "give another")
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Rounded."""
-        step = at.parameters["step"]
-        return {"y": step * (at.inputs["u"] / step + 0.5).apply("floor")}
+        step = context.parameters["step"]
+        return {"y": step * (context.inputs["u"] / step + 0.5).apply("floor")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,16 +140,16 @@ class Switch(Block):
         """The threshold is a number."""
         numbers(self.name, "threshold", self.threshold, ())
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2 of one shape, by (scalar); output y."""
-        shape = common_shape(known, ("u1", "u2"))
+        shape = common_shape(environment, ("u1", "u2"))
         inputs = (Port("u1", shape, self.unit), Port("u2", shape, self.unit), Port("by", ()))
         return Ports(inputs, (Port("y", shape, self.unit),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """One of the two; both must be finite."""
-        on = (at.inputs["by"] - at.parameters["threshold"]).apply("step")
-        return {"y": on * at.inputs["u1"] + (1.0 - on) * at.inputs["u2"]}
+        on = (context.inputs["by"] - context.parameters["threshold"]).apply("step")
+        return {"y": on * context.inputs["u1"] + (1.0 - on) * context.inputs["u2"]}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,16 +183,16 @@ class LookupTable(Block):
             )
         choice(self.name, "outside", self.outside, ("hold", "extend"))
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, a scalar; output y."""
         return Ports((Port("u", (), self.unit_in),), (Port("y", np.shape(self.y)[1:], self.unit_out),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The first value and what each interval adds."""
         x, y = np.asarray(self.x, dtype=np.float64), np.asarray(self.y, dtype=np.float64)
-        total = at.numbers(y[0])
+        total = context.numbers(y[0])
         for i in range(len(x) - 1):
-            h, along = float(x[i + 1] - x[i]), at.inputs["u"] - float(x[i])
+            h, along = float(x[i + 1] - x[i]), context.inputs["u"] - float(x[i])
             if self.outside == "hold" or i > 0:
                 along = along.apply("max", 0.0)
             if self.outside == "hold" or i < len(x) - 2:

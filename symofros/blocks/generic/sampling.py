@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from symofros.blocks.checks import numbers, refuse
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,22 +28,22 @@ class UnitDelay(Block):
         numbers(self.name, "start", self.start)
         needs_period(self)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
-        shape = np.shape(self.start) or known.inputs.get("u")
+        shape = np.shape(self.start) or environment.inputs.get("u")
         return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
 
-    def memory(self, known: Known) -> dict[str, Any]:
+    def memory(self, environment: Environment) -> dict[str, Any]:
         """The input of the sample before."""
-        return {"before": np.broadcast_to(np.asarray(self.start, dtype=np.float64), known.inputs["u"])}
+        return {"before": np.broadcast_to(np.asarray(self.start, dtype=np.float64), environment.inputs["u"])}
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """What was kept."""
-        return {"y": at.memory["before"]}
+        return {"y": context.memory["before"]}
 
-    def update(self, at: At) -> Values:
+    def update(self, context: EvaluationContext) -> Values:
         """Keep the input."""
-        return {"before": at.inputs["u"]}
+        return {"before": context.inputs["u"]}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,14 +60,14 @@ class Hold(Block):
         """It has a sample time."""
         needs_period(self)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
-        shape = known.inputs.get("u")
+        shape = environment.inputs.get("u")
         return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The input."""
-        return {"y": at.inputs["u"]}
+        return {"y": context.inputs["u"]}
 
 
 def needs_period(block: Block) -> None:

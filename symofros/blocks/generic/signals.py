@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.blocks.checks import known_name, numbers, refuse, whole
 from symofros.blocks.quantities import actuated_names, common_shape
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import joined
 from symofros.diagrams.units import parse
 
@@ -34,13 +34,13 @@ class Constant(Block):
         """Values are finite numbers."""
         numbers(self.name, "value", self.value)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Output y."""
         return Ports((), (Port("y", np.shape(self.value), self.unit),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The value, a run-time parameter."""
-        return {"y": at.parameters["value"]}
+        return {"y": context.parameters["value"]}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,9 +80,9 @@ class Gain(Block):
         a, b = parse(self.unit_in), parse(self.unit_out)
         return a.scale / b.scale if a.powers == b.powers else 1.0
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
-        gain, into = np.shape(self.gain), known.inputs.get("u")
+        gain, into = np.shape(self.gain), environment.inputs.get("u")
         if len(gain) == 2:
             into = (gain[1],)
         out = (gain[0],) if len(gain) == 2 else into
@@ -90,9 +90,9 @@ class Gain(Block):
             into, out = (() if into == () else gain), gain
         return Ports((Port("u", into, self.unit_in),), (Port("y", out, self.unit_out),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The product."""
-        gain, u = at.parameters["gain"], at.inputs["u"]
+        gain, u = context.parameters["gain"], context.inputs["u"]
         product = gain @ u if len(gain.shape) == 2 else gain * u
         return {"y": product * self.conversion}
 
@@ -120,17 +120,17 @@ class Sum(Block):
                 'write for example "+-"',
             )
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2, ..., output y, all of one shape."""
         names = [f"u{i + 1}" for i in range(len(self.signs))]
-        shape = common_shape(known, names)
+        shape = common_shape(environment, names)
         return Ports(tuple(Port(name, shape, self.unit) for name in names), (Port("y", shape, self.unit),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The sum, left to right."""
-        total = at.numbers(np.zeros(at.inputs["u1"].shape))
+        total = context.numbers(np.zeros(context.inputs["u1"].shape))
         for i, sign in enumerate(self.signs):
-            value = at.inputs[f"u{i + 1}"]
+            value = context.inputs[f"u{i + 1}"]
             total = total + value if sign == "+" else total - value
         return {"y": total}
 
@@ -156,17 +156,17 @@ class Product(Block):
                 'write for example "*/"',
             )
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2, ..., output y, all of one shape."""
         names = [f"u{i + 1}" for i in range(len(self.operations))]
-        shape = common_shape(known, names)
+        shape = common_shape(environment, names)
         return Ports(tuple(Port(name, shape) for name in names), (Port("y", shape),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The product, left to right."""
-        total = at.numbers(np.ones(at.inputs["u1"].shape))
+        total = context.numbers(np.ones(context.inputs["u1"].shape))
         for i, operation in enumerate(self.operations):
-            value = at.inputs[f"u{i + 1}"]
+            value = context.inputs[f"u{i + 1}"]
             total = total * value if operation == "*" else total / value
         return {"y": total}
 
@@ -203,11 +203,11 @@ class Pick(Block):
         if self.of not in ("q", "v", "u"):
             raise refuse(self.name, "unknown vector", repr(self.of), "of is q, v or u", "name one of them")
 
-    def _indices(self, known: Known) -> tuple[list[int], int | None]:
+    def _indices(self, environment: Environment) -> tuple[list[int], int | None]:
         """Which entries, of how many."""
         if not self.model:
             return [whole(self.name, "an entry", item, 0, 10**6) for item in self.entries], None
-        record = known.model(self.model)
+        record = environment.model(self.model)
         names = {"q": record.q_names, "v": record.v_names, "u": record.u_names}[self.of]
         if self.entries == "actuated":
             wanted: Any = actuated_names(record)
@@ -231,10 +231,10 @@ class Pick(Block):
             )
         return found, len(names)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, a vector; output y (number of entries)."""
-        indices, size = self._indices(known)
-        into = (size,) if size is not None else known.inputs.get("u")
+        indices, size = self._indices(environment)
+        into = (size,) if size is not None else environment.inputs.get("u")
         if into is not None and (len(into) != 1 or max(indices) >= into[0]):
             raise refuse(
                 self.name,
@@ -245,9 +245,9 @@ class Pick(Block):
             )
         return Ports((Port("u", into, self.unit),), (Port("y", (len(indices),), self.unit),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The entries."""
-        return {"y": at.inputs["u"][self._indices(at.known)[0]]}
+        return {"y": context.inputs["u"][self._indices(context.environment)[0]]}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -266,18 +266,18 @@ class Join(Block):
         """A number of inputs."""
         whole(self.name, "count", self.count, 1, MOST_INPUTS)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2, ..., output y."""
         names = [f"u{i + 1}" for i in range(self.count)]
-        shapes = [known.inputs.get(name) for name in names]
+        shapes = [environment.inputs.get(name) for name in names]
         sizes = [int(np.prod(shape)) for shape in shapes if shape is not None]
         out = (sum(sizes),) if len(sizes) == self.count else None
         inputs = (Port(name, shape, self.unit) for name, shape in zip(names, shapes, strict=True))
         return Ports(tuple(inputs), (Port("y", out, self.unit),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """All entries, row by row."""
-        return {"y": joined([at.inputs[f"u{i + 1}"] for i in range(self.count)])}
+        return {"y": joined([context.inputs[f"u{i + 1}"] for i in range(self.count)])}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -297,9 +297,9 @@ class Reshape(Block):
         for size in self.shape:
             whole(self.name, "shape", size, 1, 10**4)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
-        into, out = known.inputs.get("u"), tuple(self.shape)
+        into, out = environment.inputs.get("u"), tuple(self.shape)
         if into is not None and np.prod(into) != np.prod(out):
             raise refuse(
                 self.name,
@@ -310,6 +310,6 @@ class Reshape(Block):
             )
         return Ports((Port("u", into),), (Port("y", out),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """As they are."""
-        return {"y": at.inputs["u"].reshape(*self.shape)}
+        return {"y": context.inputs["u"].reshape(*self.shape)}

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.blocks.checks import number, numbers, refuse
 from symofros.blocks.generic.sampling import needs_period
-from symofros.diagrams.block import At, Block, Crossing, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Ports, Values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,41 +46,41 @@ class Relay(Block):
                 "use a Switch, or part them",
             )
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, output y, scalars."""
         return Ports((Port("u", ()),), (Port("y", (), self.unit),))
 
-    def memory(self, known: Known) -> dict[str, Any]:
+    def memory(self, environment: Environment) -> dict[str, Any]:
         """Whether it is on."""
         return {"is_on": float(self.starts_on)}
 
-    def _next(self, at: At) -> Any:
-        u, par = at.inputs["u"], at.parameters
+    def _next(self, context: EvaluationContext) -> Any:
+        u, par = context.inputs["u"], context.parameters
         comes_on, stays = (u - par["upper"]).apply("step"), 1.0 - (par["lower"] - u).apply("step")
-        return comes_on.apply("max", stays * at.memory["is_on"])
+        return comes_on.apply("max", stays * context.memory["is_on"])
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """One of two values."""
-        is_on = at.memory["is_on"] if self.period is None else self._next(at)
-        return {"y": is_on * at.parameters["on"] + (1.0 - is_on) * at.parameters["off"]}
+        is_on = context.memory["is_on"] if self.period is None else self._next(context)
+        return {"y": is_on * context.parameters["on"] + (1.0 - is_on) * context.parameters["off"]}
 
-    def update(self, at: At) -> Values:
+    def update(self, context: EvaluationContext) -> Values:
         """At samples."""
-        return {"is_on": at.memory["is_on"] if self.period is None else self._next(at)}
+        return {"is_on": context.memory["is_on"] if self.period is None else self._next(context)}
 
-    def crossings(self, at: At) -> dict[str, Crossing]:
+    def crossings(self, context: EvaluationContext) -> dict[str, Crossing]:
         """Continuous: both thresholds."""
         if self.period is not None:
             return {}
-        u = at.inputs["u"]
+        u = context.inputs["u"]
         return {
-            "on": Crossing(u - at.parameters["upper"], "rising"),
-            "off": Crossing(u - at.parameters["lower"], "falling"),
+            "on": Crossing(u - context.parameters["upper"], "rising"),
+            "off": Crossing(u - context.parameters["lower"], "falling"),
         }
 
-    def crossed(self, at: At, which: str) -> Values:
+    def crossed(self, context: EvaluationContext, which: str) -> Values:
         """On or off."""
-        return {"is_on": at.numbers(float(which == "on"))}
+        return {"is_on": context.numbers(float(which == "on"))}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,22 +105,22 @@ class RateLimit(Block):
                 raise refuse(self.name, field, getattr(self, field), "a rate above zero", "give another")
         needs_period(self)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
-        shape = known.inputs.get("u")
+        shape = environment.inputs.get("u")
         return Ports((Port("u", shape, self.unit),), (Port("y", shape, self.unit),))
 
-    def memory(self, known: Known) -> dict[str, Any]:
+    def memory(self, environment: Environment) -> dict[str, Any]:
         """The output before, and whether there was one."""
-        return {"before": np.zeros(known.inputs["u"]), "began": 0.0}
+        return {"before": np.zeros(environment.inputs["u"]), "began": 0.0}
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """As near to the input as the rates let it."""
-        u, before, began = at.inputs["u"], at.memory["before"], at.memory["began"]
+        u, before, began = context.inputs["u"], context.memory["before"], context.memory["began"]
         T = float(self.period or 0.0)
-        limited = before + (u - before).clipped(-T * at.parameters["falling"], T * at.parameters["rising"])
+        limited = before + (u - before).clipped(-T * context.parameters["falling"], T * context.parameters["rising"])
         return {"y": began * limited + (1.0 - began) * u}
 
-    def update(self, at: At) -> Values:
+    def update(self, context: EvaluationContext) -> Values:
         """The output."""
-        return {"before": self.compute(at)["y"], "began": at.numbers(1.0)}
+        return {"before": self.compute(context)["y"], "began": context.numbers(1.0)}

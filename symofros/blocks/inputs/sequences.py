@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from symofros.blocks.checks import choice, increasing, known_name, numbers, refuse
-from symofros.diagrams.block import Block, Known, Port, Ports
+from symofros.diagrams.block import Block, Environment, Port, Ports
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.kernel import Array
 from symofros.simulation.inputs import Signal
@@ -109,7 +109,7 @@ class Sequence(Block):
         values = dict(self.values) if isinstance(self.values, Mapping) else {"y": self.values}
         return {"t": self.t, **values}
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """The outputs."""
         units = dict(self.units or {})
         return Ports(

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.blocks.checks import choice, number, numbers, refuse, whole
 from symofros.blocks.inputs.laws import LAWS, moves, through
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.runtime.kernel import Array
 
@@ -79,10 +79,10 @@ class Square(Block):
                 "give start, or model and frame",
             )
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Outputs p, v, a (number of axes)."""
         if self.start is None:
-            known.frame(self.model, self.frame)
+            environment.frame(self.model, self.frame)
         shape = (len(self.axes),)
         return Ports((), (Port("p", shape, "m"), Port("v", shape, "m/s"), Port("a", shape, "m/s^2")))
 
@@ -101,20 +101,20 @@ class Square(Block):
         """When the path is over [s]."""
         return float(self.begins[-1] + self.durations[-1])
 
-    def _start(self, at: At) -> Tensor:
+    def _start(self, context: EvaluationContext) -> Tensor:
         if self.start is not None:
-            return at.numbers(self.start)
-        q, _ = at.known.start(self.model)
-        p = at.call(self.model, "frame_pose", self.frame, q=at.numbers(q), t=at.t)["p"]
+            return context.numbers(self.start)
+        q, _ = context.environment.start(self.model)
+        p = context.call(self.model, "frame_pose", self.frame, q=context.numbers(q), t=context.t)["p"]
         return p[[_AXES.index(axis) for axis in self.axes]]
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The start and the moves."""
-        start = self._start(at)
+        start = self._start(context)
         first, second = np.asarray(self.first, dtype=np.float64), np.asarray(self.second, dtype=np.float64)
         around = [first, second, -first, -second] * self.laps
-        steps = [at.numbers(self.corner) - start, *map(at.numbers, around)]
-        share = moves(at.t, self.law, self.begins, np.array(self.durations), float(self.accelerating))
+        steps = [context.numbers(self.corner) - start, *map(context.numbers, around)]
+        share = moves(context.t, self.law, self.begins, np.array(self.durations), float(self.accelerating))
         return {
             "p": start + weighted(share.s, steps),
             "v": weighted(share.rate, steps),

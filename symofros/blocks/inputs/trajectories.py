@@ -11,7 +11,7 @@ import numpy as np
 from symofros.blocks.checks import choice, increasing, number, numbers, refuse
 from symofros.blocks.inputs.laws import LAWS, Share, moves, spline
 from symofros.blocks.rotations import matrix_of_quaternion, matrix_of_vector, quaternion_of_matrix, vector_of_matrix
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.diagrams.units import parse
 from symofros.runtime.kernel import Array
@@ -44,16 +44,16 @@ class JointTrajectory(Block):
         via_points(self, self.points, self.times, None)
         parse(self.unit)
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Outputs q, v, a (n)."""
         shape = (np.shape(self.points)[1],)
         v, a = (f"{self.unit}/s", f"{self.unit}/s^2") if self.unit else ("", "")
         return Ports((), (Port("q", shape, self.unit), Port("v", shape, v), Port("a", shape, a)))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The points, each with its share."""
         points = np.asarray(self.points, dtype=np.float64)
-        return dict(zip("qva", _through(at, self.law, self.times, points, self.accelerating), strict=True))
+        return dict(zip("qva", _through(context, self.law, self.times, points, self.accelerating), strict=True))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +87,7 @@ class CartesianTrajectory(Block):
                 raise refuse(self.name, "a quaternion is zero", given, "quaternions have a length", "write 0 0 0 1")
             numbers(self.name, "points", self.points, (count, 3))
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Outputs p, v, a (n); with orientation R (3, 3), quaternion (4), v and a (6): linear, then angular."""
         n = np.shape(self.points)[1]
         if self.quaternions is None:
@@ -96,24 +96,24 @@ class CartesianTrajectory(Block):
             (), (Port("p", (3,), "m"), Port("R", (3, 3)), Port("quaternion", (4,)), Port("v", (6,)), Port("a", (6,)))
         )
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Positions, and turns from point to point."""
         points = np.asarray(self.points, dtype=np.float64)
-        p, v, a = _through(at, self.law, self.times, points, self.accelerating)
+        p, v, a = _through(context, self.law, self.times, points, self.accelerating)
         if self.quaternions is None:
             return {"p": p, "v": v, "a": a}
-        R, w, alpha = self._orientation(at)
+        R, w, alpha = self._orientation(context)
         return {"p": p, "R": R, "quaternion": quaternion_of_matrix(R), "v": joined([v, w]), "a": joined([a, alpha])}
 
-    def _orientation(self, at: At) -> tuple[Tensor, Tensor, Tensor]:
+    def _orientation(self, context: EvaluationContext) -> tuple[Tensor, Tensor, Tensor]:
         """R, and w and alpha in world axes.
 
         With E = exp(d s): R E turns at w_b' = E^T w_b + d s', alpha_b' = E^T alpha_b - d s' x E^T w_b + d s''.
         """
-        quaternions = [at.numbers(row) for row in np.asarray(self.quaternions, dtype=np.float64)]
+        quaternions = [context.numbers(row) for row in np.asarray(self.quaternions, dtype=np.float64)]
         matrices = [matrix_of_quaternion(one) for one in quaternions]
-        shares = _cumulative(at, self.law, self.times, self.accelerating)
-        R, w, alpha = matrices[0], at.numbers(np.zeros(3)), at.numbers(np.zeros(3))
+        shares = _cumulative(context, self.law, self.times, self.accelerating)
+        R, w, alpha = matrices[0], context.numbers(np.zeros(3)), context.numbers(np.zeros(3))
         for k, (before, after) in enumerate(zip(matrices, matrices[1:], strict=False)):
             d = vector_of_matrix(before.T @ after)
             E = matrix_of_vector(d * shares.s[k])
@@ -146,17 +146,19 @@ def via_points(block: Any, points: Any, times: Any, most: int | None) -> int:
     return len(found)
 
 
-def _through(at: At, law: str, times: Any, points: Array, accelerating: float) -> tuple[Tensor, Tensor, Tensor]:
+def _through(
+    context: EvaluationContext, law: str, times: Any, points: Array, accelerating: float
+) -> tuple[Tensor, Tensor, Tensor]:
     """Position, speed, acceleration along some points (n)."""
     if law == SPLINE:
-        return tuple(spline(at.t, np.asarray(times, dtype=np.float64), points))  # type: ignore[return-value]
-    share, steps = _cumulative(at, law, times, accelerating), np.diff(points, axis=0)
+        return tuple(spline(context.t, np.asarray(times, dtype=np.float64), points))  # type: ignore[return-value]
+    share, steps = _cumulative(context, law, times, accelerating), np.diff(points, axis=0)
     return share.s @ steps + points[0], share.rate @ steps, share.acceleration @ steps
 
 
-def _cumulative(at: At, law: str, times: Sequence[float], accelerating: float) -> Share:
+def _cumulative(context: EvaluationContext, law: str, times: Sequence[float], accelerating: float) -> Share:
     """Share of the way from each point to the next that is covered (k - 1)."""
     knots = np.asarray(times, dtype=np.float64)
     if law == SPLINE:
-        return spline(at.t, knots, np.tri(len(knots), len(knots) - 1, -1))
-    return moves(at.t, law, knots[:-1], np.diff(knots), accelerating)
+        return spline(context.t, knots, np.tri(len(knots), len(knots) - 1, -1))
+    return moves(context.t, law, knots[:-1], np.diff(knots), accelerating)

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from symofros.blocks.checks import choice, number, numbers, refuse
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Shape, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.units import parse
 
@@ -44,11 +44,11 @@ class _Wave(Block):
                 "give as many of each",
             ) from None
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Output y."""
         return Ports((), (Port("y", self.shape, self.unit),))
 
-    def _whole(self, at: At, value: Tensor) -> Tensor:
+    def _whole(self, context: EvaluationContext, value: Tensor) -> Tensor:
         return value + np.zeros(self.shape)
 
 
@@ -68,11 +68,11 @@ class Step(_Wave):
     after: Any = 1.0
     tunable: ClassVar[tuple[str, ...]] = ("time", "before", "after")
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """One or the other."""
-        time, before, after = (at.parameters[key] for key in self.tunable)
-        on = (at.t - time).apply("step")
-        return {"y": self._whole(at, before * (1.0 - on) + after * on)}
+        time, before, after = (context.parameters[key] for key in self.tunable)
+        on = (context.t - time).apply("step")
+        return {"y": self._whole(context, before * (1.0 - on) + after * on)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,18 +93,18 @@ class Ramp(_Wave):
     duration: Any = 1e9
     tunable: ClassVar[tuple[str, ...]] = ("time", "slope", "start", "duration")
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Output y, and its rate."""
         y, rate, _ = _rates(self.unit)
         return Ports((), (Port("y", self.shape, y), Port("rate", self.shape, rate)))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """By the time it has been rising."""
-        time, slope, start, duration = (at.parameters[key] for key in self.tunable)
-        rising = at.t - time
+        time, slope, start, duration = (context.parameters[key] for key in self.tunable)
+        rising = context.t - time
         rises = rising.apply("step") * (1.0 - (rising - duration).apply("step"))
         risen = rising.apply("max", 0.0).apply("min", duration)
-        return {"y": self._whole(at, start + slope * risen), "rate": self._whole(at, slope * rises)}
+        return {"y": self._whole(context, start + slope * risen), "rate": self._whole(context, slope * rises)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,13 +133,13 @@ class Pulse(_Wave):
         if np.min(self.every) <= 0.0:
             raise refuse(self.name, "every", self.every, "seconds above zero", "give another")
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """By the place within the interval."""
-        time, every, width, high, low = (at.parameters[key] for key in self.tunable)
-        turns = (at.t - time) / every
+        time, every, width, high, low = (context.parameters[key] for key in self.tunable)
+        turns = (context.t - time) / every
         place = turns - turns.apply("floor")
         on = turns.apply("step") * (1.0 - (place - width).apply("step"))
-        return {"y": self._whole(at, low + (high - low) * on)}
+        return {"y": self._whole(context, low + (high - low) * on)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,19 +160,19 @@ class Sine(_Wave):
     mean: Any = 0.0
     tunable: ClassVar[tuple[str, ...]] = ("amplitude", "frequency", "phase", "mean")
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Outputs y, rate, acceleration."""
         units = zip(("y", "rate", "acceleration"), _rates(self.unit), strict=True)
         return Ports((), tuple(Port(name, self.shape, unit) for name, unit in units))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The sine and its derivatives."""
-        amplitude, frequency, phase, mean = (at.parameters[key] for key in self.tunable)
+        amplitude, frequency, phase, mean = (context.parameters[key] for key in self.tunable)
         w = 2.0 * math.pi * frequency
-        angle = w * at.t + phase
+        angle = w * context.t + phase
         s, c = amplitude * angle.apply("sin"), amplitude * angle.apply("cos")
         found = {"y": mean + s, "rate": w * c, "acceleration": -(w * w * s)}
-        return {name: self._whole(at, value) for name, value in found.items()}
+        return {name: self._whole(context, value) for name, value in found.items()}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -202,15 +202,15 @@ class Chirp(_Wave):
             number(self.name, field, getattr(self, field), 0.0, exclusive=True)
         choice(self.name, "sweep", self.sweep, ("linear", "exponential"))
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Outputs y, and frequency [Hz]."""
         return Ports((), (Port("y", self.shape, self.unit), Port("frequency", (), "Hz")))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """The integral of the frequency, then its sine."""
         T, first, last = float(self.duration), float(self.first), float(self.last)
-        t = at.t.clipped(0.0, T)
-        after, before = (at.t - T).apply("max", 0.0), at.t.apply("min", 0.0)
+        t = context.t.clipped(0.0, T)
+        after, before = (context.t - T).apply("max", 0.0), context.t.apply("min", 0.0)
         if self.sweep == "linear":
             k = (last - first) / T
             frequency, turns = first + k * t, t * (first + 0.5 * k * t)
@@ -220,5 +220,5 @@ class Chirp(_Wave):
             frequency = first * grown
             turns = (grown - 1.0) * (first / k) if k else first * t
         turns = turns + last * after + first * before
-        y = at.parameters["amplitude"] * (2.0 * math.pi * turns).apply("sin")
-        return {"y": self._whole(at, y), "frequency": frequency}
+        y = context.parameters["amplitude"] * (2.0 * math.pi * turns).apply("sin")
+        return {"y": self._whole(context, y), "frequency": frequency}

@@ -8,13 +8,13 @@ from typing import Any
 from symofros.blocks.checks import refuse
 from symofros.blocks.quantities import joint_units
 from symofros.blocks.rotations import quaternion_of_matrix
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, stacked
 
 
-def _motion_ports(known: Known, model: str, names: str) -> tuple[Port, ...]:
+def _motion_ports(environment: Environment, model: str, names: str) -> tuple[Port, ...]:
     """Inputs q, v, a of a model, rates zero where nothing is connected."""
-    record = known.model(model)
+    record = environment.model(model)
     units = dict(zip("qva", joint_units(record)[:3], strict=True))
     sizes = {"q": len(record.q_names), "v": len(record.v_names), "a": len(record.v_names)}
     return tuple(Port(name, (sizes[name],), units[name], None if name == "q" else 0.0) for name in names)
@@ -31,11 +31,11 @@ def _frame_ports(*count: int) -> tuple[Port, ...]:
     )
 
 
-def _frame_motion(at: At, model: str, frame: str) -> dict[str, Tensor]:
-    q, v, a = (at.inputs[name] for name in "qva")
-    pose = at.call(model, "frame_pose", frame, q=q, t=at.t)
-    V = at.call(model, "frame_velocity", frame, q=q, v=v, t=at.t)["V"]
-    A = at.call(model, "frame_acceleration", frame, q=q, v=v, a=a, t=at.t)["A"]
+def _frame_motion(context: EvaluationContext, model: str, frame: str) -> dict[str, Tensor]:
+    q, v, a = (context.inputs[name] for name in "qva")
+    pose = context.call(model, "frame_pose", frame, q=q, t=context.t)
+    V = context.call(model, "frame_velocity", frame, q=q, v=v, t=context.t)["V"]
+    A = context.call(model, "frame_acceleration", frame, q=q, v=v, a=a, t=context.t)["A"]
     return {
         "p": pose["p"],
         "R": pose["R"],
@@ -57,14 +57,14 @@ class ForwardKinematics(Block):
     model: str
     frame: str
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Motion q, v, a in; p (3), R (3, 3), quaternion (4), velocity and acceleration (6), linear first, out."""
-        known.frame(self.model, self.frame)
-        return Ports(_motion_ports(known, self.model, "qva"), _frame_ports())
+        environment.frame(self.model, self.frame)
+        return Ports(_motion_ports(environment, self.model, "qva"), _frame_ports())
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """By the model's own functions."""
-        return _frame_motion(at, self.model, self.frame)
+        return _frame_motion(context, self.model, self.frame)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,20 +79,20 @@ class Extremities(Block):
     model: str
     frames: Any = ()
 
-    def _frames(self, known: Known) -> list[str]:
-        chosen = list(self.frames) or [name for name in known.model(self.model).frame_names if name != "world"]
+    def _frames(self, environment: Environment) -> list[str]:
+        chosen = list(self.frames) or [name for name in environment.model(self.model).frame_names if name != "world"]
         if not chosen:
             raise refuse(self.name, "no frames", f"model '{self.model}'", "a model with frames", "add a frame")
-        return [known.frame(self.model, name) for name in chosen]
+        return [environment.frame(self.model, name) for name in chosen]
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Motion in; p (k, 3), R (k, 3, 3), quaternion (k, 4), velocity and acceleration (k, 6) out."""
-        k = len(self._frames(known))
-        return Ports(_motion_ports(known, self.model, "qva"), _frame_ports(k))
+        k = len(self._frames(environment))
+        return Ports(_motion_ports(environment, self.model, "qva"), _frame_ports(k))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Frame by frame; what they share is computed once."""
-        found = [_frame_motion(at, self.model, frame) for frame in self._frames(at.known)]
+        found = [_frame_motion(context, self.model, frame) for frame in self._frames(context.environment)]
         return {key: stacked([motion[key] for motion in found]) for key in found[0]}
 
 
@@ -108,12 +108,12 @@ class Jacobian(Block):
     model: str
     frame: str
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Motion q, v in; J, rate (6, nv); translation and rotation are rows 0 to 2 and 3 to 5 of J (3, nv)."""
-        known.frame(self.model, self.frame)
-        nv = len(known.model(self.model).v_names)
+        environment.frame(self.model, self.frame)
+        nv = len(environment.model(self.model).v_names)
         return Ports(
-            _motion_ports(known, self.model, "qv"),
+            _motion_ports(environment, self.model, "qv"),
             (
                 Port("J", (6, nv)),
                 Port("rate", (6, nv)),
@@ -122,9 +122,9 @@ class Jacobian(Block):
             ),
         )
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """By the model's own functions."""
-        q, v = at.inputs["q"], at.inputs["v"]
-        J = at.call(self.model, "frame_jacobian", self.frame, q=q, t=at.t)["J"]
-        rate = at.call(self.model, "frame_jacobian_rate", self.frame, q=q, v=v, t=at.t)["dJ"]
+        q, v = context.inputs["q"], context.inputs["v"]
+        J = context.call(self.model, "frame_jacobian", self.frame, q=q, t=context.t)["J"]
+        rate = context.call(self.model, "frame_jacobian_rate", self.frame, q=q, v=v, t=context.t)["dJ"]
         return {"J": J, "rate": rate, "translation": J[:3], "rotation": J[3:]}

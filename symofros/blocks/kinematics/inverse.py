@@ -8,7 +8,7 @@ from typing import Any
 from symofros.blocks.checks import number, whole
 from symofros.blocks.kinematics.tasks import Chosen, Task, damped, resolved, rows_of
 from symofros.blocks.quantities import joint_units
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor
 
 
@@ -56,16 +56,16 @@ class InverseKinematics(Block):
         for field in ("damping", "near", "stride"):
             number(self.name, field, getattr(self, field), 0.0, exclusive=True)
 
-    def _chosen(self, known: Known) -> Chosen:
-        return Chosen.of(known, self.name, self.model, self.joints)
+    def _chosen(self, environment: Environment) -> Chosen:
+        return Chosen.of(environment, self.name, self.model, self.joints)
 
-    def _task(self, known: Known) -> Task:
-        frame, columns = known.frame(self.model, self.frame), list(self._chosen(known).v)
-        return Task(self.model, frame, rows_of(self.name, self.rows), columns, bool(known.model(self.model).nc))
+    def _task(self, environment: Environment) -> Task:
+        frame, columns = environment.frame(self.model, self.frame), list(self._chosen(environment).v)
+        return Task(self.model, frame, rows_of(self.name, self.rows), columns, bool(environment.model(self.model).nc))
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """Desired p, angle or R as the rows ask, v and a of the rows; out q (nq), v, a (nv), error of the rows."""
-        task, record = self._task(known), known.model(self.model)
+        task, record = self._task(environment), environment.model(self.model)
         units, nv = joint_units(record), len(record.v_names)
         return Ports(
             tuple(task.ports()),
@@ -77,60 +77,61 @@ class InverseKinematics(Block):
             ),
         )
 
-    def _first(self, known: Known) -> dict[str, Any]:
-        chosen = self._chosen(known)
+    def _first(self, environment: Environment) -> dict[str, Any]:
+        chosen = self._chosen(environment)
         return {"joints": chosen.start[list(chosen.q)]}
 
-    def states(self, known: Known) -> dict[str, Any]:
+    def states(self, environment: Environment) -> dict[str, Any]:
         """Continuous: the joints."""
-        return self._first(known) if self.period is None else {}
+        return self._first(environment) if self.period is None else {}
 
-    def memory(self, known: Known) -> dict[str, Any]:
+    def memory(self, environment: Environment) -> dict[str, Any]:
         """Sampled: the joints at the sample before."""
-        return {} if self.period is None else self._first(known)
+        return {} if self.period is None else self._first(environment)
 
-    def _placed(self, at: At) -> Tensor:
+    def _placed(self, context: EvaluationContext) -> Tensor:
         """Joints at which the frame is where it should be."""
         if self.period is None:
-            return at.states["joints"]
-        task, chosen, joints = self._task(at.known), self._chosen(at.known), at.memory["joints"]
+            return context.states["joints"]
+        task, chosen = self._task(context.environment), self._chosen(context.environment)
+        joints = context.memory["joints"]
         for _ in range(self.steps):
-            q = chosen.configuration(at, joints)
-            step = resolved(damped(task.jacobian(at, q), self.damping, self.near), task.error(at, q))
-            largest = at.numbers(self.stride)
+            q = chosen.configuration(context, joints)
+            step = resolved(damped(task.jacobian(context, q), self.damping, self.near), task.error(context, q))
+            largest = context.numbers(self.stride)
             for entry in step:
                 largest = largest.apply("max", entry.apply("abs"))
             joints = joints + step * (self.stride / largest)
         return joints
 
-    def _moved(self, at: At, joints: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    def _moved(self, context: EvaluationContext, joints: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Rates and accelerations of the joints, and what is missing."""
-        task, chosen = self._task(at.known), self._chosen(at.known)
-        q = chosen.configuration(at, joints)
-        J, error = task.jacobian(at, q), task.error(at, q)
+        task, chosen = self._task(context.environment), self._chosen(context.environment)
+        q = chosen.configuration(context, joints)
+        J, error = task.jacobian(context, q), task.error(context, q)
         system = damped(J, self.damping, self.near)
-        rates, accelerations = task.desired(at, at.inputs["v"]), task.desired(at, at.inputs["a"])
+        rates, accelerations = task.desired(context, context.inputs["v"]), task.desired(context, context.inputs["a"])
         gain = self.gain if self.period is None else 0.0
         v = resolved(system, rates + gain * error)
-        drift = task.drift(at, q, chosen.speeds_of(at, v))
+        drift = task.drift(context, q, chosen.speeds_of(context, v))
         a = resolved(system, accelerations + gain * (rates - J @ v) - drift)
         return v, a, error[: len(task.rows)]
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """Position first, then rates there."""
-        chosen, joints = self._chosen(at.known), self._placed(at)
-        v, a, error = self._moved(at, joints)
+        chosen, joints = self._chosen(context.environment), self._placed(context)
+        v, a, error = self._moved(context, joints)
         return {
-            "q": chosen.configuration(at, joints),
-            "v": chosen.speeds_of(at, v),
-            "a": chosen.speeds_of(at, a),
+            "q": chosen.configuration(context, joints),
+            "v": chosen.speeds_of(context, v),
+            "a": chosen.speeds_of(context, a),
             "error": error,
         }
 
-    def rates(self, at: At) -> Values:
+    def rates(self, context: EvaluationContext) -> Values:
         """Of the state."""
-        return {"joints": self._moved(at, at.states["joints"])[0]} if self.period is None else {}
+        return {"joints": self._moved(context, context.states["joints"])[0]} if self.period is None else {}
 
-    def update(self, at: At) -> Values:
+    def update(self, context: EvaluationContext) -> Values:
         """Where the next sample starts."""
-        return {} if self.period is None else {"joints": self._placed(at)}
+        return {} if self.period is None else {"joints": self._placed(context)}

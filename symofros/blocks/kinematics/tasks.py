@@ -10,7 +10,7 @@ import numpy as np
 from symofros.blocks.checks import known_name, refuse
 from symofros.blocks.quantities import actuated_names, scalar_coordinates
 from symofros.blocks.rotations import error_vector
-from symofros.diagrams.block import At, Known, Port
+from symofros.diagrams.block import Environment, EvaluationContext, Port
 from symofros.diagrams.tensor import Tensor, joined, solved, stacked
 from symofros.runtime.kernel import Array
 
@@ -54,13 +54,13 @@ class Chosen:
     speeds: int
 
     @staticmethod
-    def of(known: Known, block: str, model: str, joints: Sequence[str]) -> Chosen:
+    def of(environment: Environment, block: str, model: str, joints: Sequence[str]) -> Chosen:
         """The named joints; else those that are actuated, or all that have one coordinate.
 
         Raises:
             DescriptionError: A name is none, or nothing is left to move.
         """
-        record = known.model(model)
+        record = environment.model(model)
         places = scalar_coordinates(record)
         names = list(joints)
         if not names:
@@ -77,18 +77,18 @@ class Chosen:
                 "name the joints that follow",
             )
         q, v = zip(*(places[name] for name in names), strict=True)
-        return Chosen(tuple(names), q, v, known.start(model)[0], len(record.v_names))
+        return Chosen(tuple(names), q, v, environment.start(model)[0], len(record.v_names))
 
-    def configuration(self, at: At, joints: Tensor) -> Tensor:
+    def configuration(self, context: EvaluationContext, joints: Tensor) -> Tensor:
         """All of q (nq): the joints, the others where they are first."""
-        whole = list(at.numbers(self.start))
+        whole = list(context.numbers(self.start))
         for place, value in zip(self.q, joints, strict=True):
             whole[place] = value
         return joined(whole)
 
-    def speeds_of(self, at: At, joints: Tensor) -> Tensor:
+    def speeds_of(self, context: EvaluationContext, joints: Tensor) -> Tensor:
         """All of v or a (nv): that of the joints, zero for the others."""
-        whole = list(at.numbers(np.zeros(self.speeds)))
+        whole = list(context.numbers(np.zeros(self.speeds)))
         for place, value in zip(self.v, joints, strict=True):
             whole[place] = value
         return joined(whole)
@@ -128,15 +128,15 @@ class Task:
         found += [Port("v", (m,), v, 0.0), Port("a", (m,), a, 0.0)]
         return [replace(port, name=port.name + self.suffix) for port in found]
 
-    def given(self, at: At, name: str) -> Tensor | None:
+    def given(self, context: EvaluationContext, name: str) -> Tensor | None:
         """A desired quantity; None where the rows don't ask for it."""
-        return at.inputs.get(name + self.suffix)
+        return context.inputs.get(name + self.suffix)
 
-    def error(self, at: At, q: Tensor) -> Tensor:
+    def error(self, context: EvaluationContext, q: Tensor) -> Tensor:
         """What is missing to the inputs p, and angle or R, at a configuration (nq); then -phi of the closures."""
-        pose = at.call(self.model, "frame_pose", self.frame, q=q, t=at.t)
+        pose = context.call(self.model, "frame_pose", self.frame, q=q, t=context.t)
         parts = []
-        p, R, angle = (self.given(at, name) for name in ("p", "R", "angle"))
+        p, R, angle = (self.given(context, name) for name in ("p", "R", "angle"))
         if p is not None:
             parts.append(p - pose["p"][[row for row in self.rows if row < 3]])
         if R is not None:
@@ -144,7 +144,7 @@ class Task:
         if angle is not None:
             parts.append(self._turn(angle, pose["R"]))
         if self.closes:
-            parts.append(-at.call(self.model, "constraint", q=q, t=at.t)["phi"])
+            parts.append(-context.call(self.model, "constraint", q=q, t=context.t)["phi"])
         return joined(parts)
 
     def _turn(self, desired: Tensor, R: Tensor) -> Tensor:
@@ -154,26 +154,28 @@ class Task:
         x, y = R[i, i], R[j, i]
         return (s * x - c * y).apply("atan2", c * x + s * y)
 
-    def jacobian(self, at: At, q: Tensor) -> Tensor:
+    def jacobian(self, context: EvaluationContext, q: Tensor) -> Tensor:
         """Rates of the rows, and of the closures, by the columns (rows, columns)."""
-        J = at.call(self.model, "frame_jacobian", self.frame, q=q, t=at.t)["J"]
+        J = context.call(self.model, "frame_jacobian", self.frame, q=q, t=context.t)["J"]
         parts = [J[row] for row in self.rows]
         if self.closes:
-            parts += list(at.call(self.model, "constraint_jacobian", q=q, t=at.t)["G"])
+            parts += list(context.call(self.model, "constraint_jacobian", q=q, t=context.t)["G"])
         return stacked([part[self.columns] for part in parts])
 
-    def drift(self, at: At, q: Tensor, v: Tensor) -> Tensor:
+    def drift(self, context: EvaluationContext, q: Tensor, v: Tensor) -> Tensor:
         """The part of the rows' acceleration that is J' v, and -gamma of the closures."""
-        zero = at.numbers(np.zeros(len(v)))
-        A = at.call(self.model, "frame_acceleration", self.frame, q=q, v=v, a=zero, t=at.t)["A"]
+        zero = context.numbers(np.zeros(len(v)))
+        A = context.call(self.model, "frame_acceleration", self.frame, q=q, v=v, a=zero, t=context.t)["A"]
         parts = [A[self.rows]]
         if self.closes:
-            parts.append(-at.call(self.model, "constraint_bias", q=q, v=v, t=at.t)["gamma"])
+            parts.append(-context.call(self.model, "constraint_bias", q=q, v=v, t=context.t)["gamma"])
         return joined(parts)
 
-    def desired(self, at: At, rows: Tensor) -> Tensor:
+    def desired(self, context: EvaluationContext, rows: Tensor) -> Tensor:
         """Rates of the rows, zeros for the closures."""
-        return joined([rows, at.numbers(np.zeros(at.known.model(self.model).nc))]) if self.closes else rows
+        if not self.closes:
+            return rows
+        return joined([rows, context.numbers(np.zeros(context.environment.model(self.model).nc))])
 
 
 def near_singular(J: Tensor, damping: float, near: float) -> tuple[Tensor, Tensor]:

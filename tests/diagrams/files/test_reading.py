@@ -11,7 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros.blocks import UdpTransmitter
-from symofros.diagrams.block import At, Block, Known, Port, Ports, Values
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.files.fields import types_of, words_for
 from symofros.diagrams.files.registry import kind_of, kinds
 from symofros.diagrams.files.schema import of_type
@@ -25,12 +25,12 @@ class UnitGain(Block):
     gain: Any = 1.0
     takes: str = ""
 
-    def ports(self, known: Known) -> Ports:
-        shape = known.inputs.get("u")
+    def ports(self, environment: Environment) -> Ports:
+        shape = environment.inputs.get("u")
         return Ports((Port("u", shape, self.takes),), (Port("y", shape),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": at.numbers(self.gain) * at.inputs["u"]}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.numbers(self.gain) * context.inputs["u"]}
 
 
 def problems(path: Path, text: str, **options: object) -> list[sf.Problem]:
@@ -182,11 +182,11 @@ def test_an_algebraic_loop_is_named_along_its_path(tmp_path: Path) -> None:
 class SumOf(Block):
     """A scalar through."""
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         return Ports((Port("x"),), (Port("y"),))
 
-    def compute(self, at: At) -> Values:
-        return {"y": at.inputs["x"] + 1.0}
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.inputs["x"] + 1.0}
 
 
 PART = """\
