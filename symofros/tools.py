@@ -22,8 +22,8 @@ from __future__ import annotations
 import numpy as np
 
 from symofros.atomic import write_atomically as write_atomically
-from symofros.diagrams.jitter import Jitter as Jitter
-from symofros.diagrams.jitter import jitter_of as jitter_of
+from symofros.diagrams.run.jitter import Jitter as Jitter
+from symofros.diagrams.run.jitter import jitter_of as jitter_of
 from symofros.expr.edges import Edge as Edge
 from symofros.expr.evaluate import evaluate_edges as evaluate_edges
 from symofros.expr.evaluate import needed_nodes as needed_nodes

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import symofros as sf
-from symofros.diagrams.variants import with_functions
+from symofros.diagrams.program.variants import with_functions
 
 FILE = Path(__file__).parent.parent / "square.yaml"
 

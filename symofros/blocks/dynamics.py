@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from symofros.blocks.quantities import frame_ports, joint_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Terms, Values
+from symofros.diagrams.program.variants import FRICTION
 from symofros.diagrams.tensor import Tensor, joined
-from symofros.diagrams.variants import FRICTION
 from symofros.errors import DescriptionError, Problem
 
 
@@ -136,11 +136,11 @@ class InverseDynamics(Block):
 
 def friction(context: EvaluationContext, model: str, q: Tensor, v: Tensor) -> Tensor:
     """The friction forces on a model's joints (nv), as generalized forces: against the motion."""
-    rubbing = context.environment.rubbing(model)
-    if not any(rubbing):
-        return context.numbers([0.0] * len(rubbing))
+    has_friction = context.environment.has_friction(model)
+    if not any(has_friction):
+        return context.numbers([0.0] * len(has_friction))
     found = context.call(model + FRICTION, "generalized_force", q=q, v=v, t=context.t)["Q"]
-    return found * [float(rubs) for rubs in rubbing]
+    return found * [float(rubs) for rubs in has_friction]
 
 
 def _constraints(names: tuple[str, ...]) -> list[str]:

@@ -100,11 +100,11 @@ def simulate(
             stated |= {"record": every} if every is not None else {}
             stated |= {"parameters": {name: numbers(name, text) for name, text in assignments(given, "--set").items()}}
             names = tuple(names_of(signals) or ())
-            wishes = diagrams.Wishes(t_end, stated, pace, names, output, picture, jitter)
+            request = diagrams.RunRequest(t_end, stated, pace, names, output, picture, jitter)
             diagram = sf.load_diagram(model, network=network)
             diagram, live = view_options.with_live_view(diagram, viewing, bool(pace or diagram.simulation.realtime))
-            diagram_run = diagrams.run_diagram(diagram, wishes, wanted)
-            files = diagrams.write_files(diagram_run, wishes) + view_options.record_run(diagram_run, viewing)
+            diagram_run = diagrams.run_diagram(diagram, request, wanted)
+            files = diagrams.write_files(diagram_run, request) + view_options.record_run(diagram_run, viewing)
             diagrams.tell_run(diagram_run, files, as_json, out)
             view_options.show_run(diagram_run, viewing, live=live)
             ok = diagram_run.outcome.ok

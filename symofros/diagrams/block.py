@@ -90,7 +90,7 @@ class Environment(Protocol):
         """The values of a model's run-time parameters (npar), as the diagram states them."""
         ...
 
-    def rubbing(self, model: str) -> list[bool]:
+    def has_friction(self, model: str) -> list[bool]:
         """Which speeds (nv) of a model have friction."""
         ...
 

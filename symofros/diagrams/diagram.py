@@ -9,8 +9,8 @@ from typing import Any
 
 from symofros.description.system import System
 from symofros.diagrams.block import Block, ModelFile, ModelSetup
+from symofros.diagrams.program.variants import with_functions
 from symofros.diagrams.settings import RunSettings
-from symofros.diagrams.variants import with_functions
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from symofros.diagrams.pieces import STATE, Piece
+from symofros.diagrams.program.lowered_block import STATE, Piece
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from symofros.diagrams.plots import draw, plots_of, show_windows, window_figure
-from symofros.diagrams.recording import Recording
-from symofros.diagrams.saving import save_run
+from symofros.diagrams.run.plots import draw, plots_of, show_windows, window_figure
+from symofros.diagrams.run.recording import Recording
+from symofros.diagrams.run.saving import save_run
 from symofros.diagrams.settings import Plot
 
 

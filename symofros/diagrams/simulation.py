@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.compiled import CompiledDiagram, Resolved, compile_diagram, rates_of, resolve
 from symofros.diagrams.diagram import Diagram
-from symofros.diagrams.interpret import Blocks, InterpretedRun, run_interpreted
-from symofros.diagrams.loop import RECORD
-from symofros.diagrams.opaque import begun
+from symofros.diagrams.program.compiled import CompiledDiagram, Resolved, compile_diagram, rates_of, resolve
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
-from symofros.diagrams.simulate import run_compiled
-from symofros.diagrams.values import parameter_values, record_interval
+from symofros.diagrams.run.interpret import Blocks, InterpretedRun, run_interpreted
+from symofros.diagrams.run.loop import RECORD
+from symofros.diagrams.run.python_blocks import begun
+from symofros.diagrams.run.simulate import run_compiled
+from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.errors import Problem, SymofrosError
 from symofros.options import Options
 from symofros.runtime.toolchain import find_toolchain

@@ -11,9 +11,9 @@ import numpy as np
 from symofros.description.system import System
 from symofros.diagrams.block import Block, Port, Ports, Shape
 from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.program.model_environment import Models
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import check_entry, split
-from symofros.diagrams.surroundings import Models
 from symofros.diagrams.units import agree, parse
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.runtime.kernel import Array
@@ -105,8 +105,8 @@ class _Surroundings:
     def parameters(self, name: str) -> Array:
         return self._models.parameters(name)
 
-    def rubbing(self, model: str) -> list[bool]:
-        return self._models.rubbing(model)
+    def has_friction(self, model: str) -> list[bool]:
+        return self._models.has_friction(model)
 
 
 def surroundings(wired: Wired, block: str) -> _Surroundings:

@@ -10,10 +10,10 @@ from string import Template
 
 import numpy as np
 
-from symofros.diagrams.compiled import Resolved, compile_diagram, fuser, looks_back, record_of
 from symofros.diagrams.opaque_block import OpaqueBlock
-from symofros.diagrams.pieces import watched
-from symofros.diagrams.simulate import run_compiled
+from symofros.diagrams.program.compiled import Resolved, compile_diagram, fuser, looks_back, record_of
+from symofros.diagrams.program.lowered_block import watched
+from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.wiring import Source
 from symofros.errors import ExportError, Problem
 from symofros.exports.c_package import INTEGRATOR_HEADERS

@@ -11,8 +11,8 @@ import numpy as np
 
 from symofros.compiler import GENERATOR, Compilation, compile_system, plan
 from symofros.description.system import System
-from symofros.diagrams.compiled import resolve
 from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.program.compiled import resolve
 from symofros.errors import AssemblyError, ExportError, Problem, UnknownNameError, did_you_mean
 from symofros.exports.c_package import write_c_package
 from symofros.exports.diagram import write_diagram

@@ -11,7 +11,7 @@ import pytest
 import symofros as sf
 from symofros.blocks import ExtremityPlot, ForwardDynamics, Scope, StatePlot, Store
 from symofros.diagrams.block import Block
-from symofros.diagrams.plots import plots_of
+from symofros.diagrams.run.plots import plots_of
 from symofros.diagrams.settings import Plot, RunSettings
 from tests.blocks.sources import Ramp
 from tests.diagrams.files.cases import ARM

@@ -25,7 +25,7 @@ from symofros.blocks import (
 )
 from symofros.description.forces import Friction
 from symofros.diagrams.block import Block
-from symofros.diagrams.variants import friction_only
+from symofros.diagrams.program.variants import friction_only
 from tests.blocks.support import run
 from tests.models import sampled
 
@@ -128,15 +128,15 @@ def test_inverse_dynamics_and_compensations(name: str) -> None:
 
 def friction(name: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Forces of friction (nv), by a model whose joints have no others."""
-    rubbing = [
+    has_friction = [
         body.joint.name
         for body in MODELS[name].bodies
         if body.joint and any(isinstance(element, Friction) for element in body.joint.elements)
     ]
-    if not rubbing:
+    if not has_friction:
         return 0 * v
     only = sf.compile(friction_only(MODELS[name]))
-    return only.generalized_force(q, v, np.zeros(only.nu)) * [item in rubbing for item in only.names.v]
+    return only.generalized_force(q, v, np.zeros(only.nu)) * [item in has_friction for item in only.names.v]
 
 
 def test_computed_torque_makes_the_error_decay(name: str) -> None:

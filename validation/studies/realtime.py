@@ -14,10 +14,10 @@ import numpy as np
 import reference_models
 import symofros as sf
 from symofros.blocks import (
-    At,
     Block,
+    Environment,
+    EvaluationContext,
     ForwardDynamics,
-    Known,
     Port,
     Ports,
     Store,
@@ -41,12 +41,12 @@ class Following(Block):
 
     model: str
 
-    def ports(self, known: Known) -> Ports:
+    def ports(self, environment: Environment) -> Ports:
         """The robot's state in, efforts out."""
         size = (len(known.model(self.model).q_names),)
         return Ports((Port("q", size), Port("v", size)), (Port("effort", size),))
 
-    def compute(self, at: At) -> Values:
+    def compute(self, context: EvaluationContext) -> Values:
         """By the model's inverse dynamics."""
         q, v = at.inputs["q"], at.inputs["v"]
         phase = at.t * RATE

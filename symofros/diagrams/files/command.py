@@ -12,12 +12,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from symofros.diagrams.compiled import Resolved
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.registry import kind_of
-from symofros.diagrams.jitter import Jitter, histogram, jitter_of
+from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.result import DiagramRun
-from symofros.diagrams.simulate import run_compiled
+from symofros.diagrams.run.jitter import Jitter, histogram, jitter_of
+from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.simulation import Simulation
 from symofros.errors import Problem, SymofrosError
 
@@ -35,7 +35,7 @@ def is_diagram(path: Path) -> bool:
 
 
 @dataclass(frozen=True)
-class Wishes:
+class RunRequest:
     """What the command line asks of a run; None and "" where it leaves things to the diagram.
 
     Attributes:
@@ -57,18 +57,18 @@ class Wishes:
     jitter: Path | None
 
 
-def run_diagram(diagram: Diagram, wishes: Wishes, progress: bool) -> DiagramRun:
+def run_diagram(diagram: Diagram, request: RunRequest, progress: bool) -> DiagramRun:
     """Run a diagram as wished.
 
     Raises:
         SymofrosError: The diagram, a setting or a signal's name is wrong; nothing has run then.
     """
     simulation = Simulation(diagram)
-    t_end = wishes.t_end if wishes.t_end is not None else diagram.simulation.t_end
-    stated = {**diagram.simulation.keywords(), **wishes.settings}
-    if wishes.speed:
-        stated["realtime"] = wishes.speed
-    if wishes.jitter and not stated.get("realtime"):
+    t_end = request.t_end if request.t_end is not None else diagram.simulation.t_end
+    stated = {**diagram.simulation.keywords(), **request.settings}
+    if request.speed:
+        stated["realtime"] = request.speed
+    if request.jitter and not stated.get("realtime"):
         raise SymofrosError(
             Problem(
                 "--jitter: the run keeps no pace",
@@ -77,22 +77,22 @@ def run_diagram(diagram: Diagram, wishes: Wishes, progress: bool) -> DiagramRun:
                 "add --realtime",
             )
         )
-    for name in wishes.signals:
+    for name in request.signals:
         simulation.resolved.wired.check_signal(name)
     return run_compiled(simulation.compiled, 1.0 if t_end is None else t_end, progress=progress, **stated)
 
 
-def write_files(run: DiagramRun, wishes: Wishes) -> list[str]:
+def write_files(run: DiagramRun, request: RunRequest) -> list[str]:
     """What was asked to be written; a window comes last, and waits until it is closed."""
-    files = run.save(wishes.output, *wishes.signals) if wishes.output else []
-    if wishes.jitter:
-        histogram(run.cost.late, run.compiled.resolved.wired.name).savefig(wishes.jitter, dpi=120)
-        files.append(wishes.jitter)
-    if wishes.plot == WINDOW:
-        run.show(*wishes.signals)
-    elif wishes.plot:
-        run.plot(*wishes.signals).savefig(wishes.plot, dpi=120)
-        files.append(Path(wishes.plot))
+    files = run.save(request.output, *request.signals) if request.output else []
+    if request.jitter:
+        histogram(run.cost.late, run.compiled.resolved.wired.name).savefig(request.jitter, dpi=120)
+        files.append(request.jitter)
+    if request.plot == WINDOW:
+        run.show(*request.signals)
+    elif request.plot:
+        run.plot(*request.signals).savefig(request.plot, dpi=120)
+        files.append(Path(request.plot))
     return list(map(str, files))
 
 

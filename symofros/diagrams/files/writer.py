@@ -20,8 +20,8 @@ from symofros.diagrams.files.fields import MISSING, same, write
 from symofros.diagrams.files.paths import DIAGRAMS
 from symofros.diagrams.files.reader import HEAD, VERSION, load_diagram
 from symofros.diagrams.files.registry import entry_of, kind_of
+from symofros.diagrams.program.variants import with_functions
 from symofros.diagrams.settings import RunSettings
-from symofros.diagrams.variants import with_functions
 from symofros.errors import DescriptionError, Problem
 from symofros.loading import load, save
 

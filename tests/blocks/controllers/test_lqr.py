@@ -13,7 +13,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import LQR, Constant, ForwardDynamics
 from symofros.blocks.controllers.riccati import continuous_gain, held_inputs, sampled_gain
-from symofros.diagrams.compiled import resolve
+from symofros.diagrams.program.compiled import resolve
 from symofros.diagrams.wiring import surroundings
 from tests.blocks.support import refused
 

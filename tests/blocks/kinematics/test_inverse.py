@@ -13,7 +13,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import CartesianTrajectory, Constant, InverseKinematics, JointTrajectory, Sine, Square
 from symofros.diagrams.diagram import Diagram
-from symofros.diagrams.variants import with_functions
+from symofros.diagrams.program.variants import with_functions
 from tests.blocks.support import refused
 
 PERIOD = 0.01

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.compiled import Resolved, bare_record, unit_of
-from symofros.diagrams.layout import Part
-from symofros.diagrams.opaque import Called
-from symofros.diagrams.pieces import INPUT, MEMORY, PARAMETER, STATE, Piece
-from symofros.diagrams.surroundings import parameter_group
+from symofros.diagrams.program.compiled import Resolved, bare_record, unit_of
+from symofros.diagrams.program.layout import Part
+from symofros.diagrams.program.lowered_block import INPUT, MEMORY, PARAMETER, STATE, Piece
+from symofros.diagrams.program.model_environment import parameter_group
+from symofros.diagrams.run.python_blocks import Called
 from symofros.diagrams.wiring import Source
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.passes import run_passes

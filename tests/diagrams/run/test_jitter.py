@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.diagrams.jitter import histogram, jitter_of
 from symofros.diagrams.rates import schedule
-from symofros.diagrams.recording import Cost
+from symofros.diagrams.run.jitter import histogram, jitter_of
+from symofros.diagrams.run.recording import Cost
 
 
 def cost(late: list[float], spacing: float = 1e-3) -> Cost:

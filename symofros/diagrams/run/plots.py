@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
-from symofros.diagrams.recording import Recording
-from symofros.diagrams.saving import columns
+from symofros.diagrams.run.recording import Recording
+from symofros.diagrams.run.saving import columns
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import split
 from symofros.diagrams.wiring import Wired

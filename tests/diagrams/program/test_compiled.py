@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import symofros as sf
-from symofros.diagrams import compiled
+from symofros.diagrams.program import compiled
 from symofros.options import Options
 from symofros.runtime.toolchain import Toolchain
 from tests.blocks.sources import Ramp

@@ -8,9 +8,9 @@ from contextlib import ExitStack, contextmanager
 
 import numpy as np
 
-from symofros.diagrams.compiled import Resolved, fuser
-from symofros.diagrams.layout import Place
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.diagrams.program.compiled import Resolved, fuser
+from symofros.diagrams.program.layout import Place
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 
 from symofros.diagrams.block import Values
-from symofros.diagrams.layout import Layout, Part, Place
-from symofros.diagrams.pieces import INPUT, MEMORY, PARAMETER, STATE, Piece, watched
-from symofros.diagrams.surroundings import parameter_group
+from symofros.diagrams.program.layout import Layout, Part, Place
+from symofros.diagrams.program.lowered_block import INPUT, MEMORY, PARAMETER, STATE, Piece, watched
+from symofros.diagrams.program.model_environment import parameter_group
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from symofros.diagrams.block import Shape
-from symofros.diagrams.compiled import CompiledDiagram
-from symofros.diagrams.fuse import AFTER
+from symofros.diagrams.program.compiled import CompiledDiagram
+from symofros.diagrams.program.fused_functions import AFTER
 from symofros.diagrams.wiring import Source
 from symofros.runtime.kernel import Array
 from symofros.simulation.outcome import Outcome

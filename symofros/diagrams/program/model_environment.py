@@ -11,8 +11,8 @@ from symofros.compiler import compile_system, plan
 from symofros.description.forces import Friction
 from symofros.description.system import System
 from symofros.diagrams.block import ModelSetup
+from symofros.diagrams.program.variants import FRICTION, friction_only
 from symofros.diagrams.tensor import Tensor
-from symofros.diagrams.variants import FRICTION, friction_only
 from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
@@ -194,7 +194,7 @@ class Models:
         rows = [list(row) for row in M.edges]
         return Tensor.of(M.g, Factors(M.g, rows).solve(r.flat), r.shape)
 
-    def rubbing(self, model: str) -> list[bool]:
+    def has_friction(self, model: str) -> list[bool]:
         """Which speeds (nv) have friction."""
         tree, found = self.tree(model), [False] * len(self.record(model).v_names)
         for link in tree.links:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.diagrams.compiled import CompiledDiagram
-from symofros.diagrams.layout import Part
-from symofros.diagrams.pieces import watched
+from symofros.diagrams.program.compiled import CompiledDiagram
+from symofros.diagrams.program.layout import Part
+from symofros.diagrams.program.lowered_block import watched
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.compiled import Resolved
-from symofros.diagrams.layout import Place
+from symofros.diagrams.program.compiled import Resolved
+from symofros.diagrams.program.layout import Place
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.kernel import Array
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.layout import Layout, Place
+from symofros.diagrams.program.layout import Layout, Place
 from symofros.diagrams.rates import Schedule
 from symofros.errors import CompileError
 from symofros.runtime.binding import NativeMemory, native_library

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.recording import Cost
+from symofros.diagrams.run.recording import Cost
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.kernel import Array
 from symofros.simulation.plots import figure_class

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from symofros.diagrams.recording import Recording
+from symofros.diagrams.run.recording import Recording
 from symofros.diagrams.signals import check_entry, entries, split
 from symofros.runtime.kernel import Array
 from symofros.simulation.saving import refuse_suffix, write_columns, write_npz

@@ -9,10 +9,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from symofros.diagrams.diagram import Diagram
-from symofros.diagrams.fuse import Fuser
-from symofros.diagrams.layout import Layout, Part, lay_out
 from symofros.diagrams.order import groups_in_motion, order_of
-from symofros.diagrams.pieces import Piece, piece_of
+from symofros.diagrams.program.fused_functions import Fuser
+from symofros.diagrams.program.layout import Layout, Part, lay_out
+from symofros.diagrams.program.lowered_block import Piece, piece_of
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem

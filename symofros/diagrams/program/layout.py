@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symofros.diagrams.block import Shape
-from symofros.diagrams.pieces import Piece
+from symofros.diagrams.program.lowered_block import Piece
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.kernel import Array

@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.compiled import CompiledDiagram, rates_of
-from symofros.diagrams.loop import RECORD, Loop, Task
-from symofros.diagrams.opaque import Opaque, begun
-from symofros.diagrams.parts import place_parts, start
-from symofros.diagrams.pieces import watched
+from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
+from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
-from symofros.diagrams.recording import Cost, Crossed
 from symofros.diagrams.result import DiagramRun
-from symofros.diagrams.values import parameter_values, record_interval
+from symofros.diagrams.run.loop import RECORD, Loop, Task
+from symofros.diagrams.run.parts import place_parts, start
+from symofros.diagrams.run.python_blocks import Opaque, begun
+from symofros.diagrams.run.recording import Cost, Crossed
+from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.runtime.kernel import Array
 from symofros.runtime.library import CompiledKernel
 from symofros.runtime.model import Model

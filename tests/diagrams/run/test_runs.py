@@ -15,7 +15,7 @@ from symofros import blocks
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Speaking, Spoken, Twice, Wave, arm, table
 
-MODELS = Path(__file__).parents[2] / "reference_models"
+MODELS = Path(__file__).parents[3] / "reference_models"
 PENDULUM = sf.load(MODELS / "rigid" / "double_pendulum.yaml")
 
 
@@ -277,7 +277,7 @@ def test_parameters_change_without_compiling() -> None:
 def test_friction_is_what_the_model_says() -> None:
     system = sf.load(MODELS / "flexible" / "planar_robot.yaml")
     model = sf.compile(system)
-    diagram = sf.Diagram("rubbing")
+    diagram = sf.Diagram("has_friction")
     diagram.add_model("plant", system, start={"dq1": 0.5, "dq3": -0.2})
     diagram.add(blocks.ForwardDynamics(name="plant", model="plant"))
     run = sf.Simulation(diagram).run(0.01, record=0.01)

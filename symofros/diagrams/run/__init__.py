@@ -1,0 +1,1 @@
+"""Runs of diagrams, compiled and interpreted, and what they record."""
