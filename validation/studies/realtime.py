@@ -43,16 +43,16 @@ class Following(Block):
 
     def ports(self, environment: Environment) -> Ports:
         """The robot's state in, efforts out."""
-        size = (len(known.model(self.model).q_names),)
+        size = (len(environment.model(self.model).q_names),)
         return Ports((Port("q", size), Port("v", size)), (Port("effort", size),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """By the model's inverse dynamics."""
-        q, v = at.inputs["q"], at.inputs["v"]
-        phase = at.t * RATE
+        q, v = context.inputs["q"], context.inputs["v"]
+        phase = context.t * RATE
         sine, cosine = phase.apply("sin"), phase.apply("cos")
         wanted = -SWING * RATE**2 * sine + KP * (SWING * sine - q) + KD * (SWING * RATE * cosine - v)
-        return {"effort": at.call(self.model, "inverse_dynamics", q=q, v=v, a=joined([wanted]), t=at.t)["tau"]}
+        return {"effort": context.call(self.model, "inverse_dynamics", q=q, v=v, a=joined([wanted]), t=context.t)["tau"]}
 
 
 @dataclass(frozen=True)
