@@ -209,15 +209,15 @@ class Bench:
             )
         )
 
-    def error(self, trial: Trial, truth: Trial) -> float:
+    def error(self, trial: Trial, reference: Trial) -> float:
         """The largest error of an output, in units of what is allowed; infinite where there was no motion."""
-        return max(self.errors(trial, truth).values())
+        return max(self.errors(trial, reference).values())
 
-    def errors(self, trial: Trial, truth: Trial) -> dict[str, float]:
+    def errors(self, trial: Trial, reference: Trial) -> dict[str, float]:
         """Output's name -> its largest error in units of what is allowed."""
         shares = {}
         for output in self.scene.outputs:
-            right = truth.values[output.name]
+            right = reference.values[output.name]
             if trial.run is None:
                 shares[output.name] = math.inf
                 continue
@@ -262,7 +262,7 @@ class Bench:
 
 
 @dataclass(frozen=True)
-class Truth:
+class ReferenceSolution:
     """What is right: the richer model's motion, and what follows from it."""
 
     system: System

@@ -216,11 +216,11 @@ def _of_rotary(loads: BeamLoads, what: str, bending: list[Direction]) -> Reducti
 def _of_joint(seen: Observed, body: str, joint: Joint) -> Iterator[Reduction]:
     own = [rotor for rotor in joint.rotors if rotor.carrier is None and rotor.axis is None]
     single = joint.traits.series and joint.traits.nv == 1
-    names = seen.truth.run.model.names
+    names = seen.reference.run.model.names
     if not single or joint.prescribed or joint.name not in names.q:
         return
     root = seen.poses[body][0]
-    moved = seen.truth.run.q[:, names.q.index(joint.name)]
+    moved = seen.reference.run.q[:, names.q.index(joint.name)]
     if own and len(own) == len(joint.rotors) and joint.traits.turns_about == "axis":
         least = min(abs(seen.number(rotor.ratio)) for rotor in own)
         travel = float(np.ptp(moved))

@@ -17,7 +17,7 @@ from symofros.expr.expression import evaluate
 from symofros.options import Options
 from symofros.runtime.kernel import Array
 from symofros.studio.advice import estimators
-from symofros.studio.advice.bench import Truth
+from symofros.studio.advice.bench import ReferenceSolution
 from symofros.studio.advice.scene import Scene
 
 _STATIONS = np.linspace(0.0, 1.0, 5)
@@ -27,7 +27,7 @@ _EDGE = 2
 _REACTION = 0.1
 
 
-class Bent(NamedTuple):
+class TipDeflection(NamedTuple):
     """Displacement [m] and slope [rad] of a tip."""
 
     displacement: float
@@ -75,7 +75,7 @@ class BeamLoads:
     lever: float
 
     def eta(self, direction: Direction) -> float:
-        """Of the spin, for bending in a direction."""
+        """Angular speed that softens bending in a direction [rad/s]."""
         return self.spin * math.sqrt(self.rhoA * self.length**4 / self.stiffness[direction])
 
     @property
@@ -83,14 +83,14 @@ class BeamLoads:
         """Outputs per displacement of the tip whose slope goes with it, in units of what is allowed [1/m]."""
         return self.reach + 1.5 * self.lever / self.length
 
-    def deflection(self, direction: Direction, functions: int | None = None, modes: bool = False) -> Bent:
+    def deflection(self, direction: Direction, functions: int | None = None, modes: bool = False) -> TipDeflection:
         """Quasi-static displacement and slope of the tip, or what some shape functions leave out of them."""
         if direction == "twist":
             # A torque at the tip is met exactly by one function.
             couple = self.moment_of_inertia * self.turning[2] * self.length / self.stiffness["twist"]
-            return Bent(0.0, 0.0 if functions else couple)
+            return TipDeflection(0.0, 0.0 if functions else couple)
         i = 0 if direction == "bend_y" else 1
-        return Bent(
+        return TipDeflection(
             *estimators.deflection(
                 self.rhoA,
                 self.stiffness[direction],
@@ -104,7 +104,7 @@ class BeamLoads:
             )
         )
 
-    def share(self, bent: Bent) -> float:
+    def share(self, bent: TipDeflection) -> float:
         """What a displacement and a slope of the tip do to outputs, in units of what is allowed."""
         return bent.displacement * self.reach + bent.slope * self.lever
 
@@ -130,19 +130,19 @@ class Observed:
 
     system: System
     scene: Scene
-    truth: Truth
+    reference: ReferenceSolution
     poses: dict[str, tuple[Array, Array]]
 
     @classmethod
-    def of(cls, system: System, scene: Scene, truth: Truth) -> Observed:
+    def of(cls, system: System, scene: Scene, reference: ReferenceSolution) -> Observed:
         """Poses by the interpreter: 400 of them take less time than compiling them."""
         beams = [body for body in system.bodies if isinstance(body, Beam)]
         names = [body.name for body in system.bodies if body.joint is not None]
         names += [f"{beam.name}.{frame.name}" for beam in beams for frame in beam.frames] + list(scene.frames)
         names = list(dict.fromkeys(names))
-        model = compile_system(truth.system, Options(("frame_pose",), tuple(names), backend="interpreter"))
-        run = truth.run
-        return cls(system, scene, truth, {n: model.frame_pose(n, run.q, u=run.u, par=run.par) for n in names})
+        model = compile_system(reference.system, Options(("frame_pose",), tuple(names), backend="interpreter"))
+        run = reference.run
+        return cls(system, scene, reference, {n: model.frame_pose(n, run.q, u=run.u, par=run.par) for n in names})
 
     @property
     def dt(self) -> float:
@@ -180,7 +180,7 @@ class Observed:
         carried = {body.name for body in self.outboard_of(name)} | {name}
         shift = turn = 0.0
         for output in self.scene.outputs:
-            bound = output.bound(self.truth.trial.values[output.name])
+            bound = output.bound(self.reference.trial.values[output.name])
             if bound == 0.0 or output.kind in ("effort", "speed"):
                 continue
             if output.kind == "coordinate":

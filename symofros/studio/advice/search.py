@@ -10,10 +10,10 @@ from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem, SymofrosError, did_you_mean
 from symofros.options import Options
 from symofros.studio.advice.advice import Advice, Choice, Verdict
-from symofros.studio.advice.bench import Bench, Trial, Truth
+from symofros.studio.advice.bench import Bench, ReferenceSolution, Trial
 from symofros.studio.advice.candidates import Reduction, candidates, constants, fewer_functions
 from symofros.studio.advice.loads import BeamLoads, Observed
-from symofros.studio.advice.richer import richer
+from symofros.studio.advice.refined_model import refined
 from symofros.studio.advice.scene import Scene
 from symofros.studio.advice.stepping import cheapest
 
@@ -59,8 +59,8 @@ class _Search:
         self.choices: list[Choice] = []
         self.notes: list[str] = []
         self.current = system
-        self.truth = self._settle()
-        self.seen = Observed.of(self.current, scene, self.truth)
+        self.reference = self._settle()
+        self.seen = Observed.of(self.current, scene, self.reference)
         self.loads = {b.name: self.seen.beam(b) for b in self.current.bodies if isinstance(b, Beam) and b.modes}
 
     def advice(self) -> Advice:
@@ -81,7 +81,7 @@ class _Search:
             self.bench.timed(self.current, stepping),
             self.bench.timed(self.full, full_stepping),
             tuple(self.choices),
-            self.bench.errors(stepped, self.truth.trial),
+            self.bench.errors(stepped, self.reference.trial),
             self.bounds,
             self.truncation,
             Options(self.bench.functions(self.current, stepping.method), self.scene.frames),
@@ -90,23 +90,23 @@ class _Search:
             tuple(self.notes),
         )
 
-    def _settle(self) -> Truth:
+    def _settle(self) -> ReferenceSolution:
         """The richer model; the description is refined until its own truncation is small beside the tolerance."""
-        reference = self.bench.exact(self.current)[0]
+        described = self.bench.exact(self.current)[0]
         for _ in range(_ROUNDS):
-            above = richer(self.current)
-            truth = self.bench.exact(above)[0] if above != self.current else reference
-            off = self.bench.error(reference, truth)
+            richer = refined(self.current)
+            reference = self.bench.exact(richer)[0] if richer != self.current else described
+            off = self.bench.error(described, reference)
             if self.current is self.full:
                 self.truncation = off
             if off <= REFINE:
                 break
             self.notes.append(f"the model errs by {off:.2g} of the tolerance against one of more functions: refined")
-            self.current, reference = above, truth
+            self.current, described = richer, reference
         else:
             self.notes.append("more functions still change the outputs; the tolerance is near what beams can give")
-        self.bounds = {output.name: output.bound(truth.values[output.name]) for output in self.scene.outputs}
-        return Truth(above, truth)
+        self.bounds = {output.name: output.bound(reference.values[output.name]) for output in self.scene.outputs}
+        return ReferenceSolution(richer, reference)
 
     def _reduce(self) -> None:
         pool = sorted(candidates(self.seen), key=lambda one: one.estimate)
@@ -191,14 +191,14 @@ class _Search:
         assert isinstance(body, Beam)
         softened = self.current.with_bodies(replace(body, foreshortening=False, retain="first_order"))
         softened_trial = self._attempt(softened)
-        off = self.bench.error(softened_trial, self.truth.trial)
+        off = self.bench.error(softened_trial, self.reference.trial)
         end = f"ends: {softened_trial.failure}" if softened_trial.failure else f"errs by {off:.3g} of the tolerance"
         reason = f"{one.reason}; a model that keeps the softening by the spin, without the stiffening, {end}"
         return replace(one, reason=reason, numbers={**one.numbers, "softened_error": off})
 
     def _try(self, some: Sequence[Reduction]) -> float:
         """The error of the current system with some reductions more."""
-        return self.bench.error(self._attempt(_all(some, self.current)), self.truth.trial)
+        return self.bench.error(self._attempt(_all(some, self.current)), self.reference.trial)
 
     def _attempt(self, system: System) -> Trial:
         """The motion of a candidate, stepped as the description was; none where it can't be stated."""

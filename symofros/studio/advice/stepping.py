@@ -19,13 +19,13 @@ _LOOSEST = 1e-2
 LARGEST = 250_000
 
 
-def cheapest(bench: Bench, system: System, truth: Trial, share: float) -> tuple[Stepping, Cost, float, list[str]]:
+def cheapest(bench: Bench, system: System, reference: Trial, share: float) -> tuple[Stepping, Cost, float, list[str]]:
     """The cheapest way to step a model through the scene.
 
     Args:
         bench: Bench of the scene.
         system: System to step.
-        truth: Exact motion of the system.
+        reference: Exact motion of the system.
         share: Share of the tolerance, which the error of stepping may take.
 
     Returns:
@@ -35,14 +35,14 @@ def cheapest(bench: Bench, system: System, truth: Trial, share: float) -> tuple[
         SymofrosError: No method will do, as may be where only fixed steps may be taken.
     """
     if bench.model(system).nv == 0:
-        return bench.given, bench.cost(system, truth, "rk4"), 0.0, ["no speeds are left: nothing is integrated"]
+        return bench.given, bench.cost(system, reference, "rk4"), 0.0, ["no speeds are left: nothing is integrated"]
     best: tuple[Stepping, Cost, float] | None = None
     lines = []
     for method in _FIXED if bench.scene.fixed_step else (*_ADAPTIVE, *_FIXED):
         if METHODS[method].family.implicit and not _small(bench, system):
             lines.append(f"{method}: not tried, derivatives of more than {LARGEST} operations")
             continue
-        coarsest = _coarsest(bench, system, truth, share, method, None if best is None else best[1].total)
+        coarsest = _coarsest(bench, system, reference, share, method, None if best is None else best[1].total)
         if coarsest is None:
             lines.append(f"{method}: dearer, or never within {share:.2g} of the tolerance")
             continue
@@ -68,14 +68,14 @@ def _small(bench: Bench, system: System) -> bool:
 
 
 def _coarsest(
-    bench: Bench, system: System, truth: Trial, share: float, method: str, dearest: int | None
+    bench: Bench, system: System, reference: Trial, share: float, method: str, dearest: int | None
 ) -> tuple[Stepping, Cost, float] | None:
     """The coarsest setting of a method that will do; None where it costs more than `dearest` before it does."""
     for stepping in _ladder(bench.scene.t_end, method):
         trial = bench.trial(system, stepping)
         if trial.run is None:
             continue
-        cost, error = bench.cost(system, trial, method), bench.error(trial, truth)
+        cost, error = bench.cost(system, trial, method), bench.error(trial, reference)
         if dearest is not None and cost.total >= dearest:
             return None
         if error <= share:

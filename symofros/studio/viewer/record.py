@@ -21,10 +21,10 @@ from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.studio.viewer.drawing.layers import shown_at_first
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.drawing.tracks import tracks_of
-from symofros.studio.viewer.page.viser_scene import Scene
+from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.page.viser_server import LOOPBACK, start_server, stop_server
 from symofros.studio.viewer.playing.diagram_motion import shown_of
-from symofros.studio.viewer.playing.motion import Motion, Played, finite, motion_of, positive
+from symofros.studio.viewer.playing.motion import Played, PlayedMotion, finite, motion_of, positive
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.raster import Image, picture
 
@@ -35,7 +35,9 @@ _SUFFIXES = (".html", ".mp4", ".gif", ".png")
 class _Recording:
     """A motion at the times of its pictures."""
 
-    def __init__(self, mechanism: Mechanism, motion: Motion, period: float, speed: float, exaggeration: float) -> None:
+    def __init__(
+        self, mechanism: Mechanism, motion: PlayedMotion, period: float, speed: float, exaggeration: float
+    ) -> None:
         self.period = period
         count = int(np.ceil((motion.end - motion.start) / (speed * period) - 1e-9)) + 1
         if count > MOST_FRAMES:
@@ -107,7 +109,7 @@ def record(
     mechanism = Mechanism(system, tracks_of(paths))
     motion = motion_of(mechanism.model, run)
     if file.suffix == ".png":
-        motion = Motion(motion.model, motion.t[-1:], motion.q[-1:], motion.u[-1:], motion.par)
+        motion = PlayedMotion(motion.model, motion.t[-1:], motion.q[-1:], motion.u[-1:], motion.par)
     period = max(round(100.0 / rate), 1) / 100.0 if file.suffix == ".gif" else 1.0 / rate
     frames = _Recording(mechanism, motion, period, speed, exaggeration)
     write: dict[str, Callable[[], bytes]] = {
@@ -158,7 +160,7 @@ def _asked(
 def _page(frames: _Recording) -> bytes:
     server = start_server(LOOPBACK, 0)
     try:
-        scene = Scene(server, frames.drawing, frames.postures[0], frames.layers)
+        scene = ViserScene(server, frames.drawing, frames.postures[0], frames.layers)
         serializer = server.get_scene_serializer()
         for posture in frames:
             scene.move(posture)

@@ -13,7 +13,7 @@ from symofros.description.system import System
 from symofros.runtime.model import ArrayLike
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.drawing.tracks import tracks_of
-from symofros.studio.viewer.page.viewer_page import Screen
+from symofros.studio.viewer.page.viewer_page import ViewerPage
 from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT, start_server, stop_server
 from symofros.studio.viewer.playing.motion import Played, finite, motion_of, positive
 from symofros.studio.viewer.playing.player import Player
@@ -28,7 +28,7 @@ class _Wanted(NamedTuple):
     t: float
 
 
-class Viewer(Screen):
+class Viewer(ViewerPage):
     """A web page with a mechanism in it, for any number of browsers.
 
     The page is served from this process until `close()`, or the end of a `with`. Methods may be called from any thread.
@@ -122,7 +122,7 @@ class Viewer(Screen):
         with self._painting:
             self._discard()
             self._player = None
-            self._stage.change(mechanism)
+            self._scene_state.change(mechanism)
             self._panel = self._new_panel()
 
     def show(self, q: ArrayLike | None = None, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from symofros.studio.editor.editing.data_edits import Path as Steps
-from symofros.studio.editor.editing.yaml_spans import Sheet
+from symofros.studio.editor.editing.yaml_spans import YamlText
 
 ROOT = Path(__file__).parents[3] / "reference_models"
 # Models lie in folders by kind; scenes and diagrams do not.
@@ -71,7 +71,7 @@ TEXTS = {name: path.read_text(encoding="utf-8") for name, path in FILES.items()}
 TEXTS |= {"odd": ODD, "crlf": ODD.replace("\n", "\r\n"), "open end": ODD.rstrip("\n")}
 
 # Reading a text takes longer than editing it; these are read once.
-DATA = {name: Sheet(text).root.plain() for name, text in TEXTS.items()}
+DATA = {name: YamlText(text).root.plain() for name, text in TEXTS.items()}
 
 # What has a meaning of its own to YAML, or none.
 TROUBLE = (

@@ -94,7 +94,9 @@ def colored(image: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
 def test_a_rigid_arm_is_shown_with_all_its_links(open_page: Open) -> None:
     with sf.Viewer(MODELS["chain7"], port=0) as viewer:
         image = settled(open_page(viewer.url))
-        colors = {part.color for part in viewer._stage.scene.drawing.parts if part.kind == "bodies" and part.link >= 0}
+        colors = {
+            part.color for part in viewer._scene_state.scene.drawing.parts if part.kind == "bodies" and part.link >= 0
+        }
     for color in colors:
         assert colored(image, color).sum() > 20, color
 
@@ -109,7 +111,7 @@ def test_the_picture_changes_where_a_beam_bends(open_page: Open) -> None:
         little = settled(page)
         viewer.exaggeration = 12.0
         much = settled(page)
-        beam = viewer._stage.scene.drawing.bends[0].color
+        beam = viewer._scene_state.scene.drawing.bends[0].color
     bows = [bow(colored(image, beam)) for image in (straight, little, much)]
     # A straight beam is off its line by its thickness, a little bent one hardly more; exaggerated, it is seen to bend.
     assert bows[0] < 2.0 and bows[1] < bows[0] + 0.5 and bows[2] > 2 * bows[0]
@@ -131,7 +133,9 @@ def test_a_loop_stays_closed_as_it_moves(open_page: Open) -> None:
         first = settled(page)
         viewer.slide(0, 0.7)
         second = settled(page)
-        mark = next(part.color for part in viewer._stage.scene.drawing.parts if part.name.startswith("constraints/"))
+        mark = next(
+            part.color for part in viewer._scene_state.scene.drawing.parts if part.name.startswith("constraints/")
+        )
     places = [np.argwhere(colored(image, mark)).mean(axis=0) for image in (first, second)]
     assert changed(first, second).sum() > 300 and np.linalg.norm(places[1] - places[0]) > 20
     # One mark, at one place: the closure's two ends are together in both pictures.
@@ -175,7 +179,7 @@ def test_the_controls_move_the_picture(open_page: Open) -> None:
         page = open_page(viewer.url)
         before = settled(page)
         page.get_by_label("frames").click()
-        until(page, lambda: "frames" in viewer._stage.scene.layers)
+        until(page, lambda: "frames" in viewer._scene_state.scene.layers)
         assert changed(before, settled(page)).sum() > 50
         box = page.locator("input[type=text]").nth(1)  # The number beside the first coordinate's slider.
         box.fill("1.0")
@@ -228,11 +232,11 @@ def test_paths_are_seen_beside_it(open_page: Open) -> None:
 def test_another_system_takes_the_place_of_the_one_before(open_page: Open) -> None:
     with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
         page = open_page(viewer.url)
-        beam = viewer._stage.scene.drawing.bends[0].color
+        beam = viewer._scene_state.scene.drawing.bends[0].color
         assert colored(settled(page), beam).any()
         viewer.set_system(MODELS["pendulum"])
         image = settled(page)
-    colors = {part.color for part in viewer._stage.scene.drawing.parts if part.kind == "bodies"}
+    colors = {part.color for part in viewer._scene_state.scene.drawing.parts if part.kind == "bodies"}
     assert all(colored(image, color).sum() > 50 for color in colors)
 
 

@@ -15,7 +15,7 @@ from symofros.errors import DescriptionError, Problem
 from symofros.mechanics.topology.graph import find_problems
 from symofros.studio.editor.document.diagram import diagram
 from symofros.studio.editor.document.problems import placed, schema_problems
-from symofros.studio.editor.editing.yaml_spans import sheet_of
+from symofros.studio.editor.editing.yaml_spans import yaml_text_of
 
 Json = dict[str, Any]
 
@@ -51,13 +51,13 @@ def analyse(file: Path, text: str) -> Analysis:
         text: Text of the document.
     """
     try:
-        sheet = sheet_of(text)
+        source = yaml_text_of(text)
     except YamlFault as error:
         return Analysis(False, problems=[placed(error.problem, None, "", {})])
     problems, system = _checked(file, text)
-    exact = schema_problems(sheet, str(file))
-    shown_problems = [placed(problem, sheet, str(file), exact) for problem in problems]
-    data = as_json(sheet.root.plain())
+    exact = schema_problems(source, str(file))
+    shown_problems = [placed(problem, source, str(file), exact) for problem in problems]
+    data = as_json(source.root.plain())
     graph = diagram(data)
     blocks = {node["id"]: node for node in graph["nodes"]}
     base = next((node for node in graph["nodes"] if node["kind"] == "base"), None)

@@ -21,7 +21,7 @@ class StaleError(SymofrosError):
     """An edit of a revision that is not the document's any more."""
 
 
-class Step(NamedTuple):
+class UndoStep(NamedTuple):
     """A text to go back or forth to, and the name of the edit in between."""
 
     label: str
@@ -42,8 +42,8 @@ class Document:
         """Begin with a text; `marked`: the file begins with a byte order mark."""
         self.file, self.text, self.saved, self.marked = file, text, saved, marked
         self.revision = revision
-        self._undo: list[Step] = []
-        self._redo: list[Step] = []
+        self._undo: list[UndoStep] = []
+        self._redo: list[UndoStep] = []
         self._analysis: Analysis | None = None
         self._readable: Analysis | None = None
 
@@ -83,7 +83,7 @@ class Document:
         """
         text = refuse_text(make(self.text))
         if text != self.text:
-            self._undo.append(Step(label, self.text))
+            self._undo.append(UndoStep(label, self.text))
             self._redo.clear()
             self._keep_bounds()
             self._become(text)
@@ -96,10 +96,10 @@ class Document:
         """Go one step forth, if there is one."""
         self._swap(self._redo, self._undo)
 
-    def _swap(self, source: list[Step], target: list[Step]) -> None:
+    def _swap(self, source: list[UndoStep], target: list[UndoStep]) -> None:
         if source:
             step = source.pop()
-            target.append(Step(step.label, self.text))
+            target.append(UndoStep(step.label, self.text))
             self._become(step.text)
 
     def _become(self, text: str) -> None:

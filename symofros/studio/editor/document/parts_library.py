@@ -10,7 +10,7 @@ from symofros.studio.editor.document.parts import extracted
 from symofros.studio.editor.document.workspace import FileError, Workspace, identifier, read_text, write
 from symofros.studio.editor.editing.data_edits import EditError
 from symofros.studio.editor.editing.yaml_rendering import block
-from symofros.studio.editor.editing.yaml_spans import sheet_of
+from symofros.studio.editor.editing.yaml_spans import yaml_text_of
 
 Json = dict[str, Any]
 
@@ -44,7 +44,7 @@ class Library:
             EditError: It has no bodies.
         """
         text, _ = read_text(self.workspace.inside(f"{FOLDER}/{name}.yaml"))
-        data = sheet_of(text).root.plain()
+        data = yaml_text_of(text).root.plain()
         if not isinstance(data, dict) or not isinstance(data.get("bodies"), dict):
             raise EditError(Problem(f"'{name[:50]}' is not a part", "no bodies", "a part has bodies", "choose another"))
         return data

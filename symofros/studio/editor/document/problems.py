@@ -14,9 +14,9 @@ from symofros.description.yaml.schema import NativeFile, default_joint_name
 from symofros.errors import Problem, first_of
 from symofros.studio.editor.editing.data_edits import Path
 from symofros.studio.editor.editing.formulas import formulas
-from symofros.studio.editor.editing.yaml_spans import Sheet
+from symofros.studio.editor.editing.yaml_spans import YamlText
 
-Found = dict[str, Any]
+ShownProblem = dict[str, Any]
 
 _NAMED = re.compile(
     r"(joint|body|beam|constraint|connection|virtual power|virtual_power|potential|parameter|input) '([^']*)'"
@@ -37,28 +37,28 @@ _SECTION_OF = {
 _WORDS = {"inertia": "moments", "modes": "family", "functions": "family"}
 
 
-def schema_problems(sheet: Sheet, file: str) -> dict[Problem, Path]:
+def schema_problems(source: YamlText, file: str) -> dict[Problem, Path]:
     """What the format finds wrong with the main file, each with its exact path."""
     try:
-        NativeFile.model_validate(sheet.root.plain())
+        NativeFile.model_validate(source.root.plain())
     except ValidationError as error:
         faults = error.errors(include_url=False)
-        placed = {problem_of(fault, f"{file}:{line_of(fault, sheet.root)}"): path_of(fault) for fault in faults}
+        placed = {problem_of(fault, f"{file}:{line_of(fault, source.root)}"): path_of(fault) for fault in faults}
         return {problem: placed.get(problem, ()) for problem in first_of(placed)}
     return {}
 
 
-def placed(problem: Problem, sheet: Sheet | None, file: str, exact: dict[Problem, Path]) -> Found:
+def placed(problem: Problem, source: YamlText | None, file: str, exact: dict[Problem, Path]) -> ShownProblem:
     """A problem as the page shows it."""
     where, _, number = problem.where.rpartition(":")
     line = int(number) if number.isdigit() and where == file else 0
     path: Path = ()
     if problem in exact:
         path = exact[problem]
-    elif sheet is not None and (line or not problem.where):
-        path = _path_of(problem, sheet, line)
-    if path and sheet is not None and line:
-        line = sheet.root.at(path).key_line if sheet.node(path) else line
+    elif source is not None and (line or not problem.where):
+        path = _path_of(problem, source, line)
+    if path and source is not None and line:
+        line = source.root.at(path).key_line if source.node(path) else line
     what = problem.what if where in ("", file) or not number.isdigit() else f"{problem.where}: {problem.what}"
     return {
         "path": list(path),
@@ -67,7 +67,7 @@ def placed(problem: Problem, sheet: Sheet | None, file: str, exact: dict[Problem
         "found": problem.found,
         "rule": problem.rule,
         "remedy": problem.remedy,
-        "node": node_of(path, sheet.root.plain() if sheet else None),
+        "node": node_of(path, source.root.plain() if source else None),
     }
 
 
@@ -80,11 +80,11 @@ def node_of(path: Path, data: Any) -> str:
     return ""
 
 
-def _path_of(problem: Problem, sheet: Sheet, line: int) -> Path:
-    data = sheet.root.plain()
+def _path_of(problem: Problem, source: YamlText, line: int) -> Path:
+    data = source.root.plain()
     if not isinstance(data, dict):
         return ()
-    entry = _named(problem.what, data) or _by_line(sheet, line)
+    entry = _named(problem.what, data) or _by_line(source, line)
     inner = _at(data, entry)
     field = _by_formula(problem, data, entry) or _by_name(problem, inner) or _by_word(problem.what, inner)
     return (*entry, *field)
@@ -110,10 +110,10 @@ def _named(what: str, data: dict[str, Any]) -> Path:
     return ()
 
 
-def _by_line(sheet: Sheet, line: int) -> Path:
+def _by_line(source: YamlText, line: int) -> Path:
     """The entry that begins at a line; the outermost one if there are several."""
     best: Path = ()
-    for path, node in _walk(sheet):
+    for path, node in _walk(source):
         if node.key_line <= line and path and node.key_line == line:
             return path
         if node.key_line < line and len(path) == 1:
@@ -121,8 +121,8 @@ def _by_line(sheet: Sheet, line: int) -> Path:
     return best
 
 
-def _walk(sheet: Sheet) -> Iterator[tuple[Path, Any]]:
-    stack: list[tuple[Path, Any]] = [((), sheet.root)]
+def _walk(source: YamlText) -> Iterator[tuple[Path, Any]]:
+    stack: list[tuple[Path, Any]] = [((), source.root)]
     while stack:
         path, node = stack.pop()
         yield path, node

@@ -17,7 +17,7 @@ from symofros.studio.editor.document.workspace import READABLE, FileError, Works
 from symofros.studio.editor.editing.data_edits import EditError, four_parts
 from symofros.studio.editor.editing.requests import edits_of, path_of, text_of
 from symofros.studio.editor.editing.yaml_edits import with_references
-from symofros.studio.editor.editing.yaml_spans import sheet_of
+from symofros.studio.editor.editing.yaml_spans import yaml_text_of
 
 Json = dict[str, Any]
 
@@ -135,7 +135,7 @@ class Session:
         self.document.expect(body.get("revision"))
         name = text_of(body, "name")
         parent, frame = text_of(body, "parent") or None, text_of(body, "frame") or None
-        edits = insertion(sheet_of(self.document.text).root.plain(), self.library.part(name), parent, frame)
+        edits = insertion(yaml_text_of(self.document.text).root.plain(), self.library.part(name), parent, frame)
         self.document.change(f"insert {name}"[:200], lambda text: with_references(text, edits))
         self.storage.autosave()
 
@@ -147,7 +147,7 @@ class Session:
 
     def keep_part(self, body: Json) -> None:
         """Keep some bodies of the document as a part."""
-        self.library.keep(text_of(body, "name"), sheet_of(self.document.text).root.plain(), body.get("bodies"))
+        self.library.keep(text_of(body, "name"), yaml_text_of(self.document.text).root.plain(), body.get("bodies"))
 
     # Asking.
 

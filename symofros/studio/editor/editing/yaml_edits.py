@@ -12,8 +12,16 @@ from typing import Any
 from symofros.description.yaml.yaml_nodes import Node, YamlFault
 from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault, same
 from symofros.studio.editor.editing.renaming import renaming
-from symofros.studio.editor.editing.yaml_spans import Sheet, sheet_of
-from symofros.studio.editor.editing.yaml_text_edits import moved, patch, put, removed, renamed, replaced, rewritten
+from symofros.studio.editor.editing.yaml_spans import YamlText, yaml_text_of
+from symofros.studio.editor.editing.yaml_text_edits import (
+    patch,
+    with_data,
+    with_entry,
+    with_entry_moved,
+    with_key,
+    with_value,
+    without_entry,
+)
 
 
 def apply(text: str, edit: Edit) -> str:
@@ -35,7 +43,7 @@ def with_references(text: str, edits: list[Edit]) -> str:
     """
     for edit in edits:
         if edit.op == "rename":
-            text = _together(text, renaming(sheet_of(text).root.plain(), edit))
+            text = _together(text, renaming(yaml_text_of(text).root.plain(), edit))
         else:
             text = apply(text, edit)
     return text
@@ -43,9 +51,9 @@ def with_references(text: str, edits: list[Edit]) -> str:
 
 def _together(text: str, edits: list[Edit]) -> str:
     """The text after edits apart from each other, read once: a parameter may be used in hundreds of formulas."""
-    sheet = sheet_of(text)
-    done, after, rest = text, sheet.root.plain(), []
-    patches = [(patch(sheet, edit), edit) for edit in edits]
+    source = yaml_text_of(text)
+    done, after, rest = text, source.root.plain(), []
+    patches = [(patch(source, edit), edit) for edit in edits]
     # From the end of the text, so that positions and paths stay valid: a key stands before what is in it.
     for (start, end, new), edit in sorted(patches, key=lambda pair: pair[0][:2], reverse=True):
         if start < 0:
@@ -64,17 +72,17 @@ def _one_by_one(text: str, edits: list[Edit]) -> str:
 
 def trace(text: str, edit: Edit) -> tuple[str, Path | None]:
     """As `apply`, and the path of the entry that had to be written anew, if one had to."""
-    sheet = sheet_of(text)
-    before = sheet.root.plain()
+    source = yaml_text_of(text)
+    before = source.root.plain()
     after = edited(before, edit)
     if same(before, after):
         return text, None
-    done = _meaning(_operated(sheet, edit), after)
+    done = _meaning(_operated(source, edit), after)
     if done is not None:
         return done, None
     path = edit.path
     while True:
-        done = _meaning(_written_anew(sheet, path, after), after)
+        done = _meaning(_written_anew(source, path, after), after)
         if done is not None:
             return done, path
         if not path:
@@ -92,12 +100,12 @@ def _meaning(text: str | None, wanted: Any) -> str | None:
     if text is None:
         return None
     try:
-        return text if same(sheet_of(text).root.plain(), wanted) else None
+        return text if same(yaml_text_of(text).root.plain(), wanted) else None
     except YamlFault:
         return None
 
 
-def _written_anew(sheet: Sheet, path: Path, after: Any) -> str | None:
+def _written_anew(source: YamlText, path: Path, after: Any) -> str | None:
     """The text with the whole value at a path written anew; None where there is none, before or after."""
     for step in path:
         if isinstance(after, dict) and step in after:
@@ -107,24 +115,24 @@ def _written_anew(sheet: Sheet, path: Path, after: Any) -> str | None:
         else:
             return None
     if not path:
-        return rewritten(sheet, after)
-    return replaced(sheet, path, after) if sheet.node(path) else None
+        return with_data(source, after)
+    return with_value(source, path, after) if source.node(path) else None
 
 
-def _operated(sheet: Sheet, edit: Edit) -> str | None:
+def _operated(source: YamlText, edit: Edit) -> str | None:
     """The text after one text edit; None where there is no such edit."""
     if edit.op == "set":
-        return _set(sheet, edit.path, edit.value)
+        return _set(source, edit.path, edit.value)
     if edit.op == "insert":
-        return put(sheet, edit.path, edit.key, edit.value, edit.index)
-    owner = sheet.node(edit.path[:-1])
+        return with_entry(source, edit.path, edit.key, edit.value, edit.index)
+    owner = source.node(edit.path[:-1])
     assert owner is not None  # The edit of plain data went through.
     at = place_of(owner, edit.path[-1])
     if edit.op == "remove":
-        return removed(sheet, owner, at)
+        return without_entry(source, owner, at)
     if edit.op == "rename":
-        return renamed(sheet, owner, at, edit.key)
-    return moved(sheet, owner, at, len(owner.value) - 1 if edit.index is None else edit.index)
+        return with_key(source, owner, at, edit.key)
+    return with_entry_moved(source, owner, at, len(owner.value) - 1 if edit.index is None else edit.index)
 
 
 def place_of(owner: Node, step: str | int) -> int:
@@ -132,16 +140,16 @@ def place_of(owner: Node, step: str | int) -> int:
     return list(owner.value).index(step) if isinstance(owner.value, dict) else int(step)
 
 
-def _set(sheet: Sheet, path: Path, value: Any) -> str | None:
+def _set(source: YamlText, path: Path, value: Any) -> str | None:
     """Set a value; of a mapping or list that stays one, only what differs."""
     known = 0
-    while known < len(path) and sheet.node(path[: known + 1]) is not None:
+    while known < len(path) and source.node(path[: known + 1]) is not None:
         known += 1
     if known < len(path):
         for step in reversed(path[known + 1 :]):
             value = {step: value}
-        return put(sheet, path[:known], str(path[known]), value, None)
-    node = sheet.node(path)
+        return with_entry(source, path[:known], str(path[known]), value, None)
+    node = source.node(path)
     assert node is not None
     old = node.plain()
     difference: Edit | None = None
@@ -150,9 +158,9 @@ def _set(sheet: Sheet, path: Path, value: Any) -> str | None:
     elif isinstance(old, list) and isinstance(value, list) and old and value:
         difference = _list_difference(old, value, path)
     if difference is None:
-        return replaced(sheet, path, value) if path else rewritten(sheet, value)
+        return with_value(source, path, value) if path else with_data(source, value)
     # One difference at a time; what is left is found in the text that has it.
-    return apply(apply(sheet.text, difference), Edit("set", path, value))
+    return apply(apply(source.text, difference), Edit("set", path, value))
 
 
 def _difference(old: dict[str, Any], new: dict[str, Any], path: Path) -> Edit | None:

@@ -20,17 +20,17 @@ class Span(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def sheet_of(text: str) -> Sheet:
-    """The sheet of a text; reading takes longer than anything that is done with it, and sheets do not change.
+def yaml_text_of(text: str) -> YamlText:
+    """A text with the spans of its entries; kept, because reading takes longer than anything that is done with it.
 
     Raises:
         YamlFault: It is not a YAML document that the format accepts; the problem's `where` is ":line".
     """
-    return Sheet(text)
+    return YamlText(text)
 
 
-class Sheet:
-    """A text and its tree of nodes.
+class YamlText:
+    """A YAML text and its tree of nodes, with the span of each in the text.
 
     Attributes:
         text: The text, without a byte order mark.
@@ -39,7 +39,7 @@ class Sheet:
     """
 
     def __init__(self, text: str) -> None:
-        """Read the text; see `sheet_of`."""
+        """Read the text; see `yaml_text_of`."""
         self.text = text
         self.root, _ = compose_text(text, "")
         first = _BREAK.search(text)

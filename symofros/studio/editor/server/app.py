@@ -31,7 +31,7 @@ from symofros.studio.editor.document.storage import ConflictError
 from symofros.studio.editor.document.workspace import FileError
 from symofros.studio.editor.editing.data_edits import EditError
 from symofros.studio.editor.jobs.processes import Jobs
-from symofros.studio.editor.server.document_viewer import View
+from symofros.studio.editor.server.document_viewer import DocumentViewer
 from symofros.studio.editor.server.events import Events
 from symofros.studio.editor.server.guard import Guard, error_body
 from symofros.studio.editor.server.relay import Relay
@@ -48,7 +48,7 @@ class Editor:
 
     def __init__(self, session: Session, view_token: str) -> None:
         self.session = session
-        self.view = View()
+        self.view = DocumentViewer()
         self.relay = Relay(self.view, view_token)
         self.events = Events()
         self.jobs = Jobs(self.events.publish)

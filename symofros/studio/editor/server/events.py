@@ -16,7 +16,7 @@ BEAT = 15.0  # Seconds between signs of life; a listener that has gone is notice
 
 
 class Events:
-    """Those who listen, each with what it has not been told yet."""
+    """The listeners, each with a queue of the events it has not been sent yet."""
 
     def __init__(self) -> None:
         self._listeners: set[asyncio.Queue[str]] = set()

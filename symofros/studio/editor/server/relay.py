@@ -16,7 +16,7 @@ from starlette.responses import Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from symofros.studio.editor.server.document_viewer import View
+from symofros.studio.editor.server.document_viewer import DocumentViewer
 from symofros.studio.viewer.page.viser_server import LOOPBACK
 
 MAX_SOCKETS = 20
@@ -26,7 +26,7 @@ GOING_AWAY, TRY_LATER = 1001, 1013
 class Relay:
     """Hands on what browsers and the viewer tell each other."""
 
-    def __init__(self, view: View, token: str) -> None:
+    def __init__(self, view: DocumentViewer, token: str) -> None:
         self.view, self.token = view, token
         self._open = 0
 

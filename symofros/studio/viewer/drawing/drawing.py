@@ -15,7 +15,7 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 Color = tuple[int, int, int]
 
 
-class Place(NamedTuple):
+class LinkPoint(NamedTuple):
     """A point on a link: its index, and p_LF in the link's axes (3) [m]. Link -1 is the world."""
 
     link: int
@@ -23,7 +23,7 @@ class Place(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Part:
+class DrawnPart:
     """Something rigid that moves with a link.
 
     Attributes:
@@ -42,7 +42,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Bend:
+class DrawnBeam:
     """A flexible beam.
 
     Attributes:
@@ -70,7 +70,7 @@ class Strut:
 
     Attributes:
         name: Unique in the drawing.
-        kind: Layer, as for a Part.
+        kind: Layer, as for a DrawnPart.
         first: One end.
         second: The other.
         outline: Outline of its section (K, 2) [m].
@@ -79,8 +79,8 @@ class Strut:
 
     name: str
     kind: Kind
-    first: Place
-    second: Place
+    first: LinkPoint
+    second: LinkPoint
     outline: Array
     color: Color
 
@@ -111,8 +111,8 @@ class Drawing:
     """
 
     name: str
-    parts: tuple[Part, ...]
-    bends: tuple[Bend, ...]
+    parts: tuple[DrawnPart, ...]
+    bends: tuple[DrawnBeam, ...]
     struts: tuple[Strut, ...]
     triads: tuple[Triad, ...]
     gravity: Array

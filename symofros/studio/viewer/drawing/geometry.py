@@ -24,7 +24,7 @@ from symofros.description.system import RigidBody
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import BASE, Link, NamedFrame, Placement, SpanningTree, frame_of
 from symofros.studio.viewer.drawing.centre_line import CentreLine
-from symofros.studio.viewer.drawing.drawing import Bend, Color, Drawing, Part, Place, Strut, Triad
+from symofros.studio.viewer.drawing.drawing import Color, Drawing, DrawnBeam, DrawnPart, LinkPoint, Strut, Triad
 from symofros.studio.viewer.drawing.inertia_box import inertia_box, longest_edges
 from symofros.studio.viewer.drawing.meshes import Array, Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
 from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
@@ -57,21 +57,21 @@ _SLENDER = 60.0  # Length over half the thickness of a beam whose section is not
 _FLATTEST = 6.0  # Ratio of the sides of its section.
 
 
-def landmarks(tree: SpanningTree, numbers: Numbers) -> Iterator[Place]:
+def landmarks(tree: SpanningTree, numbers: Numbers) -> Iterator[LinkPoint]:
     """Points that a picture must hold: joints, frames, mass centres.
 
     Args:
         tree: Tree of a checked system.
         numbers: The parameters' values.
     """
-    yield Place(BASE, np.zeros(3))
+    yield LinkPoint(BASE, np.zeros(3))
     for frame in tree.frames:
-        yield Place(frame.link, placed(frame.placement, numbers)[0])
+        yield LinkPoint(frame.link, placed(frame.placement, numbers)[0])
     for i, link in enumerate(tree.links):
-        yield Place(link.parent, placed(link.placement, numbers)[0])
+        yield LinkPoint(link.parent, placed(link.placement, numbers)[0])
         for placement, inertia in link.inertias:
             p, R = placed(placement, numbers)
-            yield Place(i, p + R @ numbers.values(inertia.center_of_mass))
+            yield LinkPoint(i, p + R @ numbers.values(inertia.center_of_mass))
 
 
 def placed(placement: Placement, numbers: Numbers) -> tuple[Array, Array]:
@@ -91,10 +91,10 @@ def draw(tree: SpanningTree, values: dict[str, float], size: float, center: Arra
         size: Extent, from which parts without a thickness of their own take theirs [m].
         center: Centre (3) [m].
     """
-    return _Draughtsman(tree, values, size, center).drawing()
+    return _DrawingBuilder(tree, values, size, center).drawing()
 
 
-class _Draughtsman:
+class _DrawingBuilder:
     def __init__(self, tree: SpanningTree, values: dict[str, float], size: float, center: Array) -> None:
         self.tree, self.values, self.size, self.center = tree, values, size, center
         self.numbers = Numbers(tree.system, values)
@@ -150,17 +150,17 @@ class _Draughtsman:
                 kept.append(p)
                 yield p
 
-    def _skeleton(self) -> Iterator[Part]:
+    def _skeleton(self) -> Iterator[DrawnPart]:
         for link, points in self.stars.items():
             if points:
                 radius = self._scaled(_ROD_RADIUS, link)
                 mesh = merged([cylinder(np.zeros(3), p, radius) for p in points])
-                yield Part(f"bodies/{self._name(link)}", "bodies", link, mesh, self._color(link))
+                yield DrawnPart(f"bodies/{self._name(link)}", "bodies", link, mesh, self._color(link))
 
     def _name(self, link: int) -> str:
         return "world" if link == BASE else self.tree.links[link].name
 
-    def _boxes(self) -> Iterator[Part]:
+    def _boxes(self) -> Iterator[DrawnPart]:
         for body in self.tree.system.bodies:
             inertia = inertia_box(body, self.numbers) if isinstance(body, RigidBody) else None
             if inertia is None:
@@ -171,13 +171,13 @@ class _Draughtsman:
             else:
                 mesh = sphere(2 * _JOINT_RADIUS * self.size)  # A point mass.
             mesh = mesh.moved(inertia.center, inertia.axes).moved(*placed(frame.placement, self.numbers))
-            yield Part(f"inertias/{body.name}", "inertias", frame.link, mesh, self._color(frame.link))
+            yield DrawnPart(f"inertias/{body.name}", "inertias", frame.link, mesh, self._color(frame.link))
 
-    def _joints(self) -> Iterator[Part]:
+    def _joints(self) -> Iterator[DrawnPart]:
         for i, link in enumerate(self.tree.links):
             mesh = None if link.tip_of is not None else self._joint(link, i)
             if mesh is not None:
-                yield Part(f"joints/{link.joint.name}", "joints", i, mesh, _JOINT)
+                yield DrawnPart(f"joints/{link.joint.name}", "joints", i, mesh, _JOINT)
 
     def _joint(self, link: Link, i: int) -> Mesh | None:
         """The sign of a joint, in its distal frame; none of a clamped or a free body."""
@@ -195,7 +195,7 @@ class _Draughtsman:
             return box(np.array([length, 1.6 * radius, 1.6 * radius])).moved(np.zeros(3), axes_along(axis))
         return cylinder(-length / 2 * axis, length / 2 * axis, radius)
 
-    def _visuals(self) -> Iterator[Part]:
+    def _visuals(self) -> Iterator[DrawnPart]:
         """How bodies look by their file."""
         for body in self.tree.system.bodies:
             for k, visual in enumerate(self.tree.system.visuals.get(body.name, ())):
@@ -205,18 +205,18 @@ class _Draughtsman:
                 frame = frame_of(self.tree, body.name)
                 mesh = mesh.moved(np.array(visual.position), self.numbers.rotation(visual.rotation))
                 mesh = mesh.moved(*placed(frame.placement, self.numbers))
-                yield Part(
+                yield DrawnPart(
                     f"visuals/{body.name}.{k}", "visuals", frame.link, mesh, visual.color or self._color(frame.link)
                 )
 
     # Beams.
 
-    def _bends(self) -> Iterator[Bend]:
+    def _bends(self) -> Iterator[DrawnBeam]:
         tips = {link.tip_of.name: link for link in self.tree.links if link.tip_of is not None}
         for i, link in enumerate(self.tree.links):
             if link.beam is not None:
                 tip = tips.get(link.name)
-                yield Bend(
+                yield DrawnBeam(
                     link.name,
                     i,
                     tip.q if tip else (0, 0),
@@ -244,13 +244,13 @@ class _Draughtsman:
     def _slides(self) -> Iterator[Strut]:
         for i, link in enumerate(self.tree.links):
             if link.joint.traits.slides:
-                start = Place(link.parent, placed(link.placement, self.numbers)[0])
+                start = LinkPoint(link.parent, placed(link.placement, self.numbers)[0])
                 radius = self._scaled(_ROD_RADIUS, i) / 2
                 yield Strut(
                     f"joints/{link.joint.name}.slide",
                     "joints",
                     start,
-                    Place(i, np.zeros(3)),
+                    LinkPoint(i, np.zeros(3)),
                     ellipse(radius, radius),
                     _SLIDE,
                 )
@@ -278,11 +278,11 @@ class _Draughtsman:
     def _anchor(self, anchor: Anchor) -> NamedFrame:
         return frame_of(self.tree, *anchor)
 
-    def _place(self, anchor: Anchor) -> Place:
+    def _place(self, anchor: Anchor) -> LinkPoint:
         frame = self._anchor(anchor)
-        return Place(frame.link, placed(frame.placement, self.numbers)[0])
+        return LinkPoint(frame.link, placed(frame.placement, self.numbers)[0])
 
-    def _contacts(self) -> Iterator[Part]:
+    def _contacts(self) -> Iterator[DrawnPart]:
         """The marks of closures, rolling contacts and knife edges."""
         for item in self.tree.system.constraints:
             if isinstance(item, Closure):
@@ -298,4 +298,4 @@ class _Draughtsman:
                 continue
             frame = self._anchor(anchor)
             mesh = mesh.moved(*placed(frame.placement, self.numbers))
-            yield Part(f"constraints/{item.name}.mark", "constraints", frame.link, mesh, _CLOSURE)
+            yield DrawnPart(f"constraints/{item.name}.mark", "constraints", frame.link, mesh, _CLOSURE)

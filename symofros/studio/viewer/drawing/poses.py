@@ -16,7 +16,7 @@ from symofros.mechanics.topology.tree import SpanningTree, frame_of
 from symofros.options import Options
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.assembly import assemble
-from symofros.studio.viewer.drawing.drawing import Bend, Drawing, Place, Strut
+from symofros.studio.viewer.drawing.drawing import Drawing, DrawnBeam, LinkPoint, Strut
 from symofros.studio.viewer.drawing.geometry import draw, landmarks
 from symofros.studio.viewer.drawing.inertia_box import longest_edges
 from symofros.studio.viewer.drawing.meshes import Array, axes_along
@@ -43,7 +43,7 @@ class Posture:
         """One of several."""
         return Posture(self.p[index], self.R[index], self.q[index])
 
-    def point(self, place: Place) -> Array:
+    def point(self, place: LinkPoint) -> Array:
         """A point in the world (..., 3) [m]."""
         position: Array = self.p[..., place.link, :] + self.R[..., place.link, :, :] @ place.position
         return position
@@ -189,7 +189,7 @@ class Sweep(NamedTuple):
     axes: Array
 
 
-def bend_sweep(bend: Bend, posture: Posture) -> Sweep:
+def bend_sweep(bend: DrawnBeam, posture: Posture) -> Sweep:
     """A beam's sections in the world."""
     start, size = bend.q
     q, p, R = posture.q[start : start + size], posture.p[bend.link], posture.R[bend.link]

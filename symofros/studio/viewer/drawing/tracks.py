@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.errors import Problem, ShapeError
 from symofros.mechanics.topology.tree import BASE
-from symofros.studio.viewer.drawing.drawing import Color, Part
+from symofros.studio.viewer.drawing.drawing import Color, DrawnPart
 from symofros.studio.viewer.drawing.meshes import Array, Mesh, axes_along, ellipse, tube
 
 _COLORS: tuple[Color, ...] = ((204, 51, 17), (30, 30, 30), (0, 119, 187), (238, 119, 51))
@@ -52,14 +52,14 @@ def tracks_of(given: Sequence[Sequence[Any]]) -> tuple[Track, ...]:
     return tuple(tracks)
 
 
-def track_part(track: Track, size: float) -> Part:
+def track_part(track: Track, size: float) -> DrawnPart:
     """A track as a thin tube.
 
     Args:
         track: The curve.
         size: Size of the mechanism [m].
     """
-    return Part(
+    return DrawnPart(
         f"paths/{track.name}", "paths", BASE, _mesh(_thinned(track.points, _STEP * size), _RADIUS * size), track.color
     )
 

@@ -70,7 +70,7 @@ def _read(file: Path, changed: int) -> Mesh:  # A file that was changed since is
 
 
 def _loaded(suffix: str, data: bytes) -> Mesh:
-    """Of all formats but COLLADA, for which trimesh needs more packages.
+    """The mesh in a file of any format but COLLADA, read by trimesh.
 
     Raises:
         ValueError: It is no such mesh, or trimesh is not installed.

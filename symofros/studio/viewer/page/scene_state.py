@@ -12,11 +12,11 @@ from symofros.studio.viewer.drawing.drawing import Drawing, alike
 from symofros.studio.viewer.drawing.layers import shown_at_first
 from symofros.studio.viewer.drawing.meshes import Array
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture, State
-from symofros.studio.viewer.page.viser_scene import Scene
+from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.playing.sliders import Slider, coordinates_of, sliders_of, values_of
 
 
-class Stage:
+class SceneState:
     """A mechanism on a server.
 
     Args:
@@ -30,7 +30,7 @@ class Stage:
         self.first = self.state = mechanism.closed(mechanism.state())[0]
         drawing = mechanism.drawing(self.state.par)
         self._drawn_par = self.state.par
-        self.scene = Scene(server, drawing, self._posture(), shown_at_first(drawing))
+        self.scene = ViserScene(server, drawing, self._posture(), shown_at_first(drawing))
 
     def change(self, mechanism: Mechanism) -> None:
         """Show another mechanism; where it has the same coordinates, they stay, and so do the layers shown."""
@@ -98,7 +98,7 @@ class Stage:
     def _draw(self, drawing: Drawing) -> None:
         """Draw anew; what is shown or hidden stays so."""
         self._drawn_par = self.state.par
-        self.scene = Scene(self.server, drawing, self._posture(), self.scene.layers)
+        self.scene = ViserScene(self.server, drawing, self._posture(), self.scene.layers)
 
 
 def _index(what: str, names: Sequence[str], name: str) -> int:

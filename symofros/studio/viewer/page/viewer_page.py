@@ -10,7 +10,7 @@ from typing import Any
 from symofros.studio.viewer.drawing.meshes import Array
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.page.panel import Panel
-from symofros.studio.viewer.page.scene_state import Stage
+from symofros.studio.viewer.page.scene_state import SceneState
 from symofros.studio.viewer.playing.motion import finite, positive
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.sliders import Slider
@@ -18,7 +18,7 @@ from symofros.studio.viewer.playing.sliders import Slider
 _FOLLOWED = 0.1  # Seconds between updates of the controls: they cost more than the picture.
 
 
-class Screen:
+class ViewerPage:
     """A mechanism on a server, and the controls beside it.
 
     Args:
@@ -37,23 +37,23 @@ class Screen:
         self._player: Player | None = None
         self._followed = -_FOLLOWED
         self.painted = 0
-        self._stage = Stage(server, mechanism, exaggeration)
+        self._scene_state = SceneState(server, mechanism, exaggeration)
         self._panel = self._new_panel()
 
     @property
     def mechanism(self) -> Mechanism:
         """What is shown, as it is computed with."""
-        return self._stage.mechanism
+        return self._scene_state.mechanism
 
     @property
     def state(self) -> State:
         """The state that is shown."""
-        return self._stage.state
+        return self._scene_state.state
 
     @property
     def exaggeration(self) -> float:
         """What multiplies elastic coordinates in the picture."""
-        return self._stage.exaggeration
+        return self._scene_state.exaggeration
 
     @exaggeration.setter
     def exaggeration(self, factor: float) -> None:
@@ -95,15 +95,15 @@ class Screen:
             UnknownNameError: There is no such layer.
         """
         with self._painting:
-            self._stage.scene.show(layer, visible)
-            self._panel.show(self._stage.scene.layers, self._stage.exaggeration)
+            self._scene_state.scene.show(layer, visible)
+            self._panel.show(self._scene_state.scene.layers, self._scene_state.exaggeration)
 
     def set_exaggeration(self, factor: float) -> None:
         """Multiply elastic coordinates in the picture."""
         with self._painting:
-            self._stage.exaggeration = finite("exaggeration", factor)
-            self._paint(self._stage.state)
-            self._panel.show(self._stage.scene.layers, self._stage.exaggeration)
+            self._scene_state.exaggeration = finite("exaggeration", factor)
+            self._paint(self._scene_state.state)
+            self._panel.show(self._scene_state.scene.layers, self._scene_state.exaggeration)
 
     def slide(self, index: int, value: float) -> None:
         """Move one degree of freedom, by the index of its speed; loops close around it where they can."""
@@ -123,29 +123,29 @@ class Screen:
             UnknownNameError: There is no such slider or parameter.
         """
         with self._painting:
-            return self._slide(*self._stage.by_name(values, par or {}))
+            return self._slide(*self._scene_state.by_name(values, par or {}))
 
     @property
     def sliders(self) -> tuple[Slider, ...]:
         """What moves it: one slider a speed."""
-        return self._stage.sliders
+        return self._scene_state.sliders
 
     @property
     def values(self) -> Array:
         """Where the sliders stand (nv)."""
-        return self._stage.values
+        return self._scene_state.values
 
     def reset(self) -> None:
         """Show the configuration that was shown first."""
         with self._painting:
-            self._stand(self._stage.first)
+            self._stand(self._scene_state.first)
 
     # How it is painted; who calls these holds the lock.
 
     def _slide(self, changes: Mapping[int, float], par: Array | None = None) -> str:
         with self._painting:
-            state, why = self._stage.slid(changes, par)
-            self._stand(self._stage.state if why else state)
+            state, why = self._scene_state.slid(changes, par)
+            self._stand(self._scene_state.state if why else state)
             self._panel.say("The loops can't be closed there." if why else "")
             return why
 
@@ -181,23 +181,23 @@ class Screen:
             self._player.playing = False
 
     def _paint(self, state: State) -> None:
-        self.painted += self._stage.paint(state)
+        self.painted += self._scene_state.paint(state)
 
     def _follow(self) -> None:
-        self._panel.follow(self._stage.values, self._player)
+        self._panel.follow(self._scene_state.values, self._player)
         self._followed = time.monotonic()
 
     def _new_panel(self) -> Panel:
-        stage, mechanism = self._stage, self._stage.mechanism
+        scene_state, mechanism = self._scene_state, self._scene_state.mechanism
         panel = Panel(
             self._server,
             self,
-            stage.scene.drawing,
-            stage.scene.layers,
+            scene_state.scene.drawing,
+            scene_state.scene.layers,
             self.sliders,
-            stage.exaggeration if mechanism.is_flexible else None,
+            scene_state.exaggeration if mechanism.is_flexible else None,
             self._player,
             self._controls,
         )
-        panel.follow(stage.values, self._player)
+        panel.follow(scene_state.values, self._player)
         return panel

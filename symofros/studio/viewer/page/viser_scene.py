@@ -22,7 +22,7 @@ SEE_THROUGH = 0.3  # Opacity of boxes of inertia.
 _TRIAD = 0.05  # Length of a frame's axes, of the mechanism's size.
 
 
-class Scene:
+class ViserScene:
     """The nodes of one drawing on a server, in place of those of the drawing before.
 
     Args:
@@ -143,7 +143,7 @@ class Scene:
         return self._kept(layer, node)
 
     def _hide_spare_tubes(self) -> None:
-        """Those of the drawing before that this one has no use for."""
+        """Remove nodes of the previous drawing that this one does not reuse."""
         for i in count(self._tubes):
             spare = self.server.scene.get_handle_by_name(f"{_TUBES}/{i}")
             if spare is None:

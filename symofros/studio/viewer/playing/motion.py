@@ -21,7 +21,7 @@ SUFFIXES = (".npz", ".csv", ".parquet")
 
 
 @dataclass(frozen=True)
-class Motion:
+class PlayedMotion:
     """States over time.
 
     Attributes:
@@ -71,16 +71,16 @@ class States(NamedTuple):
     par: ArrayLike | None = None
 
 
-Played = Trajectory | Motion | States | tuple[ArrayLike, ArrayLike]
+Played = Trajectory | PlayedMotion | States | tuple[ArrayLike, ArrayLike]
 
 
-def motion_of(model: Model, given: Played) -> Motion:
+def motion_of(model: Model, given: Played) -> PlayedMotion:
     """A run, or times (n) and configurations (n, nq), as a motion of a model.
 
     Raises:
         ShapeError: It does not fit the model.
     """
-    if isinstance(given, Motion):
+    if isinstance(given, PlayedMotion):
         return _checked(model, given.t, given.q, given.u, given.par, "motion")
     if isinstance(given, Trajectory):
         if given.model.names.q != model.names.q:
@@ -97,7 +97,7 @@ def motion_of(model: Model, given: Played) -> Motion:
     return _checked(model, t, q, None, None, "motion")
 
 
-def read_motion(path: str | Path, model: Model) -> Motion:
+def read_motion(path: str | Path, model: Model) -> PlayedMotion:
     """A motion from a file that `Trajectory.save` wrote, or one like it.
 
     Args:
@@ -143,7 +143,7 @@ def read_motion(path: str | Path, model: Model) -> Motion:
         raise SymofrosError(fault) from None
 
 
-def _read_arrays(file: Path, model: Model) -> Motion:
+def _read_arrays(file: Path, model: Model) -> PlayedMotion:
     with np.load(file, allow_pickle=False) as arrays:
         for name in ("t", "q"):
             if name not in arrays:
@@ -160,7 +160,7 @@ def _read_arrays(file: Path, model: Model) -> Motion:
         return _checked(model, arrays["t"], arrays["q"], u, par, file.name)
 
 
-def _read_csv(file: Path, model: Model) -> Motion:
+def _read_csv(file: Path, model: Model) -> PlayedMotion:
     with file.open(newline="", encoding="utf-8") as stream:
         rows = csv.reader(stream)
         head = next(rows, [])
@@ -168,7 +168,7 @@ def _read_csv(file: Path, model: Model) -> Motion:
     return _from_columns(dict(zip(head, table.T, strict=True)) if head else {}, file, model)
 
 
-def _read_parquet(file: Path, model: Model) -> Motion:
+def _read_parquet(file: Path, model: Model) -> PlayedMotion:
     try:
         parquet = import_module("pyarrow.parquet")
     except ImportError:
@@ -184,7 +184,7 @@ def _read_parquet(file: Path, model: Model) -> Motion:
     return _from_columns({name: table[name].to_numpy() for name in table.column_names}, file, model)
 
 
-def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> Motion:
+def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> PlayedMotion:
     missing = [name for name in ("t", *model.names.q) if name not in columns]
     if missing:
         _refuse(
@@ -203,7 +203,9 @@ def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> Mot
     return _checked(model, columns["t"], q, u, None, file.name)
 
 
-def _checked(model: Model, t: ArrayLike, q: ArrayLike, u: ArrayLike | None, par: ArrayLike | None, what: str) -> Motion:
+def _checked(
+    model: Model, t: ArrayLike, q: ArrayLike, u: ArrayLike | None, par: ArrayLike | None, what: str
+) -> PlayedMotion:
     t, q = np.array(t, dtype=np.float64), np.array(q, dtype=np.float64)
     n = t.size
     u = np.tile(np.array(model.record.u_default), (n, 1)) if u is None else np.array(u, dtype=np.float64)
@@ -233,7 +235,7 @@ def _checked(model: Model, t: ArrayLike, q: ArrayLike, u: ArrayLike | None, par:
         )
     if np.any(np.diff(t[:count]) < 0.0):
         _refuse(what, "times that fall", "times rise from state to state", "sort the states by time")
-    return Motion(model, t[:count], q[:count], u[:count], par)
+    return PlayedMotion(model, t[:count], q[:count], u[:count], par)
 
 
 def finite(name: str, value: float) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symofros.studio.viewer.playing.motion import Motion, positive
+from symofros.studio.viewer.playing.motion import PlayedMotion, positive
 
 
 class Player:
@@ -17,7 +17,7 @@ class Player:
         SymofrosError: The speed is not a number above 0.
     """
 
-    def __init__(self, motion: Motion, speed: float = 1.0, loop: bool = True) -> None:
+    def __init__(self, motion: PlayedMotion, speed: float = 1.0, loop: bool = True) -> None:
         self.motion = motion
         self.speed, self.loop = positive("speed", speed), loop
         self.time = motion.start

@@ -12,7 +12,7 @@ from symofros.studio.editor.document.parts_library import Library
 from symofros.studio.editor.document.workspace import FileError, Workspace
 from symofros.studio.editor.editing.data_edits import EditError
 from symofros.studio.editor.editing.yaml_edits import with_references
-from symofros.studio.editor.editing.yaml_spans import Sheet
+from symofros.studio.editor.editing.yaml_spans import YamlText
 from tests.studio.editor.texts import DATA, FILES, TEXTS
 
 
@@ -40,7 +40,7 @@ def test_a_part_put_in_twice_is_still_a_mechanism(name: str) -> None:
     part = extracted(data, [body for body, entry in data["bodies"].items() if "joint" in entry])
     before = list(data["bodies"])
     for _ in range(2):
-        text = with_references(text, insertion(Sheet(text).root.plain(), part, before[0], None))
+        text = with_references(text, insertion(YamlText(text).root.plain(), part, before[0], None))
     found = analyse(FILES[name], text)
     assert found.problems == []
     assert len(found.data["bodies"]) == 3 * len(part["bodies"]) + len(before) - len(part["bodies"])
@@ -51,7 +51,7 @@ def test_unequal_parameters_are_told_apart() -> None:
     part = extracted(DATA["four_bar"], ["rocker"])
     part["parameters"] = {**part["parameters"], "L": 2.0}
     text = with_references(TEXTS["four_bar"], insertion(DATA["four_bar"], part, "crank", "end"))
-    data = Sheet(text).root.plain()
+    data = YamlText(text).root.plain()
     assert data["parameters"]["L2"] == 2.0
     joint = data["bodies"]["rocker2"]["joint"]
     assert joint["position"] == ["L2", 0, 0] and joint["parent"] == "crank" and joint["name"] == "q4"

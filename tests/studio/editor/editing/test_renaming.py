@@ -9,7 +9,7 @@ from symofros.studio.editor.document.analysis import analyse
 from symofros.studio.editor.editing.data_edits import Edit, EditError, Path
 from symofros.studio.editor.editing.formulas import formulas, names_in, with_names
 from symofros.studio.editor.editing.yaml_edits import with_references
-from symofros.studio.editor.editing.yaml_spans import Sheet
+from symofros.studio.editor.editing.yaml_spans import YamlText
 from tests.studio.editor.texts import DATA, FILES, TEXTS
 
 
@@ -126,7 +126,7 @@ def test_a_name_that_would_be_confused_is_refused(path: Path, to: str, says: str
 
 
 def test_formulas_are_found_by_the_schema() -> None:
-    found = {text for _, text in formulas(Sheet(TEXT).root.plain())}
+    found = {text for _, text in formulas(YamlText(TEXT).root.plain())}
     assert {"L + Lx", "L*1e-3", "-dq_arm*L", "L*cos(q_arm)", "q_arm", "L"} <= found
     assert not found & {"arm", "tip", "revolute", "world"}
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from symofros.studio.editor.editing.data_edits import Edit, EditError, edited, same
 from symofros.studio.editor.editing.yaml_edits import apply, trace
-from symofros.studio.editor.editing.yaml_spans import Sheet
+from symofros.studio.editor.editing.yaml_spans import YamlText
 from tests.studio.editor.texts import DATA, FILES, KEYS, ODD, PATHS, TEXTS, at, values
 
 
@@ -41,20 +41,20 @@ def cases(draw: Any) -> tuple[str, Edit]:
 
 def lines_around(text: str, edit: Edit) -> tuple[str, str]:
     """The text before and after all that an edit may touch."""
-    sheet = Sheet(text)
+    source = YamlText(text)
     path = edit.path
-    while sheet.node(path) is None:
+    while source.node(path) is None:
         path = path[:-1]
     # An entry's own lines; of a collection that gets one more, or another order, or none at all, its owner's.
-    if edit.op == "move" or (edit.op == "remove" and len(at(sheet.root.plain(), path[:-1])) == 1):
+    if edit.op == "move" or (edit.op == "remove" and len(at(source.root.plain(), path[:-1])) == 1):
         path = path[:-1]
     while path:
-        owner = sheet.node(path[:-1])
+        owner = source.node(path[:-1])
         assert owner is not None
         if owner.style == "block":
             place = list(owner.value).index(path[-1]) if isinstance(owner.value, dict) else int(path[-1])
-            first, last = sheet.lines_of(owner, place)
-            return text[: sheet.line_start(first)], text[sheet.line_end(last - 1) :]
+            first, last = source.lines_of(owner, place)
+            return text[: source.line_start(first)], text[source.line_end(last - 1) :]
         path = path[:-1]
     return "", ""
 
@@ -63,9 +63,9 @@ def lines_around(text: str, edit: Edit) -> tuple[str, str]:
 @given(cases())
 def test_an_edit_of_text_is_the_edit_of_its_data_and_of_nothing_else(case: tuple[str, Edit]) -> None:
     text, edit = case
-    data = Sheet(text).root.plain()
+    data = YamlText(text).root.plain()
     done, anew = trace(text, edit)
-    assert same(Sheet(done).root.plain(), edited(data, edit))
+    assert same(YamlText(done).root.plain(), edited(data, edit))
     assert anew is None, "the entry had to be written anew: its comments and layout are lost"
     before, after = lines_around(text, edit)
     # One of two blank lines goes with what they stood around.
@@ -77,10 +77,10 @@ def test_an_edit_of_text_is_the_edit_of_its_data_and_of_nothing_else(case: tuple
 def test_comments_elsewhere_survive_any_new_value(name: str, value: Any, data: st.DataObject) -> None:
     text = TEXTS[name]
     path = data.draw(st.sampled_from(PATHS[name]))
-    sheet = Sheet(text)
-    node = sheet.node(path)
+    source = YamlText(text)
+    node = source.node(path)
     assert node is not None
-    inside = text[node.start : sheet.end(node)]
+    inside = text[node.start : source.end(node)]
     comments = [line for line in text.splitlines() if line.strip().startswith("#") and line not in inside]
     left = apply(text, Edit("set", path, value)).splitlines()
     assert [line for line in left if line in comments] == comments
@@ -96,10 +96,10 @@ def test_setting_what_is_there_changes_no_byte(name: str) -> None:
 @pytest.mark.parametrize("name", sorted(FILES))
 def test_a_number_changes_in_place(name: str) -> None:
     """Some numbers of each reference model."""
-    text, data, sheet = TEXTS[name], DATA[name], Sheet(TEXTS[name])
+    text, data, source = TEXTS[name], DATA[name], YamlText(TEXTS[name])
     numbers = [p for p in PATHS[name] if type(at(data, p)) in (int, float)]
     for path in numbers[:: max(1, len(numbers) // 4)]:
-        node = sheet.node(path)
+        node = source.node(path)
         assert node is not None
         changed = apply(text, Edit("set", path, 4711.5))
         assert changed == text[: node.start] + "4711.5" + text[node.end :]

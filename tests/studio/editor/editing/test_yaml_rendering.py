@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from symofros.studio.editor.editing.data_edits import same
 from symofros.studio.editor.editing.yaml_rendering import WIDTH, Typed, block, inline, scalar
-from symofros.studio.editor.editing.yaml_spans import Sheet
+from symofros.studio.editor.editing.yaml_spans import YamlText
 from tests.studio.editor.texts import KEYS, TROUBLE, values
 
 keys = st.sampled_from([*KEYS, *(text for text in TROUBLE if text != "<<")]) | st.text(min_size=1, max_size=8)
@@ -21,7 +21,7 @@ keys = st.sampled_from([*KEYS, *(text for text in TROUBLE if text != "<<")]) | s
 def test_a_value_on_one_line_is_read_back(value: Any) -> None:
     for text in (f"a: {inline(value, flow=False)}\n", f"a: [1, {inline(value)}, 2]\n", f"a: {{b: {inline(value)}}}\n"):
         assert text.count("\n") == 1
-        data = Sheet(text).root.plain()["a"]
+        data = YamlText(text).root.plain()["a"]
         assert same(
             data
             if not isinstance(data, (list, dict)) or text.startswith(f"a: {inline(value, flow=False)}\n")
@@ -40,7 +40,7 @@ def test_a_mapping_on_lines_is_read_back(value: dict[str, Any]) -> None:
     except UnicodeEncodeError:
         return
     if value:
-        assert same(Sheet("\n".join([*block(value, ("x",), 0), ""])).root.plain(), value)
+        assert same(YamlText("\n".join([*block(value, ("x",), 0), ""])).root.plain(), value)
 
 
 @pytest.mark.parametrize(

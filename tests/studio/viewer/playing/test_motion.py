@@ -10,7 +10,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.errors import ShapeError, SymofrosError
-from symofros.studio.viewer.playing.motion import Motion, motion_of, read_motion
+from symofros.studio.viewer.playing.motion import PlayedMotion, motion_of, read_motion
 from symofros.studio.viewer.playing.player import Player
 
 
@@ -24,7 +24,7 @@ def run(pendulum: sf.Model) -> sf.Trajectory:
     return sf.simulate(sf.compile(MODELS["double_pendulum"]), [1.0, 0.5], None, 0.5, dt=0.01)
 
 
-def motion(model: sf.Model, t: object, q: object) -> Motion:
+def motion(model: sf.Model, t: object, q: object) -> PlayedMotion:
     return motion_of(model, (t, q))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from reference_models import MODELS
-from symofros.studio.viewer.drawing.drawing import Drawing, Part
+from symofros.studio.viewer.drawing.drawing import Drawing, DrawnPart
 from symofros.studio.viewer.drawing.layers import shown_at_first
 from symofros.studio.viewer.drawing.meshes import Mesh, box, sphere
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
@@ -23,7 +23,7 @@ STILL = Posture(np.zeros((1, 3)), np.eye(3)[None], np.zeros(0))
 
 def drawn(*shown: tuple[Mesh, tuple[int, int, int], str]) -> np.ndarray:
     """A picture (300, 400, 3) of meshes in the world."""
-    parts = tuple(Part(f"{i}", kind, -1, mesh, color) for i, (mesh, color, kind) in enumerate(shown))
+    parts = tuple(DrawnPart(f"{i}", kind, -1, mesh, color) for i, (mesh, color, kind) in enumerate(shown))
     drawing = Drawing("d", parts, (), (), (), np.zeros(3), 1.0, np.zeros(3), True)
     return picture(drawing, STILL, frozenset({"bodies", "inertias"}), CAMERA, 400, 300).astype(int)
 

@@ -8,7 +8,7 @@ from symofros.description.beam import DIRECTIONS, Beam
 from symofros.description.system import System
 
 
-def richer(system: System) -> System:
+def refined(system: System) -> System:
     """One function more in every direction that bends or twists, and rotary inertia wherever it is stated."""
     return system.with_bodies(*(_refined(body) for body in system.bodies if isinstance(body, Beam) and body.modes))
 
