@@ -49,6 +49,7 @@ class Function:
         outputs: Outputs of the function.
         solver: What the outputs are handed to, where the function is not done with them: forward dynamics under
             constraints computes M, r, G, c and returns a, lam and the rank.
+        summary: One line for people; "" for a part of another function.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Function:
     inputs: tuple[str, ...]
     outputs: tuple[Output, ...]
     solver: Solver | None = None
+    summary: str = ""
 
     @property
     def returns(self) -> tuple[tuple[str, tuple[int, ...]], ...]:

@@ -45,7 +45,14 @@ def model_source(
     name = c_name or identifier(record.name)
     vectors = in_lanes if any(function.solver is None for function in program.functions) else None
     packs = packs and vectors is None
-    texts = ["\n".join([*_legend(record, "parameters", ["par"]), _init_function(program, name)])]
+    texts = [
+        "\n".join(
+            [
+                *_legend(record, "parameters -> pre, all that depends on them alone", ["par"]),
+                _init_function(program, name),
+            ]
+        )
+    ]
     rows = []
     for i, function in enumerate(program.functions):
         c_function = f"{name}_{identifier(function.name)}_f{i}"
@@ -53,7 +60,9 @@ def model_source(
         texts.append(text)
         rows.append(row)
     counts = count_program(program)
-    lines = [f" *   {' of '.join(filter(None, key)):<24}{count}" for key, count in counts.items()]
+    titles = [" of ".join(filter(None, key)) for key in counts]
+    width = max(map(len, titles), default=0) + 2
+    lines = [f" *   {title:<{width}}{count}" for title, count in zip(titles, counts.values(), strict=True)]
     return Template(native_text("model/model.c.in")).substitute(
         title=_comment(record.name),
         generator=generator,
@@ -130,8 +139,10 @@ class _Row:
     lanes: str
 
 
-def _legend(record: ModelRecord, title: str, inputs: Iterable[str]) -> list[str]:
-    """A comment that tells which of the user's names stands behind each entry of a function's inputs."""
+def _legend(
+    record: ModelRecord, title: str, inputs: Iterable[str], returns: Sequence[tuple[str, tuple[int, ...]]] = ()
+) -> list[str]:
+    """A comment that tells what a function returns, and which of the user's names each entry of its inputs has."""
     names = {
         "q": record.q_names,
         "v": record.v_names,
@@ -145,7 +156,15 @@ def _legend(record: ModelRecord, title: str, inputs: Iterable[str]) -> list[str]
         entries = [_comment(f"{group}[{i}] {name}").replace(" ", _SPACE) for i, name in enumerate(names.get(group, ()))]
         text = wrap(", ".join(entries), _WIDTH, break_long_words=False, break_on_hyphens=False)
         lines += [f" *   {line.replace(_SPACE, ' ')}" for line in text]
+    if returns:
+        lines.append(f" *   -> {', '.join(_shaped(name, shape) for name, shape in returns)}")
     return [*lines, " */"] if len(lines) > 1 else []
+
+
+def _shaped(name: str, shape: tuple[int, ...]) -> str:
+    """An array as comments state it: "M[6 x 6] by rows", "h[6]", "T"."""
+    sizes = " x ".join(map(str, shape))
+    return f"{name}[{sizes}]{' by rows' * (len(shape) > 1)}" if shape else name
 
 
 def _one_function(
@@ -161,7 +180,9 @@ def _one_function(
     if text.lanes:
         vectors = ["#if SYM_LANES > 1", text.lanes, lanes.strided(c_name, program, function, text.lanes_work), "#endif"]
         work = max(work, lanes.scratch(program, function, text.lanes_work))
-    legend = _legend(record, f"{function.name} {function.frame}".rstrip(), function.inputs)
+    title = f"{function.name} {function.frame}".rstrip()
+    described = f"{title}: {function.summary}" if function.summary else title
+    legend = _legend(record, described, function.inputs, function.returns)
     batch = lanes.batch(c_name, function, in_lanes if text.lanes else None)
     code = "\n".join([*legend, text.code, *vectors, batch])
     arrays_in = ", ".join(f'{{"{name}", 1, {program.sizes[name]}, 1}}' for name in inputs)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from symofros.expr.edges import ONE, ZERO, Edge
@@ -55,7 +56,10 @@ def form_program(equations: Equations, requests: Sequence[Request], methods: Met
         KeyError: There is no such function or frame.
     """
     known = _sizes(equations)
-    functions = tuple(_function(equations, request, methods, known) for request in requests)
+    functions = tuple(
+        replace(_function(equations, request, methods, known), summary=FUNCTIONS[request.name].summary)
+        for request in requests
+    )
     groups = {group: size_of(size, known) for group, (size, _) in INPUTS.items()}
     return Program(equations.tree.system.name, equations.g, groups, functions)
 

@@ -25,6 +25,7 @@ from symofros.mechanics.kinematics.rotations import (
     axis_angle_matrix,
     unit_vector,
 )
+from symofros.mechanics.topology.coordinates import coordinate_names
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,17 @@ def across_joint(
         turning = [PartialVelocity(unit, zero, zero, zero) for unit in units]
         moving = [PartialVelocity(zero, unit, zero, zero) for unit in units] if joint.traits.manifold == "pose" else []
         return AcrossJoint(R, Vec3(g, *q[:-4]), tuple(moving + turning))
-    return across_rotations(g, q, speeds, *_DISPLACEMENTS[joint.kind](lowering, joint, q, axis))
+    p_PD, rotations = _DISPLACEMENTS[joint.kind](lowering, joint, q, axis)
+    _name_sines(g, dict(zip(q, coordinate_names(joint), strict=True)), rotations)
+    return across_rotations(g, q, speeds, p_PD, rotations)
+
+
+def _name_sines(g: Graph, names: dict[Edge, str], rotations: list[JointRotation]) -> None:
+    """Call the cosine and the sine of a coordinate by the user's name of it."""
+    for rotation in rotations:
+        if isinstance(rotation.factor, AxisRotation) and rotation.angle in names:
+            g.name(rotation.factor.c, f"cos[{names[rotation.angle]}]")
+            g.name(rotation.factor.s, f"sin[{names[rotation.angle]}]")
 
 
 def across_rotations(

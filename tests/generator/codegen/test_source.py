@@ -239,8 +239,10 @@ def test_each_function_begins_with_the_users_names_of_its_inputs() -> None:
     boom = sf.RigidBody("boom", sf.Joint("shoulder", "revolute", effort=("pump*m",)), solid)
     crane = sf.System("crane", [boom], [sf.Parameter("m", 3.0)], inputs=[sf.Input("pump")])
     text = source_of_functions(crane, ("dynamics",))
-    assert "/* parameters\n *   par[0] m\n */\nstatic void crane_init_0(" in text
-    legend = "/* dynamics\n *   q[0] shoulder\n *   v[0] shoulder\n *   u[0] pump\n */\n"
+    parameters = "/* parameters -> pre, all that depends on them alone\n *   par[0] m\n */\n"
+    assert f"{parameters}static void crane_init_0(" in text
+    names = " *   q[0] shoulder\n *   v[0] shoulder\n *   u[0] pump\n"
+    legend = f"/* dynamics: M, h and Q in one call\n{names} *   -> M[1 x 1] by rows, h[1], Q[1]\n */\n"
     assert f"{legend}static void crane_dynamics" in text
 
 

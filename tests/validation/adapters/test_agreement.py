@@ -39,7 +39,8 @@ def test_our_c_agrees_with_all(subject: Subject) -> None:
         "symofros",
     }
     of_trees = {*QUANTITIES, "motion_energy", "energy_drift"} - CONSTRAINED - LOOPS
-    assert {row.quantity for row in result.comparisons} == of_trees
+    # "all" is what stands for an engine that can't represent the model.
+    assert {row.quantity for row in result.comparisons} - {"all"} == of_trees
 
 
 def test_forces_are_the_stated_formulas() -> None:

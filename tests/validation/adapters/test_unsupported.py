@@ -7,7 +7,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from tests.validation.subjects import UNIT, URDF, pendulum, subject_of
-from validation.adapters import Missing
+from validation.adapters import ROUTES, Missing
 from validation.adapters.mujoco import tree as mujoco
 from validation.adapters.mujoco import urdf as mujoco_urdf
 from validation.adapters.pinocchio import urdf as pinocchio_urdf
@@ -59,7 +59,7 @@ def test_an_engine_that_is_not_installed_is_a_row_with_the_remedy() -> None:
 
 
 def test_agreement_with_nobody_is_no_agreement() -> None:
-    factories = {"mujoco": Missing("no"), "pinocchio": Missing("no")}
+    factories = {name: Missing("no") for name, route in ROUTES.items() if route.independent}
     result = check(subject_of(pendulum()), FEW, factories)
     assert not result.ok
     assert any(row.status == "failed" and "could be asked" in row.note for row in result.comparisons)
