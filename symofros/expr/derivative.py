@@ -12,8 +12,8 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
 from symofros.expr.ops import OPS
-from symofros.expr.pack import EMPTY, WIDTH, Pack, Signed
-from symofros.expr.packs import combined
+from symofros.expr.packs.combine import linear_combination
+from symofros.expr.packs.pack import EMPTY, WIDTH, Pack, SignedPack
 
 
 def directional(graph: Graph, edges: Sequence[Edge], seeds: Mapping[Edge, Edge]) -> list[Edge]:
@@ -60,10 +60,10 @@ def along(
     return rows
 
 
-def _rates(graph: Graph, nodes: Sequence[int], directions: Sequence[Mapping[Edge, Edge]]) -> dict[int, Signed]:
+def _rates(graph: Graph, nodes: Sequence[int], directions: Sequence[Mapping[Edge, Edge]]) -> dict[int, SignedPack]:
     """Node -> its rates along up to WIDTH directions; nothing for those that do not change."""
     spare = (ZERO,) * (WIDTH - len(directions))
-    rates: dict[int, Signed] = {}
+    rates: dict[int, SignedPack] = {}
     for seed in dict.fromkeys(seed for direction in directions for seed in direction):
         rates[seed] = ONE, Pack(tuple(direction.get(seed, ZERO) for direction in directions) + spare)
     for node in nodes:
@@ -74,7 +74,7 @@ def _rates(graph: Graph, nodes: Sequence[int], directions: Sequence[Mapping[Edge
             if pack is not EMPTY:
                 partial = OPS[graph.op[node]].derivative(graph, args, node, i)
                 terms.append((partial, (sign if arg > 0 else -sign, pack)))
-        sign, pack = combined(graph, terms, range(len(directions)))
+        sign, pack = linear_combination(graph, terms, range(len(directions)))
         if any(pack.lanes):
             rates[node] = sign, pack
     return rates

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.extended import nearest
 from symofros.expr.ops import ADD, DIV, MUL, OPS
-from symofros.expr.pack import Pack
+from symofros.expr.packs.pack import Pack
 
 _CONSTANT = "constant"
 _INPUT = "input"
@@ -36,7 +36,7 @@ class Graph:
         value: The number of a constant node, keyed by node.
         slot: The input slot of an input node, keyed by node.
         label: A readable name of a node, where it has one.
-        packs: Nodes that are computed alike (symofros/expr/pack.py), in the order in which they were formed.
+        packs: Nodes that are computed alike (symofros/expr/packs), in the order of their creation.
     """
 
     def __init__(self) -> None:
@@ -72,8 +72,8 @@ class Graph:
         self.value[node] = size
         return node if value > 0.0 or value != value else -node
 
-    def forget(self, first: int) -> None:
-        """Make nodes from `first` on anew where equal ones are asked for: others are to have them to themselves."""
+    def stop_sharing_from(self, first: int) -> None:
+        """Reuse no node from `first` on for operations that are formed later, so that each function has its own."""
         self._known = {key: node for key, node in self._known.items() if node < first}
 
     def input(self, group: str, index: int) -> Edge:

@@ -15,7 +15,7 @@ from symofros.errors import DescriptionError, Problem
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.program import Function, Output, Program, Solver
-from symofros.expr.substitute import transplant
+from symofros.expr.substitute import copy_into
 
 AT = ("q", "v", "u", "t")
 # What is known once the accelerations of an instant are.
@@ -105,7 +105,7 @@ class Point:
         replacement = {
             node: known[slot.group][slot.index] for node, slot in piece.g.slot.items() if slot.group in known
         }
-        return transplant(piece.g, edges, replacement, self.g)
+        return copy_into(self.g, piece.g, edges, replacement)
 
     def _group(self, piece: Piece, group: str) -> list[Edge]:
         """What stands for an input group of a block."""

@@ -17,7 +17,7 @@ from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.program import Program
-from symofros.expr.substitute import transplant
+from symofros.expr.substitute import copy_into
 from symofros.functions import FRAME_FUNCTIONS
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import model_record
@@ -182,7 +182,7 @@ class Models:
         program = self._programs[key]
         stated = program.functions[0]
         replacement = self._bound(g, model, program, stated.inputs, groups)
-        edges = transplant(program.graph, stated.edges()[: sum(len(o.edges) for o in stated.outputs)], replacement, g)
+        edges = copy_into(g, program.graph, stated.edges()[: sum(len(o.edges) for o in stated.outputs)], replacement)
         found, at = {}, 0
         for output in stated.outputs:
             found[output.name] = Tensor.of(g, edges[at : at + len(output.edges)], output.shape)
@@ -211,7 +211,7 @@ class Models:
         replacement = {
             kinematics.g.input(group, i): edge for group, values in groups.items() for i, edge in enumerate(values.flat)
         }
-        return Tensor.of(g, transplant(kinematics.g, edges, replacement, g), (len(edges),))
+        return Tensor.of(g, copy_into(g, kinematics.g, edges, replacement), (len(edges),))
 
     def _bound(
         self, g: Graph, model: str, program: Program, inputs: tuple[str, ...], groups: Mapping[str, Tensor]

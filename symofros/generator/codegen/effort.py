@@ -22,7 +22,7 @@ def effort(program: Program, function: Function) -> float:
     """
     graph, edges, given = program.graph, function.edges(), program.pre
     plan = PackPlan(graph, needed_nodes(graph, edges, given), given, edges)
-    numbers = sum(node not in plan.home for node in plan.nodes)
+    numbers = sum(node not in plan.vector_of_node for node in plan.nodes)
     return numbers + PACKED * sum(len(vector.terms) + len(vector.put) for vector in plan.vectors)
 
 

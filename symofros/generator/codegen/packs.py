@@ -1,18 +1,19 @@
 """Packs in C: which of a graph's packs a function forms as vectors, and their text.
 
-A pack is formed as a vector where enough of its lanes are wanted; each of those is then read from the vector. Lanes
-that a combination does not give are put in one by one.
+The contract of packs is in symofros/expr/packs. A pack is formed as a vector where enough of its new lanes are wanted;
+each of those is then read from the vector. Lanes that a linear combination does not give are put in one by one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
-from symofros.expr.edges import ONE, Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
-from symofros.expr.pack import WIDTH, Pack
+from symofros.expr.packs.pack import WIDTH, Pack
 
 
 @dataclass(frozen=True)
@@ -29,16 +30,16 @@ class Vector:
     """A vector variable.
 
     Attributes:
-        key: Negative, where a scalar's variable has its node's positive number.
-        start: What it is the sum of is older than this node; 0 where it is not a sum.
-        terms: (factor, vector) it is the sum of.
-        source: Else, the vector it is a copy of; None if it starts from zeros.
-        put: Lane -> the edge put into it.
-        nodes: Node -> its lane, and whether the lane holds its negative; of the nodes that are read from it.
+        key: Negative number of the variable; a scalar's variable has the positive number of its node.
+        first_node: Node before which a linear combination is written; 0 for any other vector.
+        terms: (factor, vector) of a linear combination; empty for any other vector.
+        source: Vector that is copied where there are no terms; None if the vector starts from zeros.
+        put: Edge put into a lane, keyed by lane.
+        nodes: (lane, whether the lane holds the negative) of each node that is read from the vector.
     """
 
     key: int
-    start: int
+    first_node: int
     terms: tuple[tuple[Edge, Vector], ...] = ()
     source: Vector | None = None
     put: dict[int, Edge] = field(default_factory=dict)
@@ -56,121 +57,137 @@ class Vector:
 
 
 @dataclass(frozen=True)
-class _Formed:
-    """A pack that is formed: node -> lane of those that are read from it; lanes that its terms give."""
+class _FormedPack:
+    """A pack that a function forms as a vector.
 
-    homes: dict[int, int]
-    right: frozenset[int]
+    Attributes:
+        lane_of_node: Lane of each node that is read from the vector.
+        exact_lanes: Lanes that the terms give, as all their operands are available.
+    """
+
+    lane_of_node: dict[int, int]
+    exact_lanes: frozenset[int]
 
 
 class PackPlan:
     """The vectors of one function.
 
     Args:
-        graph: Of the program.
+        graph: Graph of the program.
         wanted: Nodes that the function computes if all are scalars.
-        given: Nodes it reads from an input array instead.
-        edges: Its outputs.
+        given: Nodes that the function reads from an input array.
+        edges: Outputs of the function.
 
     Attributes:
-        home: Node -> the vector it is read from.
-        nodes: Nodes that the function needs one by one, operands first, those with a home among them.
-        vectors: All vectors, in the order of their `start`.
+        vector_of_node: Vector from which a node is read.
+        nodes: Nodes that the function needs one by one, operands first; those that are read from vectors among them.
+        vectors: All vectors, in the order of their `first_node`.
     """
 
     def __init__(self, graph: Graph, wanted: Sequence[int], given: Collection[int], edges: Iterable[Edge]) -> None:
         self._graph = graph
         self._given = given
-        self._known = {*wanted, *given, *graph.value, 0} | {n for n, slot in graph.slot.items() if slot.group != "par"}
-        self._formed: dict[Pack, _Formed] = {}
-        self._of: dict[int, Pack] = {}
+        inputs = {node for node, slot in graph.slot.items() if slot.group != "par"}
+        self._available = {*wanted, *given, *graph.value, ZERO, *inputs}
+        self._formed: dict[Pack, _FormedPack] = {}
+        self._pack_of_node: dict[int, Pack] = {}
         self._vectors: dict[Pack, Vector] = {}
-        self.home: dict[int, Vector] = {}
-        self._filled: set[tuple[Pack, int]] = set()
+        self.vector_of_node: dict[int, Vector] = {}
+        self._ready_lanes: set[tuple[Pack, int]] = set()
+        self._pending: list[Callable[[], None]] = []
+        self._needed: set[int] = set()
         # Angles come first, and from scalars: all sines and cosines are evaluated in blocks.
         angles = [graph.args[node][0] for node in wanted if graph.op[node] in ("sin", "cos")]
         self._choose(set(wanted).difference(needed_nodes(graph, angles, given)))
-        self.nodes = self._follow(abs(edge) for edge in edges)
-        self.vectors = sorted(self._vectors.values(), key=lambda vector: vector.start)
+        self._resolve([abs(edge) for edge in edges])
+        self.nodes = sorted(self._needed)
+        self.vectors = sorted(self._vectors.values(), key=lambda vector: vector.first_node)
 
     def _choose(self, wanted: set[int]) -> None:
+        """Choose the packs to be formed: those with enough lanes that are wanted."""
         for pack in self._graph.packs:
-            if not self._are_known(factor for factor, _ in pack.terms):
+            if not self._are_available(factor for factor, _ in pack.terms):
                 continue  # Parameters alone determine it, in lanes that this function does not need.
-            right = {lane for lane in pack.literal if self._are_known(operand.lanes[lane] for _, operand in pack.terms)}
-            # The lanes' nodes, less those that lanes which scalars give are made of.
-            given = [edge for lane, edge in enumerate(pack.lanes) if lane not in right and self._are_known((edge,))]
-            parts = self._parts(given, pack.start)
-            homes: dict[int, int] = {}
-            for lane in sorted(right & pack.own):
+            exact = frozenset(
+                lane for lane in pack.exact_lanes if self._are_available(edge for _, edge in pack.operands(lane))
+            )
+            lane_of_node: dict[int, int] = {}
+            for lane in sorted(exact & pack.new_lanes):
                 node = abs(pack.lanes[lane])
-                if node in wanted and node not in self._of and node not in parts:
-                    homes.setdefault(node, lane)
-            if len(homes) >= pack.least:
-                self._formed[pack] = _Formed(homes, frozenset(right))
-                self._of.update(dict.fromkeys(homes, pack))
+                if node in wanted and node not in self._pack_of_node:
+                    lane_of_node.setdefault(node, lane)
+            put = [edge for lane, edge in enumerate(pack.lanes) if lane not in exact and self._are_available((edge,))]
+            for node in self._made_of(put, lane_of_node):
+                del lane_of_node[node]
+            if len(lane_of_node) >= pack.min_lanes:
+                self._formed[pack] = _FormedPack(lane_of_node, exact)
+                self._pack_of_node.update(dict.fromkeys(lane_of_node, pack))
 
-    def _are_known(self, edges: Iterable[Edge]) -> bool:
-        return all(abs(edge) in self._known for edge in edges)
+    def _are_available(self, edges: Iterable[Edge]) -> bool:
+        return all(abs(edge) in self._available for edge in edges)
 
-    def _parts(self, edges: Iterable[Edge], start: int) -> set[int]:
-        """The nodes from `start` on that some edges are made of: a vector can't wait for what waits for it."""
-        stack, parts = [abs(edge) for edge in edges], set[int]()
+    def _made_of(self, edges: Iterable[Edge], candidates: Collection[int]) -> list[int]:
+        """The candidates that some edges depend on: a vector can't wait for scalars that wait for one of its lanes."""
+        oldest = min(candidates, default=len(self._graph))
+        stack, operands = [abs(edge) for edge in edges], set[int]()
         while stack:
             node = stack.pop()
-            if node >= start and node not in parts:
-                parts.add(node)
+            if node >= oldest and node not in operands:  # Operands have smaller numbers than results.
+                operands.add(node)
                 stack.extend(map(abs, self._graph.args[node]))
-        return parts
+        return [node for node in candidates if node in operands]
 
-    def _follow(self, nodes: Iterable[int]) -> list[int]:
-        """The nodes that some nodes need, operands first, and on the way all that vectors need."""
-        graph, found = self._graph, set[int]()
-        self._waiting: list[int | Pack | tuple[Pack, int]] = list(nodes)
-        while self._waiting:
-            item = self._waiting.pop()
-            if isinstance(item, tuple):
-                self._fill(*item)
-            elif isinstance(item, Pack):
-                self._vectors[item].terms = tuple((factor, self._vector(operand)) for factor, operand in item.terms)
-                self._waiting += [abs(factor) for factor, _ in item.terms]
-            elif not (item in found or item == 0 or item in graph.slot or item in graph.value or item in self._given):
-                found.add(item)
-                pack = self._of.get(item)
-                if pack is None:
-                    self._waiting.extend(map(abs, graph.args[item]))
-                    continue
-                lane = self._formed[pack].homes[item]
-                self.home[item] = self._vector(pack)
-                self.home[item].nodes[item] = lane, pack.lanes[lane] < 0
-                self._waiting.append((pack, lane))
-        return sorted(found)
+    def _resolve(self, nodes: Iterable[int]) -> None:
+        """Go through all that some nodes need, vectors and what is put into their lanes among it."""
+        self._pending = [partial(self._need_node, node) for node in nodes]
+        while self._pending:
+            self._pending.pop()()
 
-    def _fill(self, pack: Pack, lane: int) -> None:
-        """See to it that a vector is right in a lane that somebody reads."""
-        if (pack, lane) in self._filled:
+    def _need_node(self, node: int) -> None:
+        """State that a scalar is read: from its vector, or else from its operands."""
+        graph = self._graph
+        if node == ZERO or node in self._needed or node in graph.slot or node in graph.value or node in self._given:
             return
-        self._filled.add((pack, lane))
+        self._needed.add(node)
+        pack = self._pack_of_node.get(node)
+        if pack is None:
+            self._pending += [partial(self._need_node, abs(arg)) for arg in graph.args[node]]
+            return
+        lane = self._formed[pack].lane_of_node[node]
+        vector = self.vector_of_node[node] = self._vector(pack)
+        vector.nodes[node] = lane, pack.lanes[lane] < 0
+        self._pending.append(partial(self._need_lane, pack, lane))
+
+    def _need_lane(self, pack: Pack, lane: int) -> None:
+        """State that a lane of a vector is read: from its terms, from the vector it is copied from, or put in."""
+        if (pack, lane) in self._ready_lanes:
+            return
+        self._ready_lanes.add((pack, lane))
         vector, edge = self._vector(pack), pack.lanes[lane]
         source = pack.base
         while source is not None and source not in self._formed:
             source = source.base
-        if pack in self._formed and lane in self._formed[pack].right:
-            self._waiting += [(operand, lane) for _, operand in pack.terms]
+        if pack in self._formed and lane in self._formed[pack].exact_lanes:
+            self._pending += [partial(self._need_lane, operand, lane) for _, operand in pack.terms]
         elif source is not None and source.lanes[lane] == edge:
             vector.source = self._vector(source)
-            self._waiting.append((source, lane))
+            self._pending.append(partial(self._need_lane, source, lane))
         else:
             vector.put[lane] = edge
-            self._waiting.append(abs(edge))
+            self._pending.append(partial(self._need_node, abs(edge)))
+
+    def _need_terms(self, pack: Pack) -> None:
+        """State that a vector is formed from its terms: it reads their factors and vectors."""
+        self._vectors[pack].terms = tuple((factor, self._vector(operand)) for factor, operand in pack.terms)
+        self._pending += [partial(self._need_node, abs(factor)) for factor, _ in pack.terms]
 
     def _vector(self, pack: Pack) -> Vector:
-        """The vector of a pack that somebody reads."""
+        """The vector of a pack that is read."""
         vector = self._vectors.get(pack)
         if vector is None:
-            vector = self._vectors[pack] = Vector(-1 - len(self._vectors), pack.start)
+            vector = self._vectors[pack] = Vector(-1 - len(self._vectors), pack.first_node)
             if pack in self._formed:
-                self._waiting.append(pack)
+                self._pending.append(partial(self._need_terms, pack))
         return vector
 
 
@@ -211,38 +228,53 @@ def _sum(terms: Sequence[tuple[Edge, Vector]], text: Callable[[Edge], str]) -> s
 
 
 def runs_of_lanes(vector: Vector, stores: Sequence[Store]) -> tuple[list[str], list[Store]]:
-    """Stores of neighbouring lanes into neighbouring entries, as lines; and the stores that are left.
+    """Lines that store neighbouring lanes into neighbouring entries, and the stores that remain.
 
     Args:
-        vector: What is stored.
-        stores: Of its lanes.
+        vector: Vector to be stored.
+        stores: Stores of its lanes.
     """
     lines: list[str] = []
-    left: list[Store] = []
-    run: list[tuple[Store, int, bool]] = []
+    remaining: list[Store] = []
+    run: list[_LaneStore] = []
     for store in sorted(stores, key=lambda store: (store.array, store.index)):
         lane, is_negative = vector.nodes[abs(store.edge)]
-        item = (store, lane, is_negative ^ (store.edge < 0))
-        if run and not _follows(run[-1], item):
-            _end(vector, run, lines, left)
+        item = _LaneStore(store, lane, is_negative ^ (store.edge < 0))
+        if run and not item.follows(run[-1]):
+            _end_run(vector, run, lines, remaining)
             run = []
         run.append(item)
     if run:
-        _end(vector, run, lines, left)
-    return lines, left
+        _end_run(vector, run, lines, remaining)
+    return lines, remaining
 
 
-def _follows(last: tuple[Store, int, bool], item: tuple[Store, int, bool]) -> bool:
-    a, b = last[0], item[0]
-    return (b.array, b.index, item[1], item[2]) == (a.array, a.index + 1, last[1] + 1, last[2])
+@dataclass(frozen=True)
+class _LaneStore:
+    """A store of a lane.
+
+    Attributes:
+        store: Output entry.
+        lane: Lane that is stored.
+        is_negative: Whether the entry is the negative of the lane.
+    """
+
+    store: Store
+    lane: int
+    is_negative: bool
+
+    def follows(self, last: _LaneStore) -> bool:
+        """Whether lane and entry are those after another's."""
+        is_next_entry = self.store.array == last.store.array and self.store.index == last.store.index + 1
+        return is_next_entry and self.lane == last.lane + 1 and self.is_negative == last.is_negative
 
 
-def _end(vector: Vector, run: list[tuple[Store, int, bool]], lines: list[str], left: list[Store]) -> None:
-    store, lane, is_negative = run[0]
+def _end_run(vector: Vector, run: Sequence[_LaneStore], lines: list[str], remaining: list[Store]) -> None:
+    """Write a run of stores; a single store remains."""
     if len(run) < 2:
-        left += [store for store, _, _ in run]
+        remaining += [item.store for item in run]
         return
-    sign = "-" if is_negative else ""
-    lines.append(
-        f"    sym_pack_part({store.array} + {store.index}, {sign}{vector_name(vector.key)}, {lane}, {len(run)});"
-    )
+    first = run[0]
+    target = f"{first.store.array} + {first.store.index}"
+    source = f"{'-' if first.is_negative else ''}{vector_name(vector.key)}"
+    lines.append(f"    sym_pack_part({target}, {source}, {first.lane}, {len(run)});")

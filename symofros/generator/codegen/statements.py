@@ -72,11 +72,11 @@ class StatementWriter:
         self.graph = graph
         self.given = given
         self.stores = stores
-        self._home: dict[int, Vector] = {}
+        self._vector_of_node: dict[int, Vector] = {}
         self._vectors: list[Vector] = []
         if packs and graph.packs:
             plan = PackPlan(graph, nodes, given, [store.edge for store in stores])
-            nodes, self._home, self._vectors = plan.nodes, plan.home, plan.vectors
+            nodes, self._vector_of_node, self._vectors = plan.nodes, plan.vector_of_node, plan.vectors
         self._inlined = self._choose_inlined(nodes, stores)
         self._nodes = nodes
         self._own = [node for node in nodes if node not in self._inlined]
@@ -94,17 +94,17 @@ class StatementWriter:
         return twin
 
     def _choose_inlined(self, nodes: Sequence[int], stores: Sequence[Store]) -> set[int]:
-        graph, home = self.graph, self._home
+        graph, vector_of_node = self.graph, self._vector_of_node
         uses: dict[int, int] = {}
         for node in nodes:
-            for arg in graph.args[node] if node not in home else ():
+            for arg in graph.args[node] if node not in vector_of_node else ():
                 uses[abs(arg)] = uses.get(abs(arg), 0) + 1
         # Vectors read variables: what a vector needs may be needed by several lanes.
         stored = {abs(store.edge) for store in stores} | {abs(e) for vector in self._vectors for e in vector.edges}
         size: dict[int, int] = {}
         inlined: set[int] = set()
         for node in nodes:
-            if node in home:
+            if node in vector_of_node:
                 continue
             parts = [abs(arg) for arg in graph.args[node] if abs(arg) in inlined]
             total = 1 + sum(size[part] for part in parts)
@@ -164,8 +164,8 @@ class StatementWriter:
         def emit(node: int) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
             if node in done:
                 return
-            if node in self._home:
-                yield from form(self._home[node])
+            if node in self._vector_of_node:
+                yield from form(self._vector_of_node[node])
                 return
             angles, nodes = blocks.get(node, ((), (node,)))
             yield from prepare(angles)
@@ -173,7 +173,7 @@ class StatementWriter:
             yield nodes, angles, None
 
         # Vectors that are no sums are formed where they are read.
-        sums = ((vector.start, form(vector)) for vector in self._vectors if vector.terms)
+        sums = ((vector.first_node, form(vector)) for vector in self._vectors if vector.terms)
         scalars = ((node, emit(node)) for node in self._own)
         for _, drafts in merge(sums, scalars, key=lambda item: item[0]):
             yield from drafts
@@ -204,7 +204,7 @@ class StatementWriter:
             if arg in self._inlined:
                 stack.extend(self.graph.args[arg])
             elif not self._is_at_hand(arg):
-                yield self._home[arg].key if arg in self._home else arg
+                yield self._vector_of_node[arg].key if arg in self._vector_of_node else arg
 
     def _is_at_hand(self, node: int) -> bool:
         """Whether a node is a number or an entry of an input array."""
@@ -212,8 +212,8 @@ class StatementWriter:
 
     def name(self, node: int) -> str:
         """Where a node's value is read: its variable, or its lane of a vector."""
-        if node in self._home:
-            vector = self._home[node]
+        if node in self._vector_of_node:
+            vector = self._vector_of_node[node]
             return f"{vector_name(vector.key)}[{vector.nodes[node][0]}]"
         if node not in self._names:
             label = self.graph.label.get(node)
@@ -269,5 +269,5 @@ class StatementWriter:
             text = f"SYM_AT({slot.group}, {slot.index})" if in_columns else f"{slot.group}[{slot.index}]"
         else:
             text = f"({self.operation(node)})" if node in self._inlined else self.name(node)
-            is_negative ^= node in self._home and self._home[node].nodes[node][1]
+            is_negative ^= node in self._vector_of_node and self._vector_of_node[node].nodes[node][1]
         return f"-{text}" if is_negative else text

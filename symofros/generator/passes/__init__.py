@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from symofros.expr.packs.check import check_packs
 from symofros.expr.program import Program
-from symofros.generator.passes.chain import chain_sums, check_packs
+from symofros.generator.passes.chain import chain_sums
 from symofros.generator.passes.stage import check_staged, hoist_parameters
 
-# In order: the pass, and the check of its post-condition.
+# In order: a pass, and the check of its post-condition. Packs are verified after each pass besides.
 PIPELINE: tuple[tuple[Callable[[Program], Program], Callable[[Program], None]], ...] = (
     (hoist_parameters, check_staged),
-    (chain_sums, check_packs),
+    (chain_sums, check_staged),
 )
 
 
 def run_passes(program: Program) -> Program:
-    """Apply the pipeline, verifying each pass's post-condition."""
-    for apply, verify in PIPELINE:
+    """Apply the pipeline; after each pass, verify its post-condition and the packs."""
+    for apply, check in PIPELINE:
         program = apply(program)
-        verify(program)
+        check(program)
+        check_packs(program)
     return program

@@ -10,7 +10,7 @@ from functools import cached_property
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
-from symofros.expr.pack import EMPTY
+from symofros.expr.packs.pack import EMPTY
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.applied.forces import generalized_forces, stored_energy

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.ops import HELD
-from symofros.expr.pack import WIDTH
+from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
 from symofros.mechanics.dynamics.constraints.rows import retracted

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.pack import EMPTY, WIDTH, Signed
-from symofros.expr.packs import combined
+from symofros.expr.packs.combine import linear_combination
+from symofros.expr.packs.pack import EMPTY, WIDTH, SignedPack
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.bodies.beams import added_momentum, modal_mass
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, deformed, inertia_in_parent
@@ -101,7 +101,7 @@ def _carry_to_base(kinematics: TreeKinematics, M: Matrix, momenta: list[_Momentu
         momenta: Momenta on one path to the base, the outermost first.
     """
     lane = {momentum.k: WIDTH - 1 - at for at, momentum in enumerate(momenta)}  # Ascending, as in a row of M.
-    wrench: list[Signed] = [(ONE, EMPTY)] * 6
+    wrench: list[SignedPack] = [(ONE, EMPTY)] * 6
     i, waiting = momenta[0].link, list(momenta)
     while kinematics.links[i].parent != BASE:
         late: list[tuple[int, Vec3, Vec3]] = []
@@ -117,32 +117,32 @@ def _carry_to_base(kinematics: TreeKinematics, M: Matrix, momenta: list[_Momentu
         i = kinematics.links[i].parent
         link = kinematics.links[i]
         for j, partial in enumerate(link.free_partial_velocities):
-            sign, power = combined(kinematics.g, list(zip((*partial.v, *partial.w), wrench, strict=True)))
+            sign, power = linear_combination(kinematics.g, list(zip((*partial.v, *partial.w), wrench, strict=True)))
             for k, at in lane.items():
                 if power.lanes[at] != ZERO:
                     _set(M, link.first_speed + j, k, kinematics.g.mul(sign, power.lanes[at]))
 
 
-def _with_momentum(wrench: list[Signed], lane: int, f: Vec3, n: Vec3) -> list[Signed]:
+def _with_momentum(wrench: list[SignedPack], lane: int, f: Vec3, n: Vec3) -> list[SignedPack]:
     return [
         (sign, pack.with_lane(lane, edge if sign == ONE else -edge))
         for (sign, pack), edge in zip(wrench, (*f, *n), strict=True)
     ]
 
 
-def _momenta_in_parent(kinematics: TreeKinematics, link: MovingLink, wrench: list[Signed]) -> list[Signed]:
+def _momenta_in_parent(kinematics: TreeKinematics, link: MovingLink, wrench: list[SignedPack]) -> list[SignedPack]:
     """Momenta about Lo in L -> about Ao in A: f_A = R f, n_A = R n + p x f_A."""
     g = kinematics.g
     f, n = wrench[:3], wrench[3:]
     for factor in reversed(link.R_AL.factors):
         rows = [factor.matrix(g).row(i) for i in range(3)]
-        f = [combined(g, list(zip(row, f, strict=True))) for row in rows]
-        n = [combined(g, list(zip(row, n, strict=True))) for row in rows]
+        f = [linear_combination(g, list(zip(row, f, strict=True))) for row in rows]
+        n = [linear_combination(g, list(zip(row, n, strict=True))) for row in rows]
     p = link.p_AL
     return f + [
-        combined(g, [(ONE, n[0]), (p.y, f[2]), (-p.z, f[1])]),
-        combined(g, [(ONE, n[1]), (p.z, f[0]), (-p.x, f[2])]),
-        combined(g, [(ONE, n[2]), (p.x, f[1]), (-p.y, f[0])]),
+        linear_combination(g, [(ONE, n[0]), (p.y, f[2]), (-p.z, f[1])]),
+        linear_combination(g, [(ONE, n[1]), (p.z, f[0]), (-p.x, f[2])]),
+        linear_combination(g, [(ONE, n[2]), (p.x, f[1]), (-p.y, f[0])]),
     ]
 
 

@@ -6,8 +6,8 @@ import pytest
 
 from symofros.expr.edges import ONE, Edge
 from symofros.expr.graph import Graph, Slot
-from symofros.expr.pack import WIDTH, Pack
-from symofros.expr.packs import combined
+from symofros.expr.packs.combine import linear_combination
+from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen.effort import PACKED, TIE, cheapest, effort
 
@@ -36,7 +36,7 @@ def test_numbers_count_once() -> None:
 def test_a_pack_counts_its_operations_not_its_lanes() -> None:
     g = Graph()
     x, y = (Pack(tuple(g.input(name, i) for i in range(WIDTH))) for name in ("x", "y"))
-    _, pack = combined(g, [(g.input("q", 0), (ONE, x)), (g.input("q", 1), (ONE, y))])
+    _, pack = linear_combination(g, [(g.input("q", 0), (ONE, x)), (g.input("q", 1), (ONE, y))])
     put = 2 * WIDTH  # What the two packs of inputs are made of, lane by lane.
     assert spent(program(g, list(pack.lanes))) == PACKED * (2 + put)
 

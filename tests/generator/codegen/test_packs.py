@@ -15,8 +15,8 @@ from symofros.compiler import Compilation
 from symofros.expr.edges import ONE, ZERO
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
-from symofros.expr.pack import WIDTH, Pack
-from symofros.expr.packs import combined
+from symofros.expr.packs.combine import linear_combination
+from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.packs import PackPlan
 from tests.models import sampled
@@ -107,28 +107,28 @@ def test_a_lane_that_another_is_made_of_is_a_scalar() -> None:
     x = [g.input("x", i) for i in range(WIDTH)]
     first = Pack((x[0], x[0], *x[2:]))
     second = Pack((ZERO, g.mul(g.constant(0.3), x[1]), *x[2:]))
-    _, pack = combined(g, [(c, (ONE, first)), (d, (ONE, second))])
-    assert 0 in pack.own
-    assert 1 not in pack.own
+    _, pack = linear_combination(g, [(c, (ONE, first)), (d, (ONE, second))])
+    assert 0 in pack.new_lanes
+    assert 1 not in pack.new_lanes
     edges = [abs(edge) for edge in pack.lanes]
     plan = PackPlan(g, needed_nodes(g, edges), {}, edges)
-    assert set(plan.home) == set(edges[2:])
+    assert set(plan.vector_of_node) == set(edges[2:])
 
 
 def test_nothing_is_formed_for_two_lanes() -> None:
     g = Graph()
-    pack = combined(g, [(g.input("c", 0), (ONE, Pack(tuple(g.input("x", i) for i in range(WIDTH)))))])[1]
+    pack = linear_combination(g, [(g.input("c", 0), (ONE, Pack(tuple(g.input("x", i) for i in range(WIDTH)))))])[1]
     wanted = needed_nodes(g, pack.lanes[:2])
-    assert not PackPlan(g, wanted, {}, pack.lanes[:2]).home
-    assert PackPlan(g, needed_nodes(g, pack.lanes[:3]), {}, pack.lanes[:3]).home
+    assert not PackPlan(g, wanted, {}, pack.lanes[:2]).vector_of_node
+    assert PackPlan(g, needed_nodes(g, pack.lanes[:3]), {}, pack.lanes[:3]).vector_of_node
 
 
 def test_what_only_parameters_determine_stays_outside() -> None:
     """A factor that is not among the given values can't be read: its pack is left to scalars."""
     g = Graph()
     c, x = g.input("par", 0), [g.input("x", i) for i in range(WIDTH)]
-    _, pack = combined(g, [(g.mul(c, c), (ONE, Pack(tuple(x))))])
+    _, pack = linear_combination(g, [(g.mul(c, c), (ONE, Pack(tuple(x))))])
     wanted = [abs(edge) for edge in pack.lanes]
     squared = abs(g.mul(c, c))
-    assert PackPlan(g, wanted, {squared}, wanted).home
-    assert not PackPlan(g, wanted, {}, wanted).home
+    assert PackPlan(g, wanted, {squared}, wanted).vector_of_node
+    assert not PackPlan(g, wanted, {}, wanted).vector_of_node

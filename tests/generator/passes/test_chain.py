@@ -12,8 +12,9 @@ from symofros.expr.edges import Edge
 from symofros.expr.evaluate import evaluate_edges, interpret, needed_nodes
 from symofros.expr.graph import Graph
 from symofros.expr.ops import ADD, MUL
+from symofros.expr.packs.check import check_packs
 from symofros.expr.program import Function, Output, Program
-from symofros.generator.passes.chain import chain_sums, check_packs
+from symofros.generator.passes.chain import chain_sums
 from symofros.generator.passes.count import count_program
 from symofros.generator.passes.stage import hoist_parameters
 from symofros.mechanics.dynamics.equations import Equations
@@ -138,7 +139,7 @@ def test_packs_come_along() -> None:
     chained = chain_sums(staged)
     check_packs(chained)
     lanes = [
-        sum(abs(pack.lanes[lane]) in needed for pack in program.graph.packs for lane in pack.own)
+        sum(abs(pack.lanes[lane]) in needed for pack in program.graph.packs for lane in pack.new_lanes)
         for program in (staged, chained)
         for needed in (set(needed_nodes(program.graph, f.edges(), program.pre)) for f in program.functions)
     ]
@@ -174,7 +175,7 @@ def test_vectors_say_what_scalars_say(name: str, function: str) -> None:
     for program in (staged, chain_sums(staged)):
         g, edges = program.graph, program.functions[0].edges()
         needed = {*needed_nodes(g, edges, program.pre), *program.pre, *g.value, *g.slot}
-        used = [(pack, lane) for pack in g.packs for lane in pack.literal if abs(pack.lanes[lane]) in needed]
+        used = [(pack, lane) for pack in g.packs for lane in pack.exact_lanes if abs(pack.lanes[lane]) in needed]
         # A lane of which an operand is not needed is put into the vector as a scalar.
         needed.add(0)
         used = [(p, i) for p, i in used if all(abs(o.lanes[i]) in needed for _, o in p.terms)]

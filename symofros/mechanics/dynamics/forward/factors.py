@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
-from symofros.expr.pack import LEAST, WIDTH, Pack, Signed
-from symofros.expr.packs import combined
+from symofros.expr.packs.combine import linear_combination
+from symofros.expr.packs.pack import MIN_LANES, WIDTH, Pack, SignedPack
 from symofros.mechanics.dynamics.mass_matrix import Matrix
 
 # Rows of short matrices are cheaper by scalars, measured: from so many speeds on, packs of so many lanes pay.
@@ -44,8 +44,8 @@ class Factors:
     def __init__(self, g: Graph, M: Matrix) -> None:
         self._g = g
         self._n = len(M)
-        least = _LANES if self._n >= _MANY else WIDTH
-        rows = [_Row.of(g, M[i][: i + 1], least) for i in range(self._n)]
+        min_lanes = _LANES if self._n >= _MANY else WIDTH
+        rows = [_Row.of(g, M[i][: i + 1], min_lanes) for i in range(self._n)]
         self._inverse: list[Edge] = [ZERO] * self._n
         self._L: list[_Row] = []
         for k in reversed(range(self._n)):
@@ -64,7 +64,7 @@ class Factors:
     def solve(self, right: Sequence[Edge]) -> list[Edge]:
         """The solution x of M x = right (nv)."""
         g, L = self._g, self._L
-        residue = _Row.of(g, right, L[0].least) if L else _Row.of(g, right)
+        residue = _Row.of(g, right, L[0].min_lanes) if L else _Row.of(g, right)
         x: list[Edge] = [ZERO] * self._n
         for k in reversed(range(self._n)):
             x[k] = g.mul(residue[k], self._inverse[k])
@@ -94,19 +94,19 @@ class _Row:
     Attributes:
         g: The graph.
         packs: Edges of the row, WIDTH at a time.
-        least: As of a Pack.
+        min_lanes: Fewest wanted lanes for which a vector pays.
     """
 
-    def __init__(self, g: Graph, packs: list[Signed], least: int = LEAST) -> None:
+    def __init__(self, g: Graph, packs: list[SignedPack], min_lanes: int = MIN_LANES) -> None:
         self.g = g
         self.packs = packs
-        self.least = least
+        self.min_lanes = min_lanes
 
     @staticmethod
-    def of(g: Graph, edges: Sequence[Edge], least: int = LEAST) -> _Row:
+    def of(g: Graph, edges: Sequence[Edge], min_lanes: int = MIN_LANES) -> _Row:
         """The row of some edges."""
         padded = [*edges, *[ZERO] * (-len(edges) % WIDTH)]
-        return _Row(g, [(ONE, Pack(tuple(padded[at : at + WIDTH]))) for at in range(0, len(padded), WIDTH)], least)
+        return _Row(g, [(ONE, Pack(tuple(padded[at : at + WIDTH]))) for at in range(0, len(padded), WIDTH)], min_lanes)
 
     def __getitem__(self, i: int) -> Edge:
         """Entry i."""
@@ -115,18 +115,18 @@ class _Row:
 
     def times(self, factor: Edge, size: int) -> _Row:
         """The first entries times a factor."""
-        return self._combined([[(factor, pack)] for pack in self.packs], size)
+        return self._linear_combination([[(factor, pack)] for pack in self.packs], size)
 
     def less(self, factor: Edge, other: _Row, size: int) -> _Row:
         """The first entries less a factor times those of another row."""
         if factor == ZERO:
             return self
         pairs = zip(self.packs, other.packs, strict=False)  # A later row is longer.
-        return self._combined([[(ONE, pack), (-factor, other_pack)] for pack, other_pack in pairs], size)
+        return self._linear_combination([[(ONE, pack), (-factor, other_pack)] for pack, other_pack in pairs], size)
 
-    def _combined(self, terms: list[list[tuple[Edge, Signed]]], size: int) -> _Row:
-        packs = [combined(self.g, terms[c], of, self.least) for c, of in _chunks(size)]
-        return _Row(self.g, packs, self.least)
+    def _linear_combination(self, terms: list[list[tuple[Edge, SignedPack]]], size: int) -> _Row:
+        packs = [linear_combination(self.g, terms[c], lanes, self.min_lanes) for c, lanes in _chunks(size)]
+        return _Row(self.g, packs, self.min_lanes)
 
 
 def _chunks(size: int) -> Iterator[tuple[int, range]]:
