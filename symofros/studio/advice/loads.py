@@ -75,7 +75,7 @@ class BeamLoads:
     lever: float
 
     def eta(self, direction: Direction) -> float:
-        """Angular speed that softens bending in a direction [rad/s]."""
+        """Dimensionless spin, Omega sqrt(rhoA L^4/EI), for bending in a direction."""
         return self.spin * math.sqrt(self.rhoA * self.length**4 / self.stiffness[direction])
 
     @property

@@ -28,7 +28,7 @@ class UndoStep(NamedTuple):
     text: str
 
 
-class Document:
+class EditedDocument:
     """A text under edit.
 
     Attributes:

@@ -132,7 +132,7 @@ def _walk(source: YamlText) -> Iterator[tuple[Path, Any]]:
 
 
 def _by_formula(problem: Problem, data: Any, entry: Path) -> Path:
-    """The formula within an entry that reads as the one found; of several the one that the message's words lead to."""
+    """The formula within an entry that reads as the problem's; of several, the one whose keys the message names."""
     wanted = problem.found.strip("'")
     if not problem.found.startswith("'") or not wanted:
         return ()

@@ -8,7 +8,7 @@ from typing import Any
 
 from symofros.description.system import System
 from symofros.errors import Problem
-from symofros.studio.editor.document.document import Document, refuse_text
+from symofros.studio.editor.document.document import EditedDocument, refuse_text
 from symofros.studio.editor.document.expressions import check_field
 from symofros.studio.editor.document.parts import insertion
 from symofros.studio.editor.document.parts_library import Library
@@ -38,7 +38,7 @@ class Session:
         self.storage = Storage(workspace, file)
 
     @property
-    def document(self) -> Document:
+    def document(self) -> EditedDocument:
         """The document that is open."""
         return self.storage.document
 

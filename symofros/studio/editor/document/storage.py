@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.errors import Problem, SymofrosError
-from symofros.studio.editor.document.document import BOM, MAX_TEXT, Document, too_large
+from symofros.studio.editor.document.document import BOM, MAX_TEXT, EditedDocument, too_large
 from symofros.studio.editor.document.workspace import (
     FileError,
     Workspace,
@@ -57,7 +57,7 @@ class Storage:
             FileError: It can't be read.
         """
         self.workspace = workspace
-        self.document: Document
+        self.document: EditedDocument
         self.layout: dict[str, list[float]] = {}
         self.recovered = False
         self.unkept: Problem | None = None
@@ -81,12 +81,12 @@ class Storage:
         if len(data) > MAX_TEXT:
             raise FileError(too_large(len(data)))
         marked = data.startswith(BOM.encode())
-        self._become(Document(file, text, text, marked=marked, revision=self._revision), digest(data))
+        self._become(EditedDocument(file, text, text, marked=marked, revision=self._revision), digest(data))
 
     def begin(self, file: Path) -> None:
         """Begin a file that is not there yet."""
         empty = EMPTY.format(name=identifier(file.stem))
-        self._become(Document(file, empty, None, revision=self._revision), "")
+        self._become(EditedDocument(file, empty, None, revision=self._revision), "")
 
     def create(self, file: Path) -> None:
         """Begin a new file.
@@ -109,7 +109,7 @@ class Storage:
         self.document.change("import", lambda _: text)
         self.autosave()
 
-    def _become(self, document: Document, on_disk: str) -> None:
+    def _become(self, document: EditedDocument, on_disk: str) -> None:
         self.document, self._on_disk, self.recovered = document, on_disk, False
         self._signature, self.layout = signature(document.file), read_layout(document.file)
         try:

@@ -1,4 +1,4 @@
-"""The kinds of work: compile, cross-check, simulate, export, import."""
+"""The operations of worker processes: compile, cross-check, simulate, export, import."""
 
 from __future__ import annotations
 

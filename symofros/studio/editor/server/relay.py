@@ -32,7 +32,7 @@ class Relay:
 
     @property
     def address(self) -> str:
-        """Of the iframe's page."""
+        """The path of the page in the iframe."""
         return f"/view/{self.token}/"
 
     def routes(self) -> list[Route | WebSocketRoute]:

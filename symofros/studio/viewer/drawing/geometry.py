@@ -98,7 +98,7 @@ class _DrawingBuilder:
     def __init__(self, tree: SpanningTree, values: dict[str, float], size: float, center: Array) -> None:
         self.tree, self.values, self.size, self.center = tree, values, size, center
         self.numbers = Numbers(tree.system, values)
-        self.stars = {i: list(self._star(i)) for i in range(BASE, len(tree.links))}
+        self.branch_points = {i: list(self._branch_points(i)) for i in range(BASE, len(tree.links))}
 
     def drawing(self) -> Drawing:
         boxes = list(self._boxes())
@@ -124,14 +124,14 @@ class _DrawingBuilder:
 
     def _scaled(self, share: float, link: int) -> float:
         """A share of the mechanism's size, less on short links, so that a gripper's joints do not hide the gripper."""
-        own = max((float(np.linalg.norm(p)) for p in self.stars[link]), default=0.0)
+        own = max((float(np.linalg.norm(p)) for p in self.branch_points[link]), default=0.0)
         if own == 0.0 and link != BASE:
             return self._scaled(share, self.tree.links[link].parent)
         return max(min(share * self.size, share / _ROD_RADIUS * _OF_LINK * own), _LEAST * share * self.size)
 
     # Rigid bodies.
 
-    def _star(self, link: int) -> Iterator[Array]:
+    def _branch_points(self, link: int) -> Iterator[Array]:
         """Where a link's frames are and what it carries begins; its mass centre if that is all there is."""
         if link != BASE and self.tree.links[link].beam is not None:
             return  # The beam itself leads there.
@@ -151,7 +151,7 @@ class _DrawingBuilder:
                 yield p
 
     def _skeleton(self) -> Iterator[DrawnPart]:
-        for link, points in self.stars.items():
+        for link, points in self.branch_points.items():
             if points:
                 radius = self._scaled(_ROD_RADIUS, link)
                 mesh = merged([cylinder(np.zeros(3), p, radius) for p in points])
@@ -170,7 +170,7 @@ class _DrawingBuilder:
                 mesh = box(np.maximum(inertia.edges, _THIN * self.size))
             else:
                 mesh = sphere(2 * _JOINT_RADIUS * self.size)  # A point mass.
-            mesh = mesh.moved(inertia.center, inertia.axes).moved(*placed(frame.placement, self.numbers))
+            mesh = mesh.transformed(inertia.center, inertia.axes).transformed(*placed(frame.placement, self.numbers))
             yield DrawnPart(f"inertias/{body.name}", "inertias", frame.link, mesh, self._color(frame.link))
 
     def _joints(self) -> Iterator[DrawnPart]:
@@ -192,7 +192,7 @@ class _DrawingBuilder:
         axis = self.numbers.values(link.joint.axis)
         axis = axis / np.linalg.norm(axis)
         if symbol == "box":
-            return box(np.array([length, 1.6 * radius, 1.6 * radius])).moved(np.zeros(3), axes_along(axis))
+            return box(np.array([length, 1.6 * radius, 1.6 * radius])).transformed(np.zeros(3), axes_along(axis))
         return cylinder(-length / 2 * axis, length / 2 * axis, radius)
 
     def _visuals(self) -> Iterator[DrawnPart]:
@@ -203,8 +203,8 @@ class _DrawingBuilder:
                 if mesh is None:
                     continue
                 frame = frame_of(self.tree, body.name)
-                mesh = mesh.moved(np.array(visual.position), self.numbers.rotation(visual.rotation))
-                mesh = mesh.moved(*placed(frame.placement, self.numbers))
+                mesh = mesh.transformed(np.array(visual.position), self.numbers.rotation(visual.rotation))
+                mesh = mesh.transformed(*placed(frame.placement, self.numbers))
                 yield DrawnPart(
                     f"visuals/{body.name}.{k}", "visuals", frame.link, mesh, visual.color or self._color(frame.link)
                 )
@@ -297,5 +297,5 @@ class _DrawingBuilder:
             else:
                 continue
             frame = self._anchor(anchor)
-            mesh = mesh.moved(*placed(frame.placement, self.numbers))
+            mesh = mesh.transformed(*placed(frame.placement, self.numbers))
             yield DrawnPart(f"constraints/{item.name}.mark", "constraints", frame.link, mesh, _CLOSURE)

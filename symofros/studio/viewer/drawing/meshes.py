@@ -29,7 +29,7 @@ class Mesh(NamedTuple):
     vertices: Array
     faces: Faces
 
-    def moved(self, position: Array, rotation: Array) -> Mesh:
+    def transformed(self, position: Array, rotation: Array) -> Mesh:
         """The mesh as seen from the frame in which its own stands at a position (3) and rotation (3, 3)."""
         return Mesh(self.vertices @ rotation.T + position, self.faces)
 
@@ -107,7 +107,7 @@ def _turned(solid: Any, position: Array, direction: Array) -> Mesh:
     used, faces = np.unique(keys, axis=0, return_inverse=True)
     # From z along the direction: x of axes_along is the direction, so its y and z stand for x and y of the solid.
     R = axes_along(direction)[:, [1, 2, 0]]
-    return Mesh(_vertices(solid)[used[:, 0].astype(np.int64)], faces.reshape(-1, 3)).moved(position, R)
+    return Mesh(_vertices(solid)[used[:, 0].astype(np.int64)], faces.reshape(-1, 3)).transformed(position, R)
 
 
 def tube(outline: Array, points: Array, axes: Array) -> Mesh:

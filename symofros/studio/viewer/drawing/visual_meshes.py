@@ -40,7 +40,7 @@ def visual_mesh(visual: Visual) -> Mesh | None:
     if visual.kind == "cylinder":
         return tube
     ball = sphere(radius)
-    return merged([tube, ball.moved(half, np.eye(3)), ball.moved(-half, np.eye(3))])
+    return merged([tube, ball.transformed(half, np.eye(3)), ball.transformed(-half, np.eye(3))])
 
 
 def _scaled(mesh: Mesh, factors: Array) -> Mesh:

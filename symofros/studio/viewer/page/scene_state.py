@@ -67,7 +67,7 @@ class SceneState:
         """Where the sliders of the state stand (nv)."""
         return values_of(self.mechanism.model, self.state.q)
 
-    def slid(self, changes: Mapping[int, float], par: Array | None = None) -> tuple[State, str]:
+    def with_sliders_moved(self, changes: Mapping[int, float], par: Array | None = None) -> tuple[State, str]:
         """The state with some sliders moved and the loops closed around them, and why they can't be: "" where they can.
 
         Args:

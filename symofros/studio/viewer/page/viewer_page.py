@@ -144,7 +144,7 @@ class ViewerPage:
 
     def _slide(self, changes: Mapping[int, float], par: Array | None = None) -> str:
         with self._painting:
-            state, why = self._scene_state.slid(changes, par)
+            state, why = self._scene_state.with_sliders_moved(changes, par)
             self._stand(self._scene_state.state if why else state)
             self._panel.say("The loops can't be closed there." if why else "")
             return why

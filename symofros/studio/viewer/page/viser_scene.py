@@ -143,7 +143,7 @@ class ViserScene:
         return self._kept(layer, node)
 
     def _hide_spare_tubes(self) -> None:
-        """Remove nodes of the previous drawing that this one does not reuse."""
+        """Hide the tubes of the previous drawing that this one does not reuse."""
         for i in count(self._tubes):
             spare = self.server.scene.get_handle_by_name(f"{_TUBES}/{i}")
             if spare is None:

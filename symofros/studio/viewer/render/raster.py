@@ -88,7 +88,7 @@ class _Canvas:
         clear: list[tuple[Mesh, Array]] = []
         for part in drawing.parts:
             if part.kind in layers:
-                mesh = part.mesh.moved(posture.p[part.link], posture.R[part.link])
+                mesh = part.mesh.transformed(posture.p[part.link], posture.R[part.link])
                 (clear if part.kind == "inertias" else opaque).append((mesh, np.array(part.color, dtype=float)))
         for bend in drawing.bends if "bodies" in layers else ():
             opaque.append((tube(bend.outline, *bend_sweep(bend, posture)), np.array(bend.color, dtype=float)))

@@ -18,7 +18,7 @@ MESHES = {
     "cone": meshes.cone(np.array([0.0, 0.0, 1.0]), np.array([1.0, 2.0, 0.0]), 0.1),
     "disc": meshes.disc(1.0, 0.1),
     "tube": meshes.tube(meshes.ellipse(0.05, 0.1), LINE, np.stack([meshes.axes_along(np.ones(3))] * 4)),
-    "merged": meshes.merged([meshes.disc(1.0, 0.1), meshes.box(np.ones(3)).moved(5 * np.ones(3), np.eye(3))]),
+    "merged": meshes.merged([meshes.disc(1.0, 0.1), meshes.box(np.ones(3)).transformed(5 * np.ones(3), np.eye(3))]),
 }
 # Areas of regular polygons over those of their circles.
 TWELVE_SIDES, WHEEL = (n / (2 * np.pi) * np.sin(2 * np.pi / n) for n in (12, 48))

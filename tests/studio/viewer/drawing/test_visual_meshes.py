@@ -127,3 +127,38 @@ def test_bodies_look_as_their_file_says() -> None:
     assert "bodies" in shown_at_first(drawing)
     whole = Mechanism(replace(system, visuals={"upper": (box,), "lower": (box,)})).drawing()
     assert not {"bodies", "joints"} & shown_at_first(whole)
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        ('stride="3"', 'stride="0"'),
+        ('"VERTEX"', '"NORMAL"'),
+        ("accessor", "nothing"),
+        ("<p>0 1 2</p>", "<p>0 1 99999999999999999999</p>"),
+        ("<p>0 1 2</p>", "<p>0 1 7</p>"),
+    ],
+    ids=["stride of 0", "no vertices", "no accessor", "index beyond integers", "index beyond the vertices"],
+)
+def test_a_damaged_collada_file_leaves_its_body_without_a_look_and_all_else_drawn(
+    damage: tuple[str, str], tmp_path: Path
+) -> None:
+    xyz = '<param name="X"/><param name="Y"/><param name="Z"/>'
+    text = f"""<COLLADA><library_geometries><geometry id="g"><mesh>
+        <source id="p"><float_array>0 0 0 1 0 0 0 1 0</float_array>
+        <technique_common><accessor stride="3">{xyz}</accessor></technique_common></source>
+        <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+        <triangles><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+        </mesh></geometry></library_geometries></COLLADA>"""
+    (tmp_path / "sound.dae").write_text(text)
+    (tmp_path / "damaged.dae").write_text(text.replace(*damage))
+    sound, damaged = (
+        Visual("mesh", (1.0, 1.0, 1.0), file=str(tmp_path / name)) for name in ("sound.dae", "damaged.dae")
+    )
+    system = replace(MODELS["double_pendulum"], visuals={"upper": (sound,), "lower": (damaged,)})
+    with pytest.warns(UserWarning, match="'damaged.dae' is not drawn"):
+        picture = sf.record(system, ([0.0, 1.0], np.zeros((2, 2))), tmp_path / "picture.png", size=(64, 48))
+    assert Path(picture).stat().st_size > 0
+    with pytest.warns(UserWarning):
+        shown = [part.name for part in Mechanism(system).drawing().parts if part.kind == "visuals"]
+    assert shown == ["visuals/upper.0"]

@@ -29,7 +29,7 @@ def drawn(*shown: tuple[Mesh, tuple[int, int, int], str]) -> np.ndarray:
 
 
 def at(mesh: Mesh, *position: float) -> Mesh:
-    return mesh.moved(np.array(position), np.eye(3))
+    return mesh.transformed(np.array(position), np.eye(3))
 
 
 def reddish(image: np.ndarray) -> np.ndarray:
@@ -59,7 +59,9 @@ def test_surfaces_that_cross_hide_each_other_where_they_should() -> None:
     """Two boxes turned through each other: a painter that sorts whole faces can't draw this."""
     turn = np.array([[np.cos(0.5), -np.sin(0.5), 0], [np.sin(0.5), np.cos(0.5), 0], [0, 0, 1.0]])
     flat = box(np.array([3.0, 0.1, 1.0]))
-    image = drawn((flat.moved(np.zeros(3), turn), RED, "bodies"), (flat.moved(np.zeros(3), turn.T), BLUE, "bodies"))
+    image = drawn(
+        (flat.transformed(np.zeros(3), turn), RED, "bodies"), (flat.transformed(np.zeros(3), turn.T), BLUE, "bodies")
+    )
     red = reddish(image)[150]
     left, right = red[150:195], red[205:250]
     assert left.all() and not right.any()
