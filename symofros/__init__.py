@@ -69,22 +69,22 @@ if TYPE_CHECKING:
     from symofros.loading import load as load
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
-    from symofros.simulation.assembly import assemble as assemble
-    from symofros.simulation.base_parameters import base_parameters as base_parameters
-    from symofros.simulation.equilibrium import equilibrium as equilibrium
+    from symofros.simulation.analysis.assembly import assemble as assemble
+    from symofros.simulation.analysis.base_parameters import base_parameters as base_parameters
+    from symofros.simulation.analysis.equilibrium import equilibrium as equilibrium
+    from symofros.simulation.analysis.inverse_kinematics import Target as Target
+    from symofros.simulation.analysis.inverse_kinematics import inverse_kinematics as inverse_kinematics
+    from symofros.simulation.analysis.inverse_kinematics import joint_motion as joint_motion
+    from symofros.simulation.analysis.modes import modes as modes
+    from symofros.simulation.analysis.state_space import state_space as state_space
     from symofros.simulation.events import Event as Event
     from symofros.simulation.inputs import Signal as Signal
-    from symofros.simulation.inverse_kinematics import Target as Target
-    from symofros.simulation.inverse_kinematics import inverse_kinematics as inverse_kinematics
-    from symofros.simulation.inverse_kinematics import joint_motion as joint_motion
-    from symofros.simulation.modes import modes as modes
     from symofros.simulation.options import SimulationOptions as SimulationOptions
-    from symofros.simulation.outcome import Outcome as Outcome
+    from symofros.simulation.results.outcome import Outcome as Outcome
+    from symofros.simulation.results.trajectories import Trajectories as Trajectories
+    from symofros.simulation.results.trajectory import Trajectory as Trajectory
     from symofros.simulation.simulate import simulate as simulate
     from symofros.simulation.simulate_batch import simulate_batch as simulate_batch
-    from symofros.simulation.state_space import state_space as state_space
-    from symofros.simulation.trajectories import Trajectories as Trajectories
-    from symofros.simulation.trajectory import Trajectory as Trajectory
     from symofros.studio.advice.advice import Advice as Advice
     from symofros.studio.advice.scene import Output as Output
     from symofros.studio.advice.scene import Scene as Scene
@@ -120,22 +120,22 @@ _LAZY = {
     "Output": ("symofros.studio.advice.scene", "Output"),
     "load_scene": ("symofros.studio.advice.scene_file", "load_scene"),
     "Model": ("symofros.runtime.model", "Model"),
-    "assemble": ("symofros.simulation.assembly", "assemble"),
-    "base_parameters": ("symofros.simulation.base_parameters", "base_parameters"),
-    "inverse_kinematics": ("symofros.simulation.inverse_kinematics", "inverse_kinematics"),
-    "joint_motion": ("symofros.simulation.inverse_kinematics", "joint_motion"),
-    "Target": ("symofros.simulation.inverse_kinematics", "Target"),
-    "equilibrium": ("symofros.simulation.equilibrium", "equilibrium"),
-    "modes": ("symofros.simulation.modes", "modes"),
+    "assemble": ("symofros.simulation.analysis.assembly", "assemble"),
+    "base_parameters": ("symofros.simulation.analysis.base_parameters", "base_parameters"),
+    "inverse_kinematics": ("symofros.simulation.analysis.inverse_kinematics", "inverse_kinematics"),
+    "joint_motion": ("symofros.simulation.analysis.inverse_kinematics", "joint_motion"),
+    "Target": ("symofros.simulation.analysis.inverse_kinematics", "Target"),
+    "equilibrium": ("symofros.simulation.analysis.equilibrium", "equilibrium"),
+    "modes": ("symofros.simulation.analysis.modes", "modes"),
     "Event": ("symofros.simulation.events", "Event"),
     "Signal": ("symofros.simulation.inputs", "Signal"),
     "SimulationOptions": ("symofros.simulation.options", "SimulationOptions"),
-    "Outcome": ("symofros.simulation.outcome", "Outcome"),
+    "Outcome": ("symofros.simulation.results.outcome", "Outcome"),
     "simulate": ("symofros.simulation.simulate", "simulate"),
     "simulate_batch": ("symofros.simulation.simulate_batch", "simulate_batch"),
-    "Trajectories": ("symofros.simulation.trajectories", "Trajectories"),
-    "Trajectory": ("symofros.simulation.trajectory", "Trajectory"),
-    "state_space": ("symofros.simulation.state_space", "state_space"),
+    "Trajectories": ("symofros.simulation.results.trajectories", "Trajectories"),
+    "Trajectory": ("symofros.simulation.results.trajectory", "Trajectory"),
+    "state_space": ("symofros.simulation.analysis.state_space", "state_space"),
     "record": ("symofros.studio.viewer.record", "record"),
     "view": ("symofros.studio.viewer.view", "view"),
     "Viewer": ("symofros.studio.viewer.viewer", "Viewer"),

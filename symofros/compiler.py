@@ -35,10 +35,10 @@ from symofros.mechanics.dynamics.functions import Request
 from symofros.mechanics.topology.graph import check
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.options import Options
-from symofros.runtime.kernel import Lanes, Precision
+from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
+from symofros.runtime.calls.kernel import Lanes, Precision
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
-from symofros.runtime.toolchain import NO_COMPILER, Toolchain, find_toolchain
 
 
 def compile_system(system: System, options: Options | None = None) -> Model:

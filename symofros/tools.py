@@ -37,19 +37,19 @@ from symofros.expr.program import Program as Program
 from symofros.generator.ablation import ABLATIONS as ABLATIONS
 from symofros.generator.ablation import Ablation as Ablation
 from symofros.generator.passes.count import count_program as count_program
-from symofros.runtime.kernel import Precision as Precision
-from symofros.runtime.layout import Numbers as Numbers
-from symofros.runtime.layout import Strided as Strided
-from symofros.runtime.layout import columns as columns
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS as DEFAULT_FLAGS
+from symofros.runtime.build.toolchain import cpu_identity as cpu_identity
+from symofros.runtime.build.toolchain import find_toolchain as find_toolchain
+from symofros.runtime.calls.kernel import Precision as Precision
+from symofros.runtime.calls.layout import Numbers as Numbers
+from symofros.runtime.calls.layout import Strided as Strided
+from symofros.runtime.calls.layout import columns as columns
 from symofros.runtime.model import Model
-from symofros.runtime.toolchain import DEFAULT_FLAGS as DEFAULT_FLAGS
-from symofros.runtime.toolchain import cpu_identity as cpu_identity
-from symofros.runtime.toolchain import find_toolchain as find_toolchain
 from symofros.simulation.inputs import plan_inputs
-from symofros.simulation.methods import METHODS as METHODS
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.settings import Settings
-from symofros.simulation.stepper import Stepper
+from symofros.simulation.stepping.methods import METHODS as METHODS
+from symofros.simulation.stepping.stepper import Stepper
 
 
 def fixed_step_loop(model: Model, method: str, dt: float, steps: int, t_end: float) -> Stepper:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 
 def refuse(name: str, what: str, found: object, rule: str, remedy: str) -> DescriptionError:

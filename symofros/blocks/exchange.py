@@ -13,7 +13,7 @@ from symofros.blocks.packets import MAX_VALUES, Reception, Silence, receiver_por
 from symofros.diagrams.block import Environment, Port, Ports
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.errors import DescriptionError, Problem
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 LOCALHOST = "127.0.0.1"
 # Packets that one sample takes: a flood may not stop the loop.

@@ -14,7 +14,7 @@ from symofros.diagrams.block import Block, Environment, EvaluationContext, Port,
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.settings import Plot
 from symofros.errors import DescriptionError, Problem
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 
 def open_ports(name: str, signals: tuple[str, ...], environment: Environment) -> Ports:

@@ -23,7 +23,7 @@ from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.signals import entries
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,7 +20,7 @@ from symofros.blocks.packets import pack
 from symofros.diagrams.block import Environment
 from symofros.diagrams.opaque_block import Running
 from symofros.errors import DescriptionError, Problem, SymofrosError
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 _ADDRESS = "127.0.0.1:7447"
 

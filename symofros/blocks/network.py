@@ -19,7 +19,7 @@ from symofros.blocks.packets import pack
 from symofros.diagrams.block import Environment
 from symofros.diagrams.opaque_block import Running
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from symofros.diagrams.block import Port
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 MAGIC = b"SYMO"
 VERSION = 1

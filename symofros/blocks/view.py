@@ -19,7 +19,7 @@ from symofros.diagrams.block import Environment, Port, Ports
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.errors import DescriptionError, Problem
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.studio.viewer.playing.diagram_motion import chosen_block
 from symofros.studio.viewer.viewer import Viewer
 

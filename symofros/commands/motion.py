@@ -32,8 +32,8 @@ from symofros.compiler import compile_system
 from symofros.description.system import System
 from symofros.diagrams.files import command as diagrams
 from symofros.errors import did_you_mean
-from symofros.runtime.kernel import Array
-from symofros.simulation.methods import METHODS
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.stepping.methods import METHODS
 
 
 def simulate(

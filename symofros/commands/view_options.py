@@ -10,7 +10,7 @@ from symofros.blocks.view import View3D, with_view
 from symofros.description.system import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.result import DiagramRun
-from symofros.simulation.trajectory import Trajectory
+from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.page.viser_server import load_viser
 from symofros.studio.viewer.playing.diagram_motion import chosen_block, shown_of
 from symofros.studio.viewer.record import check_suffix, record

@@ -16,10 +16,10 @@ from symofros.description.system import System
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.tensor import Tensor
 from symofros.expr.graph import Graph
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import ModelRecord
+from symofros.simulation.analysis.state_space import StateSpace
 from symofros.simulation.inputs import Signal
-from symofros.simulation.state_space import StateSpace
 
 Shape = tuple[int, ...]
 Values = Mapping[str, Tensor]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from symofros.diagrams.block import Block, Environment
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 
 class Running(ABC):

@@ -16,9 +16,9 @@ from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import check_entry, split
 from symofros.diagrams.units import agree, parse
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import ModelRecord
-from symofros.simulation.state_space import StateSpace
+from symofros.simulation.analysis.state_space import StateSpace
 
 Source = tuple[str, str]
 

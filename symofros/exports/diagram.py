@@ -16,17 +16,17 @@ from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.wiring import Source
 from symofros.errors import ExportError, Problem
-from symofros.exports.c_package import INTEGRATOR_HEADERS
-from symofros.exports.c_text import comment, doubles, integers, strings
+from symofros.exports.c.c_package import INTEGRATOR_HEADERS
+from symofros.exports.c.c_text import comment, doubles, integers, strings
+from symofros.exports.c.plant import plant_text
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Stepping
-from symofros.exports.plant import plant_text
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.names import c_string, identifier
 from symofros.generator.passes import run_passes
 from symofros.native import amalgamated, header_files, native_text
 from symofros.runtime.record import ModelRecord
-from symofros.simulation.methods import METHODS
+from symofros.simulation.stepping.methods import METHODS
 
 _DIRECTIONS = {"rising": 1, "falling": -1, "both": 0}
 # Instants and steps of the self-test: its signals are those of the same run from Python.

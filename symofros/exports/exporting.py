@@ -14,26 +14,26 @@ from symofros.description.system import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import resolve
 from symofros.errors import AssemblyError, ExportError, Problem, UnknownNameError, did_you_mean
-from symofros.exports.c_package import write_c_package
+from symofros.exports.c.c_package import write_c_package
+from symofros.exports.c.mex import write_mex
+from symofros.exports.c.reference import POINTS, checks
+from symofros.exports.c.sfunction import write_sfunction
 from symofros.exports.diagram import write_diagram
-from symofros.exports.fmu import write_fmu2, write_fmu3
+from symofros.exports.fmi.fmu import write_fmu2, write_fmu3
 from symofros.exports.folder import Exported as Exported
 from symofros.exports.folder import check_folder
+from symofros.exports.interchange.mjcf import write_mjcf
+from symofros.exports.interchange.urdf import write_urdf
 from symofros.exports.material import Material, Stepping
-from symofros.exports.mex import write_mex
-from symofros.exports.mjcf import write_mjcf
-from symofros.exports.reference import POINTS, checks
-from symofros.exports.sfunction import write_sfunction
-from symofros.exports.urdf import write_urdf
 from symofros.functions import FRAME_FUNCTIONS, exported
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.names import identifier
 from symofros.loading import load
 from symofros.options import Options
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
-from symofros.simulation.assembly import assemble
-from symofros.simulation.methods import METHODS
+from symofros.simulation.analysis.assembly import assemble
+from symofros.simulation.stepping.methods import METHODS
 
 Target = Literal["c", "mex", "sfunction", "fmu2", "fmu3", "urdf", "mjcf"]
 TARGETS: tuple[Target, ...] = get_args(Target)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from symofros.description.system import System
 from symofros.runtime.record import ModelRecord
-from symofros.simulation.methods import Method
+from symofros.simulation.stepping.methods import Method
 
 
 @dataclass(frozen=True)

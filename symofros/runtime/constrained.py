@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 # Singular values of G in the metric of M, below this share of the largest, belong to conditions that repeat others. A
 # redundant condition that has drifted by d [m or rad] shows one of about d, and would ask for accelerations that

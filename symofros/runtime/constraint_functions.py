@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike, Functions
-from symofros.runtime.kernel import Array
 
 
 class ConstraintFunctions(Functions):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike, Functions
-from symofros.runtime.kernel import Array
 from symofros.runtime.linear import FrameDerivatives
 
 

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike as ArrayLike
 
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
-from symofros.runtime.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
-from symofros.runtime.layout import by_columns, flat, states
+from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
+from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.record import ModelRecord
 
 Key = tuple[str, str]

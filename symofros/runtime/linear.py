@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.rotations import skew
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import Segment
 
 # An output: the name of a quantity, or (frame_pose | frame_velocity | frame_acceleration, frame).

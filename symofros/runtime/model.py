@@ -8,12 +8,12 @@ from typing import Literal, overload
 import numpy as np
 
 from symofros.runtime import linear, manifold
-from symofros.runtime.bound import Bound, Layout, bind, bind_batch
+from symofros.runtime.calls.bound import Bound, Layout, bind, bind_batch
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constraint_functions import ConstraintFunctions
 from symofros.runtime.frame_functions import FrameFunctions
 from symofros.runtime.functions import ArrayLike as ArrayLike
 from symofros.runtime.functions import Key as Key
-from symofros.runtime.kernel import Array
 from symofros.runtime.linear import FrameDerivatives as FrameDerivatives
 from symofros.runtime.linear import Output as Output
 from symofros.runtime.linear import StateMatrices as StateMatrices

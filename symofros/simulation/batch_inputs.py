@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from symofros.errors import Problem, ShapeError, SymofrosError
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.inputs import InputPlan, Inputs, Signal, plan_inputs
 

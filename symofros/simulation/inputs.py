@@ -9,8 +9,8 @@ from typing import Any, Literal
 import numpy as np
 
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import Rate
-from symofros.runtime.kernel import Array
 from symofros.runtime.model import Model
 
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.inputs import InputPlan
-from symofros.simulation.methods import METHODS, Method
 from symofros.simulation.options import STABILISATIONS, SimulationOptions
-from symofros.simulation.stepper import Stepper
+from symofros.simulation.stepping.methods import METHODS, Method
+from symofros.simulation.stepping.stepper import Stepper
 
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.diagnosis import diagnose
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
-from symofros.simulation.loops import run_own, run_sundials
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
+from symofros.simulation.results.diagnosis import diagnose
+from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, vector
-from symofros.simulation.stepper import Stepper
-from symofros.simulation.trajectory import Found, Statistics, Trajectory
+from symofros.simulation.stepping.loops import run_own, run_sundials
+from symofros.simulation.stepping.stepper import Stepper
 
 
 def simulate(

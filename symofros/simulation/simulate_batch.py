@@ -11,17 +11,17 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.errors import Problem, ShapeError, SymofrosError
-from symofros.runtime.kernel import Array
-from symofros.runtime.layout import flat
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.calls.layout import flat
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.batch_inputs import Shape, sort_inputs
-from symofros.simulation.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
 from symofros.simulation.inputs import Inputs
-from symofros.simulation.methods import METHODS
 from symofros.simulation.options import SimulationOptions
+from symofros.simulation.results.trajectories import Trajectories
 from symofros.simulation.settings import CLOSED, Settings
-from symofros.simulation.status import Status
-from symofros.simulation.trajectories import Trajectories
+from symofros.simulation.stepping.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
+from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.status import Status
 
 
 def simulate_batch(

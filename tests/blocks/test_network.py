@@ -34,7 +34,7 @@ SENDER = f"""
 import sys
 import symofros as sf
 from symofros.blocks import UdpTransmitter, ZenohPublisher
-from symofros.runtime.binding import native_library
+from symofros.runtime.calls.binding import native_library
 from tests.blocks.sources import Ramp
 
 d = sf.Diagram("sender")

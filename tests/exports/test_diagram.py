@@ -11,7 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros import blocks
-from symofros.runtime.toolchain import find_toolchain
+from symofros.runtime.build.toolchain import find_toolchain
 from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Wave, arm
 from tests.diagrams.test_runs import First, Given
 

@@ -12,10 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symofros.native import native_text
-from symofros.runtime.build import build_library
-from symofros.runtime.declarations import constants
+from symofros.runtime.build.build import build_library
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS, find_toolchain
+from symofros.runtime.calls.declarations import constants
 from symofros.runtime.manifold import chart_rate, integrate, retract
-from symofros.runtime.toolchain import DEFAULT_FLAGS, find_toolchain
 from tests.runtime.test_manifold import (
     ANGLES,
     NQ,

@@ -52,7 +52,9 @@ class Following(Block):
         phase = context.t * RATE
         sine, cosine = phase.apply("sin"), phase.apply("cos")
         wanted = -SWING * RATE**2 * sine + KP * (SWING * sine - q) + KD * (SWING * RATE * cosine - v)
-        return {"effort": context.call(self.model, "inverse_dynamics", q=q, v=v, a=joined([wanted]), t=context.t)["tau"]}
+        return {
+            "effort": context.call(self.model, "inverse_dynamics", q=q, v=v, a=joined([wanted]), t=context.t)["tau"]
+        }
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from symofros.blocks.manifold import difference
 from symofros.blocks.quantities import joint_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import joined
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,7 +18,7 @@ from symofros.diagrams.opaque_block import OpaqueBlock, Running
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError
 from symofros.expr.expression import Expression, lower
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 _ENTRY = re.compile(r"(?P<name>\w+)\[(?P<index>\d+)\]$", re.ASCII)
 _NAME = re.compile(r"[A-Za-z]\w*$", re.ASCII)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symofros.diagrams.tensor import Tensor, joined
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 
 class Share(NamedTuple):

@@ -15,7 +15,7 @@ import numpy as np
 from symofros.blocks.checks import choice, increasing, known_name, numbers, refuse
 from symofros.diagrams.block import Block, Environment, Port, Ports
 from symofros.errors import DescriptionError, Problem
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.simulation.inputs import Signal
 
 # A file is read whole.

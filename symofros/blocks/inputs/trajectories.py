@@ -14,7 +14,7 @@ from symofros.blocks.rotations import matrix_of_quaternion, matrix_of_vector, qu
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.diagrams.units import parse
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 # Formulas grow with the points; tables over time (`Sequence`) take as many as there are.
 MOST_POINTS = 64

@@ -12,7 +12,7 @@ from symofros.blocks.quantities import actuated_names, scalar_coordinates
 from symofros.blocks.rotations import error_vector
 from symofros.diagrams.block import Environment, EvaluationContext, Port
 from symofros.diagrams.tensor import Tensor, joined, solved, stacked
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 ROWS = ("x", "y", "z", "rx", "ry", "rz")
 

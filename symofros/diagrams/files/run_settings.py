@@ -9,7 +9,7 @@ from symofros.description.yaml.yaml_nodes import Node
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.entries import Entries
 from symofros.diagrams.settings import Plot, RunSettings
-from symofros.simulation.methods import METHODS
+from symofros.simulation.stepping.methods import METHODS
 
 SETTINGS = tuple(item.name for item in fields(RunSettings))
 

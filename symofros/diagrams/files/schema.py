@@ -15,7 +15,7 @@ from symofros.diagrams.files.fields import required, types_of, words_for
 from symofros.diagrams.files.reader import HEAD, VERSION
 from symofros.diagrams.files.registry import entry_of, kinds
 from symofros.diagrams.files.run_settings import SETTINGS
-from symofros.simulation.methods import METHODS
+from symofros.simulation.stepping.methods import METHODS
 
 SCHEMA_FILE = Path(__file__).with_name("schema.json")
 

@@ -24,12 +24,12 @@ from symofros.generator.codegen.names import identifier
 from symofros.generator.passes import run_passes
 from symofros.native import native_text
 from symofros.options import Options
-from symofros.runtime.build import build_library
-from symofros.runtime.kernel import Kernel, Unit
-from symofros.runtime.library import CompiledUnit
+from symofros.runtime.build.build import build_library
+from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
+from symofros.runtime.calls.kernel import Kernel, Unit
+from symofros.runtime.calls.library import CompiledUnit
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
-from symofros.runtime.toolchain import NO_COMPILER, Toolchain, find_toolchain
 
 GENERATOR = "symofros diagram"
 

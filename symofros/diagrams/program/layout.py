@@ -17,7 +17,7 @@ from symofros.diagrams.block import Shape
 from symofros.diagrams.program.lowered_block import Piece
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import Segment
 from symofros.simulation.inputs import Signal
 

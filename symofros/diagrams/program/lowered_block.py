@@ -15,7 +15,7 @@ from symofros.errors import DescriptionError, Problem
 from symofros.expr.edges import Edge
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 # Groups of inputs of a piece that belong to one port, state, memory or parameter begin with these.
 INPUT, STATE, MEMORY, PARAMETER = "in_", "x_", "z_", "p_"

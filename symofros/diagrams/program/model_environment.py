@@ -28,10 +28,10 @@ from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.kinematics.links import tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.options import Options
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import ModelRecord
-from symofros.simulation.assembly import assemble
-from symofros.simulation.state_space import StateSpace, state_space
+from symofros.simulation.analysis.assembly import assemble
+from symofros.simulation.analysis.state_space import StateSpace, state_space
 
 
 def parameter_group(model: str) -> str:

@@ -9,8 +9,8 @@ import numpy as np
 
 from symofros.diagrams.run.recording import Cost
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.kernel import Array
-from symofros.simulation.plots import figure_class
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.results.plots import figure_class
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,11 @@ import numpy as np
 from symofros.diagrams.program.layout import Layout, Place
 from symofros.diagrams.rates import Schedule
 from symofros.errors import CompileError
-from symofros.runtime.binding import NativeMemory, native_library
-from symofros.runtime.declarations import interface
-from symofros.runtime.kernel import Array
-from symofros.runtime.library import CompiledKernel
-from symofros.simulation.stepper import Stepper
+from symofros.runtime.calls.binding import NativeMemory, native_library
+from symofros.runtime.calls.declarations import interface
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.calls.library import CompiledKernel
+from symofros.simulation.stepping.stepper import Stepper
 
 # Name of the recording of an instant in a schedule.
 RECORD = "(record)"

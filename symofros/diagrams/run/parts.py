@@ -11,12 +11,12 @@ from symofros.diagrams.program.compiled import CompiledDiagram
 from symofros.diagrams.program.layout import Part
 from symofros.diagrams.program.lowered_block import watched
 from symofros.errors import AssemblyError, Problem, SymofrosError
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import CLOSED, Settings
-from symofros.simulation.stepper import Stepper
+from symofros.simulation.stepping.stepper import Stepper
 
 
 @dataclass(frozen=True)

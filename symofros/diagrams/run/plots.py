@@ -12,7 +12,7 @@ from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import split
 from symofros.diagrams.wiring import Wired
 from symofros.errors import Problem, SymofrosError
-from symofros.simulation.plots import figure_class
+from symofros.simulation.results.plots import figure_class
 
 # Matplotlib's ways to draw that have no windows.
 _PAPER = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")

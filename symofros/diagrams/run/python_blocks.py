@@ -13,7 +13,7 @@ from symofros.diagrams.program.compiled import Resolved, fuser
 from symofros.diagrams.program.layout import Place
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import Problem, SymofrosError
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 
 class Called:

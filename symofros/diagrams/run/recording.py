@@ -14,8 +14,8 @@ from symofros.diagrams.block import Shape
 from symofros.diagrams.program.compiled import CompiledDiagram
 from symofros.diagrams.program.fused_functions import AFTER
 from symofros.diagrams.wiring import Source
-from symofros.runtime.kernel import Array
-from symofros.simulation.outcome import Outcome
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.results.outcome import Outcome
 
 
 class Crossed(NamedTuple):

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from symofros.diagrams.run.recording import Recording
 from symofros.diagrams.signals import check_entry, entries, split
-from symofros.runtime.kernel import Array
-from symofros.simulation.saving import refuse_suffix, write_columns, write_npz
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.results.saving import refuse_suffix, write_columns, write_npz
 
 
 def save_run(run: Recording, path: Path, signals: Iterable[str]) -> list[Path]:

@@ -19,15 +19,15 @@ from symofros.diagrams.run.parts import place_parts, start
 from symofros.diagrams.run.python_blocks import Opaque, begun
 from symofros.diagrams.run.recording import Cost, Crossed
 from symofros.diagrams.run.values import parameter_values, record_interval
-from symofros.runtime.kernel import Array
-from symofros.runtime.library import CompiledKernel
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.model import Model
 from symofros.simulation.options import SimulationOptions, Stabilisation
-from symofros.simulation.outcome import Outcome
 from symofros.simulation.progress import bar
+from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
-from symofros.simulation.status import Status
-from symofros.simulation.time_slice import TimeSlice
+from symofros.simulation.stepping.status import Status
+from symofros.simulation.stepping.time_slice import TimeSlice
 
 
 def run_compiled(

@@ -11,7 +11,7 @@ import numpy as np
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Place
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 
 # Recorded by default at about so many times.
 _RECORDS = 2000

@@ -15,7 +15,7 @@ from symofros.expr.program import Output, Program
 from symofros.generator.codegen.packs import Store, runs_of_lanes, vector_lines, vector_name
 from symofros.generator.codegen.statements import Statement, StatementWriter
 from symofros.generator.codegen.trigonometry import block_lines
-from symofros.runtime.kernel import Lanes
+from symofros.runtime.calls.kernel import Lanes
 
 MAX_STATEMENTS = 1000
 # Past this length, shorter chunks compile twice as fast and run as fast (measured on a 52-link chain, gcc 12); below

@@ -8,8 +8,8 @@ import numpy as np
 
 from symofros.expr.evaluate import evaluate_edges, interpret
 from symofros.expr.program import Function, Program, Solver
+from symofros.runtime.calls.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
 from symofros.runtime.constrained import constrained, differentiate, null_space, project
-from symofros.runtime.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
 
 
 class InterpretedUnit:

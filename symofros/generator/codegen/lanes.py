@@ -12,7 +12,7 @@ from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
 from symofros.expr.program import Function, Program
 from symofros.generator.codegen import trigonometry
 from symofros.native import native_text
-from symofros.runtime.kernel import Lanes
+from symofros.runtime.calls.kernel import Lanes
 
 # Doubles of the widest vectors: scratch is laid out for them. As many lanes of floats as of doubles take half of that.
 _WIDEST = 8

@@ -14,7 +14,7 @@ from symofros.generator.codegen.names import c_string, identifier
 from symofros.generator.codegen.solvers import ROUTINES, with_solver
 from symofros.generator.passes.count import count_program
 from symofros.native import native_text
-from symofros.runtime.kernel import Lanes
+from symofros.runtime.calls.kernel import Lanes
 from symofros.runtime.record import ModelRecord
 
 _INIT = "init_par"

@@ -16,12 +16,12 @@ from symofros.errors import AssemblyError, InconsistentModelWarning, Problem, Sy
 from symofros.errors import did_you_mean as near
 from symofros.generator.passes.count import count_program
 from symofros.options import Options
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
-from symofros.simulation.assembly import assemble
-from symofros.simulation.methods import METHODS
+from symofros.simulation.analysis.assembly import assemble
+from symofros.simulation.results.trajectory import Trajectory
 from symofros.simulation.simulate import simulate
-from symofros.simulation.trajectory import Trajectory
+from symofros.simulation.stepping.methods import METHODS
 from symofros.studio.advice.scene import Scene
 
 # Runs that take more steps than this are given up: no scene that asks for them is worth the wait.

@@ -15,7 +15,7 @@ from symofros.description.system import Body, System
 from symofros.description.values import Value
 from symofros.expr.expression import evaluate
 from symofros.options import Options
-from symofros.runtime.kernel import Array
+from symofros.runtime.calls.kernel import Array
 from symofros.studio.advice import estimators
 from symofros.studio.advice.bench import ReferenceSolution
 from symofros.studio.advice.scene import Scene

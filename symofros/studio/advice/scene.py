@@ -11,8 +11,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.runtime.kernel import Array
-from symofros.simulation.trajectory import Trajectory
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.results.trajectory import Trajectory
 
 Kind = Literal["position", "coordinate", "speed", "effort"]
 KINDS: tuple[Kind, ...] = get_args(Kind)

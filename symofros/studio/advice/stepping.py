@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from symofros.description.system import System
 from symofros.errors import Problem, SymofrosError
-from symofros.simulation.methods import METHODS
+from symofros.simulation.stepping.methods import METHODS
 from symofros.studio.advice.bench import Bench, Cost, Stepping, Trial
 
 _FIXED = ("rk4", "semi_implicit_euler", "implicit_euler", "generalized_alpha")

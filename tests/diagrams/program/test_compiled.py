@@ -10,7 +10,7 @@ import pytest
 import symofros as sf
 from symofros.diagrams.program import compiled
 from symofros.options import Options
-from symofros.runtime.toolchain import Toolchain
+from symofros.runtime.build.toolchain import Toolchain
 from tests.blocks.sources import Ramp
 
 

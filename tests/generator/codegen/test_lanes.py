@@ -17,10 +17,10 @@ from reference_models import MODELS
 from symofros.compiler import Compilation, compile_library
 from symofros.functions import MODEL_FUNCTIONS
 from symofros.generator.codegen.model import model_source
-from symofros.runtime import library
-from symofros.runtime.kernel import Array, BatchOptions, Kernel, Lanes
-from symofros.runtime.library import CompiledUnit
-from symofros.runtime.toolchain import DEFAULT_FLAGS, cpu_identity
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS, cpu_identity
+from symofros.runtime.calls import library
+from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Lanes
+from symofros.runtime.calls.library import CompiledUnit
 from tests.generator.codegen.test_source import COMPILERS, compile_strictly
 from tests.models import sampled
 

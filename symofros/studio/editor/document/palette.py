@@ -7,7 +7,7 @@ from typing import Any
 import symofros
 from symofros.description.yaml.schema import json_schema
 from symofros.exports.exporting import TARGETS
-from symofros.simulation.methods import METHODS
+from symofros.simulation.stepping.methods import METHODS
 
 Json = dict[str, Any]
 

@@ -15,7 +15,7 @@ from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import SpanningTree, frame_of
 from symofros.options import Options
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.assembly import assemble
+from symofros.simulation.analysis.assembly import assemble
 from symofros.studio.viewer.drawing.drawing import Drawing, DrawnBeam, LinkPoint, Strut
 from symofros.studio.viewer.drawing.geometry import draw, landmarks
 from symofros.studio.viewer.drawing.inertia_box import longest_edges

@@ -14,7 +14,7 @@ import numpy as np
 
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.trajectory import Trajectory
+from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.meshes import Array
 
 SUFFIXES = (".npz", ".csv", ".parquet")

@@ -9,7 +9,7 @@ from jsonschema import Draft202012Validator
 from starlette.testclient import TestClient
 
 import symofros as sf
-from symofros.simulation.methods import METHODS
+from symofros.simulation.stepping.methods import METHODS
 from symofros.studio.editor.document.analysis import analyse
 from symofros.studio.editor.document.palette import PALETTE
 from symofros.studio.editor.document.session import Session

@@ -1,0 +1,1 @@
+"""Packages of C: one model, a diagram, Matlab and Octave, Simulink."""

@@ -1,0 +1,36 @@
+"""Calling the C compiler on what an export consists of."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from symofros.errors import CompileError
+from symofros.runtime.build.toolchain import NO_COMPILER, call_compiler, find_toolchain
+
+# No -march=native: what is exported runs on other machines of the kind.
+FLAGS = ("-O2", "-fno-math-errno", "-std=c99", "-fPIC", "-shared", "-fvisibility=hidden")
+
+
+def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path]) -> bytes:
+    """The library of one C file that includes the others.
+
+    Args:
+        files: File name -> text.
+        main: Name of the source file to compile.
+        include: Folders of further headers.
+
+    Raises:
+        CompileError: There is no compiler, or it refused: with its command and words.
+    """
+    toolchain = find_toolchain(None)
+    if toolchain is None:
+        raise CompileError(NO_COMPILER)
+    with tempfile.TemporaryDirectory(prefix="symofros-export-") as private:
+        for name, text in files.items():
+            (Path(private) / name).write_text(text, encoding="utf-8")
+        folders = [f"-I{folder}" for folder in include]
+        command = [*toolchain.command, *FLAGS, *folders, "-o", "library", main, "-lm"]
+        call_compiler(command, Path(private), "check $CC and the compiler")
+        return (Path(private) / "library").read_bytes()

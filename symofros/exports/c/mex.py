@@ -1,0 +1,102 @@
+"""A function of Matlab and Octave: the calls of the SYMOFROS paper's section 8, and more flags of the kind."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from symofros.description.beam import Beam
+from symofros.exports.c.c_package import model_files
+from symofros.exports.c.c_text import comment
+from symofros.exports.c.unity import unity
+from symofros.exports.folder import Exported, write_folder
+from symofros.exports.material import Material
+from symofros.generator.codegen.names import c_string
+from symofros.native import native_text
+
+_HELP = """{name}  {title}: {nq} coordinates, {nv} speeds, {nu} inputs, {npar} parameters, {nc} constraints.
+
+[SysDim, SysSet, FlexLink, Parameter, Frame, Info] = {name}(0)        sizes, names, defaults
+[Mnl, gnl] = {name}(1, X, U, Parameters, t)           mass matrix and Q - h: Mnl*a = gnl for a tree
+[a, lam] = {name}(2, X, U, Parameters, t)             direct dynamics: accelerations, multipliers
+tau = {name}(3, X, A, U, Parameters, t)               inverse dynamics
+[p, R, V, J, dJ] = {name}(4, X, frame, U, Parameters, t)   kinematics of a frame, by name or number
+[phi, G, gamma] = {name}(5, X, U, Parameters, t)      holonomic constraints
+[rate, G, gamma] = {name}(6, X, U, Parameters, t)     non-holonomic constraints: G*v - b
+[T, V] = {name}(7, X, U, Parameters, t)               kinetic and potential energy
+[A, B] = {name}(8, X, U, Parameters, t)               linearisation: x' = A*x + B*u
+[T, X] = {name}(9, X, U, Parameters, [t0 t_end dt])   simulation, inputs held
+
+X = [q; v]. U, Parameters and t may be left out or empty: defaults, and t = 0. SI units, radians.
+V, J, dJ: linear part first, in world axes. An empty {name}() prints this text.
+"""
+
+_BUILD = """% Builds {name}, in Octave or Matlab: run it in this folder.
+if exist('OCTAVE_VERSION', 'builtin')
+  [output, status] = mkoctfile('--mex', '{name}_mex.c', '-o', ['{name}.' mexext()]);
+  if status ~= 0
+    error('symofros:{name}:build', '%s', output);
+  end
+else
+  mex('-output', '{name}', '{name}_mex.c');
+end
+clear('{name}');
+rehash();
+"""
+
+
+def write_mex(material: Material, folder: Path) -> Exported:
+    """NAME_mex.c with what it includes, NAME.m with the help, and build_NAME.m.
+
+    Raises:
+        ExportError: The folder is not ours.
+    """
+    name, record = material.c_name, material.record
+    text = _HELP.format(
+        name=name,
+        title=comment(record.name),
+        nq=len(record.q_names),
+        nv=len(record.v_names),
+        nu=len(record.u_names),
+        npar=len(record.par_names),
+        nc=record.nc,
+    )
+    shown = "\n".join(f"    {c_string(line)} {c_string(chr(10))}" for line in text.splitlines())
+    beams = [body for body in material.system.bodies if isinstance(body, Beam) and body.modes]
+    rows = [
+        f"    {{{c_string(beam.name)}, {record.q_names.index(beam.coordinates[0])}, {beam.modes}}}" for beam in beams
+    ]
+    listed = ",\n".join(rows) or "    {NULL, 0, 0}"
+    glue = unity(
+        name,
+        f"{comment(record.name)} as a function of Matlab or Octave, by {material.generator}.",
+        [
+            f"#define SYM_MEX_PLANT {name}_plant",
+            f"#define SYM_MEX_NAME {c_string(name)}",
+            f"#define SYM_MEX_BEAMS {len(beams)}",
+            "static const struct {\n    const char *name;\n    int32_t first, count;\n} "
+            f"sym_mex_beams[] = {{\n{listed}\n}};",
+            f"static const char *const sym_mex_help =\n{shown};",
+        ],
+        [
+            "#if defined(__GNUC__) && !defined(_WIN32)",
+            '#define SYM_MEX_EXPORT __attribute__((visibility("default")))',
+            "#else",
+            "#define SYM_MEX_EXPORT",
+            "#endif",
+            '#include "symofros_mex.c"',
+        ],
+        ['"mex.h"'],
+    )
+    commented = "".join(f"% {line}".rstrip() + "\n" for line in text.splitlines())
+    files = {
+        f"{name}_mex.c": glue,
+        "symofros_mex.c": native_text("exports/symofros_mex.c"),
+        f"build_{name}.m": _BUILD.format(name=name),
+        f"{name}.m": commented + _UNBUILT.format(name=name),
+    }
+    return write_folder(folder, "mex", name, files | model_files(material), material.generator, material.notes)
+
+
+_UNBUILT = """function varargout = {name}(varargin)
+error('symofros:{name}:build', 'run build_{name} in the folder of {name}.m first');
+"""

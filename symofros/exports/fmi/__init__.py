@@ -1,0 +1,1 @@
+"""Functional Mock-up Units, FMI 2.0 and 3.0."""

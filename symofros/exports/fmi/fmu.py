@@ -1,0 +1,129 @@
+"""Functional mock-up units: FMI 2.0 and 3.0, Model Exchange and Co-Simulation, binary and sources."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import io
+import platform
+import sys
+import zipfile
+from datetime import UTC, datetime
+from pathlib import Path
+from uuid import UUID
+
+from symofros.errors import ExportError, Problem
+from symofros.exports.c.c_package import model_files
+from symofros.exports.c.c_text import comment, strings
+from symofros.exports.c.compiling import shared_library
+from symofros.exports.c.unity import unity
+from symofros.exports.fmi.fmu_description import build_xml, description_xml
+from symofros.exports.fmi.fmu_variables import variables
+from symofros.exports.folder import Exported, write_folder
+from symofros.exports.material import Material
+from symofros.generator.codegen.names import c_string
+from symofros.native import native_text
+
+_MACHINES = {"x86_64": "x86_64", "amd64": "x86_64", "aarch64": "aarch64", "arm64": "aarch64"}
+_SYSTEMS = {"linux": ("linux", ".so"), "darwin": ("darwin", ".dylib"), "win32": ("windows", ".dll")}
+_OLD_NAMES = {("x86_64", "linux"): "linux64", ("x86_64", "darwin"): "darwin64", ("x86_64", "windows"): "win64"}
+_HEADERS = ("symofros_fmu.h", "symofros_fmi.h")
+_INTERFACE = {2: ("symofros_fmi2.c",), 3: ("symofros_fmi3.c", "symofros_fmi3_none.c")}
+# The same content gives the same archive, byte for byte.
+_EPOCH = (1980, 1, 1, 0, 0, 0)
+
+
+def write_fmu2(material: Material, folder: Path) -> Exported:
+    """NAME.fmu of FMI 2.0 in a folder."""
+    return _write(material, folder, 2)
+
+
+def write_fmu3(material: Material, folder: Path) -> Exported:
+    """NAME.fmu of FMI 3.0 in a folder."""
+    return _write(material, folder, 3)
+
+
+def _write(material: Material, folder: Path, version: int) -> Exported:
+    name = material.c_name
+    sources = model_files(material)
+    token = _token(material, sources, version)
+    sources[f"{name}_fmi{version}.c"] = _glue(material, version, token)
+    for file in (*_HEADERS, *_INTERFACE[version]):
+        sources[file] = native_text(f"exports/{file}")
+    library = shared_library(sources, f"{name}_fmi{version}.c", [fmi_headers()])
+    place, suffix = _platform(version)
+    found = variables(material)
+    entries: dict[str, str | bytes] = {
+        "modelDescription.xml": description_xml(material, found, version, token, _created()),
+        f"binaries/{place}/{name}{suffix}": library,
+        **{f"sources/{file}": text for file, text in sources.items()},
+    }
+    if version == 3:
+        entries["sources/buildDescription.xml"] = build_xml(name)
+    return write_folder(
+        folder, f"fmu{version}", name, {f"{name}.fmu": _archive(entries)}, material.generator, material.notes
+    )
+
+
+def fmi_headers() -> Path:
+    """The folder of the standard's headers, which the FMPy package carries.
+
+    Raises:
+        ExportError: FMPy is not installed.
+    """
+    spec = importlib.util.find_spec("fmpy")
+    if spec is None or spec.origin is None:
+        raise ExportError(
+            Problem(
+                "an FMU needs the headers of the FMI standard",
+                "no package fmpy",
+                "they are read from the package FMPy",
+                "pip install symofros[fmi]",
+            )
+        )
+    return Path(spec.origin).parent / "c-code"
+
+
+def _glue(material: Material, version: int, token: str) -> str:
+    name = material.c_name
+    frames = strings(material.outputs) if material.outputs else "NULL"
+    return unity(
+        name,
+        f"{comment(material.record.name)} as an FMU of FMI {version}.0, by {material.generator}.",
+        [
+            f"#define SYM_FMU_PLANT {name}_plant",
+            f"#define SYM_FMU_TOKEN {c_string(token)}",
+            f"#define SYM_FMU_FRAMES {len(material.outputs)}",
+            f"static const char *const sym_fmu_frames[] = {{{frames}}};",
+            *(f'#include "{file}"' for file in _HEADERS),
+        ],
+        [f'#include "fmi{version}Functions.h"', *(f'#include "{file}"' for file in _INTERFACE[version])],
+    )
+
+
+def _token(material: Material, sources: dict[str, str], version: int) -> str:
+    """Of the content: another model, other outputs or another version are another FMU."""
+    parts = [*sources.values(), *material.outputs, *material.functions[-1], str(version)]
+    digest = hashlib.sha256("\0".join(parts).encode()).digest()
+    return f"{{{UUID(bytes=digest[:16])}}}"
+
+
+def _platform(version: int) -> tuple[str, str]:
+    """Folder of the binary, and its suffix."""
+    machine = _MACHINES.get(platform.machine().lower(), platform.machine().lower())
+    system, suffix = _SYSTEMS.get(sys.platform, (sys.platform, ".so"))
+    if version == 2:
+        return _OLD_NAMES.get((machine, system), f"{system}-{machine}"), suffix
+    return f"{machine}-{system}", suffix
+
+
+def _created() -> str:
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def _archive(entries: dict[str, str | bytes]) -> bytes:
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in entries.items():
+            archive.writestr(zipfile.ZipInfo(name, _EPOCH), content, zipfile.ZIP_DEFLATED)
+    return stream.getvalue()

@@ -1,0 +1,1 @@
+"""Descriptions for other programs: URDF, MJCF."""

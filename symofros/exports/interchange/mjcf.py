@@ -1,0 +1,198 @@
+"""MJCF: the rigid tree, its loops as soft equalities, springs, dampers, armature, motors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree as Tree
+
+import numpy as np
+
+from symofros.description.constraints import Closure
+from symofros.description.forces import Anchor, Damper, Spring
+from symofros.description.joint import Joint
+from symofros.description.system import System
+from symofros.exports.folder import Exported, write_folder
+from symofros.exports.interchange.rigid import Array, RigidLink, numbers_text, rigid_links
+from symofros.generator.codegen.names import identifier
+from symofros.mechanics.topology.numbers import Numbers
+
+# Of a moment of inertia, of the largest one or of 1 kg m^2; MuJoCo's own bound is 1e-14.
+_LEAST = 1e-12
+
+
+def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -> Exported:
+    """NAME.xml; notes list what it lacks.
+
+    Raises:
+        ExportError: A joint can't be stated, or the folder is not ours.
+    """
+    links, lost = rigid_links(system, "MJCF")
+    numbers = Numbers(system)
+    root = Tree.Element("mujoco", {"model": system.name})
+    Tree.SubElement(root, "compiler", {"angle": "radian", "inertiafromgeom": "false", "autolimits": "false"})
+    Tree.SubElement(root, "option", {"gravity": numbers_text(numbers.values(system.gravity))})
+    elements = {links[0].name: Tree.SubElement(root, "worldbody")}
+    _sites(elements[links[0].name], links[0])
+    notes = [*lost, *_lost(system)]
+    thin = [link.name for link in links if link.mass and _positive(link.inertia) is not link.inertia]
+    odd = [link.name for link in links if link.mass and _impossible(_positive(link.inertia))]
+    if odd:
+        notes.append(
+            "MuJoCo refuses inertias that no body can have (its option balanceinertia changes them): " + ", ".join(odd)
+        )
+    if thin:
+        notes.append(f"moments of inertia near zero raised to {_LEAST:g}: " + ", ".join(thin))
+    for link in _parents_first(links[1:], links[0].name):
+        assert link.parent is not None
+        elements[link.name] = _body(elements[link.parent], link, numbers)
+    _equalities(root, system, links, notes)
+    motors = [axis.name for link in links if link.joint is not None and link.joint.actuated for axis in link.axes]
+    if motors:
+        into = Tree.SubElement(root, "actuator")
+        for motor in motors:
+            Tree.SubElement(into, "motor", {"name": motor, "joint": motor, "gear": "1"})
+    Tree.indent(root)
+    called = identifier(name or system.name)
+    text = Tree.tostring(root, encoding="unicode") + "\n"
+    return write_folder(folder, "mjcf", called, {f"{called}.xml": text}, generator, tuple(notes))
+
+
+def _parents_first(links: list[RigidLink], root: str) -> list[RigidLink]:
+    placed, waiting, found = {root}, list(links), []
+    while waiting:
+        ready = [link for link in waiting if link.parent in placed]
+        placed |= {link.name for link in ready}
+        found += ready
+        waiting = [link for link in waiting if link.name not in placed]
+    return found
+
+
+def _lost(system: System) -> list[str]:
+    found = []
+    joints = [body.joint for body in system.bodies if body.joint is not None]
+    elements = [j.name for j in joints if any(not _kept(element) for element in j.elements)]
+    if elements:
+        found.append("friction, stops, and springs and dampers that are not linear, dropped: " + ", ".join(elements))
+    return found
+
+
+def _kept(element: object) -> bool:
+    linear = isinstance(element, Spring) and element.cubic == 0.0
+    return linear or (isinstance(element, Damper) and element.quadratic == 0.0)
+
+
+def _pose(position: Array, rotation: Array) -> dict[str, str]:
+    return {"pos": numbers_text(position), "quat": numbers_text(_quaternion(rotation))}
+
+
+def _quaternion(R: Array) -> Array:
+    """Scalar first; by the largest of its entries, which loses no digits."""
+    K = np.array(
+        [
+            [R[0, 0] - R[1, 1] - R[2, 2], R[0, 1] + R[1, 0], R[0, 2] + R[2, 0], R[2, 1] - R[1, 2]],
+            [0.0, R[1, 1] - R[0, 0] - R[2, 2], R[1, 2] + R[2, 1], R[0, 2] - R[2, 0]],
+            [0.0, 0.0, R[2, 2] - R[0, 0] - R[1, 1], R[1, 0] - R[0, 1]],
+            [0.0, 0.0, 0.0, R[0, 0] + R[1, 1] + R[2, 2]],
+        ]
+    )
+    outer = K + K.T - np.diag(np.diag(K)) + np.eye(4)  # 4 q q^T, of q = (x, y, z, w).
+    largest = int(np.argmax(np.diag(outer)))
+    x, y, z, w = outer[largest] / np.linalg.norm(outer[largest])
+    return np.array([w, x, y, z])
+
+
+def _sites(into: Tree.Element, link: RigidLink) -> None:
+    for name, position, rotation in link.frames:
+        Tree.SubElement(into, "site", {"name": name, **_pose(position, rotation)})
+
+
+def _body(into: Tree.Element, link: RigidLink, numbers: Numbers) -> Tree.Element:
+    assert link.joint is not None
+    body = Tree.SubElement(into, "body", {"name": link.name, **_pose(link.position, link.rotation)})
+    if link.mass != 0.0 or link.inertia.any():
+        inertia = _positive(link.inertia)
+        moments = [*np.diag(inertia), inertia[0, 1], inertia[0, 2], inertia[1, 2]]
+        Tree.SubElement(
+            body,
+            "inertial",
+            {"pos": numbers_text(link.center), "mass": numbers_text(link.mass), "fullinertia": numbers_text(moments)},
+        )
+    if not link.axes and link.joint.traits.mjcf is not None:
+        Tree.SubElement(body, "joint", {"name": link.joint.name, "type": link.joint.traits.mjcf})
+    for i, axis in enumerate(link.axes):
+        stated = {"name": axis.name, "type": "hinge" if axis.turns else "slide", "axis": numbers_text(axis.direction)}
+        Tree.SubElement(body, "joint", stated | _dynamics(link, link.joint, i, numbers))
+    _sites(body, link)
+    return body
+
+
+def _positive(inertia: Array) -> Array:
+    """MuJoCo refuses the inertia of a line or a point: what is missing is made too small to matter."""
+    sizes, axes = np.linalg.eigh(inertia)
+    least = _LEAST * max(1.0, float(sizes[-1]))
+    if sizes[0] >= least:
+        return inertia
+    return np.asarray(axes @ np.diag(np.maximum(sizes, least)) @ axes.T)
+
+
+def _impossible(inertia: Array) -> bool:
+    """Whether two principal moments are less than the third."""
+    small, middle, large = np.linalg.eigvalsh(inertia)
+    return bool(small + middle < large * (1.0 - 1e-9))
+
+
+def _dynamics(link: RigidLink, joint: Joint, index: int, numbers: Numbers) -> dict[str, str]:
+    found: dict[str, str] = {}
+    limits = joint.limits if len(link.axes) == 1 else None
+    if limits is not None and limits.lower is not None and limits.upper is not None:
+        # For readers; here a limit is not a force.
+        found |= {"range": numbers_text([limits.lower, limits.upper]), "limited": "false"}
+    armature = numbers.value(joint.armature)
+    if armature != 0.0:
+        found["armature"] = numbers_text(armature)
+    if link.damping[index] != 0.0:
+        found["damping"] = numbers_text(link.damping[index])
+    springs = [e for e in joint.elements if isinstance(e, Spring) and e.cubic == 0.0 and e.coordinate == index]
+    stiffness = sum(numbers.value(spring.stiffness) for spring in springs)
+    if stiffness:
+        pull = sum(numbers.value(spring.stiffness) * numbers.value(spring.rest) for spring in springs)
+        found |= {"stiffness": numbers_text(stiffness), "springref": numbers_text(pull / stiffness)}
+    return found
+
+
+def _equalities(root: Tree.Element, system: System, links: list[RigidLink], notes: list[str]) -> None:
+    closures = [item for item in system.constraints if isinstance(item, Closure) and _stated(item)]
+    dropped = [item.name for item in system.constraints if item not in closures]
+    if dropped:
+        notes.append("constraints dropped: " + ", ".join(dropped))
+    if not closures:
+        return
+    into = Tree.SubElement(root, "equality")
+    for closure in closures:
+        (body1, site1), (body2, site2) = (_site(anchor, links, root) for anchor in (closure.first, closure.second))
+        kind = "weld" if closure.rotations else "connect"
+        Tree.SubElement(into, kind, {"name": closure.name, "site1": site1, "site2": site2})
+        if len(closure.translations) < 3:
+            free = ", ".join(axis for axis in "xyz" if axis not in closure.translations)
+            notes.append(f"closure '{closure.name}' also holds {free}, which it leaves free")
+    notes.append("closures are soft in MuJoCo: " + ", ".join(closure.name for closure in closures))
+
+
+def _stated(closure: Closure) -> bool:
+    """Whether MuJoCo has an equality near enough: a point, or everything."""
+    return len(closure.rotations) in (0, 3) and len(closure.translations) >= 2
+
+
+def _site(anchor: Anchor, links: list[RigidLink], root: Tree.Element) -> tuple[str, str]:
+    """The site of a frame; a body frame gets one of its own."""
+    body, frame = anchor
+    link = next((link for link in links if link.name == body), links[0])
+    if frame is not None:
+        names = [name for name, _, _ in link.frames]
+        return link.name, frame if frame in names else f"{link.name}.{frame}"
+    name = f"{link.name}.origin"
+    owner = next((e for e in root.iter("body") if e.get("name") == link.name), root.find("worldbody"))
+    assert owner is not None
+    if not any(site.get("name") == name for site in owner.findall("site")):
+        Tree.SubElement(owner, "site", {"name": name})
+    return link.name, name

@@ -1,0 +1,146 @@
+"""URDF: the rigid tree of a description."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from xml.etree import ElementTree as Tree
+
+import numpy as np
+
+from symofros.description.forces import Damper
+from symofros.description.system import System
+from symofros.exports.folder import Exported, write_folder
+from symofros.exports.interchange.rigid import Array, Axis, RigidLink, numbers_text, rigid_links
+from symofros.generator.codegen.names import identifier
+
+# URDF wants limits of slides; these bind nothing.
+_FAR = 1e9
+
+
+def write_urdf(system: System, name: str | None, folder: Path, generator: str) -> Exported:
+    """NAME.urdf; notes list what it lacks.
+
+    Raises:
+        ExportError: A joint can't be stated, or the folder is not ours.
+    """
+    links, lost = rigid_links(system, "URDF")
+    root = Tree.Element("robot", {"name": system.name})
+    for link in links:
+        _link(root, link)
+    for link in links:
+        if link.parent is not None:
+            _joints(root, link)
+    Tree.indent(root)
+    text = f'<?xml version="1.0"?>\n{Tree.tostring(root, encoding="unicode")}\n'
+    called = identifier(name or system.name)
+    notes = (*lost, *_lost(system))
+    return write_folder(folder, "urdf", called, {f"{called}.urdf": text}, generator, notes)
+
+
+def _lost(system: System) -> list[str]:
+    found = []
+    joints = [body.joint for body in system.bodies if body.joint is not None]
+    if system.constraints:
+        found.append("constraints dropped, loops are open: " + ", ".join(item.name for item in system.constraints))
+    if system.gravity != (0.0, 0.0, -9.81):
+        found.append(f"gravity is not part of URDF: ({', '.join(map(str, system.gravity))})")
+    elements = [joint.name for joint in joints if any(not isinstance(e, Damper) for e in joint.elements)]
+    if elements:
+        found.append("springs, stops and friction of joints dropped: " + ", ".join(elements))
+    armed = [joint.name for joint in joints if joint.armature != 0.0]
+    if armed:
+        found.append("armature dropped: " + ", ".join(armed))
+    return found
+
+
+def _origin(into: Tree.Element, position: Array, rotation: Array) -> None:
+    Tree.SubElement(into, "origin", {"xyz": numbers_text(position), "rpy": numbers_text(_rpy(rotation))})
+
+
+def _rpy(R: Array) -> tuple[float, float, float]:
+    """Roll, pitch, yaw of Rz(y) Ry(p) Rx(r)."""
+    pitch = math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0]))
+    if math.hypot(R[0, 0], R[1, 0]) < 1e-9:  # Only yaw -+ roll matters.
+        return math.atan2(-R[1, 2], R[1, 1]), pitch, 0.0
+    return math.atan2(R[2, 1], R[2, 2]), pitch, math.atan2(R[1, 0], R[0, 0])
+
+
+def _link(root: Tree.Element, link: RigidLink) -> None:
+    into = Tree.SubElement(root, "link", {"name": link.name})
+    if link.mass != 0.0 or link.inertia.any():
+        inertial = Tree.SubElement(into, "inertial")
+        _origin(inertial, link.center, np.eye(3))
+        Tree.SubElement(inertial, "mass", {"value": numbers_text(link.mass)})
+        moments = {
+            f"i{a}{b}": numbers_text(link.inertia[i, j])
+            for i, a in enumerate("xyz")
+            for j, b in enumerate("xyz")
+            if i <= j
+        }
+        Tree.SubElement(inertial, "inertia", moments)
+    for name, position, rotation in link.frames:
+        Tree.SubElement(root, "link", {"name": name})
+        _joint(root, f"{name}_fixed", "fixed", link.name, name, position, rotation)
+
+
+def _joint(
+    root: Tree.Element, name: str, kind: str, parent: str, child: str, position: Array, rotation: Array
+) -> Tree.Element:
+    into = Tree.SubElement(root, "joint", {"name": name, "type": kind})
+    Tree.SubElement(into, "parent", {"link": parent})
+    Tree.SubElement(into, "child", {"link": child})
+    _origin(into, position, rotation)
+    return into
+
+
+def _joints(root: Tree.Element, link: RigidLink) -> None:
+    assert link.joint is not None and link.parent is not None
+    if not link.axes:
+        kind = link.joint.traits.urdf
+        assert kind is not None
+        _joint(root, link.joint.name, kind, link.parent, link.name, link.position, link.rotation)
+        return
+    parent, position, rotation = link.parent, link.position, link.rotation
+    for i, axis in enumerate(link.axes):
+        last = i == len(link.axes) - 1
+        child = link.name if last else f"{link.name}[{i}]"
+        if not last:
+            Tree.SubElement(root, "link", {"name": child})
+        _single(root, link, axis, i, parent, child, position, rotation)
+        parent, position, rotation = child, np.zeros(3), np.eye(3)
+
+
+def _single(
+    root: Tree.Element,
+    link: RigidLink,
+    axis: Axis,
+    index: int,
+    parent: str,
+    child: str,
+    position: Array,
+    rotation: Array,
+) -> None:
+    assert link.joint is not None
+    limits = link.joint.limits if len(link.axes) == 1 else None
+    bounded = limits is not None and limits.lower is not None and limits.upper is not None
+    kind = "prismatic" if not axis.turns else "revolute" if bounded else "continuous"
+    into = _joint(root, axis.name, kind, parent, child, position, rotation)
+    Tree.SubElement(into, "axis", {"xyz": numbers_text(axis.direction)})
+    if kind != "continuous":
+        lower, upper = (limits.lower, limits.upper) if limits is not None and bounded else (-_FAR, _FAR)
+        effort = _FAR if limits is None or limits.effort is None else limits.effort
+        speed = _FAR if limits is None or limits.velocity is None else limits.velocity
+        assert lower is not None and upper is not None
+        Tree.SubElement(
+            into,
+            "limit",
+            {
+                "lower": numbers_text(lower),
+                "upper": numbers_text(upper),
+                "effort": numbers_text(effort),
+                "velocity": numbers_text(speed),
+            },
+        )
+    if link.damping[index] != 0.0:
+        Tree.SubElement(into, "dynamics", {"damping": numbers_text(link.damping[index])})

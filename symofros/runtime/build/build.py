@@ -1,0 +1,170 @@
+"""C text -> shared library, cached by content.
+
+The key covers the C text, the header, flags, compiler and processor, or the processor's family where the library is for
+any of it. A library is compiled in a private folder and renamed into place, so that concurrent processes and killed
+compilations never leave a broken one behind. A second key spares the C text: what was asked for, of which state of this
+package; its file names the library.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import sys
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from symofros.atomic import write_atomically
+from symofros.errors import CompileError, Problem
+from symofros.runtime.build.identity import CODE_IDENTITY
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, call_compiler, cpu_identity, kinds
+
+_SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+_REMEDY = "check Options(flags=…) and the compiler; backend='interpreter' needs none"
+# Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
+_LOOSE = {"-ffast-math", "-Ofast", "-funsafe-math-optimizations"}
+
+
+def cache_folder() -> Path:
+    """Where compiled models live: $SYMOFROS_CACHE, or symofros in the user's cache folder."""
+    stated = os.environ.get("SYMOFROS_CACHE")
+    if stated:
+        return Path(stated)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "symofros"
+
+
+def recall_library(
+    recipe: str,
+    source: Callable[[], str],
+    header: str,
+    toolchain: Toolchain,
+    flags: Sequence[str] | None = None,
+    dispatch: str = "",
+    symbol: str = "",
+) -> Path:
+    """The library of what a recipe states; its C text is only asked for where no library is known.
+
+    Args:
+        recipe: All that the C text depends on, but for the code that writes it.
+        source: Gives the text.
+        header: As for `build_library`, and so the others.
+        toolchain: The compiler.
+        flags: In place of the default ones.
+        dispatch: What chooses among kinds of processors.
+        symbol: The exported function.
+
+    Raises:
+        CompileError: As for `build_library`.
+    """
+    folder = cache_folder()
+    known = folder / f"{_key(toolchain, flags, dispatch, recipe, CODE_IDENTITY, np.__version__, header)}.known"
+    try:
+        library = folder / Path(known.read_text(encoding="utf-8")).name
+        if library.is_file():
+            return library
+    except OSError:
+        pass
+    library = build_library(source(), header, toolchain, flags, dispatch, symbol)
+    write_atomically(known, library.name)
+    return library
+
+
+def _key(toolchain: Toolchain, flags: Sequence[str] | None, dispatch: str, *parts: str) -> str:
+    suited = platform.machine() if dispatch else cpu_identity()
+    stated = [*parts, dispatch, *_chosen(flags, dispatch), *SHARED_FLAGS, toolchain.identity, suited]
+    return hashlib.sha256("\0".join(stated).encode()).hexdigest()[:32]
+
+
+def _chosen(flags: Sequence[str] | None, dispatch: str) -> tuple[str, ...]:
+    """The flags of all kinds: where there are several, none is the machine's own."""
+    if flags is not None:
+        return tuple(flags)
+    return tuple(flag for flag in DEFAULT_FLAGS if not (dispatch and flag.startswith("-march")))
+
+
+def build_library(
+    source: str,
+    header: str,
+    toolchain: Toolchain,
+    flags: Sequence[str] | None = None,
+    dispatch: str = "",
+    symbol: str = "",
+) -> Path:
+    """The shared library of a C file, compiled unless it is in the cache.
+
+    Args:
+        source: Text of the C file.
+        header: Text of symofros_model.h.
+        toolchain: The compiler.
+        flags: In place of the default ones.
+        dispatch: Text of the C file that chooses among the kinds of processors; none: for this machine's alone.
+        symbol: The exported function, which each kind has under a name of its own.
+
+    Raises:
+        CompileError: The compiler refused, with its command and words; or the cache folder can't be written.
+    """
+    key, chosen = _key(toolchain, flags, dispatch, source, header), _chosen(flags, dispatch)
+    folder = cache_folder()
+    library = folder / f"{key}{_SUFFIX}"
+    if library.exists():
+        return library
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{key[:8]}-", dir=folder) as private:
+            _write(Path(private), {"symofros_model.h": header, "model.c": source, "dispatch.c": dispatch})
+            if dispatch:
+                _compile_for_any(Path(private), toolchain, chosen, symbol)
+            else:
+                _compile(Path(private), toolchain, chosen)
+            _flush(Path(private) / f"model{_SUFFIX}")
+            os.replace(Path(private) / "model.c", folder / f"{key}.c")
+            os.replace(Path(private) / f"model{_SUFFIX}", library)
+    except OSError as error:
+        raise CompileError(
+            Problem(
+                f"the cache folder can't be used: {error}",
+                str(folder),
+                "compiled models are kept in a folder that can be written",
+                "set SYMOFROS_CACHE to such a folder",
+            )
+        ) from error
+    return library
+
+
+def _flush(path: Path) -> None:
+    """Bring a file to the disk: a crash after the renaming must not leave a truncated library under its name."""
+    with open(path, "rb+") as stream:
+        os.fsync(stream.fileno())
+
+
+def _write(private: Path, files: Mapping[str, str]) -> None:
+    for name, text in files.items():
+        (private / name).write_text(text, encoding="utf-8")
+
+
+def _compile(private: Path, toolchain: Toolchain, flags: tuple[str, ...]) -> None:
+    if not _LOOSE & set(flags):
+        output = f"model{_SUFFIX}"
+        call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-o", output, "model.c", "-lm"], private, _REMEDY)
+        return
+    call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "-o", "model.o", "model.c"], private, _REMEDY)
+    _link(private, toolchain, ["model.o"])
+
+
+def _compile_for_any(private: Path, toolchain: Toolchain, flags: tuple[str, ...], symbol: str) -> None:
+    """The model for each kind of processor, and what chooses."""
+    objects = ["dispatch.o"]
+    call_compiler([*toolchain.command, *SHARED_FLAGS, "-c", "-o", "dispatch.o", "dispatch.c"], private, _REMEDY)
+    for name, _, extra in kinds():
+        stated = [*flags, *extra, f"-D{symbol}={symbol}_{name}", *SHARED_FLAGS]
+        objects.append(f"{name}.o")
+        call_compiler([*toolchain.command, *stated, "-c", "-o", objects[-1], "model.c"], private, _REMEDY)
+    _link(private, toolchain, objects)
+
+
+def _link(private: Path, toolchain: Toolchain, objects: list[str]) -> None:
+    call_compiler([*toolchain.command, "-shared", "-o", f"model{_SUFFIX}", *objects, "-lm"], private, _REMEDY)

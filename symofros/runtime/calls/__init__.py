@@ -1,0 +1,1 @@
+"""Functions in memory: libraries, kernels, batches, threads."""

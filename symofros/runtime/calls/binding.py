@@ -1,0 +1,131 @@
+"""Hand-written C called from Python: the library of native/, memory that C points to, model functions bound to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import PurePosixPath
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.errors import CompileError, Problem, SymofrosError
+from symofros.native import HEADERS, amalgamated, native_text
+from symofros.runtime.build.build import build_library
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS, NO_COMPILER, find_toolchain
+from symofros.runtime.calls.declarations import interface
+from symofros.runtime.calls.kernel import Array, Kernel
+from symofros.runtime.calls.library import CompiledKernel
+
+_FLAGS = (*DEFAULT_FLAGS, "-O3", "-pthread")
+
+
+@cache
+def native_library() -> Any:
+    """The integrator of native/, loaded; compiled at the first use on a machine, then taken from the cache.
+
+    Raises:
+        CompileError: There is no C compiler.
+    """
+    toolchain = find_toolchain(None)
+    if toolchain is None:
+        raise CompileError(NO_COMPILER)
+    source = amalgamated("library.c")
+    for name in reversed(HEADERS[1:]):  # One file, as the cache keeps it; the model's header stays beside it.
+        source = source.replace(f'#include "{PurePosixPath(name).name}"', native_text(name))
+    return interface().dlopen(str(build_library(source, native_text(HEADERS[0]), toolchain, _FLAGS)))
+
+
+class NativeMemory:
+    """Arrays and objects that C holds pointers to. They live as long as this object, which a run keeps."""
+
+    def __init__(self) -> None:
+        self.ffi = interface()
+        self._kept: list[Any] = []
+
+    def keep(self, thing: Any) -> None:
+        """Let a thing live as long as this memory."""
+        self._kept.append(thing)
+
+    def doubles(self, values: Any) -> Any:
+        """A C array of doubles, a copy of the values in row-major order; of one zero where there are none."""
+        array = np.array(values, dtype=np.float64).reshape(-1)
+        return self.shared(array if array.size else np.zeros(1))
+
+    def zeros(self, count: int) -> Any:
+        """A C array of that many doubles, at least one."""
+        return self.shared(np.zeros(max(1, count)))
+
+    def shared(self, values: npt.NDArray[Any]) -> Any:
+        """The elements of a contiguous array themselves, as a C array of their type."""
+        self.keep(values)
+        kind = {"float64": "double *", "int32": "int32_t *", "int64": "int64_t *"}[values.dtype.name]
+        return self.ffi.cast(kind, self.ffi.from_buffer(values))
+
+    def table(self, struct: Any, prefix: str, rows: int, **widths: int) -> list[Array]:
+        """Arrays (rows, width) behind the pointers `prefix + name` of a struct."""
+        arrays = []
+        for name, width in widths.items():
+            array = np.zeros((rows, max(1, width)))
+            setattr(struct, prefix + name, self.shared(array))
+            arrays.append(array[:, :width])
+        return arrays
+
+    def own(self, kind: str, values: Sequence[Any] | int) -> Any:
+        """A C array of a type such as "int32_t[]", of values or of a length; of one element where there are none."""
+        array = self.ffi.new(kind, values or 1)
+        self.keep(array)
+        return array
+
+    def callback(self, kind: str, function: Any) -> Any:
+        """A Python function as a C function pointer of a type; it may not raise."""
+        handle = self.ffi.callback(kind, function)
+        self.keep(handle)
+        return handle
+
+    def view(self, pointer: Any, size: int) -> Array:
+        """The doubles behind a pointer (size), not copied."""
+        return np.frombuffer(self.ffi.buffer(pointer, 8 * size), dtype=np.float64) if size else np.zeros(0)
+
+    def bind(self, call: Any, kernel: Kernel, par: Array, outputs: Mapping[str, Any] | None = None) -> CompiledKernel:
+        """Fill a sym_call with a model function, its parameters' part, scratch and outputs; C binds the inputs by name.
+
+        Args:
+            call: The sym_call.
+            kernel: The function.
+            par: Run-time parameters (npar).
+            outputs: Name -> C array of outputs that have a place; the others get arrays of their own.
+
+        Returns:
+            The kernel, as one that C can call.
+
+        Raises:
+            SymofrosError: The function is interpreted.
+        """
+        compiled = callable_from_c(kernel)
+        call.function = compiled.function
+        call.pre = self.doubles(compiled.prepare(par.reshape(1, -1)))
+        call.work = self.zeros(compiled.work)
+        for i, (name, shape) in enumerate(compiled.signature.outputs):
+            call.out[i] = outputs[name] if outputs and name in outputs else self.zeros(int(np.prod(shape)))
+        self.keep(compiled)
+        return compiled
+
+
+def callable_from_c(kernel: Kernel) -> CompiledKernel:
+    """The kernel, if it is compiled.
+
+    Raises:
+        SymofrosError: It is interpreted.
+    """
+    if isinstance(kernel, CompiledKernel):
+        return kernel
+    raise SymofrosError(
+        Problem(
+            f"function '{kernel.signature.name}': simulation steps in C",
+            "an interpreted model",
+            "the integrator calls compiled functions",
+            "compile with backend='c'",
+        )
+    )

@@ -1,0 +1,1 @@
+"""States and small motions: assembly, equilibria, modes, linear models, inverse kinematics, base parameters."""

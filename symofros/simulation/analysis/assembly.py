@@ -1,0 +1,188 @@
+"""Assembly: a configuration that closes every loop, near a guess, and speeds that keep it closed."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.constrained import RANK
+from symofros.runtime.model import ArrayLike, Model
+
+Indices = npt.NDArray[np.intp]
+# No step turns or slides further than this at once: beyond it the linearisation says nothing.
+LARGEST_STEP = 0.5
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """A state on the constraints.
+
+    Attributes:
+        q: Configuration (nq).
+        v: Speeds (nv).
+        residual: Largest |phi|.
+        iterations: Number of iterations.
+        rank: Rank of G; where it is below nc, some conditions depend on others.
+    """
+
+    q: Array
+    v: Array
+    residual: float
+    iterations: int
+    rank: int
+
+
+def assemble(
+    model: Model,
+    q: ArrayLike | None = None,
+    v: ArrayLike | None = None,
+    *,
+    held: Collection[str] = (),
+    u: ArrayLike | None = None,
+    par: ArrayLike | None = None,
+    t: float = 0.0,
+    tolerance: float = 1e-12,
+    iterations: int = 100,
+) -> Assembled:
+    """Solve phi(q) = 0 and G v = b by damped Gauss-Newton steps of least norm.
+
+    Args:
+        model: Model with constraints.
+        q: Guess (nq); the neutral configuration if not given.
+        v: Wished speeds (nv), changed as little as possible; zeros if not given.
+        held: Names of speeds (`model.names.v`) whose coordinates and values stay as they are.
+        u: Inputs, for prescribed motions.
+        par: Run-time parameters.
+        t: Time.
+        tolerance: Bound of the largest |phi| [m, rad].
+        iterations: Most steps to take.
+
+    Raises:
+        AssemblyError: No such configuration was found; names the constraint that is worst.
+        UnknownNameError: `held` names something that is not a speed.
+    """
+    free = free_speeds(model, held)
+    model = model.with_precision("double")
+    q = model.neutral() if q is None else np.array(q, dtype=np.float64)
+    wished = np.zeros(model.nv) if v is None else np.array(v, dtype=np.float64)
+
+    def residual(at: Array) -> Array:
+        return model.constraint(at, u=u, par=par, t=t)
+
+    phi, count = residual(q), 0
+    while np.abs(phi).max(initial=0.0) > tolerance and count < iterations:
+        G = model.constraint_jacobian(q, u=u, par=par, t=t)[:, free]
+        step = np.zeros(model.nv)
+        step[free] = -_inverse(model, G) @ phi
+        step *= min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
+        for _ in range(30):
+            tried = model.integrate(q, step)
+            phi_tried = residual(tried)
+            if np.linalg.norm(phi_tried) < np.linalg.norm(phi):
+                break
+            step *= 0.5
+        else:
+            break
+        q, phi, count = tried, phi_tried, count + 1
+    _accept(model, q, phi, tolerance, count, held)
+    _check_rotations(model, q, u, par)
+    G = model.constraint_jacobian(q, u=u, par=par, t=t)
+    rate = model.constraint_rate(q, wished, u=u, par=par, t=t)
+    change = np.zeros(model.nv)
+    change[free] = -_inverse(model, G[:, free]) @ rate
+    speeds = wished + change
+    left = model.constraint_rate(q, speeds, u=u, par=par, t=t)
+    scale = 1.0 + float(np.abs(wished).max(initial=0.0))
+    if np.abs(left).max(initial=0.0) > 1e3 * tolerance * scale:
+        worst = int(np.argmax(np.abs(left)))
+        raise AssemblyError(
+            Problem(
+                f"model '{model.record.name}': no speeds keep it closed",
+                f"G v - b = {left[worst]:.3g} at '{model.names.constraints[worst]}'",
+                "the speeds that are held must allow G v = b",
+                "hold fewer speeds",
+            )
+        )
+    rank = int(np.linalg.matrix_rank(G, tol=RANK * max(float(np.linalg.norm(G, 2)), 1e-300))) if G.size else 0
+    return Assembled(q, speeds, float(np.abs(phi).max(initial=0.0)), count, rank)
+
+
+def _inverse(model: Model, G: Array) -> Array:
+    """The pseudo-inverse of the constraints' Jacobian."""
+    if not np.all(np.isfinite(G)):
+        worst = model.names.constraints[int(np.argmin(np.isfinite(G).all(axis=1)))]
+        raise AssemblyError(
+            Problem(
+                f"model '{model.record.name}': can't be assembled from this guess",
+                f"'{worst}' has no finite derivative there",
+                "constraints are smooth near the guess; a disc that lies flat has no contact, for example",
+                "start from another guess",
+            )
+        )
+    return np.asarray(np.linalg.pinv(G, rcond=RANK), dtype=np.float64)
+
+
+def free_speeds(model: Model, held: Collection[str]) -> Indices:
+    """Indices of the speeds that are not held.
+
+    Raises:
+        UnknownNameError: A name is not that of a speed.
+    """
+    for name in held:
+        if name not in model.names.v:
+            raise UnknownNameError(
+                Problem(
+                    f"held: no speed '{name}'",
+                    name,
+                    "held names speeds of the model",
+                    did_you_mean(name, model.names.v) or "see model.names.v",
+                )
+            )
+    return np.array([i for i, name in enumerate(model.names.v) if name not in held], dtype=np.intp)
+
+
+def _accept(model: Model, q: Array, phi: Array, tolerance: float, count: int, held: Collection[str]) -> None:
+    # Rounding of the coordinates themselves bounds what can be reached.
+    reachable = max(tolerance, 1e-14 * (1.0 + float(np.abs(q).max(initial=0.0))))
+    if np.abs(phi).max(initial=0.0) <= reachable:
+        return
+    worst = int(np.argmax(np.abs(phi)))
+    also = f"; held: {', '.join(held)}" if held else ""
+    raise AssemblyError(
+        Problem(
+            f"model '{model.record.name}': can't be assembled from this guess",
+            f"after {count} steps phi = {phi[worst]:.3g} at '{model.names.constraints[worst]}'{also}",
+            f"|phi| <= {tolerance:g}; either no configuration closes it, or the guess leads to none",
+            "start nearer, hold fewer coordinates, or check lengths",
+        )
+    )
+
+
+def _check_rotations(model: Model, q: Array, u: ArrayLike | None, par: ArrayLike | None) -> None:
+    """Conditions on rotations vanish at the opposite posture, too; that one is not closed."""
+    for closure in model.record.closures:
+        if not closure.rotations:
+            continue
+        R_A, R_B = (
+            np.eye(3) if frame is None else model.frame_pose(frame, q, u=u, par=par)[1]
+            for frame in (closure.first, closure.second)
+        )
+        cosines = np.diag(R_A.T @ R_B)
+        blocked = closure.rotations
+        judged = {3: [0, 1, 2], 2: [k for k in range(3) if k not in blocked]}.get(len(blocked), [])
+        worst = min((float(cosines[k]) for k in judged), default=1.0)
+        if worst < 0.0:
+            angle = np.degrees(np.arccos(max(worst, -1.0)))
+            raise AssemblyError(
+                Problem(
+                    f"model '{model.record.name}': closure '{closure.name}' is closed the wrong way round",
+                    f"axes that are to be parallel are {angle:.0f} degrees apart",
+                    "conditions on rotations hold up to a right angle from the closed posture",
+                    "start from a guess on the right side",
+                )
+            )

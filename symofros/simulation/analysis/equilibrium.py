@@ -1,0 +1,129 @@
+"""Equilibria and steady motions: configurations in which the speeds stay as they are (docs/theory/linear.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from symofros.errors import EquilibriumError, Problem
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.assembly import free_speeds
+
+# Largest step of a coordinate at once.
+LARGEST_STEP = 0.5
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A state whose speeds do not change.
+
+    Attributes:
+        q: Configuration (nq).
+        v: Speeds (nv).
+        u: Inputs (nu).
+        lam: Multipliers (nc).
+        effort: Effort that holds the held coordinates (nv); zero for the others [N m or N].
+        residual: Largest imbalance, relative to the largest force.
+        iterations: Steps taken.
+    """
+
+    q: Array
+    v: Array
+    u: Array
+    lam: Array
+    effort: Array
+    residual: float
+    iterations: int
+
+
+def equilibrium(
+    model: Model,
+    q: ArrayLike | None = None,
+    v: ArrayLike | None = None,
+    u: ArrayLike | None = None,
+    *,
+    held: Collection[str] = (),
+    par: ArrayLike | None = None,
+    t: float = 0.0,
+    tolerance: float = 1e-11,
+    iterations: int = 100,
+) -> Equilibrium:
+    """Solve M 0 + h - Q - G^T lam = 0, phi = 0 for the configuration, by Newton's method with exact derivatives.
+
+    Args:
+        model: Model, with or without constraints.
+        q: Guess (nq); the neutral configuration if not given.
+        v: Speeds that stay (nv), zero if not given: a spin makes it a steady motion.
+        u: Inputs (nu).
+        held: Names of speeds whose coordinates stay; what they need is returned as their effort.
+        par: Run-time parameters.
+        t: Time.
+        tolerance: Bound of the imbalance, relative to the largest force.
+        iterations: Most steps.
+
+    Raises:
+        EquilibriumError: None was found; names the coordinate with the largest imbalance.
+        UnknownNameError: `held` names something that is not a speed.
+    """
+    model = model.with_precision("double")
+    free = free_speeds(model, held)
+    nv, nc = model.nv, model.nc
+    q = model.neutral() if q is None else np.array(q, dtype=np.float64)
+    v = np.zeros(nv) if v is None else np.array(v, dtype=np.float64)
+    u = np.array(model.record.u_default if u is None else u, dtype=np.float64)
+    lam, still = np.zeros(nc), np.zeros(nv)
+
+    def residual(at: Array, lam: Array) -> tuple[Array, float]:
+        _, h, Q = model.dynamics(at, v, u, par=par, t=t)
+        balance, scale = h - Q, max(float(np.abs(h).max(initial=0.0)), float(np.abs(Q).max(initial=0.0)))
+        if nc:
+            reaction = model.constraint_jacobian(at, u=u, par=par, t=t).T @ lam
+            balance, scale = balance - reaction, max(scale, float(np.abs(reaction).max(initial=0.0)))
+            return np.concatenate([balance, model.constraint(at, u=u, par=par, t=t)]), scale or 1.0
+        return balance, scale or 1.0
+
+    rows = np.concatenate([free, np.arange(nv, nv + nc)])
+    R, scale = residual(q, lam)
+    count = 0
+    while _size(R[rows], scale, nc) > tolerance and count < iterations:
+        by_q, _, _ = model.residual_derivatives(q, v, still, u, lam, par=par, t=t)
+        G = model.constraint_jacobian(q, u=u, par=par, t=t) if nc else np.zeros((0, nv))
+        K = np.zeros((nv + nc, nv + nc))
+        K[:nv, :nv], K[:nv, nv:], K[nv:, :nv] = by_q[:nv], -G.T, G
+        columns = rows
+        step = np.zeros(nv + nc)
+        step[columns] = -np.linalg.lstsq(K[np.ix_(rows, columns)], R[rows], rcond=1e-13)[0]
+        step[:nv] *= min(1.0, LARGEST_STEP / max(float(np.abs(step[:nv]).max(initial=0.0)), 1e-300))
+        for _ in range(20):
+            tried, lam_tried = model.integrate(q, step[:nv]), lam + step[nv:]
+            R_tried, scale_tried = residual(tried, lam_tried)
+            if np.linalg.norm(R_tried[rows]) < np.linalg.norm(R[rows]) or count == 0:
+                break
+            step *= 0.5
+        # Forces may vanish one and all at rest: the largest on the way there is what small is measured by.
+        q, lam, R, scale, count = tried, lam_tried, R_tried, max(scale, scale_tried), count + 1
+    left = _size(R[rows], scale, nc)
+    if not left <= max(tolerance, 1e-9):
+        worst = int(rows[np.argmax(np.abs(R[rows]))])
+        names = (*model.names.v, *model.names.constraints)
+        raise EquilibriumError(
+            Problem(
+                f"model '{model.record.name}': no equilibrium was found from this guess",
+                f"after {count} steps an imbalance of {R[worst]:.3g} at '{names[worst]}'",
+                f"the imbalance is below {tolerance:g} of the largest force",
+                "start nearer, give the inputs that hold it, or hold coordinates that have no place of rest",
+            )
+        )
+    effort = np.zeros(nv)
+    held_rows = np.setdiff1d(np.arange(nv), free)
+    effort[held_rows] = R[held_rows]
+    return Equilibrium(q, v, u, lam, effort, left, count)
+
+
+def _size(R: Array, scale: float, nc: int) -> float:
+    """The largest imbalance relative to the largest force; residuals of constraints as they are."""
+    forces, bound = R[: len(R) - nc], R[len(R) - nc :]
+    return max(float(np.abs(forces).max(initial=0.0)) / scale, float(np.abs(bound).max(initial=0.0)))

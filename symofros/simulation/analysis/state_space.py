@@ -1,0 +1,76 @@
+"""Linear state space in independent coordinates (docs/theory/linear.md, eq. 6)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.constrained import RANK
+from symofros.runtime.model import ArrayLike, Model, Output
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """xi' = A xi + B u, y = C xi + D u for the small changes that the constraints allow.
+
+    Attributes:
+        A: (n, n).
+        B: (n, nu).
+        C: (p, n).
+        D: (p, nu).
+        basis: S, whose orthonormal columns lead to the state's changes: (along q, of v) = S xi (2 nv, n).
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    basis: Array
+
+
+def state_space(
+    model: Model,
+    q: ArrayLike,
+    v: ArrayLike | None = None,
+    u: ArrayLike | None = None,
+    *,
+    outputs: Sequence[Output] = (),
+    par: ArrayLike | None = None,
+    t: float = 0.0,
+) -> StateSpace:
+    """Linearise about a state, on the constraints.
+
+    Without constraints xi is the state's change itself. With them, xi are coordinates of what phi = 0 and G v = b
+    leave; inputs must not move the constraints (as a prescribed joint inside a loop would).
+
+    Args:
+        model: Model, with or without constraints.
+        q: Configuration (nq), on the constraints.
+        v: Speeds (nv); zero if not given.
+        u: Inputs (nu); the defaults if not given.
+        outputs: Outputs that y stacks, as in `Model.linearize`.
+        par: Run-time parameters.
+        t: Time.
+
+    Raises:
+        UnknownNameError: No such output or frame.
+    """
+    model = model.with_precision("double")
+    v = np.zeros(model.nv) if v is None else np.asarray(v, dtype=np.float64)
+    u = np.asarray(model.record.u_default if u is None else u, dtype=np.float64)
+    A, B, C, D = model.linearize(q, v, u, outputs=outputs, par=par, t=t)
+    S = _allowed(model, q, v, u, par, t) if model.nc else np.eye(2 * model.nv)
+    return StateSpace(S.T @ A @ S, S.T @ B, C @ S, D, S)
+
+
+def _allowed(model: Model, q: ArrayLike, v: Array, u: Array, par: ArrayLike | None, t: float) -> Array:
+    """A basis of the solutions of P dq = 0, (d(G v - b)/dq) dq + G dv = 0 (eq. 5)."""
+    rate_by_q = model.constraint_rate_derivative(q, v, u=u, par=par, t=t)
+    G = model.constraint_jacobian(q, u=u, par=par, t=t)
+    P = G[[name not in model.record.speed_conditions for name in model.names.constraints]]
+    _, sizes, Vt = np.linalg.svd(np.block([[P, np.zeros_like(P)], [rate_by_q, G]]))
+    basis: Array = Vt[int(np.sum(sizes > RANK * sizes.max(initial=0.0))) :].T
+    return basis

@@ -1,0 +1,131 @@
+"""A run's last status -> its Outcome, with what was met on the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from symofros.errors import SymofrosError
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.analysis.postures import nearest_to_singular
+from symofros.simulation.results.outcome import Kind, Outcome
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.loops import Recorded
+from symofros.simulation.stepping.status import Status
+from symofros.simulation.stepping.stepper import Stepper
+
+_ROUNDING = float(np.finfo(np.float64).eps)
+
+
+def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], settings: Settings) -> Outcome:
+    """How a run ended.
+
+    Args:
+        stepper: Stepper at its last state.
+        recorded: Record of the run.
+        states: All that it recorded: t (n), q, v, u.
+        settings: Settings of the run.
+    """
+    status, interrupted = recorded.status, recorded.interrupted
+    t, q, v = stepper.state
+    run, notes = stepper.run, _notes(stepper, states)
+
+    def outcome(kind: Kind, reason: str, advice: str = "") -> Outcome:
+        return Outcome(kind, t, reason, advice, notes)
+
+    failure = stepper.failure
+    if interrupted or isinstance(failure, KeyboardInterrupt):
+        return outcome("interrupted", "Ctrl-C; the part up to here is kept")
+    if status == Status.TERMINAL_EVENT:
+        return outcome("event", f"event '{stepper.events[run.terminal_event].name}'")
+    if status == Status.CALLBACK_FAILED:
+        return outcome("input failed", f"the input function raised {failure!r}", "call it by itself at this state")
+    if status == Status.DIVERGED and _immobile(stepper, q):
+        return outcome(
+            "singular",
+            "the mass matrix is singular: a speed moves no mass",
+            "give every speed an inertia; look for a mass that a parameter sets to zero",
+        )
+    if status == Status.DIVERGED:
+        return outcome("diverged", f"a state is no longer finite; {_largest(stepper, q, v)}", _steady(settings))
+    if status == Status.SINGULAR:
+        return outcome(
+            "singular",
+            "the mass matrix is singular beyond what the constraints bind",
+            "give every speed an inertia or a constraint",
+        )
+    if status == Status.STEP_TOO_SMALL:
+        return outcome(
+            "step too small",
+            f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below"
+            f" rounding; {_largest(stepper, q, v)}",
+            "look for a force that jumps or a singular posture here; loosen rtol",
+        )
+    if status == Status.NO_CONVERGENCE:
+        return outcome("not converged", "the equations of an implicit step were not solved", "a smaller dt")
+    if status == Status.PROJECTION_FAILED:
+        phi = stepper.model.constraint(q, u=stepper.inputs_now, par=stepper.par, t=t)
+        worst = int(np.argmax(np.abs(phi)))
+        name = stepper.model.names.constraints[worst]
+        return outcome(
+            "constraints lost",
+            f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it",
+            "a smaller step; the loop may be stretched to its end",
+        )
+    if status == Status.RUNNING and t < float(run.t_end):
+        return outcome("interrupted", f"max_steps: {int(run.steps)} steps are done")
+    return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")
+
+
+def _immobile(stepper: Stepper, q: np.ndarray) -> bool:
+    """Whether a tree's mass matrix has lost a direction at the last finite state; constraints may bind such a one."""
+    model = stepper.model
+    if model.nc or not np.all(np.isfinite(q)):
+        return False
+    try:
+        M = model.mass_matrix(q, u=stepper.inputs_now, par=stepper.par)
+    except SymofrosError:  # Options.functions left it out; the run has diverged all the same.
+        return False
+    scale = np.sqrt(np.diag(M))
+    if not np.all(np.isfinite(M)) or not np.all(scale > 0.0):
+        return bool(np.all(np.isfinite(M)))
+    # Each speed in units of its own inertia: a body may be light, but not weightless.
+    return bool(np.linalg.eigvalsh(M / np.outer(scale, scale))[0] <= _ROUNDING * len(M))
+
+
+def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
+    sizes = np.abs(v)
+    if not len(sizes):
+        return "there are no speeds"
+    worst = int(np.argmax(np.where(np.isfinite(sizes), sizes, math.inf)))
+    return f"the fastest speed is '{stepper.model.names.v[worst]}', {v[worst]:.3g}"
+
+
+def _steady(settings: Settings) -> str:
+    if settings.adaptive:
+        return "look for a force or posture that has no bound here"
+    return "a smaller dt, an adaptive or an implicit method; for stiff beams and contacts, an implicit one"
+
+
+def _notes(stepper: Stepper, states: Sequence[Array]) -> tuple[str, ...]:
+    run = stepper.run
+    notes = []
+    if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
+        notes.append(
+            f"a singular posture was passed at t = {run.t_rank_min:.6g} s: the constraints' rank fell from"
+            f" {run.rank_max} to {run.rank_min}"
+        )
+    elif stepper.model.nc:
+        t, q, _, u = states
+        close = nearest_to_singular(stepper.model, t, q, u, stepper.par, int(run.rank_max))
+        if close:
+            when, share = close
+            notes.append(
+                f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of"
+                " their strength: compare with another step"
+            )
+    if run.late_steps:
+        notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")
+    return tuple(notes)

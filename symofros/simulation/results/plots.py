@@ -1,0 +1,54 @@
+"""Pictures of a trajectory, by Matplotlib (the extra `plots`)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+from symofros.errors import Problem, SymofrosError
+from symofros.runtime.calls.kernel import Array
+
+_MOST = 12  # Curves in one picture; more can't be told apart.
+
+
+def figure_class() -> Any:
+    """Matplotlib's Figure, which needs no window.
+
+    Raises:
+        SymofrosError: Matplotlib is not installed.
+    """
+    try:
+        return import_module("matplotlib.figure").Figure
+    except ImportError:
+        missing = Problem(
+            "plot: Matplotlib is not installed",
+            "no module matplotlib",
+            "pictures are an extra",
+            "pip install 'symofros[plots]'",
+        )
+        raise SymofrosError(str(missing)) from None
+
+
+def draw(t: Array, panels: Mapping[str, Mapping[str, Array]], title: str) -> Any:
+    """A Matplotlib figure of panels, one below the other, over one axis of time.
+
+    Args:
+        t: Times (n) [s].
+        panels: Label of the vertical axis -> name of a curve -> values (n).
+        title: Heading of the figure.
+
+    Raises:
+        SymofrosError: Matplotlib is not installed.
+    """
+    figure = figure_class()(figsize=(8.0, 2.2 * len(panels)), layout="constrained")
+    axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+    for axis, (label, curves) in zip(axes, panels.items(), strict=True):
+        for name, values in list(curves.items())[:_MOST]:
+            axis.plot(t, values, label=name)
+        axis.set_ylabel(label)
+        axis.grid(alpha=0.3)
+        axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
+    axes[-1].set_xlabel("t [s]")
+    figure.suptitle(title)
+    return figure

@@ -1,0 +1,139 @@
+"""Many recorded motions of one model, and how each ended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.model import Model
+from symofros.simulation.results.outcome import Kind, Outcome
+from symofros.simulation.results.trajectory import Statistics, Trajectory
+from symofros.simulation.stepping.status import Status
+
+Index = int | tuple[int, ...]
+
+# Status of C -> kind, reason, advice.
+_ENDS: dict[int, tuple[Kind, str, str]] = {
+    Status.FINISHED: ("finished", "the end asked for", ""),
+    Status.RUNNING: ("interrupted", "max_steps are done, or Ctrl-C", ""),
+    Status.DIVERGED: (
+        "diverged",
+        "a state is no longer finite",
+        "a smaller dt or an adaptive method; sf.simulate from this state says more",
+    ),
+    Status.SINGULAR: (
+        "singular",
+        "the mass matrix is singular beyond what the constraints bind",
+        "give every speed an inertia or a constraint",
+    ),
+    Status.STEP_TOO_SMALL: (
+        "step too small",
+        "the error bounds ask for steps below rounding",
+        "look for a force that jumps or a singular posture here; loosen rtol",
+    ),
+    Status.PROJECTION_FAILED: (
+        "constraints lost",
+        "the state is off the constraints and projection does not mend it",
+        "start from sf.assemble; a smaller step; the loop may be stretched to its end",
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Trajectories:
+    """States over time of many runs of one model, whose batch dimensions are written (...).
+
+    Attributes:
+        model: Model that was simulated.
+        t: Times of the samples (m) [s], the same for all.
+        q: Configurations (..., m, nq); NaN where a run ended before.
+        v: Speeds (..., m, nv), as q.
+        u: Inputs (..., m, nu), as q.
+        par: Run-time parameters (..., npar), or (npar) where all runs share them.
+        t_last: End time of each run (...) [s].
+        q_last: Last good configuration of each (..., nq).
+        v_last: Last good speeds of each (..., nv).
+        status: C's last word for each (...); `kinds` and `outcome` put it in words.
+        steps: Steps taken (...).
+        rejected: Steps tried in vain (...).
+        method: Name of the method.
+        seconds: Wall time of all runs together [s].
+        processor_seconds: Processor time of all threads together [s]; other programs do not lengthen it.
+    """
+
+    model: Model
+    t: Array
+    q: Array
+    v: Array
+    u: Array
+    par: Array
+    t_last: Array
+    q_last: Array
+    v_last: Array
+    status: npt.NDArray[np.int32]
+    steps: npt.NDArray[np.int64]
+    rejected: npt.NDArray[np.int64]
+    method: str
+    seconds: float
+    processor_seconds: float
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The batch dimensions."""
+        return self.status.shape
+
+    @property
+    def ok(self) -> npt.NDArray[np.bool_]:
+        """Which runs came to their end (...)."""
+        return np.asarray(self.status == Status.FINISHED)
+
+    @property
+    def kinds(self) -> npt.NDArray[np.str_]:
+        """How each ended, in a word (...): the kind of its Outcome."""
+        return np.asarray(np.vectorize(lambda status: _ENDS[int(status)][0], otypes=["U16"])(self.status))
+
+    def outcome(self, index: Index) -> Outcome:
+        """How one run ended."""
+        kind, reason, advice = _ENDS[int(self.status[index])]
+        return Outcome(kind, float(self.t_last[index]), reason, advice)
+
+    def __getitem__(self, index: Index) -> Trajectory:
+        """One run, as far as it was recorded; `index` addresses all batch dimensions."""
+        reached = self.t <= self.t_last[index] + 1e-9 * abs(self.t_last[index])
+        reached &= ~np.isnan(self.q[index]).any(axis=-1)
+        par = self.par[index] if self.par.ndim > 1 else self.par
+        statistics = Statistics(self.method, int(self.steps[index]), int(self.rejected[index]), -1, -1, self.seconds)
+        return Trajectory(
+            self.model,
+            self.t[reached],
+            self.q[index][reached],
+            self.v[index][reached],
+            self.u[index][reached],
+            par,
+            self.outcome(index),
+            (),
+            statistics,
+        )
+
+    def __len__(self) -> int:
+        """Number of runs."""
+        return self.status.size
+
+    def __iter__(self) -> Iterator[Trajectory]:
+        """Run after run."""
+        return (self[index] for index in np.ndindex(self.shape))
+
+    def __str__(self) -> str:
+        """How many ended how, and the first that went wrong."""
+        kinds = self.kinds
+        names, counts = np.unique(kinds, return_counts=True)
+        lines = [", ".join(f"{count} {name}" for name, count in zip(names, counts, strict=True)) or "no trajectories"]
+        wrong = np.argwhere(~self.ok)
+        if len(wrong):
+            index = tuple(map(int, wrong[0]))
+            lines.append(f"  first: {list(index)}: {self.outcome(index)}")
+        return "\n".join(lines)

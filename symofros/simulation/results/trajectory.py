@@ -1,0 +1,204 @@
+"""A recorded motion, and what follows from it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.model import Model
+from symofros.simulation.results.outcome import Outcome
+from symofros.simulation.results.plots import draw
+from symofros.simulation.results.saving import refuse_suffix, write_columns, write_npz
+
+
+class Found(NamedTuple):
+    """An event that was met: its name, when, and the state."""
+
+    name: str
+    t: float
+    q: Array
+    v: Array
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """What a run cost.
+
+    Attributes:
+        method: Name of the method.
+        steps: Accepted; `rejected` were tried in vain.
+        evaluations: Of the accelerations; `jacobians` of their derivatives.
+        seconds: Wall time in the stepping loop [s].
+        late_steps: With a pace: steps that began after their time; `late_max` and `late_mean` [s] are how late the
+            clock was, sleeping included.
+        rank_min: Lowest rank of the constraints' Jacobian met, `rank_max` the highest; -1 without constraints.
+        worked: Processor time of this thread in that loop [s]; NaN of a batch, which has several threads.
+    """
+
+    method: str
+    steps: int
+    rejected: int
+    evaluations: int
+    jacobians: int
+    seconds: float
+    late_steps: int = 0
+    late_max: float = 0.0
+    late_mean: float = 0.0
+    rank_min: int = -1
+    rank_max: int = -1
+    worked: float = math.nan
+
+
+class Frames(Mapping[str, tuple[Array, Array]]):
+    """Frame name -> p_WF (n, 3) and R_WF (n, 3, 3) along a trajectory, computed when asked for."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        self._trajectory = trajectory
+
+    def __getitem__(self, name: str) -> tuple[Array, Array]:
+        """Pose over time."""
+        run = self._trajectory
+        if name not in run.model.record.frame_names and name not in run.model.record.frame_aliases:
+            raise KeyError(name)
+        return run.model.frame_pose(name, run.q, u=run.u, par=run.par)
+
+    def __iter__(self) -> Iterator[str]:
+        """Names."""
+        return iter(self._trajectory.model.names.frames)
+
+    def __len__(self) -> int:
+        """How many."""
+        return len(self._trajectory.model.names.frames)
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """States over time, of one run.
+
+    Attributes:
+        model: Model that was simulated.
+        t: Times (n) [s].
+        q: Configurations (n, nq).
+        v: Speeds (n, nv).
+        u: Inputs (n, nu).
+        par: Run-time parameters (npar).
+        outcome: Outcome: how the run ended.
+        events: Events met, in the order of time.
+        statistics: Cost of the run: steps, evaluations, time.
+    """
+
+    model: Model
+    t: Array
+    q: Array
+    v: Array
+    u: Array
+    par: Array
+    outcome: Outcome
+    events: tuple[Found, ...] = ()
+    statistics: Statistics = field(default_factory=lambda: Statistics("", 0, 0, 0, 0, 0.0))
+
+    def __len__(self) -> int:
+        """Number of recorded states."""
+        return len(self.t)
+
+    @cached_property
+    def _dynamics(self) -> tuple[Array, Array]:
+        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
+        return a, lam
+
+    @property
+    def a(self) -> Array:
+        """Accelerations v' (n, nv) at the recorded states, constraints kept, without stabilising terms."""
+        return self._dynamics[0]
+
+    @property
+    def lam(self) -> Array:
+        """Multipliers (n, nc)."""
+        return self._dynamics[1]
+
+    @cached_property
+    def kinetic_energy(self) -> Array:
+        """(n) [J]."""
+        return self.model.kinetic_energy(self.q, self.v, u=self.u, par=self.par)
+
+    @cached_property
+    def potential_energy(self) -> Array:
+        """(n) [J]."""
+        return self.model.potential_energy(self.q, u=self.u, par=self.par, t=self.t)
+
+    @property
+    def energy(self) -> Array:
+        """Kinetic and potential energy together (n) [J]."""
+        total: Array = self.kinetic_energy + self.potential_energy
+        return total
+
+    @property
+    def frames(self) -> Frames:
+        """Frame name -> (p (n, 3), R (n, 3, 3))."""
+        return Frames(self)
+
+    def __getitem__(self, name: str) -> Array:
+        """A coordinate, speed ("d" and the coordinate's name, or its own) or input by name (n)."""
+        names = self.model.names
+        if name in names.q:
+            return self.q[:, names.q.index(name)]
+        if name in names.u:
+            return self.u[:, names.u.index(name)]
+        for candidate in (name, name.removeprefix("d")):
+            if candidate in names.v:
+                return self.v[:, names.v.index(candidate)]
+        raise KeyError(name)
+
+    def columns(self) -> dict[str, Array]:
+        """Time, coordinates, speeds and inputs by name (n); a speed that shares its coordinate's name bears a d."""
+        names = self.model.names
+        found = {"t": self.t} | {name: self.q[:, i] for i, name in enumerate(names.q)}
+        for i, name in enumerate(names.v):
+            found[f"d{name}" if name in names.q else name] = self.v[:, i]
+        return found | {(name if name not in found else f"u.{name}"): self.u[:, i] for i, name in enumerate(names.u)}
+
+    def plot(self, *names: str) -> Any:
+        """A Matplotlib figure of coordinates (those named), speeds, inputs and energy; `.savefig(path)` writes it.
+
+        Raises:
+            SymofrosError: Matplotlib is not installed.
+        """
+        known = self.model.names
+        panels = {
+            "coordinates [rad, m]": _curves(known.q, self.q, names),
+            "speeds [rad/s, m/s]": _curves(known.v, self.v, names),
+            "change of energy [J]": {"kinetic + potential": self.energy - self.energy[0]},
+        }
+        if self.u.any():
+            panels["inputs [N m, N]"] = _curves(known.u, self.u, ())
+        title = f"{self.model.record.name}: {self.statistics.method}, {self.outcome.kind} at t = {self.outcome.t:.4g} s"
+        return draw(self.t, panels, title)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the trajectory: .npz (arrays), .csv or .parquet (a column a name).
+
+        Raises:
+            SymofrosError: Another suffix; or Parquet without pyarrow.
+        """
+        path = Path(path)
+        refuse_suffix(path, "trajectory")
+        if path.suffix == ".npz":
+            arrays: dict[str, Any] = {"t": self.t, "q": self.q, "v": self.v, "u": self.u, "par": self.par}
+            names = self.model.names
+            write_npz(
+                path,
+                {**arrays, "names_q": names.q, "names_v": names.v, "names_u": names.u, "outcome": str(self.outcome)},
+            )
+        else:
+            write_columns(path, self.columns(), "trajectory")
+        return path
+
+
+def _curves(names: tuple[str, ...], values: Array, chosen: tuple[str, ...]) -> dict[str, Array]:
+    """Columns by name: those chosen, or all."""
+    return {name: values[:, i] for i, name in enumerate(names) if not chosen or name in chosen}

@@ -1,0 +1,1 @@
+"""The loops in C in Python's hands: methods, steppers, batches, SUNDIALS."""

@@ -1,0 +1,188 @@
+"""Many trajectories of one model by native/stepping/batch_stepper.c: each thread steps a share of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from threading import Event
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.errors import CompileError
+from symofros.runtime.calls.kernel import Array, Lanes
+from symofros.runtime.model import Model
+from symofros.simulation.batch_inputs import BatchInputs
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.stepper import Stepper
+
+# Trajectories that are active at once: eight vectors of eight lanes; few enough for the first two levels of cache.
+_SLOTS = 64
+# Steps of each trajectory in one call of C, between looks at Ctrl-C.
+_STEPS_PER_CALL = 64
+
+
+@dataclass(frozen=True)
+class InitialStates:
+    """Initial states, inputs and parameters of trajectories, one row each, or one for all.
+
+    Attributes:
+        q: Configurations (n or 1, nq).
+        v: Speeds (n or 1, nv).
+        par: Run-time parameters (n or 1, npar).
+        inputs: Inputs of all trajectories.
+        n: Number of trajectories.
+        t: Initial time [s].
+    """
+
+    q: Array
+    v: Array
+    par: Array
+    inputs: BatchInputs
+    n: int
+    t: float
+
+
+@dataclass(frozen=True)
+class BatchResults:
+    """Final states and samples of trajectories, written by C.
+
+    Attributes:
+        status: Final Status (n); below zero beforehand keeps a trajectory from starting.
+        t: Final times (n) [s].
+        q: Final configurations (n, nq).
+        v: Final speeds (n, nv).
+        steps: Accepted steps (n).
+        rejected: Rejected steps (n).
+        q_samples: Configurations at the times of the grid (n, m, nq); NaN where a trajectory ended before.
+        v_samples: Speeds (n, m, nv), as q_samples.
+        u_samples: Inputs (n, m, nu), as q_samples.
+    """
+
+    status: npt.NDArray[np.int32]
+    t: Array
+    q: Array
+    v: Array
+    steps: npt.NDArray[np.int64]
+    rejected: npt.NDArray[np.int64]
+    q_samples: Array
+    v_samples: Array
+    u_samples: Array
+
+    @classmethod
+    def empty(cls, model: Model, n: int, samples: int) -> BatchResults:
+        """Arrays for n trajectories of that many samples, none of which is reached yet."""
+        q, v, u = (np.full((n, samples, size), np.nan) for size in (model.nq, model.nv, model.nu))
+        steps, rejected = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
+        final_q, final_v = np.zeros((n, model.nq)), np.zeros((n, model.nv))
+        return cls(np.zeros(n, dtype=np.int32), np.zeros(n), final_q, final_v, steps, rejected, q, v, u)
+
+
+class BatchStepper:
+    """Every `stride`-th trajectory from the `first` on, stepped by one thread.
+
+    Args:
+        model: Compiled to C.
+        settings: Settings of every trajectory.
+        initial: Initial states of all trajectories.
+        results: Arrays for the results of all trajectories.
+        first: Index of the first trajectory.
+        stride: Number of threads that share the trajectories.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        settings: Settings,
+        initial: InitialStates,
+        results: BatchResults,
+        first: int,
+        stride: int,
+    ) -> None:
+        self.single = Stepper(model, settings.method, initial.inputs.plan, (), initial.par[0])
+        settings.apply(self.single)
+        self._native, self._memory = self.single.native, self.single.memory
+        self._batch = batch = self.single.ffi.new("sym_batch *")
+        batch.slots = min(_SLOTS, max(2, -(-initial.n // stride)))
+        batch.next, batch.stride, batch.n, batch.max_steps = first, stride, initial.n, settings.max_steps or 0
+        self._fill_prototype()
+        self._fill_functions(initial.par)
+        self._fill_rows(initial, results)
+        if not self._native.sym_batch_start(batch, self._memory.zeros(self._native.sym_batch_size(batch))):
+            raise CompileError("the integrator does not know every input of a batch function")
+
+    def _fill_prototype(self) -> None:
+        """The single run whose settings every slot copies, and in which first steps are evaluated."""
+        run, memory = self.single.run, self._memory
+        run.capacity = run.n_grid
+        run.record_t = memory.zeros(run.n_grid)
+        run.work = memory.zeros(self._native.sym_run_work_size(run))
+        self._batch.prototype = run
+
+    def _fill_functions(self, par: Array) -> None:
+        """Functions that all active trajectories call at once; `project` is called one by one."""
+        for name in ("forward_dynamics", "law", "project"):
+            kernel = self.single.kernels.get(name)
+            if kernel is None:
+                continue
+            function = getattr(self._batch, name)
+            self._fill_shared_rows(function.pre, kernel.prepare(par))
+            if name == "project":
+                continue
+            # Laws are few operations on what users gave: in double precision.
+            precision = self.single.model.precision if name == "forward_dynamics" else "double"
+            by_vectors = kernel.in_lanes(Lanes(function.pre.stride != 0, precision))
+            function.function = by_vectors.function
+            self._memory.keep(by_vectors)
+
+    def _fill_shared_rows(self, rows: Any, values: Array) -> None:
+        """A sym_batch_rows of an array (n, size), or (1, size) for all trajectories."""
+        rows.at, rows.stride = self._memory.shared(values), values.shape[1] if len(values) > 1 else 0
+
+    def _fill_rows(self, initial: InitialStates, results: BatchResults) -> None:
+        batch, memory = self._batch, self._memory
+        for name, rows in (("q0", initial.q), ("v0", initial.v), ("u_constant", initial.inputs.constant)):
+            self._fill_shared_rows(getattr(batch, name), rows)
+        batch.signal_stride = memory.own("int64_t[]", list(initial.inputs.strides))
+        arrays: dict[str, npt.NDArray[Any]] = {
+            "final_status": results.status,
+            "final_t": results.t,
+            "final_q": results.q,
+            "final_v": results.v,
+            "steps": results.steps,
+            "rejected": results.rejected,
+            "record_q": results.q_samples,
+            "record_v": results.v_samples,
+            "record_u": results.u_samples,
+        }
+        for name, array in arrays.items():
+            setattr(batch, name, memory.shared(array))
+
+    def run(self, stop: Event) -> None:
+        """Step every trajectory to its end, or until `stop` is set. The interpreter lock is released meanwhile."""
+        try:
+            while self._native.sym_batch_advance(self._batch, _STEPS_PER_CALL):
+                if stop.is_set():
+                    break
+        finally:  # Ctrl-C in the main thread comes between two calls: active trajectories end where they are.
+            self._native.sym_batch_stop(self._batch)
+
+
+def run_batch_steppers(steppers: Sequence[BatchStepper]) -> None:
+    """Run each in a thread of its own; Ctrl-C ends all, and keeps the results so far."""
+    stop = Event()
+    try:
+        if len(steppers) == 1:
+            steppers[0].run(stop)
+            return
+        with ThreadPoolExecutor(len(steppers)) as pool:
+            running = [pool.submit(stepper.run, stop) for stepper in steppers]
+            try:
+                for future in running:
+                    future.result()
+            finally:
+                stop.set()
+    except KeyboardInterrupt:
+        pass

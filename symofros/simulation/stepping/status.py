@@ -1,0 +1,24 @@
+"""Status codes of a run, read from native/stepping/symofros_stepper.h, which says what each means."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from symofros.runtime.calls.declarations import constants
+
+_C = constants()
+
+
+class Status(IntEnum):
+    """How a run stands: not below zero while it can go on or has come to a proper end."""
+
+    RUNNING = _C["SYM_RUNNING"]
+    FINISHED = _C["SYM_FINISHED"]
+    RECORDS_FULL = _C["SYM_RECORDS_FULL"]
+    TERMINAL_EVENT = _C["SYM_TERMINAL_EVENT"]
+    DIVERGED = _C["SYM_DIVERGED"]
+    SINGULAR = _C["SYM_SINGULAR"]
+    STEP_TOO_SMALL = _C["SYM_STEP_TOO_SMALL"]
+    CALLBACK_FAILED = _C["SYM_CALLBACK_FAILED"]
+    NO_CONVERGENCE = _C["SYM_NO_CONVERGENCE"]
+    PROJECTION_FAILED = _C["SYM_PROJECTION_FAILED"]

@@ -1,0 +1,229 @@
+"""One run of one model by the integrator of native/: its memory, the model's functions bound to it, its records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from symofros.errors import CompileError
+from symofros.runtime.calls.binding import NativeMemory, native_library
+from symofros.runtime.calls.declarations import constants, interface
+from symofros.runtime.calls.kernel import Array, Kernel
+from symofros.runtime.calls.library import CompiledKernel
+from symofros.runtime.model import Model
+from symofros.simulation.events import Event
+from symofros.simulation.inputs import InputPlan
+from symofros.simulation.stepping.methods import Method
+from symofros.simulation.stepping.tableaus import Tableau
+
+# Events recorded between two calls that take them.
+_EVENT_ROWS = 64
+_INPUT_CALLBACK = "int32_t(void *, double, const double *, const double *, double *)"
+
+
+class Stepper:
+    """One run of one model.
+
+    Args:
+        model: Compiled to C.
+        method: The stepping method.
+        inputs: The inputs by how they are evaluated.
+        events: Zero crossings to locate.
+        par: Run-time parameters (npar).
+
+    Attributes:
+        memory: Arrays that C points to.
+        system: The sym_system: the model's functions and the evaluation point.
+        run: The sym_run: settings, present state, counters.
+        kernels: Slot of the system, such as "forward_dynamics" -> the function bound to it.
+        failure: Exception that an input function raised; it ended the run.
+
+    Raises:
+        SymofrosError: The model is interpreted.
+    """
+
+    def __init__(self, model: Model, method: Method, inputs: InputPlan, events: Sequence[Event], par: Array) -> None:
+        self.ffi, self.native = interface(), native_library()
+        self.model, self.method, self.events, self.par = model, method, events, par
+        self.failure: BaseException | None = None
+        self.memory = NativeMemory()
+        self.kernels: dict[str, CompiledKernel] = {}
+        self.system = self.ffi.new("sym_system *")
+        self.run = self.ffi.new("sym_run *")
+        self._fill_system()
+        self._fill_inputs(inputs)
+        self._fill_events()
+        self._bind_functions()
+        self._fill_method()
+        self.run.system = self.system
+
+    def _fill_system(self) -> None:
+        """Sizes, segments, and the evaluation point."""
+        model, system, memory = self.model, self.system, self.memory
+        system.nq, system.nv, system.nu, system.nc = model.nq, model.nv, model.nu, model.nc
+        kinds = constants()
+        segments = [(kinds[s.constant], s.q, s.v, s.size) for s in model.record.segments]
+        system.n_segments, system.segments = len(segments), memory.own("sym_segment[]", segments)
+        on_speeds = [int(name in model.record.speed_conditions) for name in model.names.constraints]
+        system.on_speeds = memory.own("int32_t[]", on_speeds)
+        sizes = {"q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "gains": 2 * model.nc}
+        for name, size in (sizes | {"a": model.nv, "lam": model.nc, "rank": 1}).items():
+            setattr(system, name, memory.zeros(size))
+
+    def _fill_inputs(self, inputs: InputPlan) -> None:
+        system, memory = self.system, self.memory
+        system.u_constant = memory.doubles(inputs.constant)
+        signals = [
+            (index, int(linear), len(t), memory.shared(t), memory.shared(values))
+            for index, t, values, linear in inputs.signals
+        ]
+        system.n_signals, system.signals = len(signals), memory.own("sym_signal[]", signals)
+        indices = sorted(inputs.formulas)
+        system.n_law, system.law_inputs = len(indices), memory.own("int32_t[]", indices)
+        if indices:
+            derivatives = self.method.family.implicit
+            self._bind("law", self.model.formulas([inputs.formulas[i] for i in indices], derivatives))
+        if inputs.callback is not None:
+            system.callback = memory.callback(_INPUT_CALLBACK, self._input_callback(inputs.callback))
+
+    def _fill_events(self) -> None:
+        system, memory, events = self.system, self.memory, self.events
+        system.n_events = len(events)
+        system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
+        system.event_terminal = memory.own("int32_t[]", [int(event.terminal) for event in events])
+        if events:
+            self._bind("events", self.model.formulas([event.formula for event in events], derivatives=False))
+
+    def _bind_functions(self) -> None:
+        """The model's functions, each in the slot of its name."""
+        system = self.system
+        outputs = {"a": system.a, "lam": system.lam, "rank": system.rank}
+        self._bind("forward_dynamics", self.model.kernel("forward_dynamics"), outputs)
+        for name in self.method.family.functions:
+            self._bind(name, self.model.kernel(name))
+        if self.model.nc:
+            self._bind("project", self.model.kernel("project"))
+
+    def _bind(self, slot: str, kernel: Kernel, outputs: dict[str, Any] | None = None) -> None:
+        self.kernels[slot] = self.memory.bind(getattr(self.system, slot), kernel, self.par, outputs)
+        if not self.native.sym_system_bind(self.system, self.ffi.addressof(self.system, slot)):
+            raise CompileError(f"the integrator does not know every input of '{kernel.signature.name}'")
+
+    def _input_callback(self, function: Callable[[float, Array, Array], Any]) -> Callable[..., int]:
+        """A Python function as the inputs; what it raises is kept and ends the run."""
+        nq, nv, nu, view = self.model.nq, self.model.nv, self.model.nu, self.memory.view
+
+        def call(_data: Any, t: float, q: Any, v: Any, u: Any) -> int:
+            try:
+                values = np.asarray(function(t, view(q, nq).copy(), view(v, nv).copy()), dtype=np.float64)
+                if values.shape != (nu,):
+                    raise ValueError(f"the input function returned shape {values.shape}, not ({nu},)")
+                view(u, nu)[:] = values
+            except BaseException as error:  # It may not pass through C; the loop raises it again.
+                self.failure = error
+                return 1
+            return 0
+
+        return call
+
+    def _fill_method(self) -> None:
+        self.run.method = constants()[self.method.constant]
+        self.native.sym_run_set_defaults(self.run)
+        fill_tableau(self.run.tableau, self.method.tableau, self.memory)
+
+    def start(self, q: Array, v: Array, capacity: int) -> int:
+        """Place the run at its initial state, with room for `capacity` records.
+
+        Returns:
+            A Status.
+        """
+        run, model, memory = self.run, self.model, self.memory
+        run.q, run.v = memory.doubles(q), memory.doubles(v)
+        run.work = memory.zeros(self.native.sym_run_work_size(run))
+        run.pivots = memory.own("int32_t[]", 2 * (model.nv + model.nc))
+        run.event_values = memory.zeros(3 * len(self.events))
+        run.capacity, run.event_capacity = capacity, max(_EVENT_ROWS, 2 * len(self.events))
+        self._records = memory.table(run, "record_", capacity, t=1, q=model.nq, v=model.nv, u=model.nu)
+        self._event_records = memory.table(run, "event_", run.event_capacity, t=1, q=model.nq, v=model.nv)
+        self._event_index = np.zeros(run.event_capacity, dtype=np.int32)
+        run.event_index = memory.shared(self._event_index)
+        return int(self.native.sym_run_start(run))
+
+    def advance(self, steps: int) -> int:
+        """Make at most `steps` steps. The interpreter lock is released meanwhile.
+
+        Returns:
+            A Status.
+        """
+        return int(self.native.sym_run_advance(self.run, steps))
+
+    def take_records(self) -> list[Array]:
+        """The records since the last call, t (n), q (n, nq), v (n, nv), u (n, nu); their rows are free again."""
+        n = int(self.run.n_records)
+        self.run.n_records = 0
+        t, q, v, u = (array[:n].copy() for array in self._records)
+        return [t[:, 0], q, v, u]
+
+    def take_events(self) -> list[tuple[int, float, Array, Array]]:
+        """The events located since the last call: index, t, q, v; their rows are free again."""
+        n = int(self.run.n_event_records)
+        self.run.n_event_records = 0
+        t, q, v = self._event_records
+        return [(int(self._event_index[i]), float(t[i, 0]), q[i].copy(), v[i].copy()) for i in range(n)]
+
+    def set_gains(self, gains: Array) -> None:
+        """Baumgarte's gains (2 nc) [1/s]."""
+        self.memory.view(self.system.gains, len(gains))[:] = gains
+
+    def inputs_at(self, t: float, q: Array, v: Array) -> Array:
+        """The inputs at a state (nu); the last ones where a function of the caller's fails."""
+        self.run.q, self.run.v = self.memory.doubles(q), self.memory.doubles(v)
+        self.place(t, np.concatenate([q, v]))
+        return self.inputs_now
+
+    def place(self, t: float, y: Array) -> int:
+        """Make y = (q, v), its quaternions normalised, the present state, and evaluate its inputs; returns a Status."""
+        return int(self.native.sym_run_set_state(self.run, t, self._pointer(y)))
+
+    def slope(self, t: float, y: Array, rate: Array) -> int:
+        """Write the rate y' = (N v, v') of a state y = (q, v) into `rate`; returns a Status."""
+        return int(self.native.sym_run_rate(self.run, t, self._pointer(y), self._pointer(rate)))
+
+    def configuration_rate(self, q: Array, w: Array) -> Array:
+        """The rate N w (nq) at speeds w (nv) and the configuration that was placed last; q: its numbers."""
+        rate = np.zeros(self.model.nq)
+        self.native.sym_run_configuration_rate(self.run, self._pointer(q), self._pointer(w), self._pointer(rate))
+        return rate
+
+    def event_values(self, t: float, y: Array, values: Array) -> int:
+        """Write the values of the events at a state y = (q, v) into `values`; returns a Status."""
+        return int(self.native.sym_run_event_values(self.run, t, self._pointer(y), self._pointer(values)))
+
+    def _pointer(self, array: Array) -> Any:
+        """C's view of an array of doubles, which the caller keeps."""
+        return self.ffi.cast("double *", array.ctypes.data)
+
+    @property
+    def inputs_now(self) -> Array:
+        """The inputs last evaluated (nu)."""
+        return self.memory.view(self.system.u, self.model.nu).copy()
+
+    @property
+    def state(self) -> tuple[float, Array, Array]:
+        """The present t, q, v."""
+        q, v = self.memory.view(self.run.q, self.model.nq), self.memory.view(self.run.v, self.model.nv)
+        return float(self.run.t), q.copy(), v.copy()
+
+
+def fill_tableau(struct: Any, tableau: Tableau, memory: NativeMemory) -> None:
+    """Write a method's coefficients into a sym_tableau."""
+    struct.stages, struct.dense_stages, struct.fsal_stage = tableau.stages, len(tableau.b), tableau.last
+    struct.estimate_order, struct.n_estimates = tableau.error_order, len(tableau.errors)
+    struct.dense_degree, struct.gamma = tableau.dense.shape[1], tableau.gamma
+    absent = np.zeros(tableau.stages)
+    e, e2, *_ = [*tableau.errors, absent, absent]
+    arrays = {"a": tableau.a, "b": tableau.b, "c": tableau.c, "e": e, "e2": e2, "dense": tableau.dense}
+    for name, values in (arrays | {"coupling": tableau.coupling, "d": tableau.d}).items():
+        setattr(struct, name, memory.doubles(values))

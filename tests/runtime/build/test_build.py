@@ -1,0 +1,145 @@
+"""The cache: content-keyed, safe under concurrency and killed compilations; fallbacks that say so."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models.rigid.random_tree import random_tree
+from symofros.runtime.build import toolchain
+from symofros.runtime.build.build import build_library
+from symofros.runtime.build.toolchain import find_toolchain
+
+SCRIPT = """
+import sys, numpy as np, symofros as sf
+from reference_models.rigid.random_tree import random_tree
+m = sf.compile(random_tree(31))
+print(repr(float(m.mass_matrix(m.neutral()).sum())))
+"""
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+def libraries(cache: Path) -> list[Path]:
+    return sorted(cache.glob("*.so"))
+
+
+def test_equal_content_compiles_once(cache: Path) -> None:
+    sf.compile(random_tree(31))
+    first = {path: path.stat().st_mtime_ns for path in libraries(cache)}
+    sf.compile(random_tree(31))
+    assert {path: path.stat().st_mtime_ns for path in libraries(cache)} == first and len(first) == 1
+    sf.compile(random_tree(32))
+    sf.compile(random_tree(31), sf.Options(flags=("-O1",)))
+    assert len(libraries(cache)) == 3
+
+
+def test_concurrent_processes_agree(cache: Path) -> None:
+    root = Path(__file__).parents[3]
+    started = [
+        subprocess.Popen([sys.executable, "-c", SCRIPT], cwd=root, stdout=subprocess.PIPE, text=True) for _ in range(4)
+    ]
+    printed = {process.communicate(timeout=120)[0] for process in started}
+    assert len(printed) == 1 and printed != {""}
+    assert len(libraries(cache)) == 2  # dynamics, and the mass matrix
+
+
+def test_a_killed_compilation_leaves_nothing_broken(cache: Path, tmp_path: Path) -> None:
+    slow = tmp_path / "slowcc"
+    slow.write_text('#!/bin/sh\ncase "$*" in *--version*) echo slow;; *) touch started; sleep 60;; esac\n')
+    slow.chmod(0o755)
+    root = Path(__file__).parents[3]
+    process = subprocess.Popen(
+        [sys.executable, "-c", SCRIPT], cwd=root, env={**os.environ, "CC": str(slow)}, start_new_session=True
+    )
+    deadline = time.monotonic() + 60
+    while not list(cache.glob(".*/started")) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    assert list(cache.glob(".*/started")), "the compilation was under way"
+    assert not libraries(cache)
+    m = sf.compile(random_tree(31))
+    assert np.isfinite(m.mass_matrix(m.neutral())).all()
+
+
+def test_a_damaged_library_is_named(cache: Path) -> None:
+    sf.compile(random_tree(31))
+    (library,) = libraries(cache)
+    library.unlink()
+    library.write_bytes(b"not a library")
+    # In a new process: this one has the good library mapped under that name.
+    root = Path(__file__).parents[3]
+    done = subprocess.run([sys.executable, "-c", SCRIPT], cwd=root, capture_output=True, text=True)
+    assert "CompileError: the compiled model does not load" in done.stderr
+    assert f"remedy: delete {library.name}" in done.stderr
+
+
+def test_a_compile_error_shows_command_and_words(cache: Path) -> None:
+    chain = find_toolchain()
+    assert chain is not None
+    with pytest.raises(sf.CompileError, match="found:  .*model.c") as caught:
+        build_library("int broken(", "", chain)
+    assert "error" in str(caught.value)
+    assert not libraries(cache) and not list(cache.glob(".*"))
+
+
+def test_a_named_compiler_must_exist(cache: Path) -> None:
+    with pytest.raises(sf.CompileError, match="'nosuchcc'.*not found"):
+        sf.compile(random_tree(31), sf.Options(compiler="nosuchcc"))
+
+
+def test_an_unwritable_cache_is_explained(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    monkeypatch.setenv("SYMOFROS_CACHE", str(blocked / "cache"))
+    with pytest.raises(sf.CompileError, match="SYMOFROS_CACHE"):
+        sf.compile(random_tree(31))
+
+
+@pytest.fixture
+def without_compilers(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr(toolchain.shutil, "which", lambda name: None)
+    find_toolchain.cache_clear()
+    return monkeypatch
+
+
+def test_without_any_compiler_the_interpreter_serves(
+    cache: Path, without_compilers: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    without_compilers.setattr(toolchain.importlib.util, "find_spec", lambda name: None)
+    try:
+        with pytest.warns(sf.CompilerMissingWarning, match="interpreter"):
+            m = sf.compile(random_tree(31))
+        assert np.isfinite(m.mass_matrix(m.random_state(rng)[0])).all()
+        assert not cache.exists()
+    finally:
+        find_toolchain.cache_clear()
+
+
+@pytest.mark.slow(minutes=2)
+def test_the_ziglang_package_serves_as_compiler(
+    cache: Path, without_compilers: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    pytest.importorskip("ziglang")
+    try:
+        with pytest.warns(sf.CompilerMissingWarning, match="ziglang"):
+            m = sf.compile(random_tree(33))
+        q = m.random_state(rng)[0]
+        twin = sf.compile(random_tree(33), sf.Options(backend="interpreter"))
+        np.testing.assert_allclose(m.mass_matrix(q), twin.mass_matrix(q), atol=1e-13)
+    finally:
+        find_toolchain.cache_clear()

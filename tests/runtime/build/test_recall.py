@@ -1,0 +1,94 @@
+"""Libraries that are known are found without generating their C text, and never for another request."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models.rigid.random_tree import random_tree
+from symofros.generator import units
+from symofros.runtime.build import build
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
+    return tmp_path
+
+
+@pytest.fixture
+def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The C texts that were generated."""
+    texts: list[str] = []
+
+    def model_source(*arguments: object, **named: object) -> str:
+        texts.append(original(*arguments, **named))  # type: ignore[arg-type]
+        return texts[-1]
+
+    original = units.model_source
+    monkeypatch.setattr(units, "model_source", model_source)
+    return texts
+
+
+def test_a_known_model_is_not_generated_again(cache: Path, written: list[str]) -> None:
+    first = sf.compile(random_tree(31)).mass_matrix(sf.compile(random_tree(31)).neutral())
+    count = len(written)
+    again = sf.compile(random_tree(31))
+    assert np.array_equal(again.mass_matrix(again.neutral()), first)
+    assert len(written) == count == 2  # dynamics, and the mass matrix
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        sf.Options(functions=("bias",)),
+        sf.Options(flags=("-O1",)),
+        sf.Options(batch="loop"),
+        sf.Options(constraints="null_space"),
+        sf.Options(forward_dynamics="articulated"),
+    ],
+)
+def test_another_request_is_another_model(cache: Path, written: list[str], options: sf.Options) -> None:
+    sf.compile(random_tree(31))
+    sf.compile(random_tree(31), options)
+    assert len(written) == 2
+
+
+def test_another_system_or_formula_is_another(cache: Path, written: list[str]) -> None:
+    m = sf.compile(random_tree(31))
+    sf.compile(random_tree(32))
+    assert len(written) == 2
+    point = m.neutral()[None], np.zeros((1, m.nv)), np.zeros((1, m.nu)), np.zeros((1, 1))
+    for formula, value in (("2", 2.0), ("3", 3.0), ("2", 2.0)):
+        kernel = m.formulas([formula])
+        assert kernel.run(1, kernel.prepare(m.parameter_values[None]), list(point))[0] == value
+    assert len(written) == 4
+
+
+def test_other_code_of_ours_generates_anew(cache: Path, written: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    sf.compile(random_tree(31))
+    monkeypatch.setattr(build, "CODE_IDENTITY", "edited")
+    sf.compile(random_tree(31))
+    assert len(written) == 2
+
+
+@pytest.mark.parametrize("spoil", [lambda path: path.unlink(), lambda path: path.write_text("../other.so")])
+def test_a_lost_library_is_made_anew(cache: Path, written: list[str], spoil: object) -> None:
+    sf.compile(random_tree(31))
+    (known,) = cache.glob("*.known")
+    (library,) = cache.glob("*.so")
+    assert known.read_text() == library.name
+    spoil(known)  # type: ignore[operator]
+    sf.compile(random_tree(31))
+    assert len(written) == 2 and known.read_text() == library.name
+
+
+def test_a_deleted_library_is_made_anew(cache: Path, written: list[str]) -> None:
+    sf.compile(random_tree(31))
+    (library,) = cache.glob("*.so")
+    library.unlink()
+    m = sf.compile(random_tree(31))
+    assert library.exists() and len(written) == 2 and m.nv > 0

@@ -1,0 +1,116 @@
+"""Inverse kinematics: targets are reached, limits kept, loops closed, what is out of reach is said."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from reference_models.closed.spatial import delta_guess
+from symofros.simulation.analysis.inverse_kinematics import rotation_vector
+
+
+@cache
+def model(name: str) -> sf.Model:
+    return sf.compile(MODELS[name])
+
+
+def tip(name: str) -> str:
+    return model(name).names.frames[-1]
+
+
+@pytest.mark.parametrize("name", ["rx90", "space_arm", "mss"])
+def test_a_pose_that_exists_is_found(name: str) -> None:
+    m, frame, rng = model(name), tip(name), np.random.default_rng(1)
+    for _ in range(5):
+        wanted, _ = m.random_state(rng)
+        # Near a singular posture convergence is slow, as two solutions meet there.
+        while np.linalg.svd(m.frame_jacobian(frame, wanted), compute_uv=False)[-1] < 0.1:
+            wanted, _ = m.random_state(rng)
+        p, R = m.frame_pose(frame, wanted)
+        start = m.integrate(wanted, 0.3 * rng.normal(size=m.nv))
+        found = sf.inverse_kinematics(m, {frame: sf.Target(p, R)}, start)
+        assert found.converged and found.error <= 1e-10
+        reached = m.frame_pose(frame, found.q)
+        assert np.abs(reached[0] - p).max() < 1e-9 and np.abs(reached[1] - R).max() < 1e-9
+
+
+def arm(**limits: float) -> sf.Model:
+    bodies: list[sf.Body] = []
+    for i in range(3):
+        parent, frame = (f"b{i - 1}", "end") if i else ("world", None)
+        joint = sf.Joint(f"q{i}", "revolute", parent, frame, limits=sf.Limits(**limits) if limits else None)
+        bodies.append(sf.RigidBody(f"b{i}", joint, sf.Inertia(1.0), (sf.Frame("end", (1.0, 0, 0)),)))
+    return sf.compile(sf.System("arm", tuple(bodies)), sf.Options(functions=("frame_pose", "frame_jacobian")))
+
+
+def test_limits_are_kept() -> None:
+    m = arm(lower=-0.8, upper=0.8)
+    found = sf.inverse_kinematics(m, {"b2.end": sf.Target([2.2, 1.2, 0.0])}, [0.1, 0.1, 0.1])
+    assert found.converged and np.all(np.abs(found.q) <= 0.8)
+    beyond = sf.inverse_kinematics(m, {"b2.end": sf.Target([-1.0, 0.5, 0.0])}, [0.1, 0.1, 0.1])
+    assert not beyond.converged and np.all(np.abs(beyond.q) <= 0.8)
+
+
+def test_out_of_reach_comes_as_near_as_it_can() -> None:
+    found = sf.inverse_kinematics(arm(), {"b2.end": sf.Target([4.0, 0.0, 0.0])}, [0.4, -0.3, 0.2])
+    assert not found.converged and found.error == pytest.approx(1.0, abs=1e-4)
+
+
+def test_the_freedom_that_is_left_goes_to_rest() -> None:
+    m, rest = arm(), np.array([0.9, -0.5, -0.2])
+    target = {"b2.end": sf.Target([2.0, 0.8, 0.0])}
+    start = [-0.6, 0.9, 0.5]
+    plain, near = sf.inverse_kinematics(m, target, start), sf.inverse_kinematics(m, target, start, rest=rest)
+    assert plain.converged and near.converged
+    assert np.linalg.norm(near.q - rest) < np.linalg.norm(plain.q - rest)
+
+
+def test_held_coordinates_stay() -> None:
+    found = sf.inverse_kinematics(arm(), {"b2.end": sf.Target([2.0, 0.8, 0.0])}, [0.2, 0.3, 0.1], held=["q0"])
+    assert found.converged and found.q[0] == 0.2
+
+
+def test_a_loop_stays_closed() -> None:
+    m = model("delta")
+    start = sf.assemble(m, delta_guess()).q
+    p, _ = m.frame_pose("platform", start)
+    found = sf.inverse_kinematics(m, {"platform": sf.Target(p + [0.05, -0.03, 0.08])}, start)
+    assert found.converged and np.abs(m.constraint(found.q)).max() < 1e-10
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-3, 1.0, np.pi - 1e-9, np.pi])
+def test_rotation_vectors(angle: float) -> None:
+    axis = np.array([2.0, -1.0, 2.0]) / 3.0
+    K = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    found = rotation_vector(np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K)
+    assert min(np.abs(found - angle * axis).max(), np.abs(found + angle * axis).max()) < 1e-7
+
+
+def test_a_path_in_space_becomes_a_motion_of_joints() -> None:
+    """Along a circle: speeds and accelerations are the derivatives of the coordinates found."""
+    m, t = model("rx90"), np.linspace(0.0, 0.2, 81)
+    q0 = np.array([0.3, -0.4, 1.2, 0.2, 0.7, -0.1])
+    frame = tip("rx90")
+    p0, R0 = m.frame_pose(frame, q0)
+    c, s, still = np.cos(5 * t), np.sin(5 * t), np.zeros((len(t), 4))
+    p = p0 + 0.05 * np.stack([c - 1, s, 0 * t], axis=1)
+    V = np.concatenate([0.25 * np.stack([-s, c], axis=1), still], axis=1)
+    A = np.concatenate([-1.25 * np.stack([c, s], axis=1), still], axis=1)
+    q, v, a = sf.joint_motion(m, frame, p, V, A, np.tile(R0, (len(t), 1, 1)), q=q0, tolerance=1e-11)
+    h = t[1] - t[0]
+    inner = slice(2, -2)
+    rate = (8 * (q[3:-1] - q[1:-3]) - (q[4:] - q[:-4])) / (12 * h)
+    assert np.abs(rate - v[inner]).max() < 1e-5 * np.abs(v).max()
+    rate = (8 * (v[3:-1] - v[1:-3]) - (v[4:] - v[:-4])) / (12 * h)
+    assert np.abs(rate - a[inner]).max() < 1e-5 * np.abs(a).max()
+
+
+def test_a_path_that_leaves_the_reach() -> None:
+    m = model("rx90")
+    p = np.array([m.frame_pose(tip("rx90"), np.full(6, 0.3))[0], [9.0, 0, 0]])
+    with pytest.raises(sf.AssemblyError, match="at sample 1"):
+        sf.joint_motion(m, tip("rx90"), p, np.zeros((2, 3)), np.zeros((2, 3)), q=np.full(6, 0.3))

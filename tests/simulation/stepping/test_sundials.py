@@ -1,0 +1,142 @@
+"""SUNDIALS' CVODE and IDA behind `sf.simulate`."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.simulation.stepping.sundials import independent_rows
+
+
+def moving(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
+    model = sf.compile(MODELS[name])
+    q, v = model.random_state(np.random.default_rng(3))
+    return model, q, 0.3 * v
+
+
+@pytest.mark.parametrize("method", ["cvode", "cvode_adams", "ida"])
+@pytest.mark.parametrize("name", ["double_pendulum", "heavy_top", "joint_zoo"])
+def test_it_follows_its_tolerance(name: str, method: str) -> None:
+    model, q, v = moving(name)
+    exact = sf.simulate(model, q, v, 1.0, method="dop853", rtol=1e-12, atol=1e-13)
+    for tolerance in (1e-6, 1e-9):
+        run = sf.simulate(model, q, v, 1.0, method=method, rtol=tolerance, atol=tolerance)
+        assert run.outcome.kind == "finished" and run.t[-1] == 1.0
+        # Errors add up over some hundred steps, and grow with the motion.
+        assert np.abs(model.difference(exact.q[-1], run.q[-1])).max() < 3e3 * tolerance
+
+
+def test_output_events_and_laws() -> None:
+    model = sf.compile(MODELS["pendulum"])
+    run = sf.simulate(
+        model,
+        [1.0],
+        t_end=2.0,
+        u={"q": "0.1*sin(t)"},
+        method="cvode_adams",
+        rtol=1e-9,
+        atol=1e-10,
+        output=0.1,
+        events={"down": sf.Event("q", "falling"), "up": sf.Event("q", "rising", terminal=True)},
+    )
+    same = sf.simulate(
+        model,
+        [1.0],
+        t_end=2.0,
+        u={"q": "0.1*sin(t)"},
+        method="dop853",
+        rtol=1e-11,
+        atol=1e-12,
+        events={"up": sf.Event("q", "rising", terminal=True)},
+    )
+    assert [event.name for event in run.events] == ["down", "up"]
+    assert run.outcome.kind == "event" and run.outcome.t == pytest.approx(same.outcome.t, abs=1e-7)
+    np.testing.assert_allclose(run.t[:-1], 0.1 * np.arange(len(run) - 1), atol=1e-12)
+    np.testing.assert_allclose(run["q"], np.interp(run.t, same.t, same["q"]), atol=2e-2)
+    np.testing.assert_allclose(run.u[:, 0], 0.1 * np.sin(run.t), atol=1e-15)
+
+
+def test_a_stiff_model_costs_little() -> None:
+    model = sf.compile(MODELS["flyball_governor"])
+    start = [0, np.pi / 6, np.pi / 6, 0.5]
+    stiff = sf.simulate(model, start, [6.28, 0, 0, 0], 2.0, method="cvode", rtol=1e-6, atol=1e-7)
+    plain = sf.simulate(model, start, [6.28, 0, 0, 0], 2.0, method="dopri5", rtol=1e-6, atol=1e-7)
+    assert 5 * stiff.statistics.evaluations < plain.statistics.evaluations
+    np.testing.assert_allclose(stiff.q[-1], plain.q[-1], atol=1e-4)
+
+
+def test_constraints_by_gains_only() -> None:
+    model = sf.compile(MODELS["slider_crank"])
+    closed = sf.assemble(model, [0.3, -0.1, -0.2], [10.0, 0.0, 0.0])
+    with pytest.raises(sf.SymofrosError, match="stabilisation='baumgarte'"):
+        sf.simulate(model, closed.q, closed.v, method="cvode")
+    run = sf.simulate(model, closed.q, closed.v, 1.0, method="cvode", stabilisation="baumgarte", rtol=1e-9, atol=1e-10)
+    assert np.abs(model.constraint(run.q)).max() < 1e-6
+
+
+def test_ends() -> None:
+    model = sf.compile(MODELS["pendulum"])
+
+    def call(t, q, v):
+        if t > 0.2:
+            raise RuntimeError("no more")
+        return [0.0]
+
+    run = sf.simulate(model, [1.0], t_end=1.0, u=call, method="cvode_adams")
+    assert run.outcome.kind == "input failed" and 0 < run.t[-1] < 0.3
+    assert sf.simulate(model, [1.0], t_end=100.0, method="cvode", max_steps=20).outcome.kind == "interrupted"
+
+
+@pytest.mark.parametrize(("method", "module"), [("cvode", "cvode"), ("ida", "ida")])
+def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch, method: str, module: str) -> None:
+    monkeypatch.setitem(sys.modules, f"sksundae.{module}", None)
+    with pytest.raises(sf.SymofrosError, match=r"pip install 'symofros\[sundials\]'"):
+        sf.simulate(sf.compile(MODELS["pendulum"]), method=method)
+
+
+def with_redundant_conditions(system: sf.System) -> sf.System:
+    """A planar loop closed in space: that its ends meet out of the plane is implied."""
+    (loop,) = system.constraints
+    return replace(system, constraints=(replace(loop, translations=("x", "y", "z")),))
+
+
+LOOPS = {"slider_crank": ([0.3, -0.1, -0.2], [10.0, 0, 0]), "four_bar": ([1.2, -1.0, 1.3], [2.0, 0, 0])}
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_ida_keeps_loops_closed_and_follows_projected_steps(name: str) -> None:
+    model = sf.compile(with_redundant_conditions(MODELS[name]))
+    closed = sf.assemble(model, *LOOPS[name])
+    assert closed.rank < model.nc
+    exact = sf.simulate(model, closed.q, closed.v, 0.5, method="dop853", rtol=1e-12, atol=1e-13)
+    errors = []
+    for tolerance in (1e-6, 1e-9):
+        run = sf.simulate(model, closed.q, closed.v, 0.5, method="ida", rtol=tolerance, atol=tolerance, output=0.05)
+        assert run.outcome.kind == "finished" and len(run) == 11
+        assert np.abs(model.constraint(run.q)).max() < 1e2 * tolerance
+        assert np.abs(model.constraint_rate(run.q, run.v)).max() < 1e3 * tolerance
+        errors.append(np.abs(run.q[-1] - exact.q[-1]).max())
+    assert errors[1] < 1e-7 and errors[1] < errors[0] / 20
+
+
+def test_ida_rolls() -> None:
+    """Conditions on speeds have no condition on positions beside them."""
+    model = sf.compile(MODELS["rolling_disc"])
+    q, v = model.random_state(np.random.default_rng(4))
+    closed = sf.assemble(model, q, v)
+    exact = sf.simulate(model, closed.q, closed.v, 0.5, method="dop853", rtol=1e-12, atol=1e-13)
+    run = sf.simulate(model, closed.q, closed.v, 0.5, method="ida", rtol=1e-9, atol=1e-9)
+    assert run.outcome.kind == exact.outcome.kind == "finished"
+    assert np.abs(model.difference(exact.q[-1], run.q[-1])).max() < 1e-6
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
+def test_rows_are_judged_by_their_own_size(scale: float) -> None:
+    G = np.array([[1.0, 2.0, 0.0], [scale, 2 * scale, 0.0], [0.0, 0.0, scale], [0.0, 0.0, 0.0]])
+    rows = independent_rows(G)
+    assert len(rows) == np.linalg.matrix_rank(G[rows] / np.linalg.norm(G[rows], axis=1)[:, None]) == 2 and 3 not in rows
