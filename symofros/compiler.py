@@ -35,7 +35,7 @@ from symofros.mechanics.dynamics.functions import Request
 from symofros.mechanics.topology.graph import check
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.options import Options
-from symofros.runtime.build.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
+from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.calls.kernel import Lanes, Precision
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord

@@ -37,9 +37,9 @@ from symofros.expr.program import Program as Program
 from symofros.generator.ablation import ABLATIONS as ABLATIONS
 from symofros.generator.ablation import Ablation as Ablation
 from symofros.generator.passes.count import count_program as count_program
-from symofros.runtime.build.build.toolchain import DEFAULT_FLAGS as DEFAULT_FLAGS
-from symofros.runtime.build.build.toolchain import cpu_identity as cpu_identity
-from symofros.runtime.build.build.toolchain import find_toolchain as find_toolchain
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS as DEFAULT_FLAGS
+from symofros.runtime.build.toolchain import cpu_identity as cpu_identity
+from symofros.runtime.build.toolchain import find_toolchain as find_toolchain
 from symofros.runtime.calls.kernel import Precision as Precision
 from symofros.runtime.calls.layout import Numbers as Numbers
 from symofros.runtime.calls.layout import Strided as Strided

@@ -19,7 +19,7 @@ from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.errors import Problem, SymofrosError
 from symofros.options import Options
-from symofros.runtime.build.build.toolchain import find_toolchain
+from symofros.runtime.build.toolchain import find_toolchain
 from symofros.simulation.progress import bar
 from symofros.simulation.stepping.methods import METHODS
 

@@ -24,7 +24,7 @@ from symofros.mechanics.dynamics.bodies import inertia
 from symofros.mechanics.kinematics import rotations
 from symofros.mechanics.kinematics.rotations import MatrixRotation, RotationProduct
 from symofros.options import Options
-from symofros.runtime.build.build.toolchain import DEFAULT_FLAGS
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS
 
 Without = Callable[[], AbstractContextManager[object]]
 

@@ -23,9 +23,9 @@ from symofros.mechanics.dynamics.formulas import formula_program
 from symofros.mechanics.dynamics.functions import Request
 from symofros.native import native_text
 from symofros.options import Options
-from symofros.runtime.build.build.build import build_library, recall_library
-from symofros.runtime.build.build.toolchain import Toolchain
-from symofros.runtime.build.build.tuning import Build, builds, fastest
+from symofros.runtime.build.build import build_library, recall_library
+from symofros.runtime.build.toolchain import Toolchain
+from symofros.runtime.build.tuning import Build, builds, fastest
 from symofros.runtime.calls.kernel import Lanes, Unit
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 from symofros.runtime.functions import Key, Rate

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from symofros.runtime.build.build.toolchain import find_toolchain
 
 import symofros as sf
 from symofros import blocks
+from symofros.runtime.build.toolchain import find_toolchain
 from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Wave, arm
 from tests.diagrams.test_runs import First, Given
 

@@ -100,9 +100,8 @@ def test_what_does_not_exist(tmp_path: Path) -> None:
 
 
 def test_a_failing_compiler_is_quoted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from symofros.runtime.build.build.toolchain import Toolchain
-
     from symofros.exports.c import compiling
+    from symofros.runtime.build.toolchain import Toolchain
 
     monkeypatch.setattr(compiling, "find_toolchain", lambda _: Toolchain(("gcc", "-Dnq=1/0/"), "gcc"))
     with pytest.raises(sf.CompileError, match=r"found:  gcc -Dnq=1/0/ -O2[\s\S]*error"):

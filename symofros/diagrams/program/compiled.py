@@ -24,8 +24,8 @@ from symofros.generator.codegen.names import identifier
 from symofros.generator.passes import run_passes
 from symofros.native import native_text
 from symofros.options import Options
-from symofros.runtime.build.build.build import build_library
-from symofros.runtime.build.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
+from symofros.runtime.build.build import build_library
+from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.calls.kernel import Kernel, Unit
 from symofros.runtime.calls.library import CompiledUnit
 from symofros.runtime.model import Model

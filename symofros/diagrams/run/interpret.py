@@ -16,7 +16,7 @@ from symofros.diagrams.run.python_blocks import Called
 from symofros.diagrams.wiring import Source
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.passes import run_passes
-from symofros.runtime.build.build.toolchain import Toolchain
+from symofros.runtime.build.toolchain import Toolchain
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import constrained, project
 from symofros.runtime.manifold import chart_rate, retract

@@ -5,7 +5,7 @@ from __future__ import annotations
 from string import Template
 
 from symofros.native import native_text
-from symofros.runtime.build.build.toolchain import kinds
+from symofros.runtime.build.toolchain import kinds
 
 
 def dispatch_source(symbol: str) -> str:

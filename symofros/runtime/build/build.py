@@ -20,8 +20,8 @@ import numpy as np
 
 from symofros.atomic import write_atomically
 from symofros.errors import CompileError, Problem
-from symofros.runtime.build.build.identity import CODE_IDENTITY
-from symofros.runtime.build.build.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, call_compiler, cpu_identity, kinds
+from symofros.runtime.build.identity import CODE_IDENTITY
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, call_compiler, cpu_identity, kinds
 
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _REMEDY = "check Options(flags=…) and the compiler; backend='interpreter' needs none"

@@ -21,7 +21,7 @@ import numpy as np
 from symofros.atomic import write_atomically
 from symofros.options import Options
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
-from symofros.runtime.build.build.toolchain import DEFAULT_FLAGS, Toolchain, find_toolchain
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS, Toolchain, find_toolchain
 
 _STATES, _ROUNDS = 64, 15
 # A clock's reading costs less than a thousandth of this [ns].

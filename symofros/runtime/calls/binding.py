@@ -12,8 +12,8 @@ import numpy.typing as npt
 
 from symofros.errors import CompileError, Problem, SymofrosError
 from symofros.native import HEADERS, amalgamated, native_text
-from symofros.runtime.build.build.build import build_library
-from symofros.runtime.build.build.toolchain import DEFAULT_FLAGS, NO_COMPILER, find_toolchain
+from symofros.runtime.build.build import build_library
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS, NO_COMPILER, find_toolchain
 from symofros.runtime.calls.declarations import interface
 from symofros.runtime.calls.kernel import Array, Kernel
 from symofros.runtime.calls.library import CompiledKernel

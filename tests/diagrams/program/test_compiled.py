@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from symofros.runtime.build.build.toolchain import Toolchain
 
 import symofros as sf
 from symofros.diagrams.program import compiled
 from symofros.options import Options
+from symofros.runtime.build.toolchain import Toolchain
 from tests.blocks.sources import Ramp
 
 

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from symofros.runtime.build.build.build import build_library
-from symofros.runtime.build.build.toolchain import KINDS, Toolchain, cpu_identity, find_toolchain, kinds
 
 import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import compile_library
 from symofros.generator.codegen.dispatch import dispatch_source
+from symofros.runtime.build.build import build_library
+from symofros.runtime.build.toolchain import KINDS, Toolchain, cpu_identity, find_toolchain, kinds
 from symofros.runtime.calls import library
 
 X86 = platform.machine().lower() in ("x86_64", "amd64")
@@ -61,12 +61,12 @@ def test_the_key_does_not_name_the_machine(monkeypatch: pytest.MonkeyPatch, tmp_
     header = (Path(library.__file__).parents[1] / "native/model/symofros_model.h").read_text(encoding="utf-8")
     native = build_library(model, header, toolchain)
     anywhere = build_library(model, header, toolchain, None, dispatch_source("m"), "m")
-    monkeypatch.setattr("symofros.runtime.build.build.build.cpu_identity", lambda: "another machine")
+    monkeypatch.setattr("symofros.runtime.build.build.cpu_identity", lambda: "another machine")
     assert build_library(model, header, toolchain) != native
     assert build_library(model, header, toolchain, None, dispatch_source("m"), "m") == anywhere
 
 
 def test_one_kind_elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("symofros.runtime.build.build.toolchain.platform.machine", lambda: "aarch64")
+    monkeypatch.setattr("symofros.runtime.build.toolchain.platform.machine", lambda: "aarch64")
     assert [name for name, _, _ in kinds()] == ["baseline"]
     assert "__builtin_cpu" not in dispatch_source("m") and "return m_baseline();" in dispatch_source("m")

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from symofros.runtime.build.build.toolchain import DEFAULT_FLAGS, cpu_identity
 
 import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation, compile_library
 from symofros.functions import MODEL_FUNCTIONS
 from symofros.generator.codegen.model import model_source
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS, cpu_identity
 from symofros.runtime.calls import library
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Lanes
 from symofros.runtime.calls.library import CompiledUnit

@@ -11,12 +11,12 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-from symofros.runtime.build.build.toolchain import DEFAULT_FLAGS, cpu_identity
 
 import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation, compile_library, program_of
 from symofros.expr.trigonometry import FAR
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS, cpu_identity
 from symofros.runtime.calls.kernel import Lanes
 from symofros.runtime.calls.library import CompiledUnit
 

@@ -14,9 +14,9 @@ import pytest
 
 import symofros as sf
 from reference_models.rigid.random_tree import random_tree
-from symofros.runtime.build.build import toolchain
-from symofros.runtime.build.build.build import build_library
-from symofros.runtime.build.build.toolchain import find_toolchain
+from symofros.runtime.build import toolchain
+from symofros.runtime.build.build import build_library
+from symofros.runtime.build.toolchain import find_toolchain
 
 SCRIPT = """
 import sys, numpy as np, symofros as sf

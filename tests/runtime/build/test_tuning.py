@@ -10,9 +10,9 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation
-from symofros.runtime.build.build import tuning
-from symofros.runtime.build.build.toolchain import find_toolchain
-from symofros.runtime.build.build.tuning import builds
+from symofros.runtime.build import tuning
+from symofros.runtime.build.toolchain import find_toolchain
+from symofros.runtime.build.tuning import builds
 
 FUNCTIONS = ("mass_matrix", "forward_dynamics")
 

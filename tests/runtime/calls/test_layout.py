@@ -7,10 +7,10 @@ from functools import cache
 
 import numpy as np
 import pytest
-from symofros.runtime.build.build.toolchain import DEFAULT_FLAGS
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS
 from symofros.runtime.calls import library
 from symofros.runtime.calls.kernel import BatchOptions
 from symofros.runtime.calls.layout import Strided, by_columns, columns, states
