@@ -16,7 +16,7 @@ from reference_models import MODELS
 from symofros.generator import programs
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.topology import graph
-from symofros.runtime.build.build import build
+from symofros.runtime.build import build
 from symofros.studio.editor.jobs.operations import compile_model
 
 

@@ -13,7 +13,7 @@ import symofros as sf
 from symofros import blocks
 from symofros.runtime.build.toolchain import find_toolchain
 from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Wave, arm
-from tests.diagrams.test_runs import First, Given
+from tests.diagrams.run.test_runs import First, Given
 
 MODELS = Path(__file__).parents[2] / "reference_models"
 STRICT = ("-std=c99", "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Werror")

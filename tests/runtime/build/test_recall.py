@@ -10,7 +10,7 @@ import pytest
 import symofros as sf
 from reference_models.rigid.random_tree import random_tree
 from symofros.generator import units
-from symofros.runtime.build.build import build
+from symofros.runtime.build import build
 
 
 @pytest.fixture
