@@ -10,6 +10,7 @@ from typing import Any
 from validation.adapters import ROUTES
 from validation.check import ModelResult, Settings
 from validation.comparison.errors import Comparison
+from validation.reporting.numbers import finite
 from validation.reporting.provenance import stamp
 from validation.reporting.record import Data
 
@@ -17,7 +18,7 @@ SCHEMA = 1
 # Where a model was refused before anything was compared.
 _BEFORE = ("load", "compile")
 # What a comparison states besides its further figures.
-_STATED = frozenset("model engine quantity states error tolerance ok median worst_state note".split())
+_STATED = tuple("model engine quantity states error tolerance ok median worst_state note".split())
 # Adapters that are our own code and have no version of their own.
 _OURS = frozenset(name for name, route in ROUTES.items() if not route.independent)
 
@@ -129,38 +130,16 @@ def as_data(
 
 
 def _entry(row: Comparison) -> dict[str, Any]:
-    entry: dict[str, Any] = {
-        "model": row.model,
-        "engine": row.engine,
-        "quantity": row.quantity,
-        "states": row.states,
-        "error": row.error,
-        "tolerance": row.tolerance,
-        "ok": row.ok,
-        "median": row.median,
-        "worst_state": row.worst_state,
-    }
-    if row.note:
-        entry["note"] = row.note
-    return entry | {name: value if math.isfinite(value) else None for name, value in row.extra.items()}
+    stated = {name: getattr(row, name) for name in _STATED if name != "note" or row.note}
+    return stated | {name: finite(value) for name, value in row.extra.items()}
 
 
 def _comparison(row: Data) -> Comparison:
     """What has no tolerance was not judged: it failed."""
     extra = {name: math.nan if value is None else value for name, value in row.items() if name not in _STATED}
-    return Comparison(
-        row["model"],
-        row["engine"],
-        row["quantity"],
-        "agree" if row["ok"] else "disagree" if row["tolerance"] else "failed",
-        row["states"],
-        row["error"],
-        row["tolerance"],
-        row["median"],
-        row["worst_state"],
-        note=row.get("note", ""),
-        extra=extra,
-    )
+    status = "agree" if row["ok"] else "disagree" if row["tolerance"] else "failed"
+    stated = {name: row[name] for name in _STATED if name not in ("ok", "note")}
+    return Comparison(**stated, status=status, note=row.get("note", ""), extra=extra)
 
 
 def _model(data: Data, rows: Sequence[Comparison]) -> ModelResult:

@@ -12,7 +12,6 @@ import typer
 from symofros.tools import write_atomically
 from validation.adapters import ROUTES, differences
 from validation.check import ModelResult, Settings
-from validation.comparison.errors import Comparison
 from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, ROUNDING, SMALL, SOLVE
 from validation.cross_check.figures import error_against_condition, error_distributions, errors_by_engine
 from validation.cross_check.junit import to_junit
@@ -23,13 +22,54 @@ from validation.inputs.sampling import DEFAULT_STATES
 from validation.reporting.command import Run, known
 from validation.reporting.figures import Figure
 from validation.reporting.numbers import digits
-from validation.reporting.record import Block, Bullets, Cell, Data, Fact, Fold, Report, Section, Table, Text, Topic
+from validation.reporting.record import (
+    Block,
+    Bullets,
+    Cell,
+    Column,
+    Data,
+    Fact,
+    Fold,
+    Report,
+    Section,
+    Table,
+    Text,
+    Topic,
+)
 from validation.worker_pool import run as run_cases
 
 # What `--json` prints.
 PRINTED = ("ok", "comparisons", "unsupported")
 # Up to so many models, each engine has a line of its own on a terminal.
 _DETAILED = 2
+
+_CLOSE = (
+    "Each row is a quantity, each curve an engine that our C is compared with, over all states of all models. What "
+    "lies left of the red bar agrees: see how far left the curves stay, near the rounding of a double (2.2e-16). "
+    "“Exact” is the share of states where every digit is the same."
+)
+_BY_MODEL = (
+    "The largest error over all states and all engines, relative to the largest entry of the other engine's "
+    "result. The redder, the more of the tolerance is used. “drift” is our own energy drift in free motion, see "
+    "below."
+)
+_CONDITION = (
+    "Solving M dv/dt = Q − h amplifies rounding by up to cond(M), which is large for a heavy robot with light "
+    "fingers. Points at or below the dashed line are as good as doubles allow; that is why this one quantity has a "
+    "wider tolerance."
+)
+_ENERGY = (
+    "Four motions of each model under gravity without inputs, by a fourth-order method. The engines' energies "
+    "along the way are compared in the table above (“motion”). Our own energy, less the work done, drifts by "
+    "what the integrator loses: half the step should leave a sixteenth of it, until rounding rules."
+)
+_DRIFT: dict[str, Column] = {
+    "model": "{model}",
+    "#drift at the full step": lambda row: digits(row.extra["drift_coarse"]),
+    "#at half the step": lambda row: digits(row.extra["drift_fine"]),
+    "#ratio": lambda row: _ratio(row.extra["drift_coarse"], row.extra["drift_fine"]),
+    "#allowed": lambda row: Cell(digits(row.tolerance), row.ok),
+}
 
 Models = Annotated[
     list[str] | None,
@@ -85,13 +125,25 @@ def compose(data: Data) -> Report:
     """The report of its JSON."""
     record = Record.of(data)
     engines = [name for name in ROUTES if any(row.engine == name for row in record.compared)]
+    disagreeing = tuple((model, engine, Cell(text, False)) for model, engine, text in failures(record))
+    not_represented = tuple((engine, models, reason) for models, engine, reason in unsupported(record))
+    drawings = tuple(filter(None, (error_distributions(record.distributions),)))
+    conditions = tuple(filter(None, (error_against_condition(record),)))
+    drifts = Table.of((row for row in record.compared if row.quantity == "energy_drift"), _DRIFT)
+    alone = (Fold(f"Against {name} alone", (by_engine(record, engines=(name,)),), page_only=True) for name in engines)
     sections = [
-        _failures(record),
-        _distributions(record),
-        _models(record, engines),
-        _conditions(record),
-        _drifts(record),
-        _unsupported(record),
+        Section("What disagrees or failed", (Table(("model", "against", "what"), disagreeing),)),
+        Section("How close", (Figure(_CLOSE, drawings),), page_only=True),
+        Section("Model by model", (_BY_MODEL, by_model(record), *alone)),
+        Section("Forward dynamics and the condition of M", (Figure(_CONDITION, conditions),), page_only=True),
+        Section("Energy along a free motion", (_ENERGY, drifts), page_only=True),
+        Section(
+            "What an engine could not represent",
+            (
+                "These engines have no say on these models; nobody else's comparison is weakened.",
+                Table(("engine", "models", "reason"), not_represented),
+            ),
+        ),
         _method(),
         Section("Models", tuple(map(_model, record.models)), page_only=True),
     ]
@@ -100,7 +152,7 @@ def compose(data: Data) -> Report:
         headline(record),
         record.ok,
         (f"{record.states} states a model, seed {record.seed}.",),
-        tuple(section for section in sections if section.blocks),
+        tuple(section for section in sections if section.shows),
         tuple(_facts(record, engines)),
         (errors_by_engine(record),) if engines else (),
         tuple(_digest(record)),
@@ -131,65 +183,8 @@ def _facts(record: Record, engines: list[str]) -> list[Fact]:
     return facts
 
 
-def _failures(record: Record) -> Section:
-    rows = tuple((model, engine, Cell(text, False)) for model, engine, text in failures(record))
-    return Section("What disagrees or failed", (Table(("model", "against", "what"), rows),) if rows else ())
-
-
-def _distributions(record: Record) -> Section:
-    drawing = error_distributions(record.distributions)
-    see = (
-        "Each row is a quantity, each curve an engine that our C is compared with, over all states of all models. What "
-        "lies left of the red bar agrees: see how far left the curves stay, near the rounding of a double (2.2e-16). "
-        "“Exact” is the share of states where every digit is the same."
-    )
-    return Section("How close", (Figure(see, (drawing,)),) if drawing else (), page_only=True)
-
-
-def _models(record: Record, engines: list[str]) -> Section:
-    text = (
-        "The largest error over all states and all engines, relative to the largest entry of the other engine's "
-        "result. The redder, the more of the tolerance is used. “drift” is our own energy drift in free motion, see "
-        "below."
-    )
-    alone = (Fold(f"Against {name} alone", (by_engine(record, engines=(name,)),), page_only=True) for name in engines)
-    return Section("Model by model", (text, by_model(record), *alone) if record.models else ())
-
-
-def _conditions(record: Record) -> Section:
-    chart = error_against_condition(record)
-    see = (
-        "Solving M dv/dt = Q − h amplifies rounding by up to cond(M), which is large for a heavy robot with light "
-        "fingers. Points at or below the dashed line are as good as doubles allow; that is why this one quantity has a "
-        "wider tolerance."
-    )
-    blocks = (Figure(see, (chart,)),) if chart else ()
-    return Section("Forward dynamics and the condition of M", blocks, page_only=True)
-
-
-def _drifts(record: Record) -> Section:
-    rows = [row for row in record.compared if row.quantity == "energy_drift"]
-    text = (
-        "Four motions of each model under gravity without inputs, by a fourth-order method. The engines' energies "
-        "along the way are compared in the table above (“motion”). Our own energy, less the work done, drifts by "
-        "what the integrator loses: half the step should leave a sixteenth of it, until rounding rules."
-    )
-    head = ("model", "#drift at the full step", "#at half the step", "#ratio", "#allowed")
-    table = Table(head, tuple(map(_drift, rows)))
-    return Section("Energy along a free motion", (text, table) if rows else (), page_only=True)
-
-
-def _drift(row: Comparison) -> tuple[str | Cell, ...]:
-    coarse, fine = row.extra["drift_coarse"], row.extra["drift_fine"]
-    ratio = f"{coarse / fine:.1f}" if fine else ""
-    return row.model, digits(coarse), digits(fine), ratio, Cell(digits(row.tolerance), row.ok)
-
-
-def _unsupported(record: Record) -> Section:
-    rows = tuple((engine, models, reason) for models, engine, reason in unsupported(record))
-    text = "These engines have no say on these models; nobody else's comparison is weakened."
-    blocks = (text, Table(("engine", "models", "reason"), rows)) if rows else ()
-    return Section("What an engine could not represent", blocks)
+def _ratio(coarse: float, fine: float) -> str:
+    return f"{coarse / fine:.1f}" if fine else ""
 
 
 def _method() -> Section:

@@ -8,14 +8,13 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import Entry, gather
 from validation.dashboard.index import QuoteError, headline, quote, write_index
 from validation.dashboard.regenerate import Outcome, commands, regenerate
 from validation.reporting import provenance
-from validation.reporting.command import REPORTS, Exit, Output, known
+from validation.reporting.command import REPORTS, Exit, Output, known, progress_bar
 from validation.reporting.command import render as render_report
 
 Readme = Annotated[Path, typer.Option(help="Gets the summary between its marks, if it is there.")]
@@ -77,15 +76,13 @@ def _existing(folder: Path) -> None:
 def _all_anew(folder: Path) -> bool:
     """Every report; whether none was left out by Ctrl-C. Those finished before are kept."""
     console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+    with progress_bar(console) as bar:
         task = bar.add_task("", total=len(commands()))
 
         def done(outcome: Outcome) -> None:
-            words = {0: "written", 1: "written; something in it is missed"}.get(
-                outcome.code, f"failed ({outcome.code})"
-            )
-            console.print(f"{outcome.name}: {words}, {outcome.seconds:.0f} s", markup=False)
+            ends = {0: "written", 1: "written; something in it is missed"}
+            end = ends.get(outcome.code, f"failed ({outcome.code})")
+            console.print(f"{outcome.name}: {end}, {outcome.seconds:.0f} s", markup=False)
             if outcome.said:
                 console.print(outcome.said, markup=False)
             bar.update(task, advance=1)

@@ -14,7 +14,7 @@ from validation.passes.measure import measure as measured
 from validation.reporting.command import Run, known
 from validation.reporting.numbers import counted, times
 from validation.reporting.provenance import stamp
-from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
+from validation.reporting.record import Column, Data, Fact, Report, Section, Table, Topic
 
 _REPEATS = 101
 _APART = "M, h and Q are one function with one set of kinematics; without: three functions."
@@ -72,22 +72,20 @@ def compose(data: Data) -> Report:
 def _section(label: str, rows: Sequence[Data]) -> Section:
     """One model; gains are what leaving a pass out costs."""
     base = next(row for row in rows if row["without"] == ALL)
-    cells = []
-    for row in rows:
-        more, gain = (row[name] / base[name] - 1.0 for name in ("operations", "median"))
-        cells.append(
-            (
-                row["without"],
-                str(row["operations"]),
-                "" if row is base else f"{more:+.1%}",
-                f"{row['minimum']:.0f}, {row['median']:.0f}",
-                "" if row is base else f"{gain:+.0%}",
-                f"{row['text'] / 1024:.0f}",
-                f"{row['compilation']:.2f}",
-            )
-        )
-    head = ("without", "#operations", "#more", "#ns (min, median)", "#more", "#C text [KiB]", "#made and compiled [s]")
-    return Section(f"{label}, {base['nv']} degrees of freedom", (Table(head, tuple(cells)),))
+
+    def more(quantity: str, form: str) -> Column:
+        return lambda row: "" if row is base else format(row[quantity] / base[quantity] - 1.0, form)
+
+    columns: dict[str, Column] = {
+        "without": "{without}",
+        "#operations": "{operations}",
+        "#more operations": more("operations", "+.1%"),
+        "#ns (min, median)": "{minimum:.0f}, {median:.0f}",
+        "#more time": more("median", "+.0%"),
+        "#C text [KiB]": lambda row: f"{row['text'] / 1024:.0f}",
+        "#made and compiled [s]": "{compilation:.2f}",
+    }
+    return Section(f"{label}, {base['nv']} degrees of freedom", (Table.of(rows, columns),))
 
 
 TOPIC = Topic("passes", "Speed", "What does each pass of the generator gain?", compose)

@@ -56,6 +56,12 @@ class Done:
     unfinished: tuple[str, ...] = ()
 
 
+def progress_bar(console: Console) -> Progress:
+    """A bar for eyes: a file or a pipe gets nothing."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    return Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
+
+
 class Run:
     """What a command gives the function that measures: progress, and a place for results.
 
@@ -68,9 +74,7 @@ class Run:
         self.topic, self.folder = topic, folder
         self.start = time.perf_counter()
         self._console = Console(stderr=True)
-        # The bar is for eyes: a file or a pipe gets nothing.
-        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-        self._bar = Progress(*columns, console=self._console, transient=True, disable=not self._console.is_terminal)
+        self._bar = progress_bar(self._console)
         self._task = self._bar.add_task(topic.name, total=None)
 
     @contextmanager

@@ -122,6 +122,15 @@ class Section:
     page_only: bool = False
     badge: str = ""
 
+    @property
+    def shows(self) -> bool:
+        """Whether it has more than words: a table with rows, a figure with charts, a list, or a fold."""
+        return any(
+            block.rows if isinstance(block, Table) else block.charts if isinstance(block, Figure) else True
+            for block in self.blocks
+            if not isinstance(block, str | Text)
+        )
+
 
 @dataclass(frozen=True)
 class Fact:

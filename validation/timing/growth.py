@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from validation.timing.models import CHAINS
-from validation.timing.record import Entry, Made, Record
+from validation.timing.record import Made, Record
 
 FUNCTIONS = ("dynamics", "forward_dynamics")
 # Shorter chains are mostly constants: an exponent is that of the upper part.
@@ -47,18 +47,23 @@ def exponent(n: Sequence[float], values: Sequence[float]) -> float:
 
 
 def growth(record: Record) -> list[Growth]:
-    """Everything that was measured over the chains."""
+    """Everything that was measured over at least two of the chains."""
     curves = []
     for function in FUNCTIONS:
-        for who, value in _times().items():
-            curves.append(_curve(record, function, "time [ns]", who, value))
-        for who in ("symofros", "casadi"):
+        own = {n: x for n in CHAINS for x in record.entries if (x.model, x.function) == (f"chain{n}", function)}
+        curves.append(_curve(function, "time [ns]", "symofros", {n: x.ours[1] for n, x in own.items()}))
+        in_batches = {n: x.batch[1] for n, x in own.items() if x.batch is not None}
+        curves.append(_curve(function, "time [ns]", "symofros, batch", in_batches))
+        for peer in ("pinocchio", "mujoco", "casadi"):
+            races = {n: record.best(f"chain{n}", function, peer) for n in CHAINS}
+            curves.append(_curve(function, "time [ns]", peer, {n: x.theirs[1] for n, x in races.items() if x}))
+        for by in ("symofros", "casadi"):
+            made = {n: record.cost(f"chain{n}", function, by) for n in CHAINS}
             for quantity, cost in _COSTS.items():
-                curves.append(_curve(record, function, quantity, who, _of_cost(who, cost)))
+                curves.append(_curve(function, quantity, by, {n: cost(x) for n, x in made.items() if x}))
     return [curve for curve in curves if len(curve.n) > 1]
 
 
-_Value = Callable[[Record, str, str], float | None]
 _COSTS: dict[str, Callable[[Made], float]] = {
     "operations": lambda cost: float(cost.total),
     "generation [s]": lambda cost: cost.generation,
@@ -67,43 +72,7 @@ _COSTS: dict[str, Callable[[Made], float]] = {
 }
 
 
-def _times() -> dict[str, _Value]:
-    def ours(record: Record, model: str, function: str) -> float | None:
-        entry = _any(record, model, function)
-        return None if entry is None else entry.ours[1]
-
-    def batch(record: Record, model: str, function: str) -> float | None:
-        entry = _any(record, model, function)
-        return None if entry is None or entry.batch is None else entry.batch[1]
-
-    def theirs(peer: str) -> _Value:
-        def value(record: Record, model: str, function: str) -> float | None:
-            entry = record.best(model, function, peer)
-            return None if entry is None else entry.theirs[1]
-
-        return value
-
-    return {
-        "symofros": ours,
-        "symofros, batch": batch,
-        **{peer: theirs(peer) for peer in ("pinocchio", "mujoco", "casadi")},
-    }
-
-
-def _any(record: Record, model: str, function: str) -> Entry | None:
-    return next((x for x in record.entries if (x.model, x.function) == (model, function)), None)
-
-
-def _of_cost(who: str, quantity: Callable[[Made], float]) -> _Value:
-    def value(record: Record, model: str, function: str) -> float | None:
-        cost = record.cost(model, function, who)
-        return None if cost is None else quantity(cost)
-
-    return value
-
-
-def _curve(record: Record, function: str, quantity: str, who: str, value: _Value) -> Growth:
-    values = {n: value(record, f"chain{n}", function) for n in CHAINS}
-    known = {n: x for n, x in values.items() if x}
+def _curve(function: str, quantity: str, who: str, values: Mapping[int, float]) -> Growth:
+    known = {n: value for n, value in values.items() if value}
     n, y = tuple(known), tuple(known.values())
     return Growth(function, quantity, who, n, y, exponent(n, y))

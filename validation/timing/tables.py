@@ -28,7 +28,7 @@ def sections(record: Record) -> list[Section]:
         _limits(record),
         _skipped(record),
     ]
-    return [section for section in made if any(isinstance(b, Table) and b.rows for b in section.blocks)]
+    return [section for section in made if section.shows]
 
 
 def targets_table(record: Record) -> Table:
