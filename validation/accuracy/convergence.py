@@ -84,10 +84,10 @@ def relative(family: str, tried: list[int], exact: Array) -> tuple[Array, Array]
     """The numbers of functions (k) and relative errors of frequencies 1 and 3 (k, 2); NaN where there are too few."""
     errors = np.full((len(tried), 2), np.nan)
     for i, n in enumerate(tried):
-        ours = np.sqrt(spinning_squares(spinning("bend_z", n, family=family), ETA, DELTA))
+        frequencies = np.sqrt(spinning_squares(spinning("bend_z", n, family=family), ETA, DELTA))
         for column, mode in enumerate((0, 2)):
             if n > mode:
-                errors[i, column] = abs(ours[mode] / exact[mode] - 1.0)
+                errors[i, column] = abs(frequencies[mode] / exact[mode] - 1.0)
     return np.array(tried, dtype=float), errors
 
 

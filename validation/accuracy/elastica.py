@@ -50,11 +50,11 @@ def study(quick: bool) -> Study:
     """Answer."""
     m, reference = second_order(), data("elastica_tip_load")
     alphas = np.geomspace(0.05, 3.0, 25 if quick else 50)
-    ours = np.array([tip(m, float(alpha)) for alpha in alphas])
+    beam = np.array([tip(m, float(alpha)) for alpha in alphas])
     rod = np.array([exact(float(alpha)) for alpha in alphas])
     table = reference["table"]
     distance = max(abs(exact(row["alpha"])[0] - row["tip_y"]) for row in table if row["alpha"] <= 5)
-    begins = {name: float(np.interp(float(name), ours[:, 0] / rod[:, 0] - 1, rod[:, 0])) for name in LEVELS}
+    begins = {name: float(np.interp(float(name), beam[:, 0] / rod[:, 0] - 1, rod[:, 0])) for name in LEVELS}
     findings = [Finding("elastica in elliptic integrals against the table", distance, 1e-9, reason="the same curve")]
     findings += [
         near(
@@ -82,11 +82,11 @@ def study(quick: bool) -> Study:
             reason="it is exact in bending",
         )
     )
-    figures = (shapes(alphas, ours, rod, cable), growth(ours, rod))
+    figures = (shapes(alphas, beam, rod, cable), growth(beam, rod))
     return Study("How far may it bend?", answer, figures, tuple(findings), (source("elastica_tip_load"),))
 
 
-def shapes(alphas: Array, ours: Array, rod: Array, cable: Array) -> Figure:
+def shapes(alphas: Array, beam: Array, rod: Array, cable: Array) -> Figure:
     """Deflection and shortening against load."""
     x = "load P L²/EI  [1]"
     deflection = Chart(
@@ -96,7 +96,7 @@ def shapes(alphas: Array, ours: Array, rod: Array, cable: Array) -> Figure:
         (
             Curve("elastica", alphas, rod[:, 0], 0),
             Curve("Exudyn", alphas[::4], cable[::4, 0], 5, "points"),
-            Curve("our beam (as linear theory)", alphas, ours[:, 0], 1, "dashed"),
+            Curve("our beam (as linear theory)", alphas, beam[:, 0], 1, "dashed"),
         ),
         (Mark("1 %", 0.098), Mark("5 %", 0.214)),
     )
@@ -107,7 +107,7 @@ def shapes(alphas: Array, ours: Array, rod: Array, cable: Array) -> Figure:
         (
             Curve("elastica", alphas, rod[:, 1], 0),
             Curve("Exudyn", alphas[::4], cable[::4, 1], 5, "points"),
-            Curve("our beam", alphas, ours[:, 1], 1, "dashed"),
+            Curve("our beam", alphas, beam[:, 1], 1, "dashed"),
             Curve("linear theory", alphas, 0 * alphas, 4, "dotted"),
         ),
     )
@@ -118,9 +118,9 @@ def shapes(alphas: Array, ours: Array, rod: Array, cable: Array) -> Figure:
     )
 
 
-def growth(ours: Array, rod: Array) -> Figure:
+def growth(beam: Array, rod: Array) -> Figure:
     """Errors against deflection."""
-    error = np.abs(ours / rod - 1.0)
+    error = np.abs(beam / rod - 1.0)
     chart = Chart(
         "error against deflection",
         "deflection of the tip over L  [1]",

@@ -28,10 +28,10 @@ def study(quick: bool) -> Study:
         for row in rows:
             if (row["delta"], row["eta"]) in table:
                 exact = table[row["delta"], row["eta"]][: min(n, 3)]
-                ours = np.sqrt(spinning_squares(m, row["eta"], row["delta"])[:3]) / exact - 1.0
+                error = np.sqrt(spinning_squares(m, row["eta"], row["delta"])[:3]) / exact - 1.0
                 known = np.array(row[f"n{n}"])
                 seen = known > SMALLEST
-                worst[n] = max(worst[n], float(np.max(ours[seen] / known[seen], initial=0.0)))
+                worst[n] = max(worst[n], float(np.max(error[seen] / known[seen], initial=0.0)))
     etas = np.arange(1.0, 13.0, 3.0 if quick else 1.0)
     exact = np.array([table[0, eta][0] for eta in etas.tolist()])
     tried = range(1, 7 if quick else MOST + 1)
@@ -50,8 +50,8 @@ def study(quick: bool) -> Study:
     answer = (
         f"At η = {etas[fast]:g}, r/L = 0 the first flap frequency needs "
         + ", ".join(
-            f"{words(needed['clamped_free', t][fast], len(tried))} cantilever modes or "
-            f"{words(needed['legendre', t][fast], len(tried))} polynomials for {100 * t:g} %"
+            f"{at_least(needed['clamped_free', t][fast], len(tried))} cantilever modes or "
+            f"{at_least(needed['legendre', t][fast], len(tried))} polynomials for {100 * t:g} %"
             for t in TOLERANCES
         )
         + ". Cantilever modes serve slow beams and coarse tolerances; polynomials win otherwise."
@@ -78,7 +78,7 @@ def least(errors: Array, tolerance: float) -> Array:
     return np.where(within.any(axis=0), within.argmax(axis=0) + 1.0, np.nan)
 
 
-def words(count: float, most: int) -> str:
+def at_least(count: float, most: int) -> str:
     """A number of functions, or that it is more than were tried."""
     return f"{count:.0f}" if np.isfinite(count) else f"more than {most}"
 

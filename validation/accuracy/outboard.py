@@ -35,7 +35,7 @@ def ritz(eta: Array, mass: float) -> Array:
     return np.array([scipy.linalg.eigvalsh(K + e * e * G, M)[0] for e in eta.tolist()])
 
 
-def ours(etas: Array, mass: float, **changed: object) -> Array:
+def squares_of(etas: Array, mass: float, **changed: object) -> Array:
     """The same by our beam with a rigid body welded to its tip."""
     carried = [sf.RigidBody("load", sf.Joint("weld", "fixed", "b", "tip"), sf.Inertia(mass))] if mass else []
     m = spinning("bend_z", FUNCTIONS, *carried, **changed)
@@ -45,9 +45,9 @@ def ours(etas: Array, mass: float, **changed: object) -> Array:
 def study(quick: bool) -> Study:
     """Answer."""
     etas = np.linspace(0.0, 6.0, 7 if quick else 25)
-    measured = {mass: ours(etas, mass) for mass in MASSES}
+    measured = {mass: squares_of(etas, mass) for mass in MASSES}
     expected = {mass: ritz(etas, mass) for mass in MASSES}
-    without = ours(etas, MASSES[2], foreshortening=False, retain="all")
+    without = squares_of(etas, MASSES[2], foreshortening=False, retain="all")
     findings = [
         Finding(
             f"mass ratio {mass:g}: largest relative error of the first flap frequency's square",

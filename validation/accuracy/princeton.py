@@ -45,7 +45,7 @@ def strip_model(retain: str, functions: int = 3) -> sf.Model:
     return sf.compile(stated, sf.Options(("dynamics", "residual_derivatives", "frame_pose"), ("tip",)))
 
 
-def ours(m: sf.Model, load: float, angles: Array) -> tuple[Array, Array]:
+def beam_tips(m: sf.Model, load: float, angles: Array) -> tuple[Array, Array]:
     """Displacement of the tip (n, 3) [m] and twist of its section (n) [rad] at rest; NaN where there is no rest."""
     places, twists = np.full((len(angles), 3), np.nan), np.full(len(angles), np.nan)
     for k, angle in enumerate(angles.tolist()):
@@ -62,7 +62,7 @@ def ours(m: sf.Model, load: float, angles: Array) -> tuple[Array, Array]:
     return places, twists
 
 
-def exact(load: float, angles: Array) -> tuple[Array, Array]:
+def rod_tips(load: float, angles: Array) -> tuple[Array, Array]:
     """The same by Exudyn."""
     tips = [princeton(load, angle) for angle in angles.tolist()]
     return np.array([p for p, _ in tips]), np.array([twist(R) for _, R in tips])
@@ -78,16 +78,16 @@ def study(quick: bool) -> Study:
     angles = np.radians(np.linspace(0.0, 90.0, 4 if quick else 13))
     loads = LOADS[1:2] if quick else LOADS
     m = {retain: strip_model(retain) for retain in ORDERS}
-    reference = {load: exact(load, angles) for load in loads}
-    tips_of_loads = {load: ours(m["all"], load, angles) for load in loads}
+    reference = {load: rod_tips(load, angles) for load in loads}
+    tips_of_loads = {load: beam_tips(m["all"], load, angles) for load in loads}
     # A small to a large load at 60 degrees, where both bendings and the twist are at work.
     at, growing = np.radians([60.0]), np.geomspace(0.5, 9.0, 5 if quick else 15)
-    rod = [exact(float(load), at) for load in growing]
+    rod = [rod_tips(float(load), at) for load in growing]
     sizes = np.array([np.linalg.norm(p[0]) for p, _ in rod])
     deflection = np.array([np.linalg.norm(p[0, 1:]) for p, _ in rod]) / Strip().length
     errors, turned = {}, {}
     for retain in ORDERS:
-        tips = [ours(m[retain], float(load), at) for load in growing]
+        tips = [beam_tips(m[retain], float(load), at) for load in growing]
         errors[retain] = (
             np.array([np.linalg.norm(p[0] - q[0]) for (p, _), (q, _) in zip(tips, rod, strict=True)]) / sizes
         )
@@ -125,7 +125,7 @@ def study(quick: bool) -> Study:
         Finding("first order: twist over Exudyn's", untwisted, 1e-9, reason="its strain energy is quadratic"),
         Finding(
             "retain: all, load at 60°: deflection over L, in Exudyn, where our equilibrium is lost",
-            float(np.linalg.norm(exact(lost, at)[0][0, 1:]) / Strip().length),
+            float(np.linalg.norm(rod_tips(lost, at)[0][0, 1:]) / Strip().length),
             0.5,
             0.25,
             "beyond what second order claims",
@@ -152,7 +152,7 @@ def study(quick: bool) -> Study:
 def first_without_rest(m: sf.Model, angle: float) -> float:
     """The load from which our strip has no equilibrium, to half a newton [N]."""
     for load in np.arange(9.0, 20.0, 0.5).tolist():
-        if np.isnan(ours(m, load, np.array([angle]))[1][0]):
+        if np.isnan(beam_tips(m, load, np.array([angle]))[1][0]):
             return float(load)
     return np.nan
 
@@ -187,12 +187,12 @@ def around(angles: Array, loads: tuple[float, ...], reference: Tips, tips: Tips)
 
 def growth(deflection: Array, errors: dict[str, Array]) -> Figure:
     """Error against deflection."""
-    words = {"all": "retain: all", "first_order": "first order"}
+    labels = {"all": "retain: all", "first_order": "first order"}
     chart = Chart(
         "load at 60°: error of the tip's place",
         "deflection of the tip over L  [1]",
         "error over the displacement  [1]",
-        tuple(Curve(words[name], deflection, error, k, "joined") for k, (name, error) in enumerate(errors.items())),
+        tuple(Curve(labels[name], deflection, error, k, "joined") for k, (name, error) in enumerate(errors.items())),
         (Mark("1 %", 0.01), Mark("5 %", 0.05)),
         log="xy",
     )

@@ -96,9 +96,9 @@ def errors(modes: int, table: list[dict[str, Any]]) -> dict[tuple[str, int], Arr
         m = spinning(direction, modes)
         for delta in (0, 1):
             rows = [row for row in table if row["delta"] == delta]
-            ours = np.array([np.sqrt(spinning_squares(m, row["eta"], delta)[:3]) for row in rows])
-            theirs = np.array([row[column][:3] for row in rows])
-            largest[plane, delta] = np.abs(ours / theirs - 1.0).max(axis=1)
+            computed = np.array([np.sqrt(spinning_squares(m, row["eta"], delta)[:3]) for row in rows])
+            expected = np.array([row[column][:3] for row in rows])
+            largest[plane, delta] = np.abs(computed / expected - 1.0).max(axis=1)
     return largest
 
 
@@ -107,9 +107,9 @@ def engine(etas: tuple[float, ...]) -> float:
     models = [spinning(direction, 10) for direction, _ in PLANES.values()]
     worst = 0.0
     for eta in etas:
-        for m, theirs in zip(models, spinning_frequencies(1.0, 1e7, eta, 1.0), strict=True):
+        for m, expected in zip(models, spinning_frequencies(1.0, 1e7, eta, 1.0), strict=True):
             frequencies = np.sqrt(spinning_squares(m, eta, 1.0)[:3])
-            worst = max(worst, float(np.abs(frequencies / theirs - 1.0).max()))
+            worst = max(worst, float(np.abs(frequencies / expected - 1.0).max()))
     return worst
 
 

@@ -52,8 +52,8 @@ def study(quick: bool) -> Study:
     known = np.array([t for t in rod["t"] if t <= end])
     exact = np.stack([rod["tip_x"], rod["tip_y"]], axis=-1)[: len(known)]
     at = np.searchsorted(times, known)
-    ours = {n: tip(times, n) for n in ((1, 3) if quick else (1, 2, 3, 5, 8))}
-    errors = {n: np.abs(deflection[at] - exact) for n, deflection in ours.items()}
+    tips = {n: tip(times, n) for n in ((1, 3) if quick else (1, 2, 3, 5, 8))}
+    errors = {n: np.abs(deflection[at] - exact) for n, deflection in tips.items()}
     short = times[times <= 8.0]
     without = tip(short, 3, foreshortening=False, retain="all")
     zeroth = tip(times, 3, retain="zeroth_order")
@@ -75,14 +75,14 @@ def study(quick: bool) -> Study:
         Finding("3 functions: along the beam [m]", float(errors[3][:, 0].max()), 2e-4, reason="1.3e-4 is known"),
         near(
             "3 functions: peak against the exact rod [m]",
-            float(ours[3][:, 1].min()),
+            float(tips[3][:, 1].min()),
             peak,
             BOUND / abs(peak),
             "the same 2.5 mm",
         ),
         near(
             "3 functions: peak against the known foreshortened model [m]",
-            float(ours[3][:, 1].min()),
+            float(tips[3][:, 1].min()),
             reference["foreshortening_model"]["3"]["peak_y"],
             2e-5,
             "an independent program of the same theory",
@@ -110,7 +110,7 @@ def study(quick: bool) -> Study:
         f"{zeroth[:, 1].min() / peak - 1:.0%} further."
     )
     figures = (
-        movement(times, ours[3], short, without, zeroth, known, exact, (t[::20], cable[::20])),
+        movement(times, tips[3], short, without, zeroth, known, exact, (t[::20], cable[::20])),
         distance(known, errors, apart),
     )
     return Study(
@@ -124,7 +124,7 @@ def study(quick: bool) -> Study:
 
 def movement(
     times: Array,
-    ours: Array,
+    tip_path: Array,
     short: Array,
     without: Array,
     zeroth: Array,
@@ -138,7 +138,7 @@ def movement(
         TIME,
         "displacement  [m]",
         (
-            Curve("foreshortened, 3 functions", times, ours[:, 1], 0),
+            Curve("foreshortened, 3 functions", times, tip_path[:, 1], 0),
             Curve("exact rod", known, exact[:, 1], 0, "points"),
             Curve("Exudyn", cable[0], cable[1][:, 1], 5, "dashed"),
             Curve("without foreshortening", short, without[:, 1], 1, "dashed"),
@@ -151,7 +151,7 @@ def movement(
         TIME,
         "displacement  [m]",
         (
-            Curve("foreshortened, 3 functions", times, ours[:, 0], 0),
+            Curve("foreshortened, 3 functions", times, tip_path[:, 0], 0),
             Curve("exact rod", known, exact[:, 0], 0, "points"),
             Curve("Exudyn", cable[0], cable[1][:, 0], 5, "dashed"),
         ),

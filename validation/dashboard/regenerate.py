@@ -46,10 +46,10 @@ def regenerate(folder: Path, starting: Callable[[str], None], done: Callable[[Ou
         starting: Gets the name of each report.
         done: Gets how it ended.
     """
-    for name, words in commands().items():
+    for name, arguments in commands().items():
         starting(name)
         start = time.perf_counter()
-        command = [sys.executable, "-m", "validation", *words, "--output", str(folder)]
+        command = [sys.executable, "-m", "validation", *arguments, "--output", str(folder)]
         run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
         said = "" if run.returncode in (0, 1) else "\n".join(run.stderr.strip().splitlines()[-5:])
         done(Outcome(name, run.returncode, time.perf_counter() - start, said))

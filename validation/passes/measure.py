@@ -64,7 +64,7 @@ class Measured:
     off: float
 
 
-def measure(label: str, repeats: int, done: Callable[[str], None] = lambda words: None) -> Iterator[Measured]:
+def measure(label: str, repeats: int, done: Callable[[str], None] = lambda doing: None) -> Iterator[Measured]:
     """All of one model, raced together.
 
     Raises:

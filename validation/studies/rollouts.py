@@ -29,7 +29,7 @@ class Rollout:
         who: Whose loop.
         how: Method and step, in words.
         threads: That share the work.
-        error: Of the joints at the end, the largest over all trajectories, against dop853 at 1e-12 [rad].
+        error: Error of the joints at the end, the largest over all trajectories, against dop853 at 1e-12 [rad].
         steps: Taken by all trajectories together.
         nanoseconds: Of processor time a step: minimum and median over the repeats.
         ratio: Median over the repeats of MuJoCo's processor time over this; 1 for MuJoCo itself.

@@ -44,8 +44,8 @@ def run_job(job: Job, record: Record, done: Done = lambda model, function: None)
         "states": job.states,
     }
     command = [sys.executable, "-m", "validation.timing.worker", json.dumps(stated)]
-    with tempfile.TemporaryFile("w+") as words:
-        worker = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=words, text=True)
+    with tempfile.TemporaryFile("w+") as complaints:
+        worker = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=complaints, text=True)
         assert worker.stdout is not None
         try:
             for line in worker.stdout:
@@ -58,8 +58,8 @@ def run_job(job: Job, record: Record, done: Done = lambda model, function: None)
         finally:
             worker.stdout.close()
         if status != 0:
-            words.seek(0)
-            last = (words.read().strip() or "no word").splitlines()[-1]
+            complaints.seek(0)
+            last = (complaints.read().strip() or "no word").splitlines()[-1]
             record.failed.append((job.model, "what was left", "symofros", f"the worker ended with {status}: {last}"))
 
 

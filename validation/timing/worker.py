@@ -61,11 +61,11 @@ def work(job: Job, say: Say) -> None:
 
 
 def _function(given: Task, job: Job, function: str, say: Say) -> None:
-    ours = {loop.variant: loop for loop in our_loops(given, [function])}
-    expected = ours[NAME].results()
-    for name in ours.keys() - {NAME}:
-        checked(function, name, ours[name].results(), expected, OF_FLOATS if name == SINGLE else 1.0)
-    sides = dict(ours)
+    generated = {loop.variant: loop for loop in our_loops(given, [function])}
+    expected = generated[NAME].results()
+    for name in generated.keys() - {NAME}:
+        checked(function, name, generated[name].results(), expected, OF_FLOATS if name == SINGLE else 1.0)
+    sides = dict(generated)
     errors: dict[str, float] = {}
     peers: dict[str, str] = {}
     for peer in job.peers:
@@ -101,8 +101,8 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
 
 
 def _offered(given: Task, job: Job, function: str, peer: str, say: Say) -> Iterable[Loop]:
-    def warn(words: str) -> None:
-        say("failed", [job.model, function, peer, words])
+    def warn(text: str) -> None:
+        say("failed", [job.model, function, peer, text])
 
     sources: dict[str, Callable[[], Iterator[Loop]]] = {
         "pinocchio": lambda: pinocchio_loops(given, [function], warn),

@@ -139,7 +139,7 @@ def judge(maps: Maps) -> Verdict:
         )
     )
     euler = maps["euler"]
-    words = (
+    statement = (
         "With both gains α the constraint decays with a double root -α, so explicit methods hold while α h stays "
         "below where their stability function leaves the unit disc on the real axis. Measured with h = 0.1 ms, RK4 "
         f"holds up to α h = {reached['rk4']:.3f}, Dormand-Prince up to {reached['dopri5']:.3f}, Euler up to "
@@ -154,7 +154,7 @@ def judge(maps: Maps) -> Verdict:
         f"{rk4.wrong} come to their end and are wrong. Going down from the edge the violation falls, until at small "
         "gains it rises again. Euler loses the rod at small gains and long steps."
     )
-    return Verdict(words, see, tuple(findings))
+    return Verdict(statement, see, tuple(findings))
 
 
 SCENE = Scene(

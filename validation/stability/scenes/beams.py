@@ -144,7 +144,7 @@ def judge(maps: Maps) -> Verdict:
     )
     rk4 = maps["rk4"]
     first, last = (float(frequencies(n)[-1]) for n in (1, 5))
-    words = (
+    statement = (
         f"Explicit steps hold up to h = 2.828/ω_max with RK4 (found {reached['rk4']:.4f}) and 2/ω_max with "
         f"semi-implicit Euler (found {reached['semi_implicit_euler']:.4f}), where ω_max is the highest frequency of "
         f"the model, not the one of interest: five modes instead of one raise it from {first:.2f} to {last:.0f} "
@@ -156,7 +156,7 @@ def judge(maps: Maps) -> Verdict:
         "Each map is cut by the dashed closed form, which falls as the square of the number of modes: blue below, "
         "where energy stays, red above. The last map has no edge."
     )
-    return Verdict(words, see, tuple(findings))
+    return Verdict(statement, see, tuple(findings))
 
 
 def judge_damped(maps: Maps) -> Verdict:
@@ -189,7 +189,7 @@ def judge_damped(maps: Maps) -> Verdict:
             "it is L-stable",
         ),
     )
-    words = (
+    statement = (
         "Damping that grows with the frequency helps RK4 only a little and then hurts: the longest step is "
         f"{closed_form(RETARDATION.values[0]):.4f} s with c = {RETARDATION.values[0]:g} s, {closed_form(best):.4f} "
         f"s at best (c = {best:.2g} s), and from c = 2/ω_max = {2 / omega:.2g} s on it falls as 2.785/(c ω_max²), "
@@ -201,7 +201,7 @@ def judge_damped(maps: Maps) -> Verdict:
         "The dashed boundary is level on the left, where modes swing, and falls with slope one on the right, where "
         "the highest mode creeps; the measured edge follows it in every column."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 def line(bound: float) -> Limit:

@@ -55,7 +55,7 @@ def judge(maps: Maps) -> Verdict:
     """Where each model leaves the rod."""
     excess = 0.0
     for name, runs in maps.items():
-        key = next(k for k, words in WORDS.items() if words == name)
+        key = next(k for k, label in WORDS.items() if label == name)
         known = [(row_of(float(g)), v) for g, v in zip(runs.x, runs.at(y=3.0), strict=True)]
         # At two seconds the error is one of those whose largest is known.
         excess = max(
@@ -89,7 +89,7 @@ def judge(maps: Maps) -> Verdict:
             "second-order theory loses 1 % at 0.1 L, 5 % at 0.2 L of static deflection",
         ),
     )
-    words = (
+    statement = (
         "Second-order theory is good for moderate bending: with three modes first order keeps the tip within 1 % "
         f"of L up to ρA g L³/EI = {softest:g}, where the beam bends by {bends:.2f} L, with one mode up to {one:g}. "
         f"Without foreshortening the limit is {stiffest:g}, and beyond it the model breaks down: its largest error "
@@ -102,7 +102,7 @@ def judge(maps: Maps) -> Verdict:
         "errors are larger, and a cell beyond the edge is good by the instant. Keeping every term (the first map) "
         "gains nothing over first order at the edge, for both lack the same."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 SCENE = Scene(

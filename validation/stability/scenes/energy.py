@@ -92,7 +92,7 @@ def judge(maps: Maps) -> Verdict:
         for name in MUJOCO
         if name in rows
     )
-    words = (
+    statement = (
         f"From {SHORT:.0e} to {STEPS:.0e} steps the error of semi-implicit Euler and of the variational method does "
         f"not grow (factors {ratio['semi_implicit_euler']:.2f} and {ratio['variational']:.2f}): it swings with the "
         f"motion. RK4's grows {ratio['rk4']:.0f} times and stays small at short steps, {index['rk4'][0]:.0e} of m g "
@@ -105,7 +105,7 @@ def judge(maps: Maps) -> Verdict:
         "Rows that look alike in both maps do not drift; those that darken towards orange from the left map to the "
         "right one do. Errors fall to the left with each method's order."
     )
-    return Verdict(words, see, tuple(findings))
+    return Verdict(statement, see, tuple(findings))
 
 
 SCENE = Scene(

@@ -134,7 +134,7 @@ def judge(maps: Maps) -> Verdict:
     )
     edge = angles.good.mean()
     rates = maps[BODY_RATES]
-    words = (
+    statement = (
         "The angles' rates grow as 1/|cos pitch|, so fixed steps jump across: with three hinges, whose rates are "
         f"the speeds, {edge:.0%} of the map is good, {angles.stopped} of {angles.values.size} runs stop as "
         f"diverged, and {angles.wrong} come to their end and miss the attitude by up to "
@@ -149,7 +149,7 @@ def judge(maps: Maps) -> Verdict:
         "In the first two maps the edge rises with the distance from the singularity; below it the step is short "
         "against the passage. The last, the same body on a ball joint, is level."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 SCENE = Scene(

@@ -78,7 +78,7 @@ def judge(maps: Maps) -> Verdict:
         Finding("other families: largest error of the round trip", others, 1e-11, reason="condition below 1e3"),
         Finding("legendre: smallest error of the first frequency", best, 1e-10, reason="it converges until rounding"),
     )
-    words = (
+    statement = (
         f"Monomials lose a digit and a half with each function: the round trip errs by {monomials[-1].value:.0e} "
         f"with {int(first) - 1}, and {first:.0f} are refused: “{said}”. The other families keep {others:.0e} or "
         f"better with {int(kept.x[-1])}. In the first frequency legendre functions come down to {best:.0e}, "
@@ -89,7 +89,7 @@ def judge(maps: Maps) -> Verdict:
         "monomials; cantilever modes have it with one function. Right, only monomials get worse to the right, until "
         "they are refused."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 SCENE = Scene(

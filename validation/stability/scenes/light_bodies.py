@@ -116,7 +116,7 @@ def judge(maps: Maps) -> Verdict:
             "nothing is silently wrong",
         ),
     )
-    words = (
+    statement = (
         "Lightness by itself does no harm: hanging free, a last link of 1e-12 of the first swings as a light one "
         "does (far, for both links have one frequency). On a spring its frequency grows as 1/√m, and RK4's longest "
         f"step shrinks from {heavy:.3f} s to {light:.1e} s, where 2.828/ω_max says ({maps[SPRING].stopped} of "
@@ -127,7 +127,7 @@ def judge(maps: Maps) -> Verdict:
         "The edge of the first map has slope one half in the mass and lies on the dashed line down to 1e-12; the "
         "other two maps have none."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 @cache
@@ -179,7 +179,7 @@ def judge_cross(maps: Maps) -> Verdict:
         Finding("massless cross: largest error times a²", scaled, 1e-14, reason="rounding times the condition, 4/a²"),
         Finding("right angle, massless cross: error", float(runs.at(x=90.0, y=0.0)[0]), 1e-14, reason="rounding"),
     )
-    words = (
+    statement = (
         "A massless cross is legal: the body behind it bears both hinges. As they become parallel the mass matrix "
         f"degenerates as 4/a², and digits go with it: at 1 degree, a condition of {condition(1.0):.0f}, nothing is "
         f"lost that matters; {'from ' + format(first, '.1e') + ' degrees down' if first else 'nowhere on the map'} "
@@ -187,7 +187,7 @@ def judge_cross(maps: Maps) -> Verdict:
         f"{float(np.nanmax(runs.at(y=float(CROSS.values.index(1e-6))))):.0e} at any angle."
     )
     see = "Bottom row, no mass: errors grow to the left as 1/a². Every row above is level left of a = √J."
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 def boundary(stiffness: float) -> Limit:

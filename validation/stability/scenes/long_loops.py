@@ -70,7 +70,7 @@ def judge(maps: Maps) -> Verdict:
     for method, runs in maps.items():
         held = np.asarray(runs.good).all(axis=0)
         longest[method] = float(runs.x[held].max(initial=0.0))
-    words = (
+    statement = (
         f"Kept by accelerations alone, loops drift as h to the power {slopes['semi_implicit_euler']:.1f} with "
         f"semi-implicit Euler, {slopes['rk4']:.1f} with RK4, {slopes['dopri5']:.1f} with Dormand-Prince. With RK4 "
         f"at 10 ms the drift grows with the number of loops to the power {growth:.1f}. The longest step of the map "
@@ -83,7 +83,7 @@ def judge(maps: Maps) -> Verdict:
         "Going right along a row, decades grow in equal steps: that is the order. Going up, each doubling of the "
         f"loops multiplies the drift by about {2**growth:.0f}. The map with projection is level at rounding."
     )
-    return Verdict(words, see, tuple(findings))
+    return Verdict(statement, see, tuple(findings))
 
 
 SCENE = Scene(

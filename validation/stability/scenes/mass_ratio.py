@@ -90,7 +90,7 @@ def error(a: Array, links: int, ratio: float) -> Cell:
     return Cell(float(np.abs(a - expected).max() / np.abs(expected).max()))
 
 
-def ours(way: Literal["articulated", "factors"]) -> Callable[[float, float], Cell]:
+def own_engine(way: Literal["articulated", "factors"]) -> Callable[[float, float], Cell]:
     """The C, by either way of forward dynamics."""
 
     def run(ratio: float, links: float) -> Cell:
@@ -101,7 +101,7 @@ def ours(way: Literal["articulated", "factors"]) -> Callable[[float, float], Cel
     return run
 
 
-def theirs(engine: str) -> Callable[[float, float], Cell]:
+def other_engine(engine: str) -> Callable[[float, float], Cell]:
     """An engine's forward dynamics."""
 
     def run(ratio: float, links: float) -> Cell:
@@ -166,7 +166,7 @@ def judge(maps: Maps) -> Verdict:
         ),
         Finding("symofros: largest change of energy in runs that end", worst[DRIFT], 1e-6, reason="tolerance 1e-12"),
     )
-    words = (
+    statement = (
         "A heavy load on light links costs digits: the light links' accelerations are small differences of large "
         f"forces. Largest errors with a load of 1e8: by factors of the mass matrix ours {heavy[FACTORS]:.0e}, MuJoCo "
         f"{heavy[MUJOCO]:.0e}; by articulated bodies, which never form it, ours {heavy[ARTICULATED]:.0e}, Pinocchio "
@@ -180,7 +180,7 @@ def judge(maps: Maps) -> Verdict:
         "number of links, two decades and more above articulated bodies. To the left nothing happens. In the last map "
         "red cells are runs that take too many steps."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 SCENE = Scene(
@@ -192,8 +192,8 @@ SCENE = Scene(
     "relative error [-]",
     BOUND,
     (
-        *(Subject(name, ours(way)) for name, way in WAYS.items()),
-        *(Subject(name, theirs(engine)) for name, engine in ENGINES.items()),
+        *(Subject(name, own_engine(way)) for name, way in WAYS.items()),
+        *(Subject(name, other_engine(engine)) for name, engine in ENGINES.items()),
         Subject(DRIFT, drift),
     ),
     judge,

@@ -134,7 +134,7 @@ def judge(maps: Maps) -> Verdict:
         ),
         Finding("runs that come to their end and are wrong", float(silent), 0.0, reason="a misfit is refused or told"),
     )
-    words = (
+    statement = (
         "Rows that repeat others are found by their rank and cost nothing: with 3, 5 and 4 rows of rank 2, 2 and "
         f"3, accelerations differ from those of the pin by {spread:.0e} rad/s², and every run that fits is good. "
         f"Redundant rows must fit, though: an offset d is harmless with two rows, and from {first[BALL]:.0e} m "
@@ -145,7 +145,7 @@ def judge(maps: Maps) -> Verdict:
         "The top three rows turn from good to refused where the misfit passes what rounding excuses; the bottom row "
         "does not, because nothing in it is redundant."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 SCENE = Scene(

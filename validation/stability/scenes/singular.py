@@ -49,12 +49,12 @@ def measure(loops: int) -> Callable[[float, float], Cell]:
             return exudyn(loops, END / steps)
         kind = {"accelerations only": "none", "projection": "projection"}.get(label, "baumgarte")
         gain = float(label.split()[1].removesuffix("/s")) if kind == "baumgarte" else None
-        return cell(ours(loops, END / steps, kind, gain), lambda done: off(loops, done))
+        return cell(crossing(loops, END / steps, kind, gain), lambda done: off(loops, done))
 
     return run
 
 
-def ours(loops: int, h: float, kind: str, gain: float | None) -> sf.Trajectory:
+def crossing(loops: int, h: float, kind: str, gain: float | None) -> sf.Trajectory:
     """The linkage for ten seconds."""
     m = four_bars.linkage(loops)
     return simulate(
@@ -127,7 +127,7 @@ def passages_told(maps: Maps) -> float:
 def unlucky() -> dict[str, float]:
     """Largest distance over steps that all but land in the flat posture, runs among 172 steps of about 1.3 ms [m]."""
     return {
-        name: max(off(2, ours(2, END / n, name, gain)) for n in UNLUCKY)
+        name: max(off(2, crossing(2, END / n, name, gain)) for n in UNLUCKY)
         for name, gain in (("projection", None), ("baumgarte", 20.0))
     }
 
@@ -199,7 +199,7 @@ def judge(maps: Maps) -> Verdict:
     wrong = sum(runs.wrong for runs in maps.values())
     stopped = sum(runs.stopped for runs in maps.values())
     defaults = two.at(y=WAYS.labels.index("MuJoCo, its defaults"))
-    words = (
+    statement = (
         "Flat, the linkage may leave on another branch, and what drift or rounding has left by then decides. "
         f"Through all steps of both maps hold: {', '.join(always)}. At some steps: "
         f"{', '.join(sometimes) or 'none'}. At none: {', '.join(never) or 'none'}. Projection stays within "
@@ -214,12 +214,12 @@ def judge(maps: Maps) -> Verdict:
         f"outcome, but {wrong} come to their end on the wrong branch or out of phase, and only a check of energy or "
         "of the step tells."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 def good(gain: float, h: float) -> bool:
     """Whether ours holds with a gain."""
-    run = ours(2, h, "baumgarte", gain)
+    run = crossing(2, h, "baumgarte", gain)
     return run.outcome.ok and off(2, run) <= BOUND
 
 

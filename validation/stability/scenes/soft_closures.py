@@ -73,8 +73,8 @@ def judge(maps: Maps) -> Verdict:
     lost = {name: float(np.ptp(run.energy)) for name, run in defaults.items()}
     astray = [four_bars.tip_error(1, END, ends_of_crank(run.q)) for run in defaults.values()]
     m = four_bars.linkage(1)
-    ours = simulate(m, *four_bars.state(m, *four_bars.START), END, dt=float(H.chosen(True)[0]), output=[0.0, END])
-    held = four_bars.tip_error(1, END, ours.frames["crank0.end"][0][-1, [0, 2]])
+    projected = simulate(m, *four_bars.state(m, *four_bars.START), END, dt=float(H.chosen(True)[0]), output=[0.0, END])
+    held = four_bars.tip_error(1, END, projected.frames["crank0.end"][0][-1, [0, 2]])
     best = {name: float(np.nanmin(runs.values)) for name, runs in maps.items()}
     findings = (
         Finding(
@@ -94,7 +94,7 @@ def judge(maps: Maps) -> Verdict:
         Finding("MuJoCo RK4, stiff: smallest distance on the map [m]", best["MuJoCo RK4"], 1e-3, reason="short steps"),
         Finding("ours, RK4 and projection, h = 1 ms: distance [m]", held, 1e-9, reason="closures are exact, order h⁴"),
     )
-    words = (
+    statement = (
         f"MuJoCo closes loops by stiff springs and dampers. With its defaults the crank's end is {min(astray):.2f} "
         f"to {max(astray):.2f} m off after 10 s at a step of 1 ms, with Euler and RK4 alike, for {lost['RK4']:.2f} "
         f"to {lost['Euler']:.2f} of 20.5 J are lost; stated flat instead of upright, the same model with RK4 is "
@@ -106,7 +106,7 @@ def judge(maps: Maps) -> Verdict:
         "Errors fall with the time constant until it reaches two steps, the dashed line; below it MuJoCo raises the "
         "time constant by itself, and rows become equal. A shorter step alone, along a row, gains nothing."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 SCENE = Scene(

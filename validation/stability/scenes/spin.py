@@ -83,7 +83,7 @@ def judge(maps: Maps) -> Verdict:
         Finding("foreshortened: share of the map that is bounded", float(stiff.good.mean()), 1.0, 1.0, "it stiffens"),
         Finding("zeroth order: the same", float(ruthless.good.mean()), 1.0, 1.0, "it neither stiffens nor softens"),
     )
-    words = (
+    statement = (
         "Without foreshortening the softening term of rotation is kept and the stiffening one lost: between η = "
         f"{max(edges[0], default=0.0):g} and {min(edges[1], default=0.0):g}, for every hub, the beam begins to fly "
         f"away, at a rate of {rates[6.0]:.2f} /s at η = 6, where a real one only gets stiffer. {without.wrong} of "
@@ -95,7 +95,7 @@ def judge(maps: Maps) -> Verdict:
         "Only the map without foreshortening has an edge, upright on the dashed line at the first frequency: it "
         "does not depend on the hub."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 def limits(name: str) -> tuple[Limit, ...]:

@@ -143,7 +143,7 @@ def judge(maps: Maps) -> Verdict:
             "maximum of the smoothed curve",
         ),
     )
-    words = (
+    statement = (
         f"Two errors meet. Smoothing lets the block creep: v₀ of {min(blunt, default=np.inf):.1e} m/s and more miss "
         f"at the shortest step, and whatever v₀ is, by default the block breaks away at {STATIC / STATED:.1%} of "
         "the static friction, because it falls over ten times v₀. Sharp friction makes the rest stiff: beyond h = "
@@ -158,7 +158,7 @@ def judge(maps: Maps) -> Verdict:
         "Good runs fill a wedge: its right edge is smoothing, the slanted one chatter, which runs along the dashed "
         "closed form and above it. Implicit Euler reaches further, with holes."
     )
-    return Verdict(words, see, findings)
+    return Verdict(statement, see, findings)
 
 
 def steady(v0: float) -> tuple[float, int]:

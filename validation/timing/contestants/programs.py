@@ -123,7 +123,7 @@ def build(
         depends: Further dependencies: versions of packages.
 
     Raises:
-        BuildError: The compiler refused, with its words.
+        BuildError: The compiler refused, with its complaint.
     """
     parts = [*sources, *sources.values(), *flags, *link, *depends, compiler.version, cpu_identity()]
     key = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
@@ -169,8 +169,8 @@ def _compiled(
 def _call(command: Sequence[str], directory: Path) -> None:
     done = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        words = "\n".join(done.stderr.splitlines()[:20])
-        raise BuildError(f"{' '.join(command)}\nfailed with status {done.returncode}:\n{words}")
+        complaint = "\n".join(done.stderr.splitlines()[:20])
+        raise BuildError(f"{' '.join(command)}\nfailed with status {done.returncode}:\n{complaint}")
 
 
 def _sections(path: Path) -> dict[str, int]:

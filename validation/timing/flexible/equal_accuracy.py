@@ -40,7 +40,7 @@ class Pair:
     Attributes:
         functions: Shape functions a strip.
         elements: Number of Exudyn's elements a strip.
-        error: Ours and Exudyn's.
+        error: Errors of the generated C and of Exudyn.
         tree: Exudyn's model.
     """
 

@@ -1,0 +1,52 @@
+"""Compilers are found, told apart, and asked once for each program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from validation.timing.contestants import engines
+from validation.timing.contestants.programs import BuildError, Built, Compiler, Skipped, build, compilers
+
+
+def test_missing_headers_say_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    def nothing(package: str) -> None:
+        raise engines.metadata.PackageNotFoundError(package)
+
+    monkeypatch.setattr(engines.metadata, "files", nothing)
+    with pytest.raises(Skipped, match=r"libpinocchio is not installed: pip install 'symofros\[timing\]'"):
+        engines.pinocchio_builds()
+
+
+def test_a_compiler_that_fails_is_told_and_the_other_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    def only_clang(compiler: Compiler, *rest: object) -> Built:
+        if compiler.name.startswith("gcc"):
+            raise BuildError("out of memory")
+        return Built(Path("side.so"), 1.0, 1, 1)
+
+    both = [Compiler("g++", "gcc 12", ""), Compiler("clang++", "clang 19", "")]
+    monkeypatch.setattr(engines, "compilers", lambda language: both)
+    monkeypatch.setattr(engines, "build", only_clang)
+    monkeypatch.setattr(engines, "_includes", list)  # The headers are an extra.
+    builds, failures = engines.pinocchio_builds()
+    assert [compiler.name for compiler, _ in builds] == ["clang 19"]
+    assert failures == ["Pinocchio by gcc 12: out of memory"]
+
+
+def test_one_compiler_of_each_family_and_the_newest_clang(monkeypatch: pytest.MonkeyPatch) -> None:
+    there = {"gcc": "gcc 12.2.0", "clang": "clang 14.0.6", "clang-19": "clang 19.1.7", "clang-16": "clang 16.0.0"}
+    monkeypatch.setattr(
+        "validation.timing.contestants.programs._compiler",
+        lambda name: Compiler(name, there[name], "") if name in there else None,
+    )
+    assert [found.name for found in compilers()] == ["gcc 12.2.0", "clang 19.1.7"]
+
+
+def test_a_program_is_compiled_once_for_its_content(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
+    compiler, text = compilers()[0], '__attribute__((visibility("default"))) double f(double x) { return 3.5 * x; }\n'
+    first, again = (build(compiler, {"f.c": text}, ("-O2",)) for _ in range(2))
+    other = build(compiler, {"f.c": text}, ("-O3",))
+    assert first == again and other.path != first.path
+    assert first.text > 0 and first.constants >= 8 and first.seconds > 0
