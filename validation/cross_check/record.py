@@ -9,7 +9,7 @@ from typing import Any
 
 from validation.adapters import ROUTES
 from validation.check import ModelResult, Settings
-from validation.comparison.errors import Comparison
+from validation.comparison.errors import Comparison, Status
 from validation.reporting.numbers import finite
 from validation.reporting.provenance import stamp
 from validation.reporting.record import Data
@@ -137,7 +137,7 @@ def _entry(row: Comparison) -> dict[str, Any]:
 def _comparison(row: Data) -> Comparison:
     """What has no tolerance was not judged: it failed."""
     extra = {name: math.nan if value is None else value for name, value in row.items() if name not in _STATED}
-    status = "agree" if row["ok"] else "disagree" if row["tolerance"] else "failed"
+    status: Status = "agree" if row["ok"] else "disagree" if row["tolerance"] else "failed"
     stated = {name: row[name] for name in _STATED if name not in ("ok", "note")}
     return Comparison(**stated, status=status, note=row.get("note", ""), extra=extra)
 
