@@ -41,14 +41,14 @@ def refuse(error: Exception) -> typer.Exit:
 
 def assignments(given: list[str], what: str) -> dict[str, str]:
     """NAME=TEXT options as a mapping."""
-    found = {}
+    assigned = {}
     for item in given:
         name, sign, text = item.partition("=")
         if not sign or not name or not text:
             err.print(f"{what} '{item}'\n  rule:   NAME=VALUE\n  remedy: for example q1=0.5", markup=False)
             raise typer.Exit(BAD_INPUT)
-        found[name.strip()] = text.strip()
-    return found
+        assigned[name.strip()] = text.strip()
+    return assigned
 
 
 def number(name: str, text: str) -> float:

@@ -41,18 +41,18 @@ def advise(
     """Find the cheapest model that keeps a scene's tolerance, each choice verified by simulation."""
     system = load(model, floating_base)
     try:
-        found = sf.advise(system, sf.load_scene(scene), _tolerances(tolerance))
+        advice = sf.advise(system, sf.load_scene(scene), _tolerances(tolerance))
         if output:
-            found.write(output)
+            advice.write(output)
     except sf.SymofrosError as error:
         raise refuse(error) from None
     if as_json:
-        print(json.dumps(found.to_json(), indent=1))
+        print(json.dumps(advice.to_json(), indent=1))
     else:
-        out.print(table_of(found))
+        out.print(table_of(advice))
         if output:
             out.print(f"wrote {output}", markup=False)
-    if not found.ok:
+    if not advice.ok:
         raise typer.Exit(1)
 
 

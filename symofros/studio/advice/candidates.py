@@ -197,8 +197,7 @@ def _of_rotary(loads: BeamLoads, what: str, bending: list[Direction]) -> Reducti
     # Where a section tapers, the middle stands for all: it is an estimate.
     sizes = [value if isinstance(value, float) else math.nan for value in values]
     shift = max(
-        (estimators.rotary_shift(size, loads.rhoA, loads.length) for size in sizes if not math.isnan(size)),
-        default=0.0,
+        (estimators.rotary_shift(size, loads.rhoA, loads.length) for size in sizes if not math.isnan(size)), default=0.0
     )
     error = 2.0 * shift * loads.tip
     return Reduction(

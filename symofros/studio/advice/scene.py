@@ -70,11 +70,8 @@ class Output:
         try:
             if self.kind == "position":
                 return run.frames[self.of][0]
-            known, columns = {
-                "coordinate": (names.q, run.q),
-                "speed": (names.v, run.v),
-                "effort": (names.u, run.u),
-            }[self.kind]
+            sources = {"coordinate": (names.q, run.q), "speed": (names.v, run.v), "effort": (names.u, run.u)}
+            known, columns = sources[self.kind]
             return columns[:, [known.index(self.of)]]
         except (KeyError, ValueError):
             raise DescriptionError(missing(self, run.model.names)) from None

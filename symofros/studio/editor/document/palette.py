@@ -11,28 +11,9 @@ from symofros.simulation.stepping.methods import METHODS
 
 Json = dict[str, Any]
 
-UNITS = (
-    "m",
-    "kg",
-    "s",
-    "rad",
-    "N",
-    "N m",
-    "m/s",
-    "rad/s",
-    "m/s^2",
-    "kg m^2",
-    "kg/m",
-    "N/m",
-    "N m/rad",
-    "N s/m",
-    "N m s/rad",
-    "N m^2",
-    "kg m",
-    "m^2",
-    "Pa",
-    "kg/m^3",
-)
+_UNITS_OF_MOTION = "m, kg, s, rad, N, N m, m/s, rad/s, m/s^2, kg m^2"
+_UNITS_OF_MATERIAL = "kg/m, N/m, N m/rad, N s/m, N m s/rad, N m^2, kg m, m^2, Pa, kg/m^3"
+UNITS = (*_UNITS_OF_MOTION.split(", "), *_UNITS_OF_MATERIAL.split(", "))
 
 _REVOLUTE = {"kind": "revolute", "axis": [0, 0, 1]}
 _ANCHORS = {"first": {"body": "world"}, "second": {"body": "world"}}

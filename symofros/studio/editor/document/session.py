@@ -7,14 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from symofros.description.system import System
-from symofros.errors import Problem
 from symofros.studio.editor.document.document import EditedDocument, refuse_text
 from symofros.studio.editor.document.expressions import check_field
 from symofros.studio.editor.document.parts import insertion
 from symofros.studio.editor.document.parts_library import Library
 from symofros.studio.editor.document.storage import Storage
 from symofros.studio.editor.document.workspace import READABLE, FileError, Workspace, write
-from symofros.studio.editor.editing.data_edits import EditError, four_parts
+from symofros.studio.editor.editing.data_edits import four_parts, refusal
 from symofros.studio.editor.editing.requests import edits_of, path_of, text_of
 from symofros.studio.editor.editing.yaml_edits import with_references
 from symofros.studio.editor.editing.yaml_spans import yaml_text_of
@@ -167,13 +166,11 @@ class Session:
         """
         kind, options = body.get("kind"), body.get("options") or {}
         if kind not in JOBS or not isinstance(options, dict):
-            raise EditError(
-                Problem(
-                    "no such job",
-                    f"{kind!r:.50}",
-                    f"one of {', '.join(JOBS)}; options are a mapping",
-                    "choose one of them",
-                )
+            raise refusal(
+                "no such job",
+                f"{kind!r:.50}",
+                f"one of {', '.join(JOBS)}; options are a mapping",
+                "choose one of them",
             )
         document = self.document
         request: Json = {"file": str(document.file), "text": document.text, "options": options}

@@ -21,6 +21,11 @@ class FileError(SymofrosError):
     """A file that can't be read or written."""
 
 
+def _refusal(what: str, found: str, rule: str, remedy: str) -> FileError:
+    """The error of a file, by the parts of its problem."""
+    return FileError(Problem(what, found, rule, remedy))
+
+
 class Workspace:
     """A folder; nothing outside of it is read, listed or written.
 
@@ -49,26 +54,20 @@ class Workspace:
                 p.startswith(".") for p in path.relative_to(self.root).parts
             )
             if not text or len(text) > 1000 or not text.isprintable() or hidden or not path.is_relative_to(self.root):
-                raise FileError(
-                    Problem(
-                        f"'{text[:100]}' is not in the workspace",
-                        text[:100] or "nothing",
-                        rule,
-                        f"choose a place in '{self.root.name}'",
-                    )
+                raise _refusal(
+                    f"'{text[:100]}' is not in the workspace",
+                    text[:100] or "nothing",
+                    rule,
+                    f"choose a place in '{self.root.name}'",
                 )
         except (OSError, ValueError, RuntimeError) as error:  # A NUL character, or a loop of links.
-            raise FileError(
-                Problem(f"'{text[:100]!r}' is not a path", str(error)[:100], rule, "choose another")
-            ) from None
+            raise _refusal(f"'{text[:100]!r}' is not a path", str(error)[:100], rule, "choose another") from None
         if suffixes and path.suffix.lower() not in suffixes:
-            raise FileError(
-                Problem(
-                    f"'{text[:100]}' has another suffix",
-                    path.suffix or "none",
-                    f"one of {', '.join(suffixes)}",
-                    "rename it",
-                )
+            raise _refusal(
+                f"'{text[:100]}' has another suffix",
+                path.suffix or "none",
+                f"one of {', '.join(suffixes)}",
+                "rename it",
             )
         return path
 
@@ -107,34 +106,28 @@ def read_text(path: Path) -> tuple[str, bytes]:
     """
     try:
         if not path.is_file():
-            raise FileError(
-                Problem(f"'{path.name}' can't be opened", "no such file", "a description is a file", "choose another")
+            raise _refusal(
+                f"'{path.name}' can't be opened", "no such file", "a description is a file", "choose another"
             )
         with path.open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)
         if len(data) > MAX_BYTES:
-            raise FileError(
-                Problem(
-                    f"'{path.name}' is too large",
-                    f"more than {MAX_BYTES} bytes",
-                    "a description is at most 4 MiB long",
-                    "check which file it is",
-                )
+            raise _refusal(
+                f"'{path.name}' is too large",
+                f"more than {MAX_BYTES} bytes",
+                "a description is at most 4 MiB long",
+                "check which file it is",
             )
         return data.decode("utf-8-sig"), data
     except OSError as error:
-        raise FileError(
-            Problem(
-                f"'{path.name}' can't be read",
-                error.strerror or "unreadable",
-                "the file is readable",
-                "check its permissions",
-            )
+        raise _refusal(
+            f"'{path.name}' can't be read",
+            error.strerror or "unreadable",
+            "the file is readable",
+            "check its permissions",
         ) from None
     except UnicodeDecodeError:
-        raise FileError(
-            Problem(f"'{path.name}' is not UTF-8", "other bytes", "files are in UTF-8", "save it as UTF-8")
-        ) from None
+        raise _refusal(f"'{path.name}' is not UTF-8", "other bytes", "files are in UTF-8", "save it as UTF-8") from None
 
 
 def write(path: Path, content: str | bytes) -> None:
@@ -147,13 +140,11 @@ def write(path: Path, content: str | bytes) -> None:
         write_atomically(path, content)
     except (OSError, UnicodeEncodeError) as error:
         reason = getattr(error, "strerror", None) or str(error)[:100]
-        raise FileError(
-            Problem(
-                f"'{path.name}' can't be written",
-                reason,
-                "the folder is there and can be written to",
-                "make space, or save it elsewhere",
-            )
+        raise _refusal(
+            f"'{path.name}' can't be written",
+            reason,
+            "the folder is there and can be written to",
+            "make space, or save it elsewhere",
         ) from None
 
 
@@ -164,7 +155,7 @@ def read_own(path: Path) -> str:
         FileError: Not there, a link, or as `read_text`.
     """
     if path.is_symlink():
-        raise FileError(Problem(f"'{path.name}' is a link", "a link", "the editor's own files are files", "remove it"))
+        raise _refusal(f"'{path.name}' is a link", "a link", "the editor's own files are files", "remove it")
     return read_text(path)[0]
 
 
@@ -208,9 +199,9 @@ def read_layout(path: Path) -> dict[str, list[float]]:
 
 def positions(data: Any) -> dict[str, list[float]]:
     """What in some data is positions: name -> [x, y]."""
-    positions: dict[str, list[float]] = {}
+    valid: dict[str, list[float]] = {}
     for name, place in data.items() if isinstance(data, dict) else ():
         numbers = isinstance(place, list) and len(place) == 2 and all(type(x) in (int, float) for x in place)
         if numbers and all(abs(x) < 1e7 for x in place):  # False of nan, too.
-            positions[str(name)] = [float(x) for x in place]
-    return positions
+            valid[str(name)] = [float(x) for x in place]
+    return valid

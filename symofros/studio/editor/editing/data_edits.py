@@ -32,6 +32,11 @@ class EditError(SymofrosError):
     """An edit that can't be applied."""
 
 
+def refusal(what: str, found: str, rule: str, remedy: str) -> EditError:
+    """The error of a request that can't be met, by the parts of its problem."""
+    return EditError(Problem(what, found, rule, remedy))
+
+
 @dataclass(frozen=True)
 class Edit:
     """One change.

@@ -247,10 +247,7 @@ def _vector(names: tuple[str, ...], given: Any, default: Any, what: str) -> Any:
         if plain not in names:
             raise UnknownNameError(
                 Problem(
-                    f"no {what} '{name}'",
-                    ", ".join(names[:12]),
-                    f"a {what} of the model",
-                    did_you_mean(name, names),
+                    f"no {what} '{name}'", ", ".join(names[:12]), f"a {what} of the model", did_you_mean(name, names)
                 )
             )
         values[names.index(plain)] = _number(number, name)

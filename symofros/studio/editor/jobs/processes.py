@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import IO, Any
 
 import symofros
-from symofros.errors import Problem
-from symofros.studio.editor.editing.data_edits import EditError
+from symofros.studio.editor.editing.data_edits import refusal
 
 Json = dict[str, Any]
 
@@ -72,13 +71,11 @@ class Jobs:
         with self._lock:
             running = [job for job in self._jobs.values() if job.kind == kind and job.state == "running"]
             if running:
-                raise EditError(
-                    Problem(
-                        f"{kind} is running already",
-                        f"job {running[0].key}",
-                        "one job of a kind runs at a time",
-                        "wait for it, or cancel it",
-                    )
+                raise refusal(
+                    f"{kind} is running already",
+                    f"job {running[0].key}",
+                    "one job of a kind runs at a time",
+                    "wait for it, or cancel it",
                 )
             self._count += 1
             job = Job(str(self._count), kind, revision)
@@ -97,13 +94,11 @@ class Jobs:
             EditError: There is none, or none any more.
         """
         if key not in self._jobs:
-            raise EditError(
-                Problem(
-                    f"no job '{key[:50]}'",
-                    ", ".join(self._jobs) or "none",
-                    f"the last {KEPT} jobs are kept",
-                    "start it again",
-                )
+            raise refusal(
+                f"no job '{key[:50]}'",
+                ", ".join(self._jobs) or "none",
+                f"the last {KEPT} jobs are kept",
+                "start it again",
             )
         return self._jobs[key]
 

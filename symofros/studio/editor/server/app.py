@@ -29,7 +29,7 @@ from symofros.studio.editor.document.session import Json, Session
 from symofros.studio.editor.document.shape_curves import curves
 from symofros.studio.editor.document.storage import ConflictError
 from symofros.studio.editor.document.workspace import FileError
-from symofros.studio.editor.editing.data_edits import EditError
+from symofros.studio.editor.editing.data_edits import EditError, refusal
 from symofros.studio.editor.jobs.processes import Jobs
 from symofros.studio.editor.server.document_viewer import DocumentViewer
 from symofros.studio.editor.server.events import Events
@@ -94,9 +94,9 @@ class Editor:
         """The answer to a request that changes the document: the document. The others are told."""
 
         async def answer(request: Request) -> Response:
-            found = await self.exclusively(partial(self._changed, action, await body_of(request)))
+            document = await self.exclusively(partial(self._changed, action, await body_of(request)))
             self.tell_changed(request)
-            return JSONResponse(found)
+            return JSONResponse(document)
 
         return answer
 
@@ -168,9 +168,9 @@ class Editor:
             }
             return JSONResponse({"error": error}, 422)
         adopt = partial(self.session.adopt, name=file.name, text=job.result["text"])
-        found = await self.exclusively(partial(self._changed, adopt, body))
+        document = await self.exclusively(partial(self._changed, adopt, body))
         self.tell_changed(request)
-        return JSONResponse({**found, "notes": job.result["notes"]})
+        return JSONResponse({**document, "notes": job.result["notes"]})
 
     async def start_job(self, request: Request) -> Response:
         """Start work on the document as it is now."""
@@ -195,8 +195,8 @@ class Editor:
         """The 3-D view of the document as it is now, made or brought up to date: its address and what moves it."""
         system = await self.exclusively(lambda: self.session.sound_system)
         # Compiling takes its time, while others go on with the document.
-        found = await run_sync(partial(self.view.follow, system))
-        return JSONResponse({"address": self.relay.address, **found})
+        shown = await run_sync(partial(self.view.follow, system))
+        return JSONResponse({"address": self.relay.address, **shown})
 
     async def pose(self, request: Request) -> Response:
         """Move the 3-D view."""
@@ -214,21 +214,19 @@ class Editor:
 
 
 async def body_of(request: Request) -> Json:
-    """The JSON mapping that a request carries.
+    """The JSON mapping in the body of a request.
 
     Raises:
         EditError: It is not one.
     """
     data = await request.body()
     try:
-        found = json.loads(data) if data else {}
+        body = json.loads(data) if data else {}
     except (ValueError, RecursionError) as error:
-        found = str(error)
-    if not isinstance(found, dict):
-        raise EditError(
-            Problem("the body is not a JSON mapping", f"{found!r:.100}", "bodies are JSON mappings", "reload the page")
-        )
-    return found
+        body = str(error)
+    if not isinstance(body, dict):
+        raise refusal("the body is not a JSON mapping", f"{body!r:.100}", "bodies are JSON mappings", "reload the page")
+    return body
 
 
 def application(session: Session, token: str, port: int) -> ASGIApp:
@@ -294,9 +292,5 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
         await run_sync(editor.view.close)
         await run_sync(editor.jobs.close)
 
-    inner = Starlette(
-        routes=[*editor.routes(), *pages],
-        exception_handlers=handlers,
-        lifespan=running,
-    )
+    inner = Starlette(routes=[*editor.routes(), *pages], exception_handlers=handlers, lifespan=running)
     return Guard(inner, token, port, view_token)

@@ -12,7 +12,7 @@ import numpy as np
 
 from symofros.description.system import System
 from symofros.errors import Problem, SymofrosError
-from symofros.studio.editor.editing.data_edits import EditError, four_parts
+from symofros.studio.editor.editing.data_edits import EditError, four_parts, refusal
 from symofros.studio.editor.jobs.worker import error_of
 from symofros.studio.editor.units import coordinate_units
 from symofros.studio.viewer.viewer import Viewer
@@ -98,13 +98,11 @@ class DocumentViewer:
         with self._turn:
             viewer = self._viewer
             if viewer is None:
-                raise EditError(
-                    Problem(
-                        "nothing is shown",
-                        "no view",
-                        "a pose is of the mechanism that is shown",
-                        "open the 3-D pane first",
-                    )
+                raise refusal(
+                    "nothing is shown",
+                    "no view",
+                    "a pose is of the mechanism that is shown",
+                    "open the 3-D pane first",
                 )
             if body.get("reset") is True:
                 viewer.reset()
@@ -177,7 +175,7 @@ def _numbers(body: Json, key: str) -> dict[str, float]:
 
 
 def _malformed(what: str, found: Any, rule: str) -> EditError:
-    return EditError(Problem(f"{what} of the request is malformed", f"{found!r:.100}", rule, "reload the page"))
+    return refusal(f"{what} of the request is malformed", f"{found!r:.100}", rule, "reload the page")
 
 
 def _problem(parts: Json) -> Problem:

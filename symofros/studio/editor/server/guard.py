@@ -122,7 +122,7 @@ class Guard:
             allowed = self.origins | {"null"}
             foreign = [origin for origin in headers.get("origin", ["missing"]) if origin.lower() not in allowed]
         else:
-            foreign = [found for found in (self._foreign(headers),) if found]
+            foreign = [origin for origin in (self._foreign(headers),) if origin]
         if foreign:
             return 403, _from_elsewhere(foreign[0])
         given = scope["path"].removeprefix(VIEW).removesuffix("/")
@@ -196,10 +196,10 @@ def _unknown_token() -> Problem:
 
 
 def _headers(raw: Iterable[tuple[bytes, bytes]]) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
+    headers_by_name: dict[str, list[str]] = {}
     for name, value in raw:
-        found.setdefault(name.decode("latin-1").lower(), []).append(value.decode("latin-1"))
-    return found
+        headers_by_name.setdefault(name.decode("latin-1").lower(), []).append(value.decode("latin-1"))
+    return headers_by_name
 
 
 def _too_large(limit: int) -> Problem:

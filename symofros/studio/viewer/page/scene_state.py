@@ -105,10 +105,7 @@ def _index(what: str, names: Sequence[str], name: str) -> int:
     if name not in names:
         raise UnknownNameError(
             Problem(
-                f"view: no {what} '{name}'",
-                ", ".join(names[:12]),
-                f"a {what} of the model",
-                did_you_mean(name, names),
+                f"view: no {what} '{name}'", ", ".join(names[:12]), f"a {what} of the model", did_you_mean(name, names)
             )
         )
     return names.index(name)

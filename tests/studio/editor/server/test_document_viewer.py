@@ -226,10 +226,7 @@ def test_the_socket_is_for_who_has_its_address(
 
 @pytest.mark.parametrize("path", ["/", "/api/events", "/api/document"])
 def test_there_are_no_other_sockets(bare: TestClient, path: str) -> None:
-    with (
-        pytest.raises(WebSocketDisconnect),
-        socket_at(bare, path, Authorization=f"Bearer {TOKEN}"),
-    ):
+    with pytest.raises(WebSocketDisconnect), socket_at(bare, path, Authorization=f"Bearer {TOKEN}"):
         pass
 
 
