@@ -39,8 +39,8 @@ def along(
     """The derivatives of some edges along several directions.
 
     Args:
-        graph: Where the edges live and the derivatives go.
-        edges: What to differentiate.
+        graph: Graph of the edges, which receives the derivatives.
+        edges: Edges to differentiate.
         directions: Rates of inputs, as in `directional`.
         groups: Indices of the directions, those together that change much the same nodes; None: as they come.
 
@@ -50,22 +50,22 @@ def along(
     nodes = needed_nodes(graph, edges)
     rows = [[ZERO] * len(directions) for _ in edges]
     for group in groups if groups is not None else [range(len(directions))]:
-        for at in range(0, len(group), WIDTH):
-            some = group[at : at + WIDTH]
-            rates = _rates(graph, nodes, [directions[k] for k in some])
+        for first in range(0, len(group), WIDTH):
+            columns = group[first : first + WIDTH]
+            rates = _rates(graph, nodes, [directions[k] for k in columns])
             for row, edge in zip(rows, edges, strict=True):
                 sign, pack = rates.get(abs(edge), (ONE, EMPTY))
-                for lane, k in enumerate(some):
+                for lane, k in enumerate(columns):
                     row[k] = pack.lanes[lane] if (sign == ONE) == (edge > 0) else -pack.lanes[lane]
     return rows
 
 
 def _rates(graph: Graph, nodes: Sequence[int], directions: Sequence[Mapping[Edge, Edge]]) -> dict[int, SignedPack]:
     """Node -> its rates along up to WIDTH directions; nothing for those that do not change."""
-    spare = (ZERO,) * (WIDTH - len(directions))
+    padding = (ZERO,) * (WIDTH - len(directions))
     rates: dict[int, SignedPack] = {}
     for seed in dict.fromkeys(seed for direction in directions for seed in direction):
-        rates[seed] = ONE, Pack(tuple(direction.get(seed, ZERO) for direction in directions) + spare)
+        rates[seed] = ONE, Pack(tuple(direction.get(seed, ZERO) for direction in directions) + padding)
     for node in nodes:
         args = graph.args[node]
         terms = []

@@ -18,18 +18,18 @@ def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = (
     Args:
         graph: The graph.
         edges: Edges to evaluate.
-        given: Nodes whose values are at hand.
+        given: Nodes whose values are available.
     """
     args, slot, value = graph.args, graph.slot, graph.value
-    found: set[int] = set()
+    needed: set[int] = set()
     stack = [abs(edge) for edge in edges]
     while stack:
         node = stack.pop()
-        if node in found or node == 0 or node in slot or node in value or node in given:
+        if node in needed or node == 0 or node in slot or node in value or node in given:
             continue
-        found.add(node)
+        needed.add(node)
         stack.extend(abs(arg) for arg in args[node])
-    return sorted(found)
+    return sorted(needed)
 
 
 def interpret(program: Program, function: Function, inputs: Mapping[str, Array], n: int) -> list[Array]:
@@ -46,13 +46,13 @@ def interpret(program: Program, function: Function, inputs: Mapping[str, Array],
     """
     edges = [edge for output in function.outputs for edge in output.edges]
     columns = evaluate_edges(program, edges, inputs, program.pre)
-    results, at = [], 0
+    results, first = [], 0
     for output in function.outputs:
         size = len(output.edges)
         flat = np.empty((n, size))
         for i in range(size):
-            flat[:, i] = columns[at + i]
-        at += size
+            flat[:, i] = columns[first + i]
+        first += size
         results.append(flat.reshape(n, *output.shape))
     return results
 
@@ -64,14 +64,14 @@ def evaluate_edges(
 
     Args:
         program: Program whose graph is evaluated.
-        edges: What is wanted.
+        edges: Edges to evaluate.
         inputs: Each group as (n or 1, size).
         given: Nodes to read from an input group instead of computing them.
     """
     graph = program.graph
     values: dict[int, Array | float] = dict(graph.value)
 
-    def at(edge: Edge) -> Array | float:
+    def value(edge: Edge) -> Array | float:
         node = abs(edge)
         if node == 0:
             return 0.0
@@ -81,5 +81,5 @@ def evaluate_edges(
         return values[node] if edge > 0 else -values[node]
 
     for node in needed_nodes(graph, edges, given.keys()):
-        values[node] = OPS[graph.op[node]].rule(*map(at, graph.args[node]))
-    return [at(edge) for edge in edges]
+        values[node] = OPS[graph.op[node]].rule(*map(value, graph.args[node]))
+    return [value(edge) for edge in edges]

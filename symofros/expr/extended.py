@@ -14,7 +14,7 @@ from typing import Any
 
 import mpmath
 
-from symofros.expr.ops import ADD, DIV, MUL, OPS
+from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
 
 # A number in extended precision: mpmath's mpf, which has no type annotations.
 Extended = Any
@@ -34,7 +34,7 @@ _RULES: dict[str, Callable[..., Extended]] = {
 # Names of the op table that mpmath spells otherwise; the rest have the same name there.
 _SPELLINGS = {"pow": "power", "abs": "fabs"}
 # Operations on doubles whose result IEEE 754 fixes to the last bit.
-_EXACT = {ADD, MUL, DIV, "sqrt", "abs", "sign", "min", "max", "floor", "step", "held"}
+_EXACT = {ADD, MUL, DIV, "sqrt", "abs", "sign", "min", "max", "floor", "step", STOP_GRADIENT}
 
 
 def extended_rule(op: str, context: Any = CONTEXT) -> Callable[..., Extended]:

@@ -8,7 +8,7 @@ import sympy
 
 from symofros.expr.expression import Expression
 
-# SymPy's class name -> ours. Anything else is refused: it has no C text.
+# SymPy's class name -> name in the op table. Anything else is refused: it has no C text.
 _FUNCTIONS = {
     "sin": "sin",
     "cos": "cos",
@@ -30,13 +30,13 @@ _FUNCTIONS = {
 
 
 def freeze(expression: sympy.Expr) -> Expression:
-    """Turn a SymPy expression into one of ours, term by term, without expanding or simplifying it.
+    """Turn a SymPy expression into an Expression, term by term, without expanding or simplifying it.
 
     Args:
         expression: Numbers, symbols, sums, products, powers and the functions of the op table.
 
     Raises:
-        ValueError: It holds something without a C equivalent, such as an integral or a complex number.
+        ValueError: The expression holds something without a C equivalent, such as an integral or a complex number.
     """
     if expression.is_Symbol:
         return Expression("symbol", name=str(expression.name))

@@ -60,7 +60,7 @@ def _libm(function: Callable[..., float], overflow: float = math.inf) -> Callabl
             return overflow
 
     def rule(*x: Any) -> Any:
-        if all(isinstance(one, float) for one in x):
+        if all(isinstance(operand, float) for operand in x):
             return scalar(*x)
         return np.asarray(np.frompyfunc(scalar, len(x), 1)(*x), dtype=np.float64)
 
@@ -110,7 +110,7 @@ def _step(x: Any) -> Any:
     return np.where(np.isnan(x), x, np.greater_equal(x, 0.0).astype(np.float64))
 
 
-ADD, MUL, DIV, HELD = "add", "mul", "div", "held"
+ADD, MUL, DIV, STOP_GRADIENT = "add", "mul", "div", "stop_gradient"
 
 # Derivative rules: (graph, operand edges, edge of the result, i) -> partial derivative by operand i. Edges are ints;
 # the graph is passed in, because it is itself built on this table.
@@ -137,7 +137,7 @@ def _d_atan2(g: Any, x: tuple[int, ...], y: int, i: int) -> int:
 
 
 def _d_choice(sign: int) -> Callable[[Any, tuple[int, ...], int, int], int]:
-    """Of min (sign 1) and max (sign -1): one for the chosen operand, half for each on a tie."""
+    """The derivative of min (sign 1) and max (sign -1): one for the chosen operand, half for each on a tie."""
 
     def rule(g: Any, x: tuple[int, ...], y: int, i: int) -> int:
         larger = sign * g.call("sign", g.sub(x[1 - i], x[i]))
@@ -203,10 +203,10 @@ OPS: dict[str, Op] = {
         Op("min", 2, np.fmin, "fmin({0}, {1})", _d_choice(1), "add"),
         Op("max", 2, np.fmax, "fmax({0}, {1})", _d_choice(-1), "add"),
         Op("floor", 1, np.floor, "floor({0})", lambda g, x, y, i: 0, "add", is_function=False),
-        # 1 from zero on, else 0.
+        # One where the operand is not negative, else zero.
         Op("step", 1, _step, "sym_step({0})", lambda g, x, y, i: 0, "add", is_function=False),
-        # Its operand, as a constant for derivatives.
-        Op(HELD, 1, np.positive, "{0}", lambda g, x, y, i: 0, "none", parity="odd", is_function=False),
+        # The operand, which derivatives take for a constant.
+        Op(STOP_GRADIENT, 1, np.positive, "{0}", lambda g, x, y, i: 0, "none", parity="odd", is_function=False),
     )
 }
 

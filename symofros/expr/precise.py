@@ -41,7 +41,7 @@ def edge_values(program: Program, edges: Sequence[Edge], inputs: Mapping[str, Se
     graph = program.graph
     values: dict[int, Any] = {node: mpmath.mpf(number) for node, number in graph.value.items()}
 
-    def at(edge: Edge) -> Any:
+    def value(edge: Edge) -> Any:
         node = abs(edge)
         if node == 0:
             return mpmath.mpf(0)
@@ -51,5 +51,5 @@ def edge_values(program: Program, edges: Sequence[Edge], inputs: Mapping[str, Se
         return values[node] if edge > 0 else -values[node]
 
     for node in needed_nodes(graph, edges):
-        values[node] = extended_rule(graph.op[node], mpmath)(*map(at, graph.args[node]))
-    return [at(edge) for edge in edges]
+        values[node] = extended_rule(graph.op[node], mpmath)(*map(value, graph.args[node]))
+    return [value(edge) for edge in edges]

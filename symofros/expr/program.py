@@ -25,11 +25,11 @@ class Output:
 
 @dataclass(frozen=True)
 class Solver:
-    """What finishes a function that its outputs only begin.
+    """A hand-written routine that computes a function's results from its outputs.
 
     Attributes:
-        routine: The hand-written routine: native/model/ROUTINE.c.in, and its twin in runtime/.
-        returns: (name, shape) of what it makes of the outputs.
+        routine: Name of the routine: native/model/ROUTINE.c.in, and the same in Python in runtime/.
+        returns: (name, shape) of each result.
         parts: Further functions that the routine calls.
     """
 
@@ -43,11 +43,11 @@ class Function:
     """One function of a model.
 
     Attributes:
-        name: Such as "mass_matrix".
-        frame: The frame it is about, or "".
-        inputs: Groups it takes, in order; "pre" is added where parameter-only work is hoisted.
+        name: Name, such as "mass_matrix".
+        frame: Frame of a function of frames, or "".
+        inputs: Input groups, in order; "pre" is added where parameter-only work is hoisted.
         outputs: Outputs of the function.
-        solver: What the outputs are handed to, where the function is not done with them: forward dynamics under
+        solver: Routine that takes the outputs and gives the results, if there is one: forward dynamics under
             constraints computes M, r, G, c and returns a, lam and the rank.
         summary: One line for people; "" for a part of another function.
     """
@@ -79,10 +79,11 @@ class Program:
 
     Attributes:
         name: Name of the model.
-        graph: Shared by the functions.
+        graph: Graph of all functions.
         sizes: Length of each input group.
         functions: Functions that the program computes.
-        init: After staging, what `pre` holds: parameter-only values, computed once per parameter set.
+        init: Edges of the values that parameters alone determine, computed once per parameter set; after staging.
+        pre: Entry of the group "pre" that holds such a value, keyed by node; after staging.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Sine and cosine by polynomials: the NumPy twin of native/model/sincos.c.in, and the numbers of both.
+"""Sine and cosine by polynomials: the same as native/model/sincos.c.in, for NumPy, and the coefficients of both.
 
 x = n pi/2 + r, |r| <= pi/4, pi/2 as a sum of three parts: products of n with the first two are exact, so that r and
 what is left beyond its last digit are right even where x is next to a multiple of pi/2. Then polynomials in r^2. Every
@@ -49,7 +49,7 @@ COSINE = tuple(
         ),
     )
 )
-# Of floats, fitted likewise: to 2^-27.9 of sin r / r, to 2^-33 of cos r.
+# Coefficients for floats, minimax fits as well: to 2^-27.9 of sin r / r, to 2^-33 of cos r.
 SINE_SINGLE = tuple(map(float.fromhex, ("-0x1.555546p-3", "0x1.11073ap-7", "-0x1.994388p-13")))
 COSINE_SINGLE = tuple(map(float.fromhex, ("0x1.55554ap-5", "-0x1.6c0c32p-10", "0x1.99eb4ap-16")))
 

@@ -36,10 +36,10 @@ class UnitCompiler:
     """Units of one model.
 
     Args:
-        programs: Forms the programs.
+        programs: Builder of the programs.
         record: Names, sizes and hash of the model.
-        options: How to compile.
-        toolchain: The C compiler; None: units are interpreted.
+        options: Options of compilation.
+        toolchain: C compiler; None where units are interpreted.
     """
 
     def __init__(

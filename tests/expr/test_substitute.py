@@ -48,11 +48,11 @@ def test_values_are_the_same(name: str, fixed: dict[str, float]) -> None:
         from symofros.generator.codegen.interpreted import InterpretedKernel
 
         pre["pre"] = InterpretedKernel(program, stated).prepare(inputs["par"])
-    (want,) = interpret(program, stated, inputs | pre, 3)
-    (found,) = interpret(other, function, inputs, 3)
-    assert np.abs(found - want).max() <= 1e-9 * np.abs(want).max()
+    (expected,) = interpret(program, stated, inputs | pre, 3)
+    (value,) = interpret(other, function, inputs, 3)
+    assert np.abs(value - expected).max() <= 1e-9 * np.abs(expected).max()
     if not fixed:
-        assert np.array_equal(found, want)
+        assert np.array_equal(value, expected)
 
 
 @pytest.mark.parametrize("name", ["chain22", "mss"])

@@ -8,8 +8,8 @@ from symofros.expr.evaluate import needed_nodes
 from symofros.expr.program import Function, Program
 from symofros.generator.codegen.packs import PackPlan
 
-# Of an operation on a pack, or of putting a number into one, by operations on numbers; and how far efforts may differ
-# without telling which is the faster. Both from nineteen models (docs/theory/code.md, section 2).
+# Weight of an operation on a pack, or of putting a number into one, in operations on numbers; and the ratio of efforts
+# up to which they don't tell which is the faster. Both from nineteen models (docs/theory/code.md, section 2).
 PACKED, TIE = 2.0, 1.05
 
 
@@ -17,8 +17,8 @@ def effort(program: Program, function: Function) -> float:
     """Operations that one state takes, those on packs by their weight.
 
     Args:
-        program: Staged.
-        function: One of its functions.
+        program: Staged program.
+        function: Function of the program.
     """
     graph, edges, given = program.graph, function.edges(), program.pre
     plan = PackPlan(graph, needed_nodes(graph, edges, given), given, edges)
@@ -30,8 +30,8 @@ def cheapest(programs: Mapping[str, Program]) -> str:
     """The program of one function that takes the least effort; the first where that can't tell.
 
     Args:
-        programs: By name, the one that is liked best first.
+        programs: Programs by name, the preferred one first.
     """
     efforts = {name: effort(program, program.functions[0]) for name, program in programs.items()}
-    first, least = next(iter(efforts)), min(efforts, key=efforts.__getitem__)
-    return first if efforts[first] <= TIE * efforts[least] else least
+    first, cheapest_name = next(iter(efforts)), min(efforts, key=efforts.__getitem__)
+    return first if efforts[first] <= TIE * efforts[cheapest_name] else cheapest_name

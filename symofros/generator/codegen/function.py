@@ -35,9 +35,9 @@ class FunctionText:
 
     Attributes:
         code: Definitions of its chunks and of the function that calls them.
-        work: Doubles of scratch it needs.
-        lanes: The same on vectors, one state a lane; none where it is not asked for.
-        lanes_work: Vectors of scratch that this needs.
+        work: Doubles of scratch.
+        lanes: Definitions of the function on vectors, one state a lane; empty where it is not asked for.
+        lanes_work: Vectors of scratch of the function on vectors.
     """
 
     code: str
@@ -47,13 +47,13 @@ class FunctionText:
 
 
 @dataclass(frozen=True)
-class _Cut:
+class _Chunks:
     """Statements in chunks.
 
     Attributes:
-        chunks: The statements of each.
-        slots: Where values that cross from one into another lie.
-        work: Doubles that those take.
+        chunks: Statements of each chunk.
+        slots: Index in `work` of each variable that crosses from one chunk into another.
+        work: Doubles of scratch that the slots take.
     """
 
     chunks: list[list[Statement]]
@@ -61,20 +61,20 @@ class _Cut:
     work: int
 
     @staticmethod
-    def of(chunks: list[list[Statement]]) -> _Cut:
-        """Find places for what crosses."""
+    def of(chunks: list[list[Statement]]) -> _Chunks:
+        """The chunks, with slots for what crosses between them."""
         slots = _allocate(chunks)
-        return _Cut(chunks, slots, max((slot + _doubles(key) for key, slot in slots.items()), default=0))
+        return _Chunks(chunks, slots, max((slot + _doubles(key) for key, slot in slots.items()), default=0))
 
 
 class FunctionWriter:
     """Writes one function.
 
     Args:
-        program: Staged.
-        c_name: Of the C function.
+        program: Staged program.
+        c_name: Name of the C function.
         inputs: Names of the input arrays, in order.
-        outputs: What to store, in order.
+        outputs: Outputs to be stored, in order.
         given: Whether parameter-only values are read from `pre` (false for the init function itself).
         packs: Whether values that are computed alike share vectors.
     """
@@ -96,40 +96,40 @@ class FunctionWriter:
         stores = [Store(o.name, i, edge) for o in outputs for i, edge in enumerate(o.edges) if edge != 0]
         self.writer = StatementWriter(program.graph, needed_nodes(program.graph, edges, pre), pre, stores, packs)
         self.statements = self.writer.statements()
-        self.cut = _Cut.of(_chunks(self.statements) or [[]])
+        self.chunked = _Chunks.of(_chunks(self.statements) or [[]])
 
     def text(self, lanes: Lanes | None = None) -> FunctionText:
         """The C text: chunk functions, then the function that unpacks pointers and calls them.
 
         Args:
-            lanes: How to write it on vectors, too.
+            lanes: Layout of a version on vectors, if one is wanted.
         """
-        parts = [self._chunk(i) for i in range(len(self.cut.chunks))]
+        parts = [self._chunk(i) for i in range(len(self.chunked.chunks))]
         body = [f"    const double *restrict {name} = in[{i}];" for i, name in enumerate(self.inputs)]
         body += [f"    double *restrict {output.name} = out[{i}];" for i, output in enumerate(self.outputs)]
         body += [line for output in self.outputs for line in self._clear(output)]
         arguments = ", ".join([*self.inputs, *(output.name for output in self.outputs), "work"])
-        body += [f"    {self.c_name}_{i}({arguments});" for i in range(len(self.cut.chunks))]
+        body += [f"    {self.c_name}_{i}({arguments});" for i in range(len(self.chunked.chunks))]
         head = f"static void {self.c_name}(const double *const *in, double *const *out, double *restrict work) {{"
         code = "\n".join([*parts, head, *body, "}"])
         if lanes is None:
-            return FunctionText(code, self.cut.work)
-        cut = _Cut.of(_chunks_in_lanes(self.statements) or [[]])
-        return FunctionText(code, self.cut.work, self._lanes(cut, lanes.single), cut.work)
+            return FunctionText(code, self.chunked.work)
+        chunked = _Chunks.of(_chunks_in_lanes(self.statements) or [[]])
+        return FunctionText(code, self.chunked.work, self._lanes(chunked, lanes.single), chunked.work)
 
-    def _lanes(self, cut: _Cut, single: bool) -> str:
-        """On vectors: chunk by chunk, each for all vectors at hand; entries that are always zero are left out.
+    def _lanes(self, chunked: _Chunks, single: bool) -> str:
+        """On vectors: chunk by chunk, each for all vectors of states; entries that are always zero are left out.
 
         The chunks stay apart from the loops around them, out of which compilers would carry their constants.
         """
         writer = self.writer.in_lanes(single)
-        parts = [self._chunk_in_lanes(i, cut, writer) for i in range(len(cut.chunks))]
+        parts = [self._chunk_in_lanes(i, chunked, writer) for i in range(len(chunked.chunks))]
         columns = [f"in[{i}]" for i in range(1, len(self.inputs))] + [f"out[{i}]" for i in range(len(self.outputs))]
         arguments = ["(const sym_p *)(in[0].at + i * in[0].next)"]
-        arguments += [*(f"{x}.at + i * {x}.next, {x}.step" for x in columns), f"work + i * {cut.work}"]
+        arguments += [*(f"{x}.at + i * {x}.next, {x}.step" for x in columns), f"work + i * {chunked.work}"]
         calls = [
             f"    for (i = 0; i < count; ++i)\n        {self.c_name}_v_{k}({', '.join(arguments)});"
-            for k in range(len(cut.chunks))
+            for k in range(len(chunked.chunks))
         ]
         head = f"static void {self.c_name}_v(int count, const sym_column *in, const sym_column *out, sym_v *work) {{"
         return "\n".join([*parts, head, "    int i;", *calls, "}"])
@@ -143,17 +143,17 @@ class FunctionWriter:
         return [f"    {output.name}[{i}] = 0.0;" for i in zeros]
 
     def _chunk(self, index: int) -> str:
-        lines, used = self._body(index, self.cut, self.writer, "double")
+        lines, used = self._body(index, self.chunked, self.writer, "double")
         names = [*self.inputs, *(output.name for output in self.outputs), "work"]
         lines = [f"    (void){name};" for name in names if name not in used] + lines
         arguments = [f"const double *restrict {name}" for name in self.inputs]
         arguments += [f"double *restrict {output.name}" for output in self.outputs] + ["double *restrict work"]
         # A single chunk may be inlined into its caller; several must stay apart.
-        kind = "static SYM_NOINLINE" if len(self.cut.chunks) > 1 else "static"
+        kind = "static SYM_NOINLINE" if len(self.chunked.chunks) > 1 else "static"
         return "\n".join([f"{kind} void {self.c_name}_{index}({', '.join(arguments)}) {{", *lines, "}"])
 
-    def _chunk_in_lanes(self, index: int, cut: _Cut, writer: StatementWriter) -> str:
-        lines, used = self._body(index, cut, writer, "sym_v")
+    def _chunk_in_lanes(self, index: int, chunked: _Chunks, writer: StatementWriter) -> str:
+        lines, used = self._body(index, chunked, writer, "sym_v")
         pre, *inputs = self.inputs
         arguments = [f"const sym_p *restrict {pre}"]
         arguments += [f"const sym_number *restrict {name}_at, ptrdiff_t {name}_step" for name in inputs]
@@ -167,14 +167,14 @@ class FunctionWriter:
         head = f"static SYM_NOINLINE void {self.c_name}_v_{index}({', '.join([*arguments, 'sym_v *restrict work'])}) {{"
         return "\n".join([head, *unused, *lines, "}"])
 
-    def _body(self, index: int, cut: _Cut, writer: StatementWriter, real: str) -> tuple[list[str], set[str]]:
+    def _body(self, index: int, chunked: _Chunks, writer: StatementWriter, real: str) -> tuple[list[str], set[str]]:
         """Lines of a chunk, and the arrays that they mention."""
-        statements = cut.chunks[index]
+        statements = chunked.chunks[index]
         local = {key for statement in statements for key in statement.keys}
         crossing = dict.fromkeys(n for statement in statements for n in statement.reads if n not in local)
-        lines = [self._load(key, cut.slots[key], writer, real) for key in crossing]
+        lines = [self._load(key, chunked.slots[key], writer, real) for key in crossing]
         for statement in statements:
-            lines += self._lines(statement, cut.slots, writer, real)
+            lines += self._lines(statement, chunked.slots, writer, real)
         used = {a or b for line in lines for a, b in _ARRAY.findall(line)}
         return lines, used
 
@@ -203,7 +203,7 @@ class FunctionWriter:
 
 
 def _chunks(statements: list[Statement]) -> list[list[Statement]]:
-    """Statements in chunks of much the same length; none of none."""
+    """Statements in chunks of much the same length; no chunk without statements."""
     longest = MAX_STATEMENTS if len(statements) <= _LONG else _LONG_CHUNK
     count = max(1, -(-len(statements) // longest))
     size = -(-len(statements) // count) if statements else 1
@@ -211,7 +211,7 @@ def _chunks(statements: list[Statement]) -> list[list[Statement]]:
 
 
 def _chunks_in_lanes(statements: list[Statement]) -> list[list[Statement]]:
-    """The same on vectors: a few sines and cosines that need no others come first, in a chunk of their own.
+    """Statements on vectors in chunks: a few sines and cosines that need no others come first, in a chunk of their own.
 
     They are one long wait, operation after operation; those of the next vector of states fill it.
     """
@@ -250,11 +250,11 @@ def _allocate(chunks: list[list[Statement]]) -> dict[int, int]:
             free[_doubles(key)].append(slots[key])
         for key in (key for statement in chunk for key in statement.keys):
             if last.get(key, i) > i:
-                mine = free[_doubles(key)]
-                if not mine:
-                    mine.append(count)
+                unused = free[_doubles(key)]
+                if not unused:
+                    unused.append(count)
                     count += _doubles(key)
-                slots[key] = mine.pop()
+                slots[key] = unused.pop()
                 ends.setdefault(last[key], []).append(key)
     return slots
 

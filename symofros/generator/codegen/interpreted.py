@@ -46,15 +46,15 @@ class InterpretedKernel:
         named = dict(zip(self._function.inputs, [x.astype(np.float64, copy=False) for x in inputs], strict=True))
         outputs = interpret(self._program, self._function, named | {"pre": pre}, n)
         solver = self._function.solver
-        found = outputs if solver is None else _TWINS[solver.routine](self, solver, named | {"pre": pre}, outputs)
-        return [options.of(output) for output in found]
+        results = outputs if solver is None else _TWINS[solver.routine](self, solver, named | {"pre": pre}, outputs)
+        return [options.of(output) for output in results]
 
     def bind(self, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
         """The function on fixed memory, for one state."""
 
         def evaluate() -> None:
-            for into, found in zip(outputs, self.run(1, pre, [values[None] for values in inputs]), strict=True):
-                into[...] = found[0]
+            for into, result in zip(outputs, self.run(1, pre, [values[None] for values in inputs]), strict=True):
+                into[...] = result[0]
 
         return evaluate
 
@@ -73,12 +73,12 @@ class InterpretedKernel:
         a, lam, _ = constrained(*outputs)
         slopes = interpret(self._program, solver.parts[0], {**named, "a": a, "lam": lam}, len(a))
         states = zip(outputs[0], outputs[2], zip(*slopes, strict=True), strict=True)
-        found = zip(*(differentiate(M, G, list(of)) for M, G, of in states), strict=True)
-        return [np.array(values) for values in found]
+        derivatives = zip(*(differentiate(M, G, list(of)) for M, G, of in states), strict=True)
+        return [np.array(values) for values in derivatives]
 
     def _project(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """State by state."""
-        found = []
+        projected = []
         for k in range(len(outputs[0])):
             state = {name: values[min(k, len(values) - 1)][None] for name, values in named.items()}
 
@@ -88,8 +88,8 @@ class InterpretedKernel:
             def move(q: Array, step: Array, state: dict[str, Array] = state) -> Array:
                 return self.evaluate(solver.parts[0], state | {"q": q[None], "step": step[None]})[0]
 
-            found.append(project(terms, move, state["q"][0], state["v"][0]))
-        return [np.array(values) for values in zip(*found, strict=True)]
+            projected.append(project(terms, move, state["q"][0], state["v"][0]))
+        return [np.array(values) for values in zip(*projected, strict=True)]
 
 
 _TWINS: dict[str, Callable[[InterpretedKernel, Solver, Mapping[str, Array], list[Array]], list[Array]]] = {

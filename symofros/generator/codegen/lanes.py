@@ -8,7 +8,7 @@ from math import prod
 from string import Template
 
 from symofros.expr.edges import Edge
-from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
+from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
 from symofros.expr.program import Function, Program
 from symofros.generator.codegen import trigonometry
 from symofros.native import native_text
@@ -26,9 +26,9 @@ def batch(c_name: str, function: Function, lanes: Lanes | None) -> str:
     """The C function that evaluates many states, row by row.
 
     Args:
-        c_name: Of the function that evaluates one.
-        function: Of one state.
-        lanes: Of the function on vectors, if there is one.
+        c_name: Name of the C function that evaluates one state.
+        function: Function that it evaluates.
+        lanes: Lanes of the function on vectors, if there is one.
     """
     n_in, n_out = len(function.inputs) + 1, len(function.returns)
     lines = [
@@ -72,9 +72,9 @@ def strided(c_name: str, program: Program, function: Function, work: int) -> str
     """What the C file says of a function on vectors, and its batch in any layout.
 
     Args:
-        c_name: Of the function that evaluates one state.
-        program: Of the function.
-        function: Of one state.
+        c_name: Name of the C function that evaluates one state.
+        program: Program of the function.
+        function: Function that it evaluates.
         work: Scratch of one vector.
     """
     inputs = [len(program.init), *(program.sizes[name] for name in function.inputs)]
@@ -110,12 +110,12 @@ def _runs(edges: Sequence[Edge]) -> Iterator[tuple[int, int]]:
 
 
 def vectors_at_once(program: Program, function: Function, work: int) -> int:
-    """Of states, which a function on vectors takes.
+    """The number of vectors of states that a chunk takes in turn.
 
     Args:
-        program: Of the function.
-        function: Of one state.
-        work: Scratch of one vector; none of a function of one chunk.
+        program: Program of the function.
+        function: Function to be evaluated on vectors.
+        work: Vectors of scratch for one vector of states; zero for a function of one chunk.
     """
     bytes_each = 8 * _WIDEST * (work + sum(_sizes(program, function)))
     return max(1, min(_MOST, _CACHE // bytes_each)) if work else 1
@@ -125,9 +125,9 @@ def scratch(program: Program, function: Function, work: int) -> int:
     """Doubles of scratch that a batch in lanes needs, alignment included.
 
     Args:
-        program: Of the function.
-        function: Whose inputs and outputs are kept in lanes.
-        work: Scratch of one vector.
+        program: Program of the function.
+        function: Function whose inputs and outputs are kept in lanes.
+        work: Vectors of scratch for one vector of states.
     """
     most = vectors_at_once(program, function, work)
     return _WIDEST * (
@@ -149,7 +149,7 @@ def routines(lanes: Lanes) -> str:
     functions = [
         f"{makers[op.arity]}({op.name}, {op.c.partition('(')[0]})"
         for op in OPS.values()
-        if op.name not in (ADD, MUL, DIV, HELD)
+        if op.name not in (ADD, MUL, DIV, STOP_GRADIENT)
     ]
     return Template(native_text("model/lanes.c.in")).substitute(
         functions="\n".join(functions),

@@ -33,12 +33,12 @@ def model_source(
     """The C file of a program.
 
     Args:
-        program: Staged.
-        record: Names and defaults.
-        generator: Name and version of what wrote it.
-        in_lanes: How batches take several states at once, if they do; functions with a solver never do: it takes the
-            time, and it pivots (docs/theory/code.md).
-        c_name: What symbols begin with; made of the record's name by default.
+        program: Staged program.
+        record: Names and defaults of the model.
+        generator: Name and version of the generator.
+        in_lanes: Layout in which batches take several states at once, if they do. Functions with a solver never do:
+            the solver takes the time, and it pivots (docs/theory/code.md).
+        c_name: Prefix of symbols; made of the record's name by default.
         packs: Whether values that are computed alike share vectors, which takes a compiler of GNU C; not in lanes,
             where every value is a vector already.
     """
@@ -129,9 +129,9 @@ class _Row:
     """A function in the tables of a C file.
 
     Attributes:
-        tables: Of its arrays.
-        row: Of the table of functions.
-        lanes: Of the table of functions on vectors.
+        tables: Text of the tables of its arrays.
+        row: Row of the table of functions.
+        lanes: Row of the table of functions on vectors.
     """
 
     tables: str
@@ -170,7 +170,7 @@ def _shaped(name: str, shape: tuple[int, ...]) -> str:
 def _one_function(
     program: Program, record: ModelRecord, function: Function, c_name: str, in_lanes: Lanes | None, packs: bool
 ) -> tuple[str, _Row]:
-    """Code, and what tables say of it."""
+    """The code of a function, with its rows of tables."""
     inputs = ["pre", *function.inputs]
     if function.solver is None:
         text = FunctionWriter(program, c_name, inputs, function.outputs, packs=packs).text(in_lanes)
@@ -208,7 +208,7 @@ def _function_table(name: str, rows: Sequence[_Row]) -> str:
 
 
 def _lane_table(name: str, rows: Sequence[_Row], vectors: Lanes | None) -> list[str]:
-    """Where the compiler has vectors."""
+    """The table of functions on vectors, for compilers that have vectors."""
     if vectors is None:
         return []
     table = f"static const sym_lanes {name}_lanes[] = {{\n" + ",\n".join(row.lanes for row in rows) + "\n};"

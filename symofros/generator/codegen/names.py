@@ -9,21 +9,21 @@ _KEYWORDS = frozenset(
     " register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while asm"
     " main".split()
 )
-# Names that a header, an operating system, FMI or Matlab has taken; the first row would clash with symofros_model.h.
-_TAKEN = frozenset(
+# Names that headers, operating systems, FMI or Matlab reserve; the first row would clash with symofros_model.h.
+_RESERVED = frozenset(
     "sym symofros"
     " assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdarg stdbool stddef"
     " stdint stdio stdlib string tgmath time wchar wctype windows"
     " con prn aux nul fmi fmi2 fmi3 fmu mex mexfunction simstruc simulink symosfunction selftest"
     " break catch class elseif end function global otherwise parfor persistent try".split()
 )
-_OURS = ("symofros_", "sym_", "fmi2", "fmi3")
+_RESERVED_PREFIXES = ("symofros_", "sym_", "fmi2", "fmi3")
 _ILLEGAL = re.compile(r"[^A-Za-z0-9]+")
 _MAX_LENGTH = 48
 
 
 def identifier(text: str) -> str:
-    """A C identifier that looks like the text; "m" before a leading digit, "_" after what is taken already.
+    """A C identifier that looks like the text; "m" before a leading digit, "_" after a reserved name.
 
     It also serves as the name of files and of a function of Matlab.
     """
@@ -31,18 +31,18 @@ def identifier(text: str) -> str:
     if name[0].isdigit():
         name = f"m{name}"
     lower = name.lower()
-    taken = name in _KEYWORDS or lower in _TAKEN
-    if lower.startswith(_OURS):
+    is_reserved = name in _KEYWORDS or lower in _RESERVED
+    if lower.startswith(_RESERVED_PREFIXES):
         name = f"m_{name}"
-    return f"{name}_" if taken else name
+    return f"{name}_" if is_reserved else name
 
 
 def local_name(label: str, node: int) -> str:
     """The local variable of a labelled node: w_WB_B[arm][2] -> w_WB_B__arm_2.
 
     Args:
-        label: As given in the graph.
-        node: Makes names unique that would otherwise coincide.
+        label: Label in the graph.
+        node: Number of the node, which makes the name unique.
     """
     head, *rest = [_ILLEGAL.sub("_", part).strip("_") for part in re.split(r"[\[\]]+", label)]
     tail = "_".join(part for part in rest if part)

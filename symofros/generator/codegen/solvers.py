@@ -26,10 +26,10 @@ def with_solver(program: Program, c_name: str, function: Function, solver: Solve
     """The C text of a function and of its parts, and the call of the routine that finishes it.
 
     Args:
-        program: Staged.
-        c_name: Of the C function.
-        function: What generated code computes.
-        solver: What is made of it.
+        program: Staged program.
+        c_name: Name of the C function.
+        function: Function whose outputs generated code computes.
+        solver: Routine that finishes it.
         packs: Whether values that are computed alike share vectors.
     """
     terms = FunctionWriter(program, f"{c_name}_terms", ["pre", *function.inputs], function.outputs, packs=packs).text()
@@ -50,7 +50,7 @@ def _constrained(c_name: str, function: Function, needs: int) -> tuple[list[str]
 
 
 def _null_space(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
-    """The same in the coordinates that the constraints leave free."""
+    """M, r, G, c -> a, lam, rank, in the coordinates that the constraints leave free."""
     m, n = function.outputs[2].shape
     return _on_terms("sym_null_space", c_name, m, n, max(needs, work_size("SYM_NULL_SPACE_WORK", n, m)))
 

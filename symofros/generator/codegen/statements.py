@@ -15,7 +15,7 @@ from heapq import merge
 from symofros.expr.edges import Edge
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph, Slot
-from symofros.expr.ops import ADD, DIV, HELD, MUL, OPS
+from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
 from symofros.generator.codegen.names import local_name
 from symofros.generator.codegen.packs import PackPlan, Store, Vector, vector_name
 
@@ -31,11 +31,11 @@ class Statement:
     """One C statement.
 
     Attributes:
-        nodes: What it computes: none for a store alone, several for sines and cosines.
-        stores: Output entries it fills.
-        reads: Keys of the variables that its text mentions.
-        angles: Edges whose sines and cosines it computes; none for any other statement.
-        vector: The vector it defines, from which its nodes are read; none for any other statement.
+        nodes: Nodes that are computed: none for a store alone, several for sines and cosines.
+        stores: Output entries that are filled.
+        reads: Keys of the variables that the text mentions.
+        angles: Edges whose sines and cosines are computed; none for any other statement.
+        vector: Vector that is defined, from which its nodes are read; none for any other statement.
     """
 
     nodes: tuple[int, ...]
@@ -54,10 +54,10 @@ class StatementWriter:
     """Turns the nodes of one function into statements and their text.
 
     Args:
-        graph: Of the program.
-        nodes: What the function computes, operands first.
-        given: Nodes to read from an input array instead.
-        stores: The function's outputs.
+        graph: Graph of the program.
+        nodes: Nodes that the function computes, operands first.
+        given: Nodes that are read from an input array.
+        stores: Outputs of the function.
         packs: Whether values that are computed alike share vectors.
     """
 
@@ -79,19 +79,19 @@ class StatementWriter:
             nodes, self._vector_of_node, self._vectors = plan.nodes, plan.vector_of_node, plan.vectors
         self._inlined = self._choose_inlined(nodes, stores)
         self._nodes = nodes
-        self._own = [node for node in nodes if node not in self._inlined]
+        self._variables = [node for node in nodes if node not in self._inlined]
         self._names: dict[int, str] = {}
         self.lanes, self._suffix = False, ""
 
     def in_lanes(self, single: bool = False) -> StatementWriter:
-        """The same statements on vectors, one state a lane; numbers are one for all lanes, and so may given values be.
+        """A writer of the same statements on vectors, one state a lane; numbers are one for all lanes.
 
         Args:
             single: Whether lanes hold floats.
         """
-        twin = copy(self)
-        twin.lanes, twin._suffix = True, "f" if single else ""
-        return twin
+        writer = copy(self)
+        writer.lanes, writer._suffix = True, "f" if single else ""
+        return writer
 
     def _choose_inlined(self, nodes: Sequence[int], stores: Sequence[Store]) -> set[int]:
         graph, vector_of_node = self.graph, self._vector_of_node
@@ -125,11 +125,11 @@ class StatementWriter:
     def statements(self) -> list[Statement]:
         """The statements, operands first; each output is stored as soon as its value is known."""
         waiting: dict[int, list[Store]] = {}
-        own = set(self._own)
+        variables = set(self._variables)
         result = []
         for store in self.stores:
             node = abs(store.edge)
-            if node in own:
+            if node in variables:
                 waiting.setdefault(node, []).append(store)
             elif node != 0:  # A number or an input; zeros are cleared at once.
                 result.append(Statement((), (store,), ()))
@@ -144,12 +144,12 @@ class StatementWriter:
 
     def _ordered(self) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
         """(nodes, angles, vector) of each statement: nodes one by one, sines and cosines by blocks, vectors whole."""
-        blocks, own, done = self._blocks(), set(self._own), set[int]()
+        blocks, variables, done = self._blocks(), set(self._variables), set[int]()
 
         def prepare(edges: Iterable[Edge]) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
             missing = [edge for edge in edges if abs(edge) not in done and not self._is_at_hand(abs(edge))]
             for before in needed_nodes(self.graph, missing, self.given) if missing else ():
-                if before in own:
+                if before in variables:
                     yield from emit(before)
 
         def form(vector: Vector) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], Vector | None]]:
@@ -174,7 +174,7 @@ class StatementWriter:
 
         # Vectors that are no sums are formed where they are read.
         sums = ((vector.first_node, form(vector)) for vector in self._vectors if vector.terms)
-        scalars = ((node, emit(node)) for node in self._own)
+        scalars = ((node, emit(node)) for node in self._variables)
         for _, drafts in merge(sums, scalars, key=lambda item: item[0]):
             yield from drafts
 
@@ -230,7 +230,7 @@ class StatementWriter:
         if op in (MUL, DIV):
             a, b = args  # Both are positive by construction.
             return OPS[op].c.format(self._operand(a, is_factor=True), self._operand(b, is_factor=True, is_right=True))
-        if op == HELD:
+        if op == STOP_GRADIENT:
             return self.whole(args[0])
         if self.lanes:
             return f"sym_v_{op}({', '.join(map(self.whole, args))})"

@@ -26,8 +26,8 @@ def block_lines(writer: StatementWriter, statement: Statement) -> list[str]:
     """The lines of a block: its angles in a vector, the call, the variables.
 
     Args:
-        writer: Of the function.
-        statement: With angles.
+        writer: Writer of the function.
+        statement: Statement with angles.
     """
     if writer.lanes:
         return _lane_lines(writer, statement)
@@ -46,7 +46,7 @@ def block_lines(writer: StatementWriter, statement: Statement) -> list[str]:
 
 
 def _lane_lines(writer: StatementWriter, statement: Statement) -> list[str]:
-    """The same where every angle is a vector already."""
+    """The lines of a block whose angles are vectors of states already."""
     first, angles = statement.nodes[0], statement.angles
     n = len(angles)
     lines = [
@@ -71,8 +71,8 @@ def routines(code: Iterable[str], lanes: bool = False) -> list[str]:
     """The routines that some C text calls.
 
     Args:
-        code: Of the functions.
-        lanes: Whether it is on vectors, too, of whatever width the compiler has.
+        code: C text of the functions.
+        lanes: Whether there is text on vectors, too, of whatever width the compiler has.
     """
     code = list(code)
     widths = [width for width in WIDTHS if lanes or any(f"sym_sincos_{width}(" in text for text in code)]
@@ -98,7 +98,7 @@ def of_lanes(single: bool) -> str:
     """The routine for angles that are vectors already.
 
     Args:
-        single: Whether of floats.
+        single: Whether lanes hold floats.
     """
     if not single:
         return native_text("model/sincos_double.c.in") + native_text("model/sincos_lanes.c.in")
@@ -119,11 +119,11 @@ def _near(
     """The routine for angles up to FAR, on numbers or on vectors.
 
     Args:
-        name: Of the C function.
+        name: Name of the C function.
         real: Type of its angle, sine and cosine.
         word: Type of as many whole numbers of 64 bits.
-        to_word: What turns the first into the second, bit by bit.
-        to_real: What turns it back.
+        to_word: C function or cast that turns a real into a word, bit by bit.
+        to_real: C function or cast that turns a word into a real.
     """
     return Template(native_text("model/sincos.c.in")).substitute(
         name=name,

@@ -24,11 +24,11 @@ class Operations:
 
     @property
     def total(self) -> int:
-        """All of them."""
+        """The number of all operations."""
         return self.mul + self.add + self.div + self.call
 
     def __str__(self) -> str:
-        """Such as "135 mul, 131 add, 10 call"."""
+        """The counts as text, such as "135 mul, 131 add, 10 call"."""
         parts = {"mul": self.mul, "add": self.add, "div": self.div, "call": self.call}
         return ", ".join(f"{count} {name}" for name, count in parts.items() if count) or "none"
 

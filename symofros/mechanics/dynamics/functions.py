@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.ops import HELD
+from symofros.expr.ops import STOP_GRADIENT
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
@@ -146,7 +146,7 @@ def _forward_slopes(e: Equations, row: ModelFunction, methods: Methods, known: M
     if e.constraints:
         return _forward_slopes_by_routine(e, row, known)
     # For the slopes of R(x, a), a is a value of its own.
-    a = [e.g.call(HELD, edge) for edge in e.acceleration]
+    a = [e.g.call(STOP_GRADIENT, edge) for edge in e.acceleration]
     residual = e.unconstrained_residual(a)
     slopes = [_output(array, getattr(e, array.name)(residual), known) for array in row.outputs]
     if e.factors.entries * sum(output.shape[1] for output in slopes) > _MOST_STEPS * WIDTH:

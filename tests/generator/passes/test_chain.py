@@ -127,12 +127,12 @@ def test_models_take_fewer_instructions(name: str) -> None:
     assert fused(chained) < fused(staged)
     rng = np.random.default_rng(3)
     given = {key: rng.uniform(0.5, 1.5, (5, size)) for key, size in staged.sizes.items() if key != "pre"}
-    for found, expected in zip(evaluated(chained, given), evaluated(staged, given), strict=True):
-        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-13 * np.max(np.abs(expected), initial=1.0))
+    for value, expected in zip(evaluated(chained, given), evaluated(staged, given), strict=True):
+        np.testing.assert_allclose(value, expected, rtol=0, atol=1e-13 * np.max(np.abs(expected), initial=1.0))
 
 
 def test_packs_come_along() -> None:
-    """Of a chain whose columns of M share vectors, none is lost, and none would wait for itself."""
+    """A chain, whose columns of M share vectors, loses no lane, and every pack stays valid."""
     staged = hoist_parameters(
         form_program(Equations(plan(chain(16))), [Request("dynamics"), Request("forward_dynamics")])
     )
@@ -147,7 +147,7 @@ def test_packs_come_along() -> None:
 
 
 def test_what_other_functions_read_does_not_split_sums() -> None:
-    """Of a tree whose energy is formed in the same order with and without the other functions."""
+    """A tree's energy is formed in the same order with and without the other functions."""
     tree = plan(system("tree0"))
     names = ("dynamics", "kinetic_energy", "mass_matrix")
     alone, among = (
