@@ -15,8 +15,8 @@ from symofros.expr.packs.pack import EMPTY, WIDTH, Pack, SignedPack
 def carry_packs(packs: Iterable[Pack], into: Graph, new: Mapping[int, Edge], sizes: Mapping[int, int]) -> None:
     """Record packs of one graph in another, to which their nodes have been copied.
 
-    Lanes that were not copied are empty. What a pack is worth is found anew from the operations of the other graph,
-    which may have folded some of its lanes, or have had them before.
+    Lanes that were not copied are empty. Exact and new lanes are determined again in the other graph, which may have
+    folded some, or have had them before.
 
     Args:
         packs: Packs of the first graph.

@@ -48,7 +48,7 @@ def _outside(pack: Pack, lanes: Collection[int]) -> bool:
 
 
 def with_exact_lanes(g: Graph, pack: Pack, candidates: Collection[int]) -> Pack:
-    """A pack whose exact and new lanes are stated, as its nodes in the graph have it.
+    """A copy of a pack with its exact and new lanes, determined from the operations of its nodes.
 
     Args:
         g: Graph of the pack, in which its operands were there before `first_node`.

@@ -138,7 +138,8 @@ def _sums_of_lanes(graph: Graph) -> Iterator[int]:
     """Sums that a vector may form: those of a pack's lanes and operands, with the partial sums inside them."""
     for pack in graph.packs:
         yield from range(pack.first_node, 1 + max(map(abs, pack.lanes)))
-        sums = {abs(edge) for of in (pack, *(operand for _, operand in pack.terms)) for edge in of.lanes}
+        packs = (pack, *(operand for _, operand in pack.terms))
+        sums = {abs(edge) for one in packs for edge in one.lanes}
         for _ in pack.terms:
             yield from sums
             sums = {abs(arg) for node in sums if graph.op[node] == ADD for arg in graph.args[node]}
