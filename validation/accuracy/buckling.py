@@ -164,9 +164,7 @@ def axial(counts: Array, loads: dict[str, Array], quick: bool, reference: dict[s
     m, weights = heavy(8), np.linspace(-10.0, 10.0, 20 if quick else 201)
     squared = np.array([squares(*stiffness_and_mass(m, g=float(g)))[0] for g in weights])
     rows = [row for row in reference["gravity_frequencies_hanging_positive"] if row["gamma"] <= 10.0]
-    exact = Curve(
-        "exact", np.array([row["gamma"] for row in rows]), np.array([row["omega"][0] for row in rows]), 0, "points"
-    )
+    exact = Curve("exact", [row["gamma"] for row in rows], [row["omega"][0] for row in rows], 0, "points")
     weight = Chart(
         "first frequency under its weight",
         "weight ρA g L³/EI, positive if it hangs  [1]",

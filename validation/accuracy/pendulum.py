@@ -184,7 +184,7 @@ def softness(gammas: Array, ends: dict[str, Array], rows: list[dict[str, float]]
         "distance  [m]",
         (
             *(Curve(WORDS[name], gammas, gains, COLORS[name], "joined") for name, gains in ends.items()),
-            Curve("uncertainty of the rod", gammas, np.array([row["uncertainty"] for row in rows]), 5, "dotted"),
+            Curve("uncertainty of the rod", gammas, [row["uncertainty"] for row in rows], 5, "dotted"),
         ),
         log="xy",
     )

@@ -128,9 +128,7 @@ def frequencies(etas: Array, table: list[dict[str, Any]]) -> Figure:
             rows = [row for row in table if row["delta"] == delta]
             curves.append(Curve(f"foreshortened, r/L = {delta}", etas, first(direction, etas, delta), delta))
             exact = np.array([row[column][0] for row in rows])
-            curves.append(
-                Curve(f"table, r/L = {delta}", np.array([row["eta"] for row in rows]), exact, delta, "points")
-            )
+            curves.append(Curve(f"table, r/L = {delta}", [row["eta"] for row in rows], exact, delta, "points"))
         without = first(direction, etas, 0.0, foreshortening=False, retain="all")
         curves.append(Curve("without foreshortening", etas, without, 4, "dashed"))
         marks = (Mark("diverges", FIRST, "x"),) if plane == "lag" else ()

@@ -186,8 +186,8 @@ def distance(known: Array, errors: dict[int, Array], apart: Array) -> Figure:
         "number of functions  [1]",
         "error  [m]",
         (
-            Curve("across", counts, np.array([error[:, 1].max() for error in errors.values()]), 0, "joined"),
-            Curve("along", counts, np.array([error[:, 0].max() for error in errors.values()]), 1, "joined"),
+            Curve("across", counts, [error[:, 1].max() for error in errors.values()], 0, "joined"),
+            Curve("along", counts, [error[:, 0].max() for error in errors.values()], 1, "joined"),
         ),
         (floor,),
         log="y",

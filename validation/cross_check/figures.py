@@ -110,7 +110,7 @@ def error_against_condition(record: Record) -> Chart | None:
     curves = []
     for k, engine in enumerate(ROUTES):
         own = [row for row in rows if row.engine == engine]
-        x, y = np.array([row.extra["condition"] for row in own]), np.array([row.error for row in own], float)
+        x, y = [row.extra["condition"] for row in own], [row.error or 0.0 for row in own]
         hints = tuple(f"{row.model}: {row.error:.1e}" for row in own)
         curves += [Curve(engine_label(engine), x, y, k, "points", k % SHAPES, hints)] if own else []
     span = np.array([1.0, max(row.extra["condition"] for row in rows)])

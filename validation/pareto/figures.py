@@ -6,8 +6,6 @@ from collections.abc import Callable
 from itertools import pairwise
 from string import ascii_lowercase
 
-import numpy as np
-
 from validation.pareto.front import charted, front, usable
 from validation.pareto.race import Result
 from validation.pareto.scene import OURS, Point, Scene
@@ -36,7 +34,7 @@ def models_chart(scene: Scene, result: Result) -> Chart:
     best = front(points)
     stairs = [(b.seconds, a.error) for a, b in pairwise(best)] + [(p.seconds, p.error) for p in best]
     stairs.sort(key=lambda at: (at[0], -at[1]))
-    line = Curve("front", np.array([x for x, _ in stairs]), np.array([y for _, y in stairs]), _FRONT)
+    line = Curve("front", [x for x, _ in stairs], [y for _, y in stairs], _FRONT)
     tags = tuple(Tag(name, p.seconds, p.error) for name, p in zip(letters(len(best)), best, strict=True))
     title = f"{scene.title}: every run, and the front"
     curves = (*_series(points, lambda p: p.model, "points"), line)
@@ -71,7 +69,7 @@ def _series(points: list[Point], name: Callable[[Point], str], kind: Kind) -> tu
         palette, n = _OTHERS if other else _OURS, count[other]
         count[other] += 1
         chosen = sorted(members, key=lambda p: p.seconds)
-        x, y = np.array([p.seconds for p in chosen]), np.array([p.error for p in chosen])
+        x, y = [p.seconds for p in chosen], [p.error for p in chosen]
         color, shape = palette[n % len(palette)], n // len(palette) % SHAPES
         curves.append(Curve(label, x, y, color, kind, shape, tuple(p.name for p in chosen)))
     return tuple(curves)

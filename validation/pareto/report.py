@@ -31,6 +31,7 @@ from validation.reporting.record import (
     Table,
     Text,
     Topic,
+    failure_texts,
     verdict_word,
 )
 
@@ -145,7 +146,7 @@ def compose(data: Data) -> Report:
         "Speed against accuracy",
         f"{said}.",
         bool(data["ok"]),
-        (*INTRO, *(Text(f"{name} could not be done: {reason}", "bad") for name, reason in failures.items())),
+        (*INTRO, *failure_texts(failures)),
         (
             Section("Which to use when", which, "which"),
             *(_section(name, *results[name], scene, data["quick"]) for name, scene in data["scenes"].items()),
@@ -156,7 +157,7 @@ def compose(data: Data) -> Report:
             Fact(times(most), "an engine's best time over ours, at equal error, where it is most"),
         ),
         (models_chart(*first),) if first else (),
-        (table, *(Text(f"{name}: {reason}", "bad") for name, reason in failures.items())),
+        (table, *failure_texts(failures)),
         unfinished,
     )
 
@@ -208,10 +209,7 @@ def _section(name: str, scene: Scene, result: Result, data: Data, quick: bool) -
             (Bullets(tuple(verdicts.refused(result))),),
             page_only=True,
         ),
-        Text(
-            f"`{command}`, {result.seconds:.0f} s, {data['date']}. Sources: {'; '.join(scene.sources)}.",
-            "soft",
-        ),
+        Text(f"`{command}`, {result.seconds:.0f} s, {data['date']}. Sources: {'; '.join(scene.sources)}.", "soft"),
     )
     return Section(scene.title, blocks, name, bool(data["ok"]))
 

@@ -116,7 +116,7 @@ class Chart:
     def of(cls, data: Mapping[str, Any]) -> Chart:
         """The chart that `data` wrote; of reports made before axes of limits were kept, it has no limits."""
         curves = tuple(
-            Curve(c["label"], _numbers(c["x"]), _numbers(c["y"]), c.get("color", k % COLORS), c["kind"])
+            Curve(c["label"], np.array(c["x"], float), np.array(c["y"], float), c.get("color", k % COLORS), c["kind"])
             for k, c in enumerate(data["curves"])
         )
         along = {"y": data["marks"], "x": data["marks_x"]} if "marks_x" in data else {}
@@ -134,10 +134,6 @@ class Chart:
             tags=tuple(Tag(*tag) for tag in data.get("tags", ())),
             equal=data.get("equal", False),
         )
-
-
-def _numbers(values: list[float | None]) -> Array:
-    return np.array([np.nan if value is None else value for value in values], float)
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from validation.reporting.record import (
     Section,
     Text,
     bounds_kept,
+    failure_texts,
     findings_digest,
     findings_fold,
 )
@@ -79,7 +80,7 @@ def composing(title: str, theory: str, telling: Mapping[str, tuple[int, int]]) -
         intro: tuple[Block, ...] = (
             "Each section asks a question, answers it from what this run measured, shows it, and lists the numbers "
             f"with the bounds they must keep. The theory is in `{theory}`.",
-            *(Text(f"{key} could not be done: {reason}", "bad") for key, reason in failures.items()),
+            *failure_texts(failures),
         )
         highlights = [
             Chart.of(studies[key]["figures"][figure]["charts"][chart])

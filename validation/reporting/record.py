@@ -236,6 +236,11 @@ def findings_digest(groups: Mapping[str, Sequence[Finding]], failures: Mapping[s
     return Table((noun, "number", "#found", "bounds", "verdict"), tuple(rows))
 
 
+def failure_texts(failures: Mapping[str, str]) -> tuple[Text, ...]:
+    """The parts that could not be done, with their reasons."""
+    return tuple(Text(f"{name} could not be done: {reason}", "bad") for name, reason in failures.items())
+
+
 def verdict_word(ok: bool) -> str:
     """For a column of verdicts."""
     return "ok" if ok else "missed"

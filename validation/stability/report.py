@@ -25,6 +25,7 @@ from validation.reporting.record import (
     Text,
     Topic,
     bounds_kept,
+    failure_texts,
     findings_digest,
     findings_fold,
 )
@@ -139,7 +140,7 @@ def compose(data: Data) -> Report:
         "Stability atlas",
         f"{said}: {bounds_kept(every)}{failed}{quick}.{cut}",
         bool(data["ok"]),
-        (INTRO, *(Text(f"{name} could not be done: {reason}", "bad") for name, reason in failures.items())),
+        (INTRO, *failure_texts(failures)),
         tuple(_section(name, scene, findings[name], data["quick"]) for name, scene in scenes.items()),
         (
             Fact(str(len(scenes)), "scenes"),
@@ -187,12 +188,7 @@ def _energies(scene: Data) -> list[Chart]:
     """Who keeps energy, over the longest runs."""
     title, one = list(scene["maps"].items())[-1]
     rows = [(name, values) for name, values in zip(one["y"], one["values"], strict=True) if name in _METHODS]
-    curves = tuple(
-        Curve(
-            name, np.array(one["x"], float), np.array([np.nan if x is None else x for x in values], float), k, "joined"
-        )
-        for k, (name, values) in enumerate(rows)
-    )
+    curves = tuple(Curve(name, one["x"], values, k, "joined") for k, (name, values) in enumerate(rows))
     named = f"a pendulum's energy, {title}"
     return [Chart(named, scene["x"], scene["quantity"], curves, log="xy")] if curves else []
 
