@@ -1,4 +1,4 @@
-"""Drawing: what there is to draw of a mechanism. Data only; `geometry` makes it, `scene` and `raster` show it."""
+"""Drawing: what there is to draw of a mechanism. Data only; `geometry` makes it, `viser_scene` and `raster` show it."""
 
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ class Strut:
     Attributes:
         name: Unique in the drawing.
         kind: Layer, as for a DrawnPart.
-        first: One end.
-        second: The other.
+        first: First end point.
+        second: Second end point.
         outline: Outline of its section (K, 2) [m].
         color: Red, green, blue.
     """

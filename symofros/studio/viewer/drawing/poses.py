@@ -31,7 +31,7 @@ class Posture:
 
     Attributes:
         p: p_WL of every link, the world last, so that index -1 is the world (..., links + 1, 3) [m].
-        R: R_WL, alike (..., links + 1, 3, 3).
+        R: R_WL of every link, the unit matrix of the world last (..., links + 1, 3, 3).
         q: The coordinates drawn, elastic ones exaggerated (..., nq).
     """
 
@@ -40,7 +40,7 @@ class Posture:
     q: Array
 
     def __getitem__(self, index: int) -> Posture:
-        """One of several."""
+        """The posture at an index of the leading dimension."""
         return Posture(self.p[index], self.R[index], self.q[index])
 
     def point(self, place: LinkPoint) -> Array:

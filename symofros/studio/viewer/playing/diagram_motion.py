@@ -27,17 +27,14 @@ def chosen_block(name: str, blocks: Mapping[str, Block], block: str = "") -> str
         return block
     if not block and len(moving) == 1:
         return moving[0]
-    raise UnknownNameError(
-        Problem(
-            f"view of diagram '{name}': no mechanism '{block}'"
-            if block
-            else f"view of diagram '{name}': which mechanism?",
-            f"'{block}'" if block else f"{len(moving)} mechanisms",
-            f"blocks that move one: {', '.join(moving) or 'none'}",
-            (did_you_mean(block, moving) if block else "")
-            or ("name one of them" if moving else "add forward dynamics"),
-        )
-    )
+    remedy = "name one of them" if moving else "add forward dynamics"
+    rule = f"blocks that move one: {', '.join(moving) or 'none'}"
+    if block:
+        what, found = f"view of diagram '{name}': no mechanism '{block}'", f"'{block}'"
+        remedy = did_you_mean(block, moving) or remedy
+    else:
+        what, found = f"view of diagram '{name}': which mechanism?", f"{len(moving)} mechanisms"
+    raise UnknownNameError(Problem(what, found, rule, remedy))
 
 
 def shown_of(run: DiagramRun, block: str = "") -> tuple[System, States]:
