@@ -65,13 +65,13 @@ def number(
     Raises:
         DescriptionError: It is none, or out of bounds.
     """
-    found = float(numbers(name, field, value, ()))
-    if not low <= found <= high or (exclusive and found == low):
+    given = float(numbers(name, field, value, ()))
+    if not low <= given <= high or (exclusive and given == low):
         above = "" if low == -math.inf else f"above {low:g}" if exclusive else f"at least {low:g}"
         below = "" if high == math.inf else f"at most {high:g}"
         rule = " and ".join(filter(None, (above, below)))
-        raise refuse(name, f"{field} is out of bounds", found, f"{field} is {rule}", "choose a number within")
-    return found
+        raise refuse(name, f"{field} is out of bounds", given, f"{field} is {rule}", "choose a number within")
+    return given
 
 
 def whole(name: str, field: str, value: Any, low: int, high: int) -> int:

@@ -72,16 +72,16 @@ class ForwardDynamics(Block):
             return Terms(a=context.call(self.model, "forward_dynamics", **given)["a"])
         push = self._push(context)
         if not record.nc:
-            found = context.call(self.model, "dynamics", **given)
-            return Terms(a=context.solved(found["M"], found["Q"] - found["h"] + push))
-        found = context.call(self.model, "forward_dynamics", gains=context.gains, **given)
+            outputs = context.call(self.model, "dynamics", **given)
+            return Terms(a=context.solved(outputs["M"], outputs["Q"] - outputs["h"] + push))
+        outputs = context.call(self.model, "forward_dynamics", gains=context.gains, **given)
         phi = context.call(self.model, "constraint", q=context.q, u=u, t=context.t)["phi"]
         rate = context.call(self.model, "constraint_rate", q=context.q, v=context.v, u=u, t=context.t)["phi_rate"]
-        G, c = found["G"], found["c"]
+        G, c = outputs["G"], outputs["c"]
         if self.engaged:
             holds = self._holds(context)
             G, c, phi, rate = G * holds.reshape(-1, 1), c * holds, phi * holds, rate * holds
-        return Terms(M=found["M"], r=found["r"] + push, G=G, c=c, phi=phi, rate=rate)
+        return Terms(M=outputs["M"], r=outputs["r"] + push, G=G, c=c, phi=phi, rate=rate)
 
     def _push(self, context: EvaluationContext) -> Tensor:
         """Generalized forces of the external wrenches (nv)."""
@@ -139,8 +139,8 @@ def friction(context: EvaluationContext, model: str, q: Tensor, v: Tensor) -> Te
     has_friction = context.environment.has_friction(model)
     if not any(has_friction):
         return context.numbers([0.0] * len(has_friction))
-    found = context.call(model + FRICTION, "generalized_force", q=q, v=v, t=context.t)["Q"]
-    return found * [float(rubs) for rubs in has_friction]
+    force = context.call(model + FRICTION, "generalized_force", q=q, v=v, t=context.t)["Q"]
+    return force * [float(rubs) for rubs in has_friction]
 
 
 def _constraints(names: tuple[str, ...]) -> list[str]:

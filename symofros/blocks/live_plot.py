@@ -49,9 +49,9 @@ class LivePlot(OpaqueBlock):
 
     def ports(self, environment: Environment) -> Ports:
         """The signals."""
-        found = open_ports(self.name, self.signals, environment)
-        check_size(self.name, max(1, sum(int(np.prod(port.shape)) for port in found.inputs if port.shape is not None)))
-        return found
+        ports = open_ports(self.name, self.signals, environment)
+        check_size(self.name, max(1, sum(int(np.prod(port.shape)) for port in ports.inputs if port.shape is not None)))
+        return ports
 
     def begin(self, environment: Environment) -> Running:
         """Start the page, or take over that of the run before.

@@ -181,10 +181,10 @@ def tokenize(text: str) -> list[Token]:
             if word is not None:
                 raise ExpressionError(text, f"'{word.group():.60}' is neither a number nor a name", at, _PRODUCTS)
             raise ExpressionError(text, f"{text[at]!r} is not allowed in a formula", at)
-        kind, found, start = match.lastgroup, match.group(match.lastgroup), match.start(match.lastgroup)
-        if kind == "name" and _DUNDER.search(found):
-            raise ExpressionError(text, f"'{found}' is not a legal name", start)
-        tokens.append((kind, found, start))
+        kind, token, start = match.lastgroup, match.group(match.lastgroup), match.start(match.lastgroup)
+        if kind == "name" and _DUNDER.search(token):
+            raise ExpressionError(text, f"'{token}' is not a legal name", start)
+        tokens.append((kind, token, start))
         at = match.end()
     tokens.append(("end", "", end))
     return tokens

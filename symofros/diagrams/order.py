@@ -76,15 +76,15 @@ def groups_in_motion(wired: Wired, pieces: Mapping[str, Piece]) -> list[list[str
             parent[root(other)] = root(name)
         if watched and moving:  # A crossing stops all motion: it may change what any part depends on.
             parent[root(name)] = root(moving[0])
-    found: dict[str, list[str]] = {}
+    groups: dict[str, list[str]] = {}
     for name in moving:
-        found.setdefault(root(name), []).append(name)
-    return list(found.values())
+        groups.setdefault(root(name), []).append(name)
+    return list(groups.values())
 
 
 def reached(wired: Wired, pieces: Mapping[str, Piece], name: str, inputs: frozenset[str]) -> set[str]:
     """Blocks whose continuous states are behind some inputs of a block, through continuous signals only."""
-    found: set[str] = set()
+    reached_ports: set[str] = set()
     seen: set[Source] = set()
     stack = wired.behind(name, inputs)
     while stack:
@@ -98,6 +98,6 @@ def reached(wired: Wired, pieces: Mapping[str, Piece], name: str, inputs: frozen
             continue
         groups = piece.groups(piece.outputs[port].flat)
         if any(group in ("q", "v") or group.startswith(STATE) for group in groups):
-            found.add(block)
+            reached_ports.add(block)
         stack += wired.behind(block, piece.needs[port])
-    return found
+    return reached_ports

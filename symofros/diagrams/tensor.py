@@ -118,8 +118,8 @@ class Tensor:
         return self.g.sum(self.g.mul(x, y) for x, y in zip(a, b, strict=True))
 
     def __getitem__(self, index: Any) -> Tensor:
-        found = self.edges[index]
-        return Tensor(self.g, found if isinstance(found, np.ndarray) else np.array(found, dtype=object))
+        edges = self.edges[index]
+        return Tensor(self.g, edges if isinstance(edges, np.ndarray) else np.array(edges, dtype=object))
 
     def __len__(self) -> int:
         return len(self.edges)

@@ -184,13 +184,13 @@ def _sampling(name: str, block: Block) -> list[Problem]:
 
 
 def _first_ports(diagram: Diagram, models: Models, problems: list[Problem]) -> dict[str, Ports]:
-    found = {}
+    ports = {}
     for name, block in diagram.blocks.items():
         try:
-            found[name] = block.ports(_Surroundings(models, {}))
+            ports[name] = block.ports(_Surroundings(models, {}))
         except DescriptionError as error:
             problems += located(error.problems, diagram.where(name))
-    return found
+    return ports
 
 
 def _sources(
@@ -225,8 +225,8 @@ def _sources(
         source = _collected(problems, where, diagram.name, text, diagram.blocks, ports, outlets)
         if source is not None:
             sources[block, port] = source
-    for block, found in ports.items():
-        for item in found.inputs:
+    for block, block_ports in ports.items():
+        for item in block_ports.inputs:
             if item.default is None and (block, item.name) not in diagram.wires:
                 problems.append(
                     Problem(
@@ -294,7 +294,9 @@ def _settle(
 ) -> dict[str, Ports]:
     """Carry shapes along the wires until nothing changes."""
     for _ in range(len(ports) + 1):
-        shapes = {(block, item.name): item.shape for block, found in ports.items() for item in found.outputs}
+        shapes = {
+            (block, item.name): item.shape for block, stated_ports in ports.items() for item in stated_ports.outputs
+        }
         now = {}
         for name, block in diagram.blocks.items():
             inputs = {}
@@ -304,14 +306,15 @@ def _settle(
                 if shape is not None:
                     inputs[item.name] = shape
             try:
-                found = block.ports(_Surroundings(models, inputs))
+                stated_ports = block.ports(_Surroundings(models, inputs))
             except DescriptionError as error:
                 problems += located(error.problems, diagram.where(name))
                 return ports
             arrived = [
-                replace(item, shape=inputs.get(item.name)) if item.shape is None else item for item in found.inputs
+                replace(item, shape=inputs.get(item.name)) if item.shape is None else item
+                for item in stated_ports.inputs
             ]
-            now[name] = Ports(tuple(arrived), found.outputs)
+            now[name] = Ports(tuple(arrived), stated_ports.outputs)
         if now == ports:
             break
         ports = now
@@ -321,16 +324,16 @@ def _settle(
 def _check(
     diagram: Diagram, ports: Mapping[str, Ports], sources: Mapping[Source, Source], problems: list[Problem]
 ) -> None:
-    outputs = {(block, item.name): item for block, found in ports.items() for item in found.outputs}
-    for block, found in ports.items():
-        for item in (*found.inputs, *found.outputs):
+    outputs = {(block, item.name): item for block, block_ports in ports.items() for item in block_ports.outputs}
+    for block, block_ports in ports.items():
+        for item in (*block_ports.inputs, *block_ports.outputs):
             try:
                 parse(item.unit)
             except DescriptionError as error:
                 one = error.problems[0]
                 what = f"diagram '{diagram.name}': '{block}.{item.name}': {one.what}"
                 problems.append(replace(one, what=what, where=diagram.where(block, item.name)))
-        unknown = [item.name for item in found.outputs if item.shape is None]
+        unknown = [item.name for item in block_ports.outputs if item.shape is None]
         if unknown:
             problems.append(
                 Problem(

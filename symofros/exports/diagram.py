@@ -232,8 +232,8 @@ def _signals(signals: Sequence[tuple[int, np.ndarray, np.ndarray, bool]]) -> lis
 
 def _entries(resolved: Resolved, sources: Sequence[Source]) -> list[str]:
     """The name of each entry of the outputs."""
-    found = []
+    entries = []
     for source in sources:
         shape, label = resolved.wired.shape(source), ".".join(source)
-        found += [label + "".join(f"[{i}]" for i in at) for at in product(*map(range, shape))]
-    return found
+        entries += [label + "".join(f"[{i}]" for i in at) for at in product(*map(range, shape))]
+    return entries

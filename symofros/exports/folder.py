@@ -46,9 +46,9 @@ def check_folder(folder: Path) -> dict[str, str]:
         raise _not_ours(folder, "a file")
     manifest = folder / MANIFEST
     if not manifest.is_file():
-        found = sorted(path.name for path in folder.iterdir())
-        if found:
-            raise _not_ours(folder, f"{len(found)} entries without {MANIFEST}: {', '.join(found[:6])}")
+        names = sorted(path.name for path in folder.iterdir())
+        if names:
+            raise _not_ours(folder, f"{len(names)} entries without {MANIFEST}: {', '.join(names[:6])}")
         return {}
     try:
         stated = json.loads(manifest.read_text(encoding="utf-8"))

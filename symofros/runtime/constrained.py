@@ -83,8 +83,8 @@ def constrained(M: Array, r: Array, G: Array, c: Array, *, solve: Solution = sol
         c: (n, nc).
         solve: For one state.
     """
-    found = [solve(*state) for state in zip(M, r, G, c, strict=True)]
-    a, lam, rank = zip(*found, strict=True)
+    solutions = [solve(*state) for state in zip(M, r, G, c, strict=True)]
+    a, lam, rank = zip(*solutions, strict=True)
     return [np.array(a), np.array(lam), np.array(rank, dtype=np.float64)]
 
 
@@ -124,9 +124,9 @@ def project(
         closer = False
         for half in range(HALVINGS):
             tried = move(q, step * 0.5**half)
-            found = terms(tried, v)
-            if np.linalg.norm(found[3]) < left:
-                q, (M, G, binds, phi, rate), closer = tried, found, True
+            at_trial = terms(tried, v)
+            if np.linalg.norm(at_trial[3]) < left:
+                q, (M, G, binds, phi, rate), closer = tried, at_trial, True
                 left = float(np.linalg.norm(phi))
                 break
     if not len(G):

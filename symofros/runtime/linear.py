@@ -74,8 +74,8 @@ def linearize(
             rows.append(known[str(output)])
         else:
             raise _unknown(output)
-    found = np.concatenate([np.broadcast_to(row, (*batch, *row.shape[-2:])) for row in rows], axis=-2)
-    return StateMatrices(rate[..., : 2 * nv], rate[..., 2 * nv :], found[..., : 2 * nv], found[..., 2 * nv :])
+    matrix = np.concatenate([np.broadcast_to(row, (*batch, *row.shape[-2:])) for row in rows], axis=-2)
+    return StateMatrices(rate[..., : 2 * nv], rate[..., 2 * nv :], matrix[..., : 2 * nv], matrix[..., 2 * nv :])
 
 
 def _unknown(output: Output) -> UnknownNameError:

@@ -61,8 +61,8 @@ class CartesianLinear(_Cartesian):
 
     def ports(self, environment: Environment) -> Ports:
         """Desired p, angle or R, v; actual q, v in; effort (nv), wrench and error of the rows out."""
-        found = self._ports(environment, "effort")
-        return Ports(tuple(port for port in found.inputs if port.name != "a_desired"), found.outputs)
+        ports = self._ports(environment, "effort")
+        return Ports(tuple(port for port in ports.inputs if port.name != "a_desired"), ports.outputs)
 
     def compute(self, context: EvaluationContext) -> Values:
         """The wrench, and the efforts that make it."""

@@ -102,8 +102,8 @@ class Integrator(Block):
         """One sample's share further."""
         if self.period is None:
             return {}
-        found = {"x": self._limited(self._now(context) + float(self.period) * context.inputs["u"])}
-        return found if self.reset == "none" else {**found, "before": context.inputs["reset"]}
+        memory = {"x": self._limited(self._now(context) + float(self.period) * context.inputs["u"])}
+        return memory if self.reset == "none" else {**memory, "before": context.inputs["reset"]}
 
     def crossings(self, context: EvaluationContext) -> dict[str, Crossing]:
         """Continuous: zeros of the reset signal."""

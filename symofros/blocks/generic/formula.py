@@ -92,14 +92,14 @@ class Formula(Block):
     @cached_property
     def _entries(self) -> dict[str, int | None]:
         """Input -> least size of its vector; None: a scalar."""
-        found: dict[str, int | None] = {}
+        sizes: dict[str, int | None] = {}
         for symbol in sorted(set().union(*(item.symbols() for item in self._expressions()))):
             match = _ENTRY.match(symbol)
             name = match["name"] if match else symbol
             if name == "t" or name in dict(self.constants or {}):
                 continue
             size = int(match["index"]) + 1 if match else None
-            if name in found and (size is None) != (found[name] is None):
+            if name in sizes and (size is None) != (sizes[name] is None):
                 raise refuse(
                     self.name,
                     f"input '{name:.40}' is a scalar and a vector",
@@ -107,8 +107,8 @@ class Formula(Block):
                     "an input is one of them",
                     f"write {name}[0] for its first entry",
                 )
-            found[name] = size if size is None else max(size, found.get(name) or 0)
-        return found
+            sizes[name] = size if size is None else max(size, sizes.get(name) or 0)
+        return sizes
 
     def ports(self, environment: Environment) -> Ports:
         """An input for each name, an output for each formula."""
@@ -144,7 +144,7 @@ class Formula(Block):
             else:
                 bindings[name] = value.flat[0]
         try:
-            found = {
+            symbols = {
                 name: ([lower(item, context.g, bindings) for item in value], (len(value),))
                 if isinstance(value, list)
                 else ([lower(value, context.g, bindings)], ())
@@ -158,7 +158,7 @@ class Formula(Block):
                 "constant parts are within the domain of functions",
                 "mend the formula",
             ) from None
-        return {name: Tensor.of(context.g, edges, shape) for name, (edges, shape) in found.items()}
+        return {name: Tensor.of(context.g, edges, shape) for name, (edges, shape) in symbols.items()}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,9 +219,13 @@ class _Function(Running):
         Raises:
             DescriptionError: Outputs are missing, or have other shapes.
         """
-        found = self._block.function(t, inputs)
+        outputs = self._block.function(t, inputs)
         shapes = {name: tuple(shape) for name, shape in dict(self._block.outputs).items()}
-        given = {name: np.shape(value) for name, value in found.items()} if isinstance(found, Mapping) else type(found)
+        given = (
+            {name: np.shape(value) for name, value in outputs.items()}
+            if isinstance(outputs, Mapping)
+            else type(outputs)
+        )
         if given != shapes:
             raise refuse(
                 self._block.name,
@@ -230,7 +234,7 @@ class _Function(Running):
                 f"outputs {shapes}",
                 "return a mapping of these",
             )
-        return found
+        return outputs
 
     def end(self) -> None:
         """By the user's function."""

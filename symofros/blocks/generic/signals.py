@@ -221,15 +221,15 @@ class Pick(Block):
                 )
         else:
             wanted = [self.entries] if isinstance(self.entries, str) else self.entries
-        found = []
+        indices = []
         for item in wanted:
             named = isinstance(item, str)
-            found.append(
+            indices.append(
                 names.index(known_name(self.name, f"entry of {self.of}", item, names))
                 if named
                 else whole(self.name, "an entry", item, 0, len(names) - 1)
             )
-        return found, len(names)
+        return indices, len(names)
 
     def ports(self, environment: Environment) -> Ports:
         """Input u, a vector; output y (number of entries)."""

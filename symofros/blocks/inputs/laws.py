@@ -63,8 +63,8 @@ def moves(t: Tensor, law: str, begin: Array, duration: Array, accelerating: floa
         accelerating: Share of the time that a trapezoidal law accelerates, 0 to 0.5.
     """
     raw = joined([(t - float(b)) / float(d) for b, d in zip(begin, duration, strict=True)])
-    found = LAWS[law](raw.clipped(0.0, 1.0), raw, accelerating)
-    return Share(found.s, found.rate / duration, found.acceleration / duration**2)
+    profile = LAWS[law](raw.clipped(0.0, 1.0), raw, accelerating)
+    return Share(profile.s, profile.rate / duration, profile.acceleration / duration**2)
 
 
 def spline(t: Tensor, times: Array, table: Array) -> Share:
@@ -114,7 +114,7 @@ def _coefficients(h: Array, change: Array, slopes: Array) -> tuple[Array, Array]
 
 def through(begin: float, durations: Sequence[float], blend: float) -> Array:
     """When each of several moves begins, where each overlaps the one before by a share of the shorter of both."""
-    found = [begin]
+    instants = [begin]
     for before, after in zip(durations, durations[1:], strict=False):
-        found.append(found[-1] + before - blend * min(before, after))
-    return np.array(found)
+        instants.append(instants[-1] + before - blend * min(before, after))
+    return np.array(instants)

@@ -74,13 +74,15 @@ class Sequence(Block):
                 "add them",
             )
         t = increasing(self.name, "t", arrays.pop("t"), 1)
-        found = {}
+        signals = {}
         for output, names in self._chosen(list(arrays)).items():
             alone = isinstance(names, str)
             parts = [self._part(arrays, name, len(t)) for name in ([names] if alone else names)]
             values = parts[0] if alone else np.concatenate([part.reshape(len(t), -1) for part in parts], axis=1)
-            found[output] = Signal(t, values, "linear") if self.kind == "linear" else Signal(_early(t), values, "hold")
-        return found
+            signals[output] = (
+                Signal(t, values, "linear") if self.kind == "linear" else Signal(_early(t), values, "hold")
+            )
+        return signals
 
     def _chosen(self, names: list[str]) -> dict[str, Any]:
         """Output -> name or names of arrays."""

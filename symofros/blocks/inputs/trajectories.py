@@ -132,18 +132,18 @@ def via_points(block: Any, points: Any, times: Any, most: int | None) -> int:
     choice(block.name, "law", block.law, [*LAWS, SPLINE])
     number(block.name, "accelerating", block.accelerating, 0.0, 0.5, exclusive=True)
     given = increasing(block.name, "times", times)
-    found = numbers(block.name, "points", points, (len(given), None))
-    if len(found) > MOST_POINTS:
-        raise refuse(block.name, "too many points", len(found), f"at most {MOST_POINTS}", "use a Sequence over time")
-    if not found.shape[1] or (most is not None and found.shape[1] > most):
+    array = numbers(block.name, "points", points, (len(given), None))
+    if len(array) > MOST_POINTS:
+        raise refuse(block.name, "too many points", len(array), f"at most {MOST_POINTS}", "use a Sequence over time")
+    if not array.shape[1] or (most is not None and array.shape[1] > most):
         raise refuse(
             block.name,
             "points have the wrong size",
-            found.shape,
+            array.shape,
             f"rows of 1 to {most or 'any'} numbers",
             "mend the rows",
         )
-    return len(found)
+    return len(array)
 
 
 def _through(

@@ -171,8 +171,8 @@ class Sine(_Wave):
         w = 2.0 * math.pi * frequency
         angle = w * context.t + phase
         s, c = amplitude * angle.apply("sin"), amplitude * angle.apply("cos")
-        found = {"y": mean + s, "rate": w * c, "acceleration": -(w * w * s)}
-        return {name: self._whole(context, value) for name, value in found.items()}
+        signals = {"y": mean + s, "rate": w * c, "acceleration": -(w * w * s)}
+        return {name: self._whole(context, value) for name, value in signals.items()}
 
 
 @dataclass(frozen=True, kw_only=True)

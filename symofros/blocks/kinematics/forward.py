@@ -92,8 +92,8 @@ class Extremities(Block):
 
     def compute(self, context: EvaluationContext) -> Values:
         """Frame by frame; what they share is computed once."""
-        found = [_frame_motion(context, self.model, frame) for frame in self._frames(context.environment)]
-        return {key: stacked([motion[key] for motion in found]) for key in found[0]}
+        motions = [_frame_motion(context, self.model, frame) for frame in self._frames(context.environment)]
+        return {key: stacked([motion[key] for motion in motions]) for key in motions[0]}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -122,11 +122,11 @@ class Task:
     def ports(self) -> list[Port]:
         """Inputs for a desired motion: p, angle or R as the rows ask, v and a."""
         linear, turns, m = sum(row < 3 for row in self.rows), len(self.turns), len(self.rows)
-        found = [Port("p", (linear,), "m")] if linear else []
-        found += [Port("angle", (), "rad")] if turns == 1 else [Port("R", (3, 3))] if turns else []
+        ports = [Port("p", (linear,), "m")] if linear else []
+        ports += [Port("angle", (), "rad")] if turns == 1 else [Port("R", (3, 3))] if turns else []
         v, a = ("m/s", "m/s^2") if not turns else ("", "")
-        found += [Port("v", (m,), v, 0.0), Port("a", (m,), a, 0.0)]
-        return [replace(port, name=port.name + self.suffix) for port in found]
+        ports += [Port("v", (m,), v, 0.0), Port("a", (m,), a, 0.0)]
+        return [replace(port, name=port.name + self.suffix) for port in ports]
 
     def given(self, context: EvaluationContext, name: str) -> Tensor | None:
         """A desired quantity; None where the rows don't ask for it."""

@@ -136,12 +136,12 @@ class Importer:
     def _frames(self) -> dict[int, tuple[Frame, ...]]:
         """Sites, by the index of their body."""
         m = self.model
-        found: dict[int, tuple[Frame, ...]] = {}
+        frames: dict[int, tuple[Frame, ...]] = {}
         for s in range(m.nsite):
             frame = Frame(self.sites[s], *self.exact.placement(np.array(m.site_pos[s]), rotation_of(m.site_quat[s])))
             body = int(m.site_bodyid[s])
-            found[body] = (*found.get(body, ()), frame)
-        return found
+            frames[body] = (*frames.get(body, ()), frame)
+        return frames
 
     def _remark_ignored(self) -> None:
         m = self.model

@@ -128,8 +128,8 @@ def compiled(document: Document, remarks: Remarks) -> Any:
 
 def _explained(message: str, document: Document) -> Problem:
     """MuJoCo's complaint, which names a line of our text, about the line of the file."""
-    found = _LINE.search(message)
-    line = int(found[1]) if found else 0
+    match = _LINE.search(message)
+    line = int(match[1]) if match else 0
     where = document.lines[line - 1].where if 0 < line <= len(document.lines) else document.stated.file
     complaint, _, rest = _LINE.sub("", message).strip().partition("\n")
     complaint = complaint.removeprefix("XML ").removeprefix("Error: ").strip()

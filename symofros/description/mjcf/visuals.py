@@ -29,7 +29,7 @@ def visuals_of(model: Any, name: Callable[[int], str]) -> dict[str, tuple[Visual
         model: An MjModel.
         name: Name of a body by its index.
     """
-    found: dict[str, tuple[Visual, ...]] = {}
+    visuals: dict[str, tuple[Visual, ...]] = {}
     for i in range(min(model.ngeom, MOST_VISUALS)):
         kind, rgba = int(model.geom_type[i]), np.array(model.geom_rgba[i], dtype=float)
         if kind not in _KINDS or int(model.geom_group[i]) >= _SEEN or rgba[3] <= 0.0:
@@ -45,5 +45,5 @@ def visuals_of(model: Any, name: Callable[[int], str]) -> dict[str, tuple[Visual
         visual = Visual(
             shape, size, (x, y, z), Rotation.matrix(rotation_of(model.geom_quat[i]).tolist()), (red, green, blue)
         )
-        found[body] = (*found.get(body, ()), visual)
-    return found
+        visuals[body] = (*visuals.get(body, ()), visual)
+    return visuals

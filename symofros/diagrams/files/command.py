@@ -102,9 +102,9 @@ def tell_run(run: DiagramRun, files: list[str], as_json: bool, out: Console) -> 
     jitter = jitter_of(cost) if cost.late.size else None
     counts = {
         f"{block}.{name}": float(value)
-        for block, found in run.kept.items()
-        if "t" not in found
-        for name, value in found.items()
+        for block, kept in run.kept.items()
+        if "t" not in kept
+        for name, value in kept.items()
     }
     if as_json:
         costs = {key: value for key, value in asdict(cost).items() if key not in ("late", "spacing")}

@@ -51,10 +51,10 @@ def load_diagram(path: str | os.PathLike[str], *, blocks: Iterable[type[Block]] 
     """
     file = Path(path)
     shared = _Shared(file.parent.resolve(), kinds(blocks), network)
-    found = shared.file(file, str(file), ())
-    if shared.problems or found is None:
+    diagram = shared.file(file, str(file), ())
+    if shared.problems or diagram is None:
         raise DescriptionError(in_order(shared.problems))
-    return found
+    return diagram
 
 
 @dataclass
@@ -91,9 +91,9 @@ class _Shared:
                 rule,
                 "take a newer symofros",
             )
-        found = reader.diagram(entries, path.stem)
-        found.file = str(path.resolve())
-        return found
+        diagram = reader.diagram(entries, path.stem)
+        diagram.file = str(path.resolve())
+        return diagram
 
 
 class _Reader(Entries):
@@ -105,26 +105,26 @@ class _Reader(Entries):
 
     def diagram(self, entries: Mapping[str, Node], name: str) -> Diagram:
         """What a file, or an inline part, states."""
-        found = Diagram(self.text(entries["name"], "name") if "name" in entries else name)
+        diagram = Diagram(self.text(entries["name"], "name") if "name" in entries else name)
         for key, read_one in (("models", self.model), ("blocks", self.block), ("parts", self.part)):
             if key in entries:
                 for one, node in self.mapping(entries[key], key).items():
-                    read_one(found, one, node)
+                    read_one(diagram, one, node)
         if "simulation" in entries:
-            found.simulation = read_settings(self, found, entries["simulation"])
+            diagram.simulation = read_settings(self, diagram, entries["simulation"])
         if "wires" in entries:
             for target, node in self.mapping(entries["wires"], "wires").items():
                 block, _, port = target.rpartition(".")
-                self.wire(found, block, port, node)
+                self.wire(diagram, block, port, node)
         if "inlets" in entries:
             for one, node in self.mapping(entries["inlets"], "inlets").items():
                 items = [node] if isinstance(node.value, str) else self.listed(node, f"inlet '{one:.60}'")
-                found.inlets[one] = tuple(self.text(item, f"inlet '{one:.60}'") for item in items)
+                diagram.inlets[one] = tuple(self.text(item, f"inlet '{one:.60}'") for item in items)
         if "outlets" in entries:
             for one, node in self.mapping(entries["outlets"], "outlets").items():
-                found.outlets[one] = self.text(node, f"outlet '{one:.60}'")
-                found.origin["outlet", one] = self.where(node)
-        return found
+                diagram.outlets[one] = self.text(node, f"outlet '{one:.60}'")
+                diagram.origin["outlet", one] = self.where(node)
+        return diagram
 
     def model(self, found: Diagram, name: str, node: Node) -> None:
         """A model by its file."""

@@ -84,8 +84,8 @@ def json_schema() -> Plain:
 def _block(kind: str, owner: type[Block]) -> Plain:
     properties: Plain = {"kind": {"const": kind}}
     properties |= {entry_of(name): of_type(item) for name, item in types_of(owner).items() if name != "name"}
-    found = _object(properties | {"inputs": _TEXTS}, ["kind", *sorted(map(entry_of, required(owner) - {"name"}))])
-    return {"description": (inspect.getdoc(owner) or "").split("\n")[0], **found}
+    schema = _object(properties | {"inputs": _TEXTS}, ["kind", *sorted(map(entry_of, required(owner) - {"name"}))])
+    return {"description": (inspect.getdoc(owner) or "").split("\n")[0], **schema}
 
 
 def _settings() -> Plain:
@@ -104,8 +104,8 @@ def _settings() -> Plain:
 
 
 def _object(properties: Plain, needed: list[str] | None = None) -> Plain:
-    found: Plain = {"type": "object", "properties": properties, "additionalProperties": False}
-    return found | ({"required": needed} if needed else {})
+    schema: Plain = {"type": "object", "properties": properties, "additionalProperties": False}
+    return schema | ({"required": needed} if needed else {})
 
 
 def _named(of: Plain) -> Plain:

@@ -152,16 +152,16 @@ def _replayed(diagram: Diagram) -> Diagram:
     Raises:
         DescriptionError: A part was changed after it was included.
     """
-    found = Diagram(diagram.name)
+    replayed = Diagram(diagram.name)
     for name, part in diagram.parts.items():
-        found.include(name, part.diagram, part.models, **part.inputs)
+        replayed.include(name, part.diagram, part.models, **part.inputs)
         changed = [
             key
-            for key, block in found.blocks.items()
+            for key, block in replayed.blocks.items()
             if key.startswith(name + INSIDE) and not _alike(block, diagram.blocks.get(key))
         ]
-        changed += [key for key, setup in found.models.items() if diagram.models.get(key) != setup]
-        changed += [".".join(key) for key, source in found.wires.items() if diagram.wires.get(key) != source]
+        changed += [key for key, setup in replayed.models.items() if diagram.models.get(key) != setup]
+        changed += [".".join(key) for key, source in replayed.wires.items() if diagram.wires.get(key) != source]
         if changed:
             raise DescriptionError(
                 Problem(
@@ -171,7 +171,7 @@ def _replayed(diagram: Diagram) -> Diagram:
                     "change the part before it is included",
                 )
             )
-    return found
+    return replayed
 
 
 def _unchanged(diagram: Diagram, path: Path) -> bool:

@@ -246,7 +246,7 @@ class Fuser:
 
     def _moved(self, at: Point, part: Part) -> list[Edge]:
         """The configuration that a step along the manifold leads to."""
-        layout, found = self._layout, [ZERO] * part.nq
+        layout, rates = self._layout, [ZERO] * part.nq
         for name in part.blocks:
             if name in layout.q:
                 q, v = layout.q[name], layout.v[name]
@@ -254,21 +254,21 @@ class Fuser:
                 values = self._wired.models.moved(
                     at.g, model, at.input("q", q, part.q.start), at.input("step", v, part.v.start)
                 )
-                found[q.start - part.q.start : q.start - part.q.start + q.size] = values.flat
+                rates[q.start - part.q.start : q.start - part.q.start + q.size] = values.flat
         for segment in layout.segments:
             for i in range(segment.size if segment.kind == "linear" else 0):
                 q_at, v_at = segment.q + i - part.q.start, segment.v + i - part.v.start
-                if 0 <= q_at < len(found) and found[q_at] == ZERO:
-                    found[q_at] = at.g.add(at.g.input("q", q_at), at.g.input("step", v_at))
-        return found
+                if 0 <= q_at < len(rates) and rates[q_at] == ZERO:
+                    rates[q_at] = at.g.add(at.g.input("q", q_at), at.g.input("step", v_at))
+        return rates
 
     # Samples.
 
     def opaque(self, due: frozenset[str]) -> list[str]:
         """Blocks of Python's that are due, in the order in which they are called."""
-        found = dict.fromkeys(name for name, _ in self._order if name in due)
+        names = dict.fromkeys(name for name, _ in self._order if name in due)
         rest = dict.fromkeys(name for name in self._pieces if name in due)
-        return [name for name in (found | rest) if self._pieces[name].is_opaque]
+        return [name for name in (names | rest) if self._pieces[name].is_opaque]
 
     def samples(self, sets: Sequence[frozenset[str]], listened: Sequence[Source] = ()) -> Program:
         """What happens at instants: functions "due_i" for each set and "crossed_i" for each crossing.

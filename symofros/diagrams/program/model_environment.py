@@ -183,11 +183,11 @@ class Models:
         stated = program.functions[0]
         replacement = self._bound(g, model, program, stated.inputs, groups)
         edges = copy_into(g, program.graph, stated.edges()[: sum(len(o.edges) for o in stated.outputs)], replacement)
-        found, at = {}, 0
+        outputs, at = {}, 0
         for output in stated.outputs:
-            found[output.name] = Tensor.of(g, edges[at : at + len(output.edges)], output.shape)
+            outputs[output.name] = Tensor.of(g, edges[at : at + len(output.edges)], output.shape)
             at += len(output.edges)
-        return found
+        return outputs
 
     def solved(self, M: Tensor, r: Tensor) -> Tensor:
         """The x of M x = r for a mass matrix (nv, nv), whose zeros between branches are kept."""
@@ -196,12 +196,12 @@ class Models:
 
     def has_friction(self, model: str) -> list[bool]:
         """Which speeds (nv) have friction."""
-        tree, found = self.tree(model), [False] * len(self.record(model).v_names)
+        tree, rubs = self.tree(model), [False] * len(self.record(model).v_names)
         for link in tree.links:
             for element in link.joint.elements:
                 if isinstance(element, Friction):
-                    found[link.v[0] + element.coordinate] = True
-        return found
+                    rubs[link.v[0] + element.coordinate] = True
+        return rubs
 
     def moved(self, g: Graph, model: str, q: Tensor, step: Tensor) -> Tensor:
         """The configuration that a step (nv) along the manifold leads to."""

@@ -129,10 +129,10 @@ class Blocks:
         columns = signal.values.reshape(len(signal.t), -1).T
         t = float(self.t[0])
         if signal.kind == "linear":
-            found = [np.interp(t, signal.t, column) for column in columns]
+            samples = [np.interp(t, signal.t, column) for column in columns]
         else:
-            found = [column[max(0, int(np.searchsorted(signal.t, t, side="right")) - 1)] for column in columns]
-        self.out[source].reshape(-1)[:] = found
+            samples = [column[max(0, int(np.searchsorted(signal.t, t, side="right")) - 1)] for column in columns]
+        self.out[source].reshape(-1)[:] = samples
 
     def _call_python(self, called: Called, name: str) -> None:
         sources = self.resolved.wired.sources
@@ -151,9 +151,9 @@ class Blocks:
         new = []
         for name in due:
             if (name, "updates") in self.calls:
-                call, found = self.calls[name, "updates"]
+                call, outputs = self.calls[name, "updates"]
                 call()
-                new += [((name, key.removeprefix("n_")), value.copy()) for key, value in found.items()]
+                new += [((name, key.removeprefix("n_")), value.copy()) for key, value in outputs.items()]
         for key, value in new:
             self.memory[key][...] = value
 
@@ -161,18 +161,18 @@ class Blocks:
         """The accelerations a and multipliers of all mechanisms, and rates of states, at the present point."""
         layout = self.resolved.layout
         for name in layout.v:
-            call, found = self.calls[name, "motion"]
+            call, outputs = self.calls[name, "motion"]
             call()
-            if "t_a" in found:
-                self.a[layout.v[name].slice] = found["t_a"]
+            if "t_a" in outputs:
+                self.a[layout.v[name].slice] = outputs["t_a"]
             else:
-                a, lam, _ = constrained(*(found[f"t_{key}"][np.newaxis] for key in ("M", "r", "G", "c")))
+                a, lam, _ = constrained(*(outputs[f"t_{key}"][np.newaxis] for key in ("M", "r", "G", "c")))
                 self.a[layout.v[name].slice], self.lam[layout.lam[name].slice] = a[0], lam[0]
         for (name, key), place in layout.states.items():
             if place.size:
-                call, found = self.calls[name, "rates"]
+                call, outputs = self.calls[name, "rates"]
                 call()
-                self.a[place.slice] = found[f"d_{key}"].reshape(-1)
+                self.a[place.slice] = outputs[f"d_{key}"].reshape(-1)
 
 
 @dataclass
@@ -242,13 +242,13 @@ def _project(blocks: Blocks, part: Part) -> None:
         for name in part.blocks:
             if name not in layout.v or pieces[name].terms.M is None:
                 continue
-            call, found = blocks.calls[name, "motion"]
+            call, outputs = blocks.calls[name, "motion"]
             call()
             i, n = layout.v[name].start - part.v.start, layout.v[name].size
             c = layout.lam[name].start - part.conditions.start
-            M[i : i + n, i : i + n] = found["t_M"]
+            M[i : i + n, i : i + n] = outputs["t_M"]
             rows = slice(c, c + pieces[name].nc)
-            G[rows, i : i + n], phi[rows], rate[rows] = found["t_G"], found["t_phi"], found["t_rate"]
+            G[rows, i : i + n], phi[rows], rate[rows] = outputs["t_G"], outputs["t_phi"], outputs["t_rate"]
             edges = pieces[name].terms.phi
             assert edges is not None
             binds[rows] = [float(edge != 0) for edge in edges.flat]

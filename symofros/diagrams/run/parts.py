@@ -53,7 +53,7 @@ def place_parts(compiled: CompiledDiagram, settings_of: Callable[[Model], Settin
         Event(f"{block}.{which}", pieces[block].crossings[which].direction, True, f"{block}.{which}")
         for block, which in watched(pieces)
     ]
-    found = []
+    placed = []
     for part, model in zip(layout.parts, compiled.parts, strict=True):
         settings = settings_of(model)
         if not settings.method.family.batched:
@@ -68,10 +68,10 @@ def place_parts(compiled: CompiledDiagram, settings_of: Callable[[Model], Settin
         stepper = Stepper(model, settings.method, InputPlan(u0.copy(), list(layout.signals)), events, par)
         settings.apply(stepper)
         stepper.run.record_every = 0  # Instants are recorded by the diagram's own loop.
-        found.append(Placed(stepper, *_first(layout.q0, layout.v0, part)))
+        placed.append(Placed(stepper, *_first(layout.q0, layout.v0, part)))
         if model.nc and settings.stabilisation != "baumgarte":
-            found[-1] = Placed(stepper, *_close(model, name, settings.t0, found[-1], u0, par))
-    return found
+            placed[-1] = Placed(stepper, *_close(model, name, settings.t0, placed[-1], u0, par))
+    return placed
 
 
 def start(parts: list[Placed], name: str) -> None:

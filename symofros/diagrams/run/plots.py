@@ -21,13 +21,13 @@ _MOST = 12  # Curves in one picture; more can't be told apart.
 
 def plots_of(wired: Wired) -> list[Plot]:
     """What a diagram asks to be shown: what it lists, then its scopes."""
-    found = list(wired.plots)
+    plots = list(wired.plots)
     for name, block in wired.blocks.items():
         outputs = [port.name for port in wired.ports[name].outputs]
         for plot in block.shown():
             own = [(name, port) if port in outputs else wired.sources.get((name, port)) for port in plot.signals]
-            found.append(Plot(plot.title or name, tuple(".".join(source) for source in own if source)))
-    return [plot for plot in found if plot.signals]
+            plots.append(Plot(plot.title or name, tuple(".".join(source) for source in own if source)))
+    return [plot for plot in plots if plot.signals]
 
 
 def draw(run: Recording, plots: Sequence[Plot], figure: Any = None) -> Any:

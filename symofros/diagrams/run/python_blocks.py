@@ -48,12 +48,12 @@ class Called:
             else np.broadcast_to(np.asarray(port.default, dtype=np.float64), port.shape or ())
             for port in ports.inputs
         }
-        found = self._running[name].call(t, inputs)
-        return {port.name: _output(name, found, port.name, port.shape or ()) for port in ports.outputs}
+        outputs = self._running[name].call(t, inputs)
+        return {port.name: _output(name, outputs, port.name, port.shape or ()) for port in ports.outputs}
 
     def kept(self) -> dict[str, dict[str, Array]]:
         """What each block kept of the run, those left out that keep nothing."""
-        return {name: dict(found) for name, one in self._running.items() if (found := one.kept())}
+        return {name: dict(kept) for name, one in self._running.items() if (kept := one.kept())}
 
 
 def _output(name: str, found: Mapping[str, object], port: str, shape: tuple[int, ...]) -> Array:

@@ -48,8 +48,8 @@ def save_run(run: Recording, path: Path, signals: Iterable[str]) -> list[Path]:
 def _save_npz(run: Recording, path: Path, wanted: list[str]) -> None:
     names = list(dict.fromkeys(split(name)[0] for name in wanted))
     arrays = {"t": run.t} | {name: run[name] for name in names}
-    for block, found in run.kept.items():
-        arrays |= {f"{block}.{name}": values for name, values in found.items()}
+    for block, kept in run.kept.items():
+        arrays |= {f"{block}.{name}": values for name, values in kept.items()}
     units = ["s", *map(run.unit, names)]
     write_npz(path, {**arrays, "names": ["t", *names], "units": units, "outcome": str(run.outcome)})
 
@@ -60,15 +60,15 @@ def columns(run: Recording, wanted: Iterable[str]) -> dict[str, Array]:
     Raises:
         DescriptionError: A signal has no such entry.
     """
-    found = {"t": run.t}
+    columns_by_name = {"t": run.t}
     for text in wanted:
         name, index = split(text)
         check_entry(text, index, run.shape(name))
         flat = run[name].reshape(len(run.t), -1)
         for k, (label, at) in enumerate(entries(name, run.shape(name))):
             if index is None or index == at:
-                found[label] = flat[:, k]
-    return found
+                columns_by_name[label] = flat[:, k]
+    return columns_by_name
 
 
 def spread(arrays: Mapping[str, Array]) -> dict[str, Array]:

@@ -31,7 +31,7 @@ def checks(
     rng = np.random.default_rng(_SEED)
     points = [_point(record, rng) for _ in range(POINTS)]
     par = np.array(record.par_default, dtype=np.float64).reshape(1, -1)
-    found = []
+    rows = []
     for key in order:
         kernel = kernels[key]
         pre = kernel.prepare(par)
@@ -42,8 +42,8 @@ def checks(
                 given["q"] = manifold.integrate(record.segments, closed, move)
             inputs = [np.ascontiguousarray(given[name].reshape(1, -1)) for name, _ in kernel.signature.inputs]
             outputs = kernel.run(1, pre, inputs)
-            found.append(Check(_flat(inputs), _flat(outputs)))
-    return tuple(found)
+            rows.append(Check(_flat(inputs), _flat(outputs)))
+    return tuple(rows)
 
 
 def _flat(arrays: Sequence[Array]) -> tuple[float, ...]:

@@ -52,9 +52,9 @@ def _write(material: Material, folder: Path, version: int) -> Exported:
         sources[file] = native_text(f"exports/{file}")
     library = shared_library(sources, f"{name}_fmi{version}.c", [fmi_headers()])
     place, suffix = _platform(version)
-    found = variables(material)
+    fmi_variables = variables(material)
     entries: dict[str, str | bytes] = {
-        "modelDescription.xml": description_xml(material, found, version, token, _created()),
+        "modelDescription.xml": description_xml(material, fmi_variables, version, token, _created()),
         f"binaries/{place}/{name}{suffix}": library,
         **{f"sources/{file}": text for file, text in sources.items()},
     }

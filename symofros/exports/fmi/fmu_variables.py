@@ -50,11 +50,11 @@ def quoted(name: str) -> str:
 
 def variables(material: Material) -> list[Variable]:
     """All of them."""
-    found: list[Variable] = []
+    listed: list[Variable] = []
     for variable in _variables(material):
-        assert variable.reference == len(found)
-        found.append(variable)
-    return _distinct(found)
+        assert variable.reference == len(listed)
+        listed.append(variable)
+    return _distinct(listed)
 
 
 def _variables(material: Material) -> Iterator[Variable]:
@@ -188,14 +188,14 @@ def _effort(unit: str) -> str:
 
 def _rate_dependencies(material: Material, at_q: int, at_v: int) -> dict[int, tuple[int, ...]]:
     """Coordinate -> what q' = N v reads."""
-    found: dict[int, tuple[int, ...]] = {}
+    dependencies: dict[int, tuple[int, ...]] = {}
     for s in material.record.segments:
         if s.kind == "linear":
-            found |= {s.q + i: (at_v + s.v + i,) for i in range(s.size)}
+            dependencies |= {s.q + i: (at_v + s.v + i,) for i in range(s.size)}
             continue
         quaternion = range(at_q + s.q + s.translations, at_q + s.q + s.size)
-        found |= {s.q + i: (*quaternion, *range(at_v + s.v, at_v + s.v + s.speeds)) for i in range(s.size)}
-    return found
+        dependencies |= {s.q + i: (*quaternion, *range(at_v + s.v, at_v + s.v + s.speeds)) for i in range(s.size)}
+    return dependencies
 
 
 def _moved_by(material: Material, frame: str, row: int, at_q: int) -> tuple[int, ...]:
@@ -204,10 +204,10 @@ def _moved_by(material: Material, frame: str, row: int, at_q: int) -> tuple[int,
     first = material.functions.index(("frame_jacobian", frame)) * material.points
     rows = [check.outputs[row * nv : (row + 1) * nv] for check in material.checks[first : first + material.points]]
     moving = {i for values in rows for i, value in enumerate(values) if value != 0.0}
-    found: list[int] = []
+    moved: list[int] = []
     for s in material.record.segments:
         if s.kind == "linear":
-            found += [at_q + s.q + i for i in range(s.size) if s.v + i in moving]
+            moved += [at_q + s.q + i for i in range(s.size) if s.v + i in moving]
         elif moving & set(range(s.v, s.v + s.speeds)):
-            found += range(at_q + s.q, at_q + s.q + s.size)
-    return tuple(found)
+            moved += range(at_q + s.q, at_q + s.q + s.size)
+    return tuple(moved)

@@ -58,22 +58,22 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
 
 
 def _parents_first(links: list[RigidLink], root: str) -> list[RigidLink]:
-    placed, waiting, found = {root}, list(links), []
+    placed, waiting, ordered = {root}, list(links), []
     while waiting:
         ready = [link for link in waiting if link.parent in placed]
         placed |= {link.name for link in ready}
-        found += ready
+        ordered += ready
         waiting = [link for link in waiting if link.name not in placed]
-    return found
+    return ordered
 
 
 def _lost(system: System) -> list[str]:
-    found = []
+    losses = []
     joints = [body.joint for body in system.bodies if body.joint is not None]
     elements = [j.name for j in joints if any(not _kept(element) for element in j.elements)]
     if elements:
-        found.append("friction, stops, and springs and dampers that are not linear, dropped: " + ", ".join(elements))
-    return found
+        losses.append("friction, stops, and springs and dampers that are not linear, dropped: " + ", ".join(elements))
+    return losses
 
 
 def _kept(element: object) -> bool:
@@ -142,22 +142,22 @@ def _impossible(inertia: Array) -> bool:
 
 
 def _dynamics(link: RigidLink, joint: Joint, index: int, numbers: Numbers) -> dict[str, str]:
-    found: dict[str, str] = {}
+    attributes: dict[str, str] = {}
     limits = joint.limits if len(link.axes) == 1 else None
     if limits is not None and limits.lower is not None and limits.upper is not None:
         # For readers; here a limit is not a force.
-        found |= {"range": numbers_text([limits.lower, limits.upper]), "limited": "false"}
+        attributes |= {"range": numbers_text([limits.lower, limits.upper]), "limited": "false"}
     armature = numbers.value(joint.armature)
     if armature != 0.0:
-        found["armature"] = numbers_text(armature)
+        attributes["armature"] = numbers_text(armature)
     if link.damping[index] != 0.0:
-        found["damping"] = numbers_text(link.damping[index])
+        attributes["damping"] = numbers_text(link.damping[index])
     springs = [e for e in joint.elements if isinstance(e, Spring) and e.cubic == 0.0 and e.coordinate == index]
     stiffness = sum(numbers.value(spring.stiffness) for spring in springs)
     if stiffness:
         pull = sum(numbers.value(spring.stiffness) * numbers.value(spring.rest) for spring in springs)
-        found |= {"stiffness": numbers_text(stiffness), "springref": numbers_text(pull / stiffness)}
-    return found
+        attributes |= {"stiffness": numbers_text(stiffness), "springref": numbers_text(pull / stiffness)}
+    return attributes
 
 
 def _equalities(root: Tree.Element, system: System, links: list[RigidLink], notes: list[str]) -> None:

@@ -94,14 +94,14 @@ def rigid_links(system: System, form: Literal["URDF", "MJCF"]) -> tuple[list[Rig
         )
     names = {body.name for body in system.bodies}
     base = {body.name for body in system.bodies if body.joint is None} | {WORLD}
-    found = []
+    rigid = []
     if not any(body.joint is None for body in system.bodies):
-        found.append(_link(RigidBody(WORLD), None, system, numbers, names))
-    root = found[0].name if found else next(body.name for body in system.bodies if body.joint is None)
+        rigid.append(_link(RigidBody(WORLD), None, system, numbers, names))
+    root = rigid[0].name if rigid else next(body.name for body in system.bodies if body.joint is None)
     for body in system.bodies:
         parent = None if body.joint is None else root if body.joint.parent in base else body.joint.parent
-        found.append(_link(body, parent, system, numbers, names))
-    return found, list(_lost(system))
+        rigid.append(_link(body, parent, system, numbers, names))
+    return rigid, list(_lost(system))
 
 
 def _representable(joint: Joint, form: Literal["URDF", "MJCF"]) -> bool:

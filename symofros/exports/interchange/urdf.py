@@ -39,19 +39,19 @@ def write_urdf(system: System, name: str | None, folder: Path, generator: str) -
 
 
 def _lost(system: System) -> list[str]:
-    found = []
+    losses = []
     joints = [body.joint for body in system.bodies if body.joint is not None]
     if system.constraints:
-        found.append("constraints dropped, loops are open: " + ", ".join(item.name for item in system.constraints))
+        losses.append("constraints dropped, loops are open: " + ", ".join(item.name for item in system.constraints))
     if system.gravity != (0.0, 0.0, -9.81):
-        found.append(f"gravity is not part of URDF: ({', '.join(map(str, system.gravity))})")
+        losses.append(f"gravity is not part of URDF: ({', '.join(map(str, system.gravity))})")
     elements = [joint.name for joint in joints if any(not isinstance(e, Damper) for e in joint.elements)]
     if elements:
-        found.append("springs, stops and friction of joints dropped: " + ", ".join(elements))
+        losses.append("springs, stops and friction of joints dropped: " + ", ".join(elements))
     armed = [joint.name for joint in joints if joint.armature != 0.0]
     if armed:
-        found.append("armature dropped: " + ", ".join(armed))
-    return found
+        losses.append("armature dropped: " + ", ".join(armed))
+    return losses
 
 
 def _origin(into: Tree.Element, position: Array, rotation: Array) -> None:

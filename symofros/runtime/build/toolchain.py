@@ -136,5 +136,5 @@ def cpu_identity() -> str:
     except OSError:
         lines = []
     wanted = ("model name", "flags", "Features", "CPU part")
-    found = {line.split(":")[0].strip(): line for line in lines if line.startswith(wanted)}
-    return "|".join([platform.machine(), platform.system(), *sorted(found.values())])
+    features = {line.split(":")[0].strip(): line for line in lines if line.startswith(wanted)}
+    return "|".join([platform.machine(), platform.system(), *sorted(features.values())])

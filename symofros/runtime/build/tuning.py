@@ -51,10 +51,10 @@ def builds(options: Options, toolchain: Toolchain, in_lanes: bool = False) -> li
 
     A compiler, flags, or `packs=False` that the options state are kept; code for several states at once has no packs.
     """
-    found = [toolchain]
+    toolchains = [toolchain]
     if options.compiler is None:
-        found += [other for name in _compilers() if (other := find_toolchain(name))]
-    by_version = {_version(tool): tool for tool in reversed(found)}
+        toolchains += [other for name in _compilers() if (other := find_toolchain(name))]
+    by_version = {_version(tool): tool for tool in reversed(toolchains)}
     packs = (True, False) if options.packs and not in_lanes else (options.packs,)
     return [
         Build(tool, flags, packed)
@@ -71,7 +71,7 @@ def _version(toolchain: Toolchain) -> str:
 
 def _compilers() -> list[str]:
     """Names on the path: gcc and clang, and the newest of those that have their version in the name (clang-19)."""
-    found = []
+    compilers = []
     for kind in ("gcc", "clang"):
         versions = {
             int(path.name.rpartition("-")[2])
@@ -80,8 +80,8 @@ def _compilers() -> list[str]:
             if path.name.rpartition("-")[2].isdecimal() and path.name.count("-") == 1
         }
         newest = [f"{kind}-{max(versions)}"] if versions else []
-        found += [name for name in (kind, *newest) if shutil.which(name)]
-    return found
+        compilers += [name for name in (kind, *newest) if shutil.which(name)]
+    return compilers
 
 
 def _flags(toolchain: Toolchain) -> list[tuple[str, ...] | None]:

@@ -137,8 +137,8 @@ def _running(kernel: Kernel, n: int, pre: Array, inputs: list[Array], outputs: l
     """For functions that NumPy evaluates, in memory of its own."""
 
     def evaluate() -> None:
-        for into, found in zip(outputs, kernel.run(n, pre, [*inputs]), strict=True):
-            into[...] = found
+        for into, values in zip(outputs, kernel.run(n, pre, [*inputs]), strict=True):
+            into[...] = values
 
     return evaluate
 

@@ -30,8 +30,8 @@ def columns(n: int, size: int, dtype: type[np.float32] | type[np.float64]) -> Nu
 
 
 def _address(array: Numbers) -> int:
-    found: int = array.__array_interface__["data"][0]
-    return found
+    address: int = array.__array_interface__["data"][0]
+    return address
 
 
 def states(array: Numbers, batch: tuple[int, ...]) -> Numbers:
@@ -71,8 +71,8 @@ def flat(array: Numbers, batch: tuple[int, ...]) -> Numbers:
 
 def by_columns(arrays: Iterable[Numbers]) -> bool:
     """Whether the batch is the fast axis of all arrays (n or 1, size) in which it could be told."""
-    found = [x.strides[0] == x.itemsize for x in arrays if len(x) > 1 and x.shape[1] > 1]
-    return bool(found) and all(found)
+    contiguous = [x.strides[0] == x.itemsize for x in arrays if len(x) > 1 and x.shape[1] > 1]
+    return bool(contiguous) and all(contiguous)
 
 
 class Strided(NamedTuple):

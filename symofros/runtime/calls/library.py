@@ -71,12 +71,12 @@ class CompiledUnit:
                     f"delete {path.name} from the cache folder",
                 )
             ) from error
-        found = self.ffi.string(self.model.hash).decode()
-        if self.model.abi != model_abi() or found != expected_hash:
+        found_hash = self.ffi.string(self.model.hash).decode()
+        if self.model.abi != model_abi() or found_hash != expected_hash:
             raise CompileError(
                 Problem(
                     "the compiled model is another one",
-                    f"abi {self.model.abi}, hash {found}",
+                    f"abi {self.model.abi}, hash {found_hash}",
                     f"abi {model_abi()}, hash {expected_hash}",
                     f"delete {path.name} from the cache folder",
                 )

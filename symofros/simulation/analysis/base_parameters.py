@@ -54,7 +54,7 @@ def base_parameters(model: Model, samples: int | None = None, seed: int = 0) -> 
 
 def _independent(Y: Array) -> list[int]:
     """Columns in the order of a Gram-Schmidt process that takes each column that brings something new."""
-    found: list[int] = []
+    independent: list[int] = []
     basis: list[Array] = []
     for i in range(Y.shape[1]):
         left = Y[:, i].copy()
@@ -63,6 +63,6 @@ def _independent(Y: Array) -> list[int]:
                 left -= (b @ left) * b
         size = float(np.linalg.norm(left))
         if size > _RANK * float(np.linalg.norm(Y[:, i])):
-            found.append(i)
+            independent.append(i)
             basis.append(left / size)
-    return found
+    return independent

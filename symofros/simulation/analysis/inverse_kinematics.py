@@ -141,7 +141,7 @@ def joint_motion(
     p, V, A = (np.asarray(x, dtype=np.float64) for x in (positions, velocities, accelerations))
     R = None if rotations is None else np.asarray(rotations, dtype=np.float64)
     rows = 3 if R is None else 6
-    found: list[tuple[Array, Array, Array]] = []
+    motion: list[tuple[Array, Array, Array]] = []
     for i in range(len(p)):
         at = inverse_kinematics(
             model, {frame: Target(p[i], None if R is None else R[i])}, q, par=par, tolerance=tolerance
@@ -160,8 +160,8 @@ def joint_motion(
         inverse = np.linalg.pinv(J, rcond=RANK)
         v = inverse @ V[i]
         rate = model.frame_jacobian_rate(frame, q, v, par=par)[:rows]
-        found.append((q, v, inverse @ (A[i] - rate @ v)))
-    qs, vs, accs = zip(*found, strict=True)
+        motion.append((q, v, inverse @ (A[i] - rate @ v)))
+    qs, vs, accs = zip(*motion, strict=True)
     return np.array(qs), np.array(vs), np.array(accs)
 
 
@@ -227,13 +227,13 @@ def _towards(model: Model, q: Array, rest: Array, J: Array, movable: Indices, er
 
 def _limited(model: Model) -> list[tuple[int, int, float, float]]:
     """(index in q, index in v, lower, upper) of coordinates whose rates are the speeds."""
-    found = []
+    limits = []
     for segment in model.record.segments:
         if segment.kind == "linear":
             for k in range(segment.size):
                 i = segment.q + k
-                found.append((i, segment.v + k, model.record.q_lower[i], model.record.q_upper[i]))
-    return found
+                limits.append((i, segment.v + k, model.record.q_lower[i], model.record.q_upper[i]))
+    return limits
 
 
 def _movable(model: Model, q: Array, wish: Array, free: Indices) -> Indices:

@@ -50,10 +50,10 @@ def modes(
         par: Run-time parameters.
         t: Time.
     """
-    found = state_space(model, q, v, u, par=par, t=t)
-    s, X = np.linalg.eig(found.A)
+    linear_model = state_space(model, q, v, u, par=par, t=t)
+    s, X = np.linalg.eig(linear_model.A)
     kept = s.imag >= 0.0
-    s, X = s[kept], (found.basis @ X[:, kept])[: model.nv]
+    s, X = s[kept], (linear_model.basis @ X[:, kept])[: model.nv]
     order = np.argsort(np.abs(s), kind="stable")
     s, X = s[order], X[:, order]
     size = np.abs(s)

@@ -157,10 +157,12 @@ class Trajectory:
     def columns(self) -> dict[str, Array]:
         """Time, coordinates, speeds and inputs by name (n); a speed that shares its coordinate's name bears a d."""
         names = self.model.names
-        found = {"t": self.t} | {name: self.q[:, i] for i, name in enumerate(names.q)}
+        columns_by_name = {"t": self.t} | {name: self.q[:, i] for i, name in enumerate(names.q)}
         for i, name in enumerate(names.v):
-            found[f"d{name}" if name in names.q else name] = self.v[:, i]
-        return found | {(name if name not in found else f"u.{name}"): self.u[:, i] for i, name in enumerate(names.u)}
+            columns_by_name[f"d{name}" if name in names.q else name] = self.v[:, i]
+        return columns_by_name | {
+            (name if name not in columns_by_name else f"u.{name}"): self.u[:, i] for i, name in enumerate(names.u)
+        }
 
     def plot(self, *names: str) -> Any:
         """A Matplotlib figure of coordinates (those named), speeds, inputs and energy; `.savefig(path)` writes it.
