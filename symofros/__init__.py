@@ -12,6 +12,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from symofros.base.options import Options as Options
 from symofros.description.beam import Beam as Beam
 from symofros.description.beam import BeamLoad as BeamLoad
 from symofros.description.beam import Samples as Samples
@@ -54,7 +55,6 @@ from symofros.errors import SymofrosError as SymofrosError
 from symofros.errors import UnknownNameError as UnknownNameError
 from symofros.expr.expression import Expression as Expression
 from symofros.expr.expression import evaluate as evaluate
-from symofros.options import Options as Options
 
 if TYPE_CHECKING:
     from symofros.compiler import compile_library as compile_library

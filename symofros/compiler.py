@@ -22,6 +22,7 @@ from collections.abc import Iterable
 from functools import cache, cached_property
 from pathlib import Path
 
+from symofros.base.options import Options
 from symofros.description.beam import Beam
 from symofros.description.system import System
 from symofros.errors import CompileError, CompilerMissingWarning, InconsistentModelWarning
@@ -34,7 +35,6 @@ from symofros.generator.units import UnitCompiler
 from symofros.mechanics.dynamics.functions import Request
 from symofros.mechanics.topology.graph import check
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
-from symofros.options import Options
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.calls.kernel import Lanes, Precision
 from symofros.runtime.model import Model

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
-from symofros.atomic import write_atomically
+from symofros.base.atomic import write_atomically
 from symofros.description.mjcf.reader import read_mjcf
 from symofros.description.reading import Reading, in_order
 from symofros.description.remarks import note

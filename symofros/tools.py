@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from symofros.atomic import write_atomically as write_atomically
+from symofros.base.atomic import write_atomically as write_atomically
 from symofros.diagrams.run.jitter import Jitter as Jitter
 from symofros.diagrams.run.jitter import jitter_of as jitter_of
 from symofros.expr.edges import Edge as Edge

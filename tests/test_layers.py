@@ -29,59 +29,56 @@ def table(text: str) -> dict[str, set[str]]:
 # "errors" stands for errors.py, and so on.
 ALLOWED = table("""
     errors:
-    atomic:
-    options:
-    functions:
+    base: errors
     native:
-    rotations:
     expr: errors
-    description: errors atomic rotations expr
+    description: base errors expr
     mechanics.beams: errors expr description
-    mechanics.topology: errors rotations expr description mechanics.beams
+    mechanics.topology: base errors expr description mechanics.beams
     mechanics.kinematics: errors expr description mechanics.beams mechanics.topology
-    mechanics.dynamics: errors functions expr description mechanics.beams mechanics.topology
+    mechanics.dynamics: base errors expr description mechanics.beams mechanics.topology
         mechanics.kinematics
-    generator.passes: options expr
+    generator.passes: base expr
     # Declarations and constants are read from the headers of native.
-    runtime: errors atomic options functions native rotations
-    generator.codegen: options native expr generator.passes runtime
+    runtime: base errors native
+    generator.codegen: base native expr generator.passes runtime
     # The stages of the pipeline between mechanics and the model, which the compiler puts together.
-    generator.record: options expr description mechanics.beams mechanics.topology mechanics.kinematics
+    generator.record: base expr description mechanics.beams mechanics.topology mechanics.kinematics
         mechanics.dynamics runtime
-    generator.programs: errors options functions expr mechanics.topology mechanics.dynamics generator.passes
+    generator.programs: base errors expr mechanics.topology mechanics.dynamics generator.passes
         generator.codegen
-    generator.units: errors options native expr description mechanics.dynamics generator.passes runtime
+    generator.units: base errors native expr description mechanics.dynamics generator.passes runtime
         generator.codegen generator.record generator.programs
-    compiler: errors options expr description mechanics.topology mechanics.dynamics runtime generator.codegen
+    compiler: base errors expr description mechanics.topology mechanics.dynamics runtime generator.codegen
         generator.record generator.programs generator.units
-    loading: errors atomic description mechanics.topology
-    simulation: errors atomic native runtime generator.codegen
+    loading: base errors description mechanics.topology
+    simulation: base errors native runtime generator.codegen
     # A diagram is one more program over the graph: its blocks are written beside the models' equations.
-    diagrams: errors options functions native expr description mechanics.topology mechanics.kinematics
+    diagrams: base errors native expr description mechanics.topology mechanics.kinematics
         mechanics.dynamics generator.passes runtime generator.codegen generator.record generator.programs
         compiler simulation
     # Formulas of blocks go through the parser of model files; one of them shows its model.
     blocks: errors expr description runtime simulation diagrams studio.viewer
-    diagrams.files: errors atomic description loading simulation diagrams blocks
+    diagrams.files: base errors description loading simulation diagrams blocks
     # Packages carry the stepping loop and its methods; the front door, exporting.py, compiles the model.
     # URDF and MJCF hold numbers, which topology's Numbers makes of formulas.
     # A diagram's package is made of its parts' C, written as the diagram is resolved.
-    exports: errors atomic options functions native rotations expr description mechanics.topology
+    exports: base errors native expr description mechanics.topology
         generator.passes runtime generator.codegen compiler loading simulation diagrams
     # Advice compiles and simulates reduced systems, and counts what they take.
-    studio.advice: errors atomic options expr description generator.passes runtime compiler simulation
+    studio.advice: base errors expr description generator.passes runtime compiler simulation
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.
-    studio.viewer: errors atomic options description mechanics.beams mechanics.topology runtime compiler loading
+    studio.viewer: base errors description mechanics.beams mechanics.topology runtime compiler loading
         simulation diagrams __init__
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
-    studio.editor: errors atomic functions expr description mechanics.beams mechanics.topology generator.passes
+    studio.editor: base errors expr description mechanics.beams mechanics.topology generator.passes
         compiler simulation exports studio.viewer __init__
     # Passes left out in turn, for studies: their context managers reach into every stage.
-    generator.ablation: options expr mechanics.kinematics mechanics.dynamics generator.passes generator.codegen
+    generator.ablation: base expr mechanics.kinematics mechanics.dynamics generator.passes generator.codegen
         runtime
     # What tools that look inside may use; nothing in the package imports it.
-    tools: atomic expr generator.passes generator.ablation runtime simulation diagrams
-    __init__: errors options expr description runtime compiler loading simulation diagrams diagrams.files
+    tools: base expr generator.passes generator.ablation runtime simulation diagrams
+    __init__: base errors expr description runtime compiler loading simulation diagrams diagrams.files
         exports studio.advice studio.viewer
 """)
 

@@ -12,11 +12,11 @@ from rich.table import Table
 from rich.tree import Tree
 
 import symofros as sf
-from symofros.atomic import write_atomically
+from symofros.base.atomic import write_atomically
+from symofros.base.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.commands.shared import AsJson, FilePath, Floating, ModelPath, Network, load, out, refuse
 from symofros.compiler import Compilation
 from symofros.diagrams.files import command as diagrams
-from symofros.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.generator.codegen.names import identifier
 from symofros.generator.passes.count import Operations, count_program
 from symofros.mechanics.topology.tree import BASE, SpanningTree

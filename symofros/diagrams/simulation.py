@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved, compile_diagram, rates_of, resolve
 from symofros.diagrams.rates import Schedule, schedule
@@ -18,7 +19,6 @@ from symofros.diagrams.run.python_blocks import begun
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.errors import Problem, SymofrosError
-from symofros.options import Options
 from symofros.runtime.build.toolchain import find_toolchain
 from symofros.simulation.progress import bar
 from symofros.simulation.stepping.methods import METHODS

@@ -9,6 +9,8 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from symofros.base.functions import FRAME_FUNCTIONS, exported
+from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system, plan
 from symofros.description.system import System
 from symofros.diagrams.diagram import Diagram
@@ -25,11 +27,9 @@ from symofros.exports.folder import check_folder
 from symofros.exports.interchange.mjcf import write_mjcf
 from symofros.exports.interchange.urdf import write_urdf
 from symofros.exports.material import Material, Stepping
-from symofros.functions import FRAME_FUNCTIONS, exported
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.names import identifier
 from symofros.loading import load
-from symofros.options import Options
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.assembly import assemble

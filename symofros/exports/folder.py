@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from symofros.atomic import write_atomically
+from symofros.base.atomic import write_atomically
 from symofros.errors import ExportError, Problem
 
 MANIFEST = "symofros-export.json"

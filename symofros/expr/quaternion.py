@@ -1,7 +1,7 @@
 """Unit quaternions whose entries are edges of a graph: rotations, their vectors, and their rates.
 
-The definition of the configuration manifold's rotations. Numbers take the same formulas from `symofros.rotations`, the
-stepping loop from native/stepping/manifold.c, which select series by branches that a graph does not have.
+The definition of the configuration manifold's rotations. Numbers take the same formulas from `symofros.base.rotations`,
+the stepping loop from native/stepping/manifold.c, which select series by branches that a graph does not have.
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import symofros.generator.passes as passes
+from symofros.base.options import Options
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.ops import ADD, DIV, MUL
@@ -23,7 +24,6 @@ from symofros.generator.passes.chain import chain_sums
 from symofros.mechanics.dynamics.bodies import inertia
 from symofros.mechanics.kinematics import rotations
 from symofros.mechanics.kinematics.rotations import MatrixRotation, RotationProduct
-from symofros.options import Options
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS
 
 Without = Callable[[], AbstractContextManager[object]]

@@ -6,15 +6,15 @@ import threading
 from collections.abc import Sequence
 from functools import cached_property
 
+from symofros.base.functions import FUNCTIONS
+from symofros.base.options import Options
 from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
 from symofros.expr.program import Program
-from symofros.functions import FUNCTIONS
 from symofros.generator.codegen.effort import cheapest
 from symofros.generator.passes import run_passes
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program, forward_methods
 from symofros.mechanics.topology.tree import SpanningTree
-from symofros.options import Options
 
 # What is generated at once where the options name no functions.
 _EAGER = (Request("dynamics"),)

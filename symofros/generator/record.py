@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 
+from symofros.base.options import Options
 from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
 from symofros.expr.expression import evaluate
@@ -12,7 +13,6 @@ from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
 from symofros.mechanics.topology.tree import SpanningTree, frame_of
-from symofros.options import Options
 from symofros.runtime.record import ClosureRecord, ModelRecord, Segment
 
 GENERATOR = "symofros 0.1.0"

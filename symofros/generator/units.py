@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from symofros.base.options import Options
 from symofros.description.values import as_value
 from symofros.errors import CompileError
 from symofros.expr.program import Program
@@ -22,7 +23,6 @@ from symofros.generator.record import GENERATOR
 from symofros.mechanics.dynamics.formulas import formula_program
 from symofros.mechanics.dynamics.functions import Request
 from symofros.native import native_text
-from symofros.options import Options
 from symofros.runtime.build.build import build_library, recall_library
 from symofros.runtime.build.toolchain import Toolchain
 from symofros.runtime.build.tuning import Build, builds, fastest

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike as ArrayLike
 
+from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
-from symofros.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.record import ModelRecord
@@ -223,7 +223,7 @@ class Functions:
     def evaluate(
         self, name: str, frame: str = "", *, par: ArrayLike | None = None, **inputs: ArrayLike | None
     ) -> list[Numbers]:
-        """Any function by its name in the table of functions (`symofros/functions.py`).
+        """Any function by its name in the table of functions (`symofros/base/functions.py`).
 
         Args:
             name: The function; most have a method of that name.

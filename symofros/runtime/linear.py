@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.rotations import skew
 from symofros.errors import Problem, UnknownNameError, did_you_mean
-from symofros.rotations import skew
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import Segment
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from symofros.rotations import (
+from symofros.base.rotations import (
     Array,
     conjugate,
     normalized,

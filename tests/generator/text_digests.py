@@ -11,8 +11,8 @@ import sys
 
 import reference_models
 import symofros as sf
+from symofros.base.options import Options
 from symofros.compiler import Compilation
-from symofros.options import Options
 from tests.mechanics.beams.cases import CASES
 
 FEW_FUNCTIONS = ("dynamics", "potential_energy")

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from symofros.base.rotations import Array, axis_rotation, normalized, quaternion_matrix
 from symofros.expr.derivative import directional
 from symofros.expr.edges import Edge
 from symofros.expr.evaluate import evaluate_edges
@@ -14,7 +15,6 @@ from symofros.expr.graph import Graph
 from symofros.expr.program import Program
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Vec3
-from symofros.rotations import Array, axis_rotation, normalized, quaternion_matrix
 from symofros.runtime.manifold import chart_rate, difference, integrate, retract
 from symofros.runtime.record import Segment
 

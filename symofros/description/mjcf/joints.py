@@ -18,13 +18,13 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.rotations import Array, matrix_product
 from symofros.description.forces import Damper, JointElement, Spring
 from symofros.description.joint import WORLD, Joint, Limits
 from symofros.description.joint_kinds import JointKindName
 from symofros.description.mjcf.geometry import Exact, about
 from symofros.description.mjcf.names import Names
 from symofros.description.remarks import Remarks
-from symofros.rotations import Array, matrix_product
 
 # mjtJoint and mjtDisableBit of mujoco/mjmodel.h, which never change: compiled models are stored by them.
 FREE, BALL, SLIDE, HINGE = range(4)

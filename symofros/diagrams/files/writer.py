@@ -12,7 +12,7 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
-from symofros.atomic import write_atomically
+from symofros.base.atomic import write_atomically
 from symofros.description.yaml.yaml_writer import LINE_WIDTH
 from symofros.diagrams.block import Block, ModelSetup
 from symofros.diagrams.diagram import INSIDE, Diagram, Part

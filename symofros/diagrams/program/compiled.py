@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.order import groups_in_motion, order_of
 from symofros.diagrams.program.fused_functions import Fuser
@@ -23,7 +24,6 @@ from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.names import identifier
 from symofros.generator.passes import run_passes
 from symofros.native import native_text
-from symofros.options import Options
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.calls.kernel import Kernel, Unit

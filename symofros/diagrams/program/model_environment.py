@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from symofros.base.functions import FRAME_FUNCTIONS
+from symofros.base.options import Options
 from symofros.compiler import compile_system, plan
 from symofros.description.forces import Friction
 from symofros.description.system import System
@@ -18,7 +20,6 @@ from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.program import Program
 from symofros.expr.substitute import copy_into
-from symofros.functions import FRAME_FUNCTIONS
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import model_record
 from symofros.mechanics.dynamics.constraints.rows import retracted
@@ -27,7 +28,6 @@ from symofros.mechanics.dynamics.forward.factors import Factors
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.kinematics.links import tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree
-from symofros.options import Options
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.analysis.assembly import assemble

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.rotations import skew
 from symofros.description.beam import STATION, Beam
 from symofros.description.forces import Damper
 from symofros.description.joint import WORLD, Joint
@@ -16,7 +17,6 @@ from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.errors import ExportError, Problem
 from symofros.mechanics.topology.coordinates import coordinate_names
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.rotations import skew
 
 Array = npt.NDArray[np.float64]
 

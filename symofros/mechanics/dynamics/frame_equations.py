@@ -1,4 +1,4 @@
-"""The quantities of one frame, each formed when it is first needed: `symofros/functions.py` names them."""
+"""The quantities of one frame, each formed when it is first needed: `symofros/base/functions.py` names them."""
 
 from __future__ import annotations
 

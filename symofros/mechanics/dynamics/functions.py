@@ -1,4 +1,4 @@
-"""Requests for model functions -> a Program: `symofros/functions.py` states them, `Equations` forms their outputs."""
+"""Requests for model functions -> a Program: `base/functions.py` states them, `Equations` forms their outputs."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from symofros.base.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.ops import STOP_GRADIENT
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
-from symofros.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.equations import Equations

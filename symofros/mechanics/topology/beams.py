@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from symofros.base.rotations import Array
 from symofros.description.beam import STATION, Beam
 from symofros.description.system import System
 from symofros.description.values import ORIGIN, Value
@@ -15,7 +16,6 @@ from symofros.mechanics.beams.deformation import Deformation, deformation_of
 from symofros.mechanics.beams.piecewise import stations
 from symofros.mechanics.beams.shape_functions import FamilyError, Shape
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.rotations import Array
 
 # Beyond this the mass matrix loses all but four of a double's sixteen digits.
 MOST_CONDITION = 1e12

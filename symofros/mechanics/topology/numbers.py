@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.rotations import Array, axis_rotation, quaternion_matrix
 from symofros.description.joint import Joint
 from symofros.description.system import System
 from symofros.description.values import Rotation, Value
 from symofros.errors import Problem
 from symofros.expr.expression import evaluate
-from symofros.rotations import Array, axis_rotation, quaternion_matrix
 
 # Entries typed with seven digits still pass; a reflection or a shear does not.
 ROTATION_TOLERANCE = 1e-6

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from symofros.base.rotations import Array, skew
 from symofros.description.beam import STATION, Beam
 from symofros.description.system import Body, RigidBody, System
 from symofros.errors import Problem
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.rotations import Array, skew
 
 # A thin rod or plate meets the triangle inequality with equality; its file's digits may miss it by rounding.
 PHYSICAL_TOLERANCE = 1e-6

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from symofros.atomic import write_atomically
+from symofros.base.atomic import write_atomically
 from symofros.errors import CompileError, Problem
 from symofros.runtime.build.identity import CODE_IDENTITY
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, call_compiler, cpu_identity, kinds

@@ -18,8 +18,8 @@ from time import thread_time_ns
 
 import numpy as np
 
-from symofros.atomic import write_atomically
-from symofros.options import Options
+from symofros.base.atomic import write_atomically
+from symofros.base.options import Options
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, Toolchain, find_toolchain
 

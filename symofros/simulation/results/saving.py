@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.atomic import write_atomically
+from symofros.base.atomic import write_atomically
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 

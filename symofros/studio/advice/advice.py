@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from symofros.atomic import write_atomically
+from symofros.base.atomic import write_atomically
+from symofros.base.options import Options
 from symofros.description.system import System
 from symofros.description.yaml.files import SUFFIXES, write_yaml
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.options import Options
 from symofros.studio.advice.bench import Cost, Stepping
 from symofros.studio.advice.scene import Scene
 

@@ -10,12 +10,12 @@ from functools import cached_property
 
 import numpy as np
 
+from symofros.base.options import Options
 from symofros.compiler import compile_system, program_of
 from symofros.description.system import System
 from symofros.errors import AssemblyError, InconsistentModelWarning, Problem, SymofrosError, UnknownNameError
 from symofros.errors import did_you_mean as near
 from symofros.generator.passes.count import count_program
-from symofros.options import Options
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.assembly import assemble

@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.options import Options
 from symofros.compiler import compile_system
 from symofros.description.beam import STATION, Beam, Direction
 from symofros.description.system import Body, System
 from symofros.description.values import Value
 from symofros.expr.expression import evaluate
-from symofros.options import Options
 from symofros.runtime.calls.kernel import Array
 from symofros.studio.advice import estimators
 from symofros.studio.advice.bench import ReferenceSolution

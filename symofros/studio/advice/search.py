@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
+from symofros.base.options import Options
 from symofros.description.beam import Beam
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem, SymofrosError, did_you_mean
-from symofros.options import Options
 from symofros.studio.advice.advice import Advice, Choice, Verdict
 from symofros.studio.advice.bench import Bench, ReferenceSolution, Trial
 from symofros.studio.advice.candidates import Reduction, candidates, constants, fewer_functions

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.atomic import write_atomically
+from symofros.base.atomic import write_atomically
 from symofros.description.system import System
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError, did_you_mean

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import symofros as sf
+from symofros.base.options import Options
 from symofros.diagrams.program import compiled
-from symofros.options import Options
 from symofros.runtime.build.toolchain import Toolchain
 from tests.blocks.sources import Ramp
 

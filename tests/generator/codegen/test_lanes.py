@@ -14,8 +14,8 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.base.functions import MODEL_FUNCTIONS
 from symofros.compiler import Compilation, compile_library
-from symofros.functions import MODEL_FUNCTIONS
 from symofros.generator.codegen.model import model_source
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, cpu_identity
 from symofros.runtime.calls import library

@@ -14,9 +14,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.base.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.compiler import Compilation
 from symofros.description.joint_kinds import JOINT_KINDS
-from symofros.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
 from symofros.generator.codegen.names import c_string, identifier, local_name
 from symofros.native import native_text
 from tests.models import sampled, system

@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from symofros.atomic import write_atomically
+from symofros.base.atomic import write_atomically
 from symofros.description.yaml.files import MAX_BYTES, SUFFIXES
 from symofros.errors import Problem, SymofrosError
 

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
+from symofros.base.functions import exported
 from symofros.compiler import Compilation, compile_system, plan
 from symofros.description.yaml.files import write_yaml
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
-from symofros.functions import exported
 from symofros.generator.passes.count import count_program
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.studio.editor.jobs.request import Json, Tell, system_of

@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from symofros.base.options import Options
 from symofros.compiler import compile_system, plan
 from symofros.description.constraints import Closure, Rolling
 from symofros.description.system import System
 from symofros.errors import AssemblyError, Problem, ShapeError
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import SpanningTree, frame_of
-from symofros.options import Options
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.assembly import assemble
 from symofros.studio.viewer.drawing.drawing import Drawing, DrawnBeam, LinkPoint, Strut

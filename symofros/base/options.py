@@ -13,7 +13,7 @@ class Options:
     Attributes:
         functions: What to generate, in one C file; a call of anything else is then an error. None (the default):
             `dynamics` at once, any other function when it is first called, by itself or with those that go with it
-            (`symofros/functions.py`: names, inputs, outputs, units).
+            (`symofros/base/functions.py`: names, inputs, outputs, units).
         frames: Frames that frame functions in `functions` are generated for; None: all.
         backend: "c", or "interpreter" (NumPy; slow, needs no compiler, the reference for the C code).
         flags: Flags of the C compiler, in place of the default.

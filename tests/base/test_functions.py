@@ -10,8 +10,16 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.base.functions import (
+    FRAME_FUNCTIONS,
+    FUNCTIONS,
+    INPUTS,
+    MODEL_FUNCTIONS,
+    exported,
+    generated_with,
+    size_of,
+)
 from symofros.compiler import Compilation
-from symofros.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, exported, generated_with, size_of
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
 
