@@ -79,7 +79,7 @@ def write_folder(
     Args:
         folder: Checked again here; made if it does not exist.
         target: Kind of export.
-        name: Of the model in C.
+        name: Name of the model in C.
         files: File name -> content, the main one first.
         generator: Name and version of what wrote it.
         notes: Remarks for the user.

@@ -73,7 +73,7 @@ class ConstraintFunctions(Functions):
         """What a constraint exerts on a frame: force and moment about its origin, in world axes (..., 6) [N, N m].
 
         Args:
-            name: Of a closure, rod, knife edge or rolling contact.
+            name: Name of a closure, rod, knife edge or rolling contact.
             q: Configuration (..., nq).
             lam: Multipliers of all conditions (..., nc), from `forward_dynamics`.
             on: Its second frame, the one that follows, or its first, the reference; of a knife edge or a rolling

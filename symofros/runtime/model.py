@@ -69,11 +69,11 @@ class Model(ConstraintFunctions, FrameFunctions):
         bits of `model.mass_matrix(q)` in double precision, by vectors and in the model's threads where that does.
 
         Args:
-            name: Of the function, as of the method.
+            name: Name of the function, as of the method.
             frame: The frame that it is about, for frame functions.
             n: States of a batch; None: one state, without a batch dimension.
-            layout: Of a batch's arrays that are allocated: "rows", a state's numbers side by side; or "columns", the
-                states side by side, which is faster by vectors.
+            layout: Layout of a batch's arrays that are allocated: "rows", a state's numbers side by side; or "columns",
+                the states side by side, which is faster by vectors.
             par: Run-time parameters (npar), or (n, npar); the model's by default. They are read here, and not again.
             arrays: Memory of the caller's for inputs and outputs, by name; what is left out is allocated. Inputs of a
                 batch may be (size), for all states.

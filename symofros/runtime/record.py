@@ -44,9 +44,9 @@ class ClosureRecord(NamedTuple):
     """A closure as far as it matters after compilation.
 
     Attributes:
-        name: Its name.
+        name: Name.
         first: Public name of the reference frame.
-        second: Of the other frame.
+        second: Second of the other frame.
         rotations: Blocked axes of rotation, 0 to 2.
     """
 
@@ -61,8 +61,8 @@ class ModelRecord:
     """The description of a compiled model that needs no symbols.
 
     Attributes:
-        name: Of the system.
-        hash: Of description, options and generator.
+        name: Name of the system.
+        hash: Hash of description, options and generator.
         q_names: Coordinates; likewise speeds, inputs, run-time parameters, frames.
         frame_aliases: Qualified name -> public name of a frame.
         u_default: Inputs where none are given: zeros, and prescribed quaternions of no rotation.
@@ -75,7 +75,7 @@ class ModelRecord:
         constraint_names: One a condition: the constraint's name, and which of its conditions.
         speed_conditions: Those of them that bind speeds only.
         wrench_names: Constraints that act on bodies by a wrench: all but conditions by formula.
-        closures: Of frames, for checks of their rotations.
+        closures: Closures of frames, for checks of their rotations.
         driven: Inputs that prescribe motion, the last of u.
     """
 

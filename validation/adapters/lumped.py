@@ -24,7 +24,7 @@ class Lumped:
 
     Attributes:
         engine: Has the tip for its only frame.
-        names: Of the coordinates.
+        names: Names of the coordinates.
         springs: Stiffness of each (n,) [N m/rad].
     """
 
@@ -80,7 +80,7 @@ class Lumped:
         """Circular frequencies (count,) about the straight steady state of a hub that is held at its rate [rad/s].
 
         Args:
-            rate: Of the first coordinate [rad/s].
+            rate: Rate of the first coordinate [rad/s].
             turn: "yaw" (in the plane of rotation) or "pitch"; the straight beam does not couple them.
             count: How many.
         """
@@ -98,7 +98,7 @@ def lumped(
 
     Args:
         system: With a beam that has a frame `tip`; its other joints have one coordinate each.
-        beam: Its name.
+        beam: Name of the beam.
         links: The number of hinges.
         build: The engine's.
     """

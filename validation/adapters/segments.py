@@ -66,7 +66,7 @@ def segmented(system: sf.System, name: str, links: int) -> sf.System | Unsupport
 
     Args:
         system: With the beam.
-        name: Of the beam. The link at its root keeps it; the others are name_1 to name_N.
+        name: Name of the beam. The link at its root keeps it; the others are name_1 to name_N.
         links: N, the number of hinges, 1 or more. Coordinates are name_1_yaw, name_1_pitch, name_1_roll and so on.
 
     Raises:

@@ -43,7 +43,7 @@ class Pool:
         workers: Processes of this machine, if no cluster is named.
         scheduler: Address of a cluster's scheduler.
         dashboard: Port of dask's own pages on this machine's loopback; none is opened unless asked for.
-        patience: How long a cluster may take to have a worker [s].
+        patience: Time that a cluster may take to have a worker [s].
     """
 
     workers: int = 2

@@ -30,10 +30,10 @@ class Comparison:
         engine: Whose result ours is compared with.
         quantity: What is compared.
         status: The verdict; "unsupported" counts neither way.
-        states: How many states were compared.
+        states: Number of states that were compared.
         error: The largest over the states; None if there is none or it is not a number.
         tolerance: What it must not exceed.
-        median: Of the errors.
+        median: Median of the errors.
         worst_state: Index of the state with the largest error.
         counts: States in each bin of BIN_EDGES, those that agree exactly first and those beyond the last edge last.
         note: The reason of what is unsupported or failed; else a remark.
@@ -145,7 +145,7 @@ def judge(
         model: Label of the model.
         engine: Whose results ours were compared with.
         quantity: What was compared.
-        errors: Of each state (N,).
+        errors: Errors of each state (N,).
         note: A remark.
         sizes: What the errors are relative to (N,), if it is to be kept.
     """

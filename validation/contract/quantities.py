@@ -39,7 +39,7 @@ class Quantity:
         name: In tables.
         symbol: For people.
         unit: For people.
-        tolerance: Of the error relative to the largest entry.
+        tolerance: Tolerance of the error relative to the largest entry.
         axes: How many trailing axes make one value: 2 for a matrix, 1 for a vector, 0 for a number.
         floor: What its scale is kept above.
         column: Title of the column of tables that it shares; its symbol, if it has one of its own.

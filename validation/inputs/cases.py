@@ -20,7 +20,7 @@ class Case:
 
     Attributes:
         label: In tables.
-        path: Of its file; None for a reference model.
+        path: Path of its file; None for a reference model.
         floating_base: Whether a free joint goes under a URDF's root.
     """
 

@@ -31,7 +31,7 @@ def sample(assembly: Assembly, nu: int, count: int = DEFAULT_STATES, seed: int =
     Args:
         assembly: Whose coordinates; its name is part of the seed, so that models do not share their states.
         nu: Number of inputs.
-        count: How many states; the special ones come first and count.
+        count: Number of states; the special ones come first and count.
         seed: Any number.
         first: Number of the first state, where these are a later part of many: drawn apart, none of them special.
 

@@ -30,7 +30,7 @@ class Mass:
 
     Attributes:
         body: Name of the described body.
-        mass: [kg].
+        mass: Mass [kg].
         p_BC: Mass centre (3,) [m].
         J_BC: Inertia about the mass centre, along the axes of B (3, 3) [kg m^2].
     """
@@ -46,8 +46,8 @@ class Mover:
     """A body with a joint that moves; a joint of several coordinates makes several movers, all but the last massless.
 
     Attributes:
-        body: Its name.
-        name: Of the joint, or of this part of it.
+        body: Name of the body.
+        name: Name of the joint, or of this part of it.
         joint: Its joint as described.
         part: The part of the joint that this is.
         continues: Whether it is a further part of the joint of the mover before it.
@@ -56,9 +56,9 @@ class Mover:
         axis: Unit axis in P (3,); meaningless for ball and free joints.
         q: Slice of our coordinates; empty where the motion is prescribed.
         v: Slice of our speeds, likewise.
-        pitch: Of a screw [m/rad].
-        length: Of a beam whose elastic coordinates it stands for [m].
-        masses: Of the body and of everything fixed to it.
+        pitch: Pitch of a screw [m/rad].
+        length: Length of a beam whose elastic coordinates it stands for [m].
+        masses: Masses of the body and of everything fixed to it.
     """
 
     body: str
@@ -126,7 +126,7 @@ class Assembly:
     """A description as numbers.
 
     Attributes:
-        name: Of the system.
+        name: Name of the system.
         joints: That move, in order.
         movers: Depth first in the order of description.
         frames: By name.

@@ -29,7 +29,7 @@ class Agreement:
     """One model by one derivation.
 
     Attributes:
-        model: Its name.
+        model: Name of the model.
         derivation: "lagrange" or "kane".
         digits: By function, the fewest over the points.
         required: Digits that each must have.
@@ -55,9 +55,9 @@ def agreement(system: sf.System, derive: Derivation, points: int, seed: int) -> 
 
     Args:
         system: Any; what the generator rounds ahead of time, such as constant unit vectors, shows in the digits.
-        derive: Of the oracle.
+        derive: Derivation of the oracle.
         points: How many.
-        seed: Of the points.
+        seed: Seed of the points.
 
     Raises:
         NotDerivable: By the oracle.

@@ -25,7 +25,7 @@ class Provenance:
     """The origin of a report's numbers; empty where it does not say.
 
     Attributes:
-        date: When it was made (UTC).
+        date: Time when it was made (UTC).
         machine: Processor, cores, system.
         flags: Flags of the generated C.
         compiler: Compiler of the generated C.

@@ -51,8 +51,8 @@ class Fault:
     """An input that crashed a reader, took too long, or changed when it was written and read again.
 
     Attributes:
-        kind: Of the input.
-        number: Of the input among its kind; with the seed, it makes the input again.
+        kind: Kind of the input.
+        number: Number of the input among its kind; with the seed, it makes the input again.
         what: What happened.
         data: The input.
     """
@@ -83,8 +83,8 @@ def fuzz(count: int, seed: int, progress: Callable[[int], None] = lambda done: N
     """Feed `count` inputs, of each kind in turn.
 
     Args:
-        count: Of inputs, all kinds together.
-        seed: Of the mutations.
+        count: Count of inputs, all kinds together.
+        seed: Seed of the mutations.
         progress: Called with the number of inputs done.
     """
     result = FuzzResult()

@@ -70,7 +70,7 @@ def mutate(label: str, system: sf.System, count: int, seed: int = 0) -> Mutation
         label: For the report.
         system: The model.
         count: How many faults, drawn from all that are possible.
-        seed: Of the draw and of the states.
+        seed: Seed of the draw and of the states.
 
     Raises:
         ValueError: No independent engine can represent the model.

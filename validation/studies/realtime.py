@@ -64,7 +64,7 @@ class Scene:
     Attributes:
         what: In words.
         make: Gives the diagram, whose instants are a period apart.
-        period: Of its instants [s].
+        period: Period of its instants [s].
     """
 
     what: str

@@ -31,7 +31,7 @@ class Rollout:
         threads: That share the work.
         error: Error of the joints at the end, the largest over all trajectories, against dop853 at 1e-12 [rad].
         steps: Taken by all trajectories together.
-        nanoseconds: Of processor time a step: minimum and median over the repeats.
+        nanoseconds: Nanoseconds of processor time a step: minimum and median over the repeats.
         ratio: Median over the repeats of MuJoCo's processor time over this; 1 for MuJoCo itself.
     """
 

@@ -255,7 +255,7 @@ class Benchmark:
         measure: What `error` is of.
         error: Found.
         threshold: The library's, or what the reference is good to.
-        seconds: Of the stepping, the least of the repeats.
+        seconds: Wall time of the stepping, the least of the repeats.
     """
 
     name: str

@@ -21,7 +21,7 @@ class LinkMotion:
         w_WL_L: Angular velocity [rad/s].
         alpha_WL_L: Angular acceleration [rad/s^2].
         a_WLo_L: Acceleration of Lo, with gravity as an acceleration of the base [m/s^2].
-        U: [alpha] + [w][w], the matrix that takes a point's position in L to its acceleration relative to Lo [1/s^2].
+        U: U [alpha] + [w][w], the matrix that takes a point's position in L to its acceleration relative to Lo [1/s^2].
         w_squares: The products wx wx, wy wy, wz wz.
     """
 

@@ -94,7 +94,7 @@ def fastest(libraries: Sequence[Path], load: Callable[[Path], CompiledUnit]) -> 
     """The library whose functions take the least time, one state each.
 
     Args:
-        libraries: Of the same functions, in one folder, where the choice is kept.
+        libraries: Libraries of the same functions, in one folder, where the choice is kept.
         load: Opens one.
 
     Raises:

@@ -24,8 +24,8 @@ class Bound:
 
     Args:
         evaluate: Computes, on the arrays.
-        arrays: Of each input and output, by name.
-        signature: Of the function.
+        arrays: Arrays of each input and output, by name.
+        signature: Signature of the function.
         kept: What must live as long as this.
 
     Attributes:
@@ -91,7 +91,7 @@ def bind_batch(
     Args:
         kernel: The function.
         n: Number of states.
-        layout: Of arrays that are not given: each state in a row, or the states as the fast axis.
+        layout: Layout of arrays that are not given: each state in a row, or the states as the fast axis.
         par: Run-time parameters (npar), or of each state (n, npar).
         given: Arrays of the caller's: inputs (n, size), or (size) for all states; outputs (n, ...).
         defaults: What inputs that are not given hold at first, in each state; zeros otherwise.

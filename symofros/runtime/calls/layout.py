@@ -80,7 +80,7 @@ class Strided(NamedTuple):
 
     Attributes:
         array: The numbers, kept alive.
-        address: Of the first.
+        address: Address of the first.
         step: From one entry to the next, in numbers.
         stride: From one state to the next; 0: one for all.
     """

@@ -37,7 +37,7 @@ class CompiledUnit:
     """The functions of one shared library.
 
     Args:
-        path: Of the library.
+        path: Path of the library.
         symbol: Its exported function, `NAME_model`.
         expected_hash: What the struct must say.
         in_lanes: Function, and how to use vectors -> the same by vectors, or None; asked for once, at the first large

@@ -129,7 +129,7 @@ def joint_motion(
         rotations: R_WF (n, 3, 3); none if they do not matter.
         q: Guess for the first sample (nq); each next one starts from the last.
         par: Run-time parameters.
-        tolerance: Of the largest error.
+        tolerance: Tolerance of the largest error.
 
     Returns:
         q (n, nq), v (n, nv), v' (n, nv): of least norm where there is freedom.

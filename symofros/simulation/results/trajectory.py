@@ -32,7 +32,7 @@ class Statistics:
     Attributes:
         method: Name of the method.
         steps: Accepted; `rejected` were tried in vain.
-        evaluations: Of the accelerations; `jacobians` of their derivatives.
+        evaluations: Evaluations of the accelerations; `jacobians` of their derivatives.
         seconds: Wall time in the stepping loop [s].
         late_steps: With a pace: steps that began after their time; `late_max` and `late_mean` [s] are how late the
             clock was, sleeping included.

@@ -47,7 +47,7 @@ class Link:
         parent: Index, or BASE.
         R, p: R_AB(q), p_AB(q) from the parent's frame.
         mass, mc, J: Mass, first moments, inertia about the body's origin.
-        axis: Of its joint; None for a free one.
+        axis: Axis of its joint; None for a free one.
         slides: Whether the joint is prismatic.
         v: Where its speeds are.
         armature: On the diagonal of M.

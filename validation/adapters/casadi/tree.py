@@ -259,7 +259,7 @@ class CasadiTree:
         """A CasADi function of q, v, a, tau with results row by row.
 
         Args:
-            name: As of our generated functions.
+            name: Name as of our generated functions.
             body: Whose Jacobian.
 
         Raises:

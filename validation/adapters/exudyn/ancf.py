@@ -32,10 +32,10 @@ class Hub(NamedTuple):
     """The spin-up of Kane, Ryan & Banerjee (1987): a cantilever on the axis of a hub with a prescribed turn.
 
     Attributes:
-        length: [m].
-        EI: [N m^2].
-        rhoA: [kg/m].
-        duration: Of the spin-up [s].
+        length: Length [m].
+        EI: Bending stiffness [N m^2].
+        rhoA: Mass per length [kg/m].
+        duration: Duration of the spin-up [s].
         rate: After it [rad/s].
     """
 
@@ -57,11 +57,11 @@ class Strip(NamedTuple):
     """The aluminium strip of the Princeton beam experiment (Dowell & Traybar 1975; Bauchau et al. 2016).
 
     Attributes:
-        length: [m].
-        height: Of the section, along y [m].
+        length: Length [m].
+        height: Height of the section, along y [m].
         thickness: Along z [m].
-        E: [Pa].
-        G: [Pa].
+        E: Elastic modulus [Pa].
+        G: Shear modulus [Pa].
     """
 
     length: float = 0.508
@@ -100,9 +100,9 @@ def static_tip(length: float, EI: float, EA: float, force: tuple[float, float], 
     """Position of the tip (2,) of a cantilever along x at rest under a dead load on its tip.
 
     Args:
-        length: [m].
-        EI: [N m^2].
-        EA: [N].
+        length: Length [m].
+        EI: Bending stiffness [N m^2].
+        EA: Axial stiffness [N].
         force: Along x and y [N].
         elements: ANCFCable2D.
 
@@ -130,8 +130,8 @@ def spinning_frequencies(
     first frequency by 1.4e-4 at rate^2 = 144 EI and EA = 1e6 EI, in proportion to 1/EA.
 
     Args:
-        EI: [N m^2].
-        EA: [N].
+        EI: Bending stiffness [N m^2].
+        EA: Axial stiffness [N].
         rate: W, about z [rad/s].
         hub: Radius at the root [m].
         elements: ANCFCable.
@@ -174,8 +174,9 @@ def spin_up(elements: int = 16, step: float = 2.5e-3, end: float = 20.0, stretch
 
     Args:
         elements: ANCFCable2D.
-        step: Of the generalised-alpha method; the end of the spin-up must be a multiple, or its order drops to 1 [s].
-        end: [s].
+        step: Step of the generalised-alpha method; the end of the spin-up must be a multiple, or its order drops to 1
+            [s].
+        end: End time [s].
         stretch: EA as a multiple of EI/L^2.
 
     Returns:
@@ -228,7 +229,7 @@ def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None
     """The tip of the Princeton strip, along x, at rest under a dead load across it.
 
     Args:
-        load: [N].
+        load: Load [N].
         angle: From y, the stiff way, towards z, the soft way [rad].
         elements: ObjectBeamGeometricallyExact.
         strip: Another strip.

@@ -159,7 +159,7 @@ class _Mesh:
     Attributes:
         nodes: Positions (n, 3) [m].
         masses: Lumped (n,) [kg].
-        modes: Of the displacements (3 n, nm): x, y, z of node after node.
+        modes: Modes of the displacements (3 n, nm): x, y, z of node after node.
         stiffness: Reduced (nm, nm).
         damping: Voigt-Kelvin retardation time [s].
         spin: Polar moment of inertia of the whole beam about its axis [kg m^2].

@@ -30,7 +30,7 @@ def bars(
         grounded: Bars whose start is a hinge on the ground.
         h: Step [s].
         t_end: Duration [s].
-        spectral_radius: Of generalised-alpha; 1 conserves.
+        spectral_radius: Spectral radius of generalised-alpha; 1 conserves.
 
     Returns:
         (n, 2) [m], or None where the solver gave up.

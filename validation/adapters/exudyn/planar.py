@@ -50,10 +50,10 @@ class Carrier(NamedTuple):
 
     Attributes:
         p: Its origin in the world (2,) [m].
-        angle: Of its x axis in the world [rad].
+        angle: Angle of its x axis in the world [rad].
         body: Exudyn's.
         local: The origin in that body (2,) [m].
-        node: Of a rigid body; None on the ground and on beams.
+        node: Node of a rigid body; None on the ground and on beams.
     """
 
     p: Array
@@ -109,7 +109,7 @@ def planar_tree(system: sf.System, angles: Mapping[str, float], cables: Mapping[
 
     Args:
         system: The description.
-        angles: Of its hinges in the reference configuration, by joint; 0 where none is given [rad].
+        angles: Angles of its hinges in the reference configuration, by joint; 0 where none is given [rad].
         cables: What its beams are made of, by body.
 
     Raises:

@@ -37,11 +37,11 @@ class Rod:
     """A cantilever on the axis of a hub that spins up.
 
     Attributes:
-        length: [m].
-        EI: [N m^2].
-        EA: [N].
-        rhoA: [kg/m].
-        duration: Of the spin-up [s].
+        length: Length [m].
+        EI: Bending stiffness [N m^2].
+        EA: Axial stiffness [N].
+        rhoA: Mass per length [kg/m].
+        duration: Duration of the spin-up [s].
         rate: At its end [rad/s].
     """
 
@@ -101,9 +101,9 @@ def planar(
 
     Args:
         system: The description, of what `validation.adapters.exudyn.planar` takes.
-        angles: Of its hinges in the reference configuration, by joint [rad].
+        angles: Angles of its hinges in the reference configuration, by joint [rad].
         cables: What its beams are made of, by body.
-        place: Of the point in the frame of the last joint [m].
+        place: Place of the point in the frame of the last joint [m].
     """
 
     def build() -> tuple[Any, Any, Sequence[Any]]:
@@ -192,7 +192,7 @@ def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Tim
 
     Args:
         system: Hinges about z, closures of two translations, springs between frames.
-        angles: Of the hinges, with which its loops are closed [rad].
+        angles: Angles of the hinges, with which its loops are closed [rad].
         torque: On the first body, about z [N m].
     """
     assembly = assemble(system)
@@ -259,8 +259,8 @@ def held(system: sf.System, start: Array, targets: Array, stiffness: float, damp
         system: Hinges about x, y or z of their frames.
         start: Angles at the start, at rest (n) [rad].
         targets: Where the tree's own springs on the joints rest (n) [rad].
-        stiffness: Of each [N m/rad].
-        damping: Of each [N m s/rad].
+        stiffness: Stiffness of each [N m/rad].
+        damping: Damping of each [N m s/rad].
     """
     assembly = assemble(system)
     n = len(assembly.movers)

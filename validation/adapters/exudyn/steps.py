@@ -87,8 +87,8 @@ class Recorded:
 
     Attributes:
         t: Output times (n).
-        values: Of the sensors, side by side (n, k).
-        seconds: Of the processor, for the steps.
+        values: Values of the sensors, side by side (n, k).
+        seconds: Processor time of the steps.
         ended: Why the solver gave up; "" if it did not.
     """
 

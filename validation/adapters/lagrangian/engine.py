@@ -39,7 +39,7 @@ class LagrangianEngine:
     Attributes:
         tree: Its equations.
         stated: The description's formulas of joint forces.
-        poses: Of the subject's frames; velocities, accelerations likewise.
+        poses: Poses of the subject's frames; velocities and accelerations.
         turnings: What their velocities change by with the configuration, in the direction (a, dds).
         frames: How many frames.
         capabilities: What it offers for this system.

@@ -56,7 +56,7 @@ class Node:
         count: Number of speeds of the joint.
         motion: Position and rotation in the parent's frame, of the joint's coordinates.
         prescribed: Whether the joint's motion is given.
-        manifold: Of the coordinates: "ball" (quaternion x, y, z, w), "free" (position, quaternion) or "flat".
+        manifold: Manifold of the coordinates: "ball" (quaternion x, y, z, w), "free" (position, quaternion) or "flat".
         rotors: That the joint drives.
         at: Its first coordinate and speed, among the free or the prescribed ones; None: after those of the node before.
         tip: A rigid body fixed to the tip of a beam, in the tip's frame.

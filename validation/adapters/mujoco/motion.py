@@ -69,12 +69,12 @@ def servo(
     """A tree held by a spring and a damper on each joint, stepped by MuJoCo's RK4.
 
     Args:
-        engine: Of `validation.adapters.mujoco.tree`, hinges and slides only.
+        engine: Engine of `validation.adapters.mujoco.tree`, hinges and slides only.
         q0: Our coordinates (nq).
         v0: Our speeds (nv).
         targets: Where the springs rest (nq).
-        stiffness: Of each.
-        damping: Of each.
+        stiffness: Stiffness of each.
+        damping: Damping of each.
         h: Step [s].
         steps: How many.
 

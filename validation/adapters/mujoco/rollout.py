@@ -26,12 +26,12 @@ def roll_out(
     """Trees held by a spring and a damper on each joint, stepped by RK4.
 
     Args:
-        engine: Of `validation.adapters.mujoco.tree`, hinges and slides only.
+        engine: Engine of `validation.adapters.mujoco.tree`, hinges and slides only.
         q0: Our coordinates (n, nq).
         v0: Our speeds (n, nv).
         targets: Where the springs rest (nq).
-        stiffness: Of each.
-        damping: Of each.
+        stiffness: Stiffness of each.
+        damping: Damping of each.
         h: Step [s].
         steps: How many.
         threads: MjData that share the trajectories, a thread each.

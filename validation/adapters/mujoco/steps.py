@@ -23,10 +23,10 @@ def held(engine: Any, targets: Array, stiffness: float, damping: float) -> Any:
     """MuJoCo's model of a tree of hinges, with a spring and a damper on each joint.
 
     Args:
-        engine: Of `validation.adapters.mujoco.tree`.
+        engine: Engine of `validation.adapters.mujoco.tree`.
         targets: Where the springs rest, in our coordinates (nq).
-        stiffness: Of each [N m/rad].
-        damping: Of each [N m s/rad].
+        stiffness: Stiffness of each [N m/rad].
+        damping: Damping of each [N m s/rad].
     """
     m = engine.model
     m.jnt_stiffness[:], m.dof_damping[:] = stiffness, damping

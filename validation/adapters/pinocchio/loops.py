@@ -36,7 +36,7 @@ class Tie(NamedTuple):
     Attributes:
         model: Pinocchio's.
         closure: Index of the closure.
-        offset: Of its point from the origin of the first frame, along that frame's axes (3,).
+        offset: Offset of its point from the origin of the first frame, along that frame's axes (3,).
     """
 
     model: Any
