@@ -76,7 +76,7 @@ class ModelResult:
         hash: Hash of the description; empty if it could not be read.
         sizes: nq, nv, nu, bodies.
         frames: Frames at which frame quantities were compared.
-        notes: What reading the model dropped or changed.
+        notes: Remarks on what reading the model dropped or changed.
         versions: Engine -> version.
         seconds: Stage or engine -> time it took [s].
     """

@@ -54,10 +54,10 @@ class ConstrainedEngine:
     """A tree engine with the constraints of a description.
 
     Args:
-        tree: For everything that constraints leave as it is.
+        tree: Engine of the tree, for everything that constraints leave as it is.
         anchored: The same engine, built for the frames that constraints join.
-        subject: What both were built from.
-        names: Of those frames, in order.
+        subject: Subject that both were built from.
+        names: Names of those frames, in order.
     """
 
     def __init__(self, tree: TreeEngine, anchored: TreeEngine, subject: Subject, names: tuple[str, ...]) -> None:

@@ -26,7 +26,7 @@ class SymofrosEngine:
 
     Attributes:
         name: "symofros", or "interpreted" for the NumPy back end.
-        model: What computes.
+        model: Compiled model.
         frames: The subject's frames.
     """
 

@@ -43,7 +43,7 @@ class Lumped:
 
         Args:
             q: Coordinates (N, n).
-            force: On the tip, in world axes (3,) [N].
+            force: Force on the tip, in world axes (3,) [N].
             rate: The first speed; the others are zero.
         """
         states = self._states(q, rate)
@@ -60,7 +60,7 @@ class Lumped:
         """Position of the tip and the rows of its rotation (12,) under a dead load on it, by Newton's method.
 
         Args:
-            force: In world axes [N].
+            force: Force in world axes [N].
             increments: Steps in which it is applied.
 
         Raises:
@@ -82,7 +82,7 @@ class Lumped:
         Args:
             rate: Rate of the first coordinate [rad/s].
             turn: "yaw" (in the plane of rotation) or "pitch"; the straight beam does not couple them.
-            count: How many.
+            count: Number of frequencies.
         """
         own = [i for i, name in enumerate(self.names) if name.endswith(turn)]
         q = np.zeros(len(self.names))
@@ -97,7 +97,7 @@ def lumped(
     """A system with a beam as rigid links, by an engine.
 
     Args:
-        system: With a beam that has a frame `tip`; its other joints have one coordinate each.
+        system: System with a beam that has a frame `tip`; its other joints have one coordinate each.
         beam: Name of the beam.
         links: The number of hinges.
         build: The engine's.

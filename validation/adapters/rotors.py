@@ -102,11 +102,11 @@ class RotorEngine:
     """A tree engine with the rotors of a description.
 
     Args:
-        plain: Without rotors; for all that rotors leave as it is.
-        explicit: With rotors as bodies.
+        plain: Engine without rotors, for all that rotors leave as it is.
+        explicit: Engine with rotors as bodies.
         tied: G.
         locked: G_0.
-        at: Where coordinates of `plain` are among those of `explicit`; the others, angles of balls, do not matter.
+        at: Indices of the coordinates of `plain` among those of `explicit`; the others, angles of balls, do not matter.
     """
 
     def __init__(self, plain: TreeEngine, explicit: TreeEngine, tied: Array, locked: Array, at: Array) -> None:

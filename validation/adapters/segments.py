@@ -65,7 +65,7 @@ def segmented(system: sf.System, name: str, links: int) -> sf.System | Unsupport
     """The system with one of its beams replaced by rigid links.
 
     Args:
-        system: With the beam.
+        system: System with the beam.
         name: Name of the beam. The link at its root keeps it; the others are name_1 to name_N.
         links: N, the number of hinges, 1 or more. Coordinates are name_1_yaw, name_1_pitch, name_1_roll and so on.
 

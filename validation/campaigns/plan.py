@@ -40,7 +40,7 @@ class CheckPlan(_Strict):
         states: Number of states in all, shared among the models.
         batch: States a batch.
         seed: Seed of the states.
-        engines: To compare with; None: all.
+        engines: Engines to compare with; None: all.
         floating_base: Whether URDF files get a free joint under their root.
     """
 
@@ -83,7 +83,7 @@ class SweepPlan(_Strict):
         model: A name of the standard set, or a file below the current folder.
         quantity: "frequencies" of small motions about the equilibrium, or "end_state" of a motion.
         over: Parameter or input -> the values it takes.
-        design: How the values combine: every one with every other, or spread by Latin hypercube or Sobol sequence.
+        design: Design of the sweep: every value with every other, or a Latin hypercube or Sobol sequence.
         points: Number of points, unless the design is a grid.
         batch: Points a batch.
         seed: Seed of the spread.

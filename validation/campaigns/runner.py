@@ -129,8 +129,8 @@ def run(store: Store, tasks: Sequence[Task], pool: Pool, done: Callable[[Task], 
     """Do batches, a few ahead of each worker.
 
     Args:
-        store: Where parts go.
-        tasks: What is not done yet.
+        store: Store that receives the parts.
+        tasks: Tasks that are not done yet.
         pool: Who works.
         done: Gets each batch whose part is written.
 

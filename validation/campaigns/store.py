@@ -33,7 +33,7 @@ class Store:
     """The folder of one campaign.
 
     Args:
-        folder: Where.
+        folder: Folder of the campaign.
         hash: Hash of the plan; parts that do not bear it belong to another.
     """
 
@@ -47,7 +47,7 @@ class Store:
 
         Args:
             folder: Made where it is missing.
-            manifest: With the plan's `hash` and `versions`.
+            manifest: Manifest with the plan's `hash` and `versions`.
 
         Raises:
             StoreError: The folder is another campaign's.

@@ -20,7 +20,7 @@ class Sweeper:
     """One model, ready to be evaluated at points of a plan.
 
     Args:
-        plan: What to evaluate.
+        plan: Plan to evaluate.
         case: The model.
 
     Raises:

@@ -27,18 +27,18 @@ class Comparison:
 
     Attributes:
         model: Label of the model.
-        engine: Whose result ours is compared with.
-        quantity: What is compared.
+        engine: Engine that our result is compared with.
+        quantity: Quantity that is compared.
         status: The verdict; "unsupported" counts neither way.
         states: Number of states that were compared.
         error: The largest over the states; None if there is none or it is not a number.
-        tolerance: What it must not exceed.
+        tolerance: Bound that the error must not exceed.
         median: Median of the errors.
         worst_state: Index of the state with the largest error.
         counts: States in each bin of BIN_EDGES, those that agree exactly first and those beyond the last edge last.
         note: The reason of what is unsupported or failed; else a remark.
         extra: Further figures, by name.
-        scale: What the largest error is relative to, in the unit of the quantity.
+        scale: Scale that the largest error is relative to, in the unit of the quantity.
     """
 
     model: str
@@ -143,11 +143,11 @@ def judge(
 
     Args:
         model: Label of the model.
-        engine: Whose results ours were compared with.
-        quantity: What was compared.
+        engine: Engine that our results were compared with.
+        quantity: Quantity that was compared.
         errors: Errors of each state (N,).
         note: A remark.
-        sizes: What the errors are relative to (N,), if it is to be kept.
+        sizes: Scales that the errors are relative to (N,), if they are to be kept.
     """
     finite = bool(np.all(np.isfinite(errors)))
     worst = float(errors.max()) if finite else None

@@ -33,8 +33,8 @@ def assembled_states(system: sf.System, states: States) -> States:
     """Those of the states from which loops could be closed, with phi = 0 and G v = b; at most MOST.
 
     Args:
-        system: With constraints.
-        states: Where to start; accelerations and inputs stay as they are, forces are to be found anew.
+        system: System with constraints.
+        states: States to start from; accelerations and inputs stay as they are, forces are computed anew.
     """
     model = sf.compile(system, sf.Options(functions=FUNCTIONS))
     found, kept = [], []

@@ -65,7 +65,7 @@ def fall(model: sf.Model, q: Array, v: Array, weightless: sf.Model | None = None
     """Let a model fall from initial states, with zero inputs, with two step lengths.
 
     Args:
-        model: With forward_dynamics, generalized_force and the energies.
+        model: Model with forward_dynamics, generalized_force and the energies.
         q: Initial coordinates (N, nq).
         v: Initial speeds (N, nv).
         weightless: The same without gravity, with potential_energy; None where only the weight has potential energy.

@@ -150,11 +150,11 @@ class Subject:
     """What an engine is built from.
 
     Attributes:
-        label: What the model is called in tables.
+        label: Name of the model in tables.
         system: The description.
         frames: The frames that frame quantities are compared at; none: the harness chooses.
-        urdf: Its file, if it came from one.
-        mjcf: Its MJCF file, if it came from one.
+        urdf: URDF file of the model, if it came from one.
+        mjcf: MJCF file of the model, if it came from one.
     """
 
     label: str

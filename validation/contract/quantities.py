@@ -36,12 +36,12 @@ class Quantity:
     """One thing that engines are compared by.
 
     Attributes:
-        name: In tables.
-        symbol: For people.
-        unit: For people.
+        name: Name in tables.
+        symbol: Symbol for people.
+        unit: Unit for people.
         tolerance: Tolerance of the error relative to the largest entry.
-        axes: How many trailing axes make one value: 2 for a matrix, 1 for a vector, 0 for a number.
-        floor: What its scale is kept above.
+        axes: Number of trailing axes of one value: 2 for a matrix, 1 for a vector, 0 for a number.
+        floor: Lower bound of its scale.
         column: Title of the column of tables that it shares; its symbol, if it has one of its own.
         method: The `Engine` method that computes it, if not named like it.
         at_rest: Whether it is computed with v = 0.

@@ -21,11 +21,11 @@ class Entry:
     """One report in the index.
 
     Attributes:
-        topic: What it is about.
-        report: What it says; None if it is not there or can't be read.
+        topic: Topic of the report.
+        report: Report; None if it is not there or can't be read.
         data: JSON of the report.
         provenance: Origin of its numbers.
-        remarks: What a reader should know before relying on it.
+        remarks: Remarks for a reader who relies on it.
         page: Full page in the same folder; empty if there is none.
     """
 
@@ -53,7 +53,7 @@ def gather(folder: Path, installed: Mapping[str, str], today: datetime.date) -> 
     Args:
         folder: Folder of the reports.
         installed: Versions of now, with which those of a report are compared.
-        today: From which their age counts.
+        today: Date from which their age counts.
     """
     return {name: _entry(folder, topic, installed, today) for name, topic in TOPICS.items()}
 

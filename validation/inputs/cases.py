@@ -19,7 +19,7 @@ class Case:
     """A model to be loaded; small and picklable, so that the process that checks it also reads it.
 
     Attributes:
-        label: In tables.
+        label: Name in tables.
         path: Path of its file; None for a reference model.
         floating_base: Whether a free joint goes under a URDF's root.
     """
@@ -57,9 +57,9 @@ class Robot:
     """A robot of the package.
 
     Attributes:
-        file: Its path below the package's folder of robots.
+        file: Path below the package's folder of robots.
         floating_base: Whether nothing holds its root.
-        why: What it brings to the set.
+        why: Reason why it is in the set.
     """
 
     file: str
@@ -119,8 +119,8 @@ def named(names: list[str], floating_base: bool) -> list[Case]:
     """The models that a user named: paths of files, or names of the standard set.
 
     Args:
-        names: In the order to be reported.
-        floating_base: For the URDF files among them.
+        names: Names in the order of the report.
+        floating_base: Whether URDF files among them get a free joint under the root.
 
     Raises:
         LookupError: A name is neither.

@@ -29,10 +29,11 @@ def sample(assembly: Assembly, nu: int, count: int = DEFAULT_STATES, seed: int =
     """Random states, the first few of them special.
 
     Args:
-        assembly: Whose coordinates; its name is part of the seed, so that models do not share their states.
+        assembly: Assembly whose coordinates are drawn; its name is part of the seed, so that models do not share their
+            states.
         nu: Number of inputs.
         count: Number of states; the special ones come first and count.
-        seed: Any number.
+        seed: Seed of the draw.
         first: Number of the first state, where these are a later part of many: drawn apart, none of them special.
 
     Returns:

@@ -18,7 +18,7 @@ class Moving:
     """One body: its frame, and how it moves.
 
     Attributes:
-        X: Its placement in the world.
+        X: Placement in the world.
         v: Velocity of its origin (3,).
         w: Angular velocity (3,).
     """

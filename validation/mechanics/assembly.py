@@ -48,7 +48,7 @@ class Mover:
     Attributes:
         body: Name of the body.
         name: Name of the joint, or of this part of it.
-        joint: Its joint as described.
+        joint: Joint as described.
         part: The part of the joint that this is.
         continues: Whether it is a further part of the joint of the mover before it.
         parent: Index of the moving body that carries it, or BASE.
@@ -102,9 +102,9 @@ class FrameSite:
     """A frame fixed on a moving body, or on the base.
 
     Attributes:
-        name: Its public name: its own if unique in the system, otherwise "body.frame".
+        name: Public name: the frame's own if unique in the system, otherwise "body.frame".
         mover: Index of the moving body, or BASE.
-        X_BF: Where it is on it.
+        X_BF: Placement of the frame on the body.
     """
 
     name: str
@@ -127,9 +127,9 @@ class Assembly:
 
     Attributes:
         name: Name of the system.
-        joints: That move, in order.
+        joints: Joints that move, in order.
         movers: Depth first in the order of description.
-        frames: By name.
+        frames: Frames by name.
         gravity: (3,) [m/s^2].
         nq: Number of coordinates.
         nv: Number of speeds.

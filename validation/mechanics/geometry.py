@@ -56,7 +56,7 @@ def rotation_matrix(kind: str, values: Array) -> Array:
 
     Args:
         kind: "rpy", "axis_angle", "quaternion" or "matrix", as in `symofros.Rotation`.
-        values: Its numbers.
+        values: Numbers of the rotation, in the order of its kind.
     """
     if kind == "matrix":
         return nearest_rotation(values.reshape(3, 3))

@@ -24,10 +24,10 @@ class Part:
     Attributes:
         kind: "general" where the series is not found, "elastic" between the root and the tip of a beam: no rigid
             engine can represent them.
-        axis: As stated, in the frame that the parts before it lead to.
-        first: Its first coordinate among the joint's, and its first speed.
-        coordinates: How many.
-        speeds: How many.
+        axis: Axis as stated, in the frame that the parts before it lead to.
+        first: Index of its first coordinate among the joint's, and of its first speed.
+        coordinates: Number of coordinates.
+        speeds: Number of speeds.
     """
 
     kind: PartKind

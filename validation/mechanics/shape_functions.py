@@ -143,8 +143,8 @@ def of_family(family: str, count: int, L: float, bending: bool) -> tuple[tuple[S
     """The functions of a family in one direction, and where Gauss' intervals must end.
 
     Args:
-        family: Any but "user".
-        count: How many.
+        family: Family of shape functions, any but "user".
+        count: Number of functions.
         L: Length of the beam [m].
         bending: Whether for a displacement; else for twist.
     """

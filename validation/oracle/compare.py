@@ -31,7 +31,7 @@ class Agreement:
     Attributes:
         model: Name of the model.
         derivation: "lagrange" or "kane".
-        digits: By function, the fewest over the points.
+        digits: Digits of agreement by function, the fewest over the points.
         required: Digits that each must have.
         ok: Whether they have.
     """
@@ -54,9 +54,10 @@ def agreement(system: sf.System, derive: Derivation, points: int, seed: int) -> 
     """Digits by function, the fewest over the points.
 
     Args:
-        system: Any; what the generator rounds ahead of time, such as constant unit vectors, shows in the digits.
+        system: System to derive; what the generator rounds ahead of time, such as constant unit vectors, shows in the
+            digits.
         derive: Derivation of the oracle.
-        points: How many.
+        points: Number of points.
         seed: Seed of the points.
 
     Raises:

@@ -23,7 +23,7 @@ def derive(system: sf.System) -> Derived:
     """A model by Kane's equations.
 
     Args:
-        system: With any joints.
+        system: System with any joints.
 
     Raises:
         NotDerivable: A prescribed motion has quaternions.

@@ -20,7 +20,7 @@ def derive(system: sf.System) -> Derived:
     """A model by Lagrange's equations.
 
     Args:
-        system: With generalized coordinates: no ball or free joints.
+        system: System with generalized coordinates: no ball or free joints.
 
     Raises:
         NotDerivable: It has quaternions.

@@ -24,8 +24,8 @@ class Model:
 
     Attributes:
         system: The description.
-        derivations: By which of the oracle's methods it is derived.
-        digits: That generator and oracle must agree to.
+        derivations: Methods of the oracle by which it is derived.
+        digits: Digits that generator and oracle must agree to.
     """
 
     system: sf.System

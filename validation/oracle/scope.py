@@ -29,7 +29,7 @@ class Derived:
         q: Symbols of the coordinates, in order; likewise v of the speeds, u of the inputs.
         symbols: name -> symbol of the parameters and of t.
         shorts: Symbol -> what it is short for, in inputs and the other symbols.
-        quaternions: Where in q quaternions start.
+        quaternions: Indices in q at which quaternions start.
         values: The entries (row by row) of each function, by its name.
     """
 
@@ -52,10 +52,10 @@ class Scope:
         NotDerivable: A prescribed motion has quaternions, or there are beams or constraints.
 
     Attributes:
-        bodies: Those with a joint, depth first in the order of description.
-        joints: Those of them that move.
+        bodies: Bodies with a joint, depth first in the order of description.
+        joints: Joints that move.
         free: Names of the coordinates that are not prescribed.
-        speeds: What formulas call their speeds.
+        speeds: Names of their speeds in formulas.
         motors: Speed -> the input of its actuator.
         function: Coordinate -> function of time.
         rate: Speed, as formulas call it -> the derivative of a coordinate, or a function of time of its own.
@@ -180,7 +180,7 @@ class Scope:
         """Expressions in functions of time, as expressions in symbols.
 
         Args:
-            values: By function name; lists or matrices.
+            values: Values by function name; lists or matrices.
             more: Further functions of time -> what they stand for.
         """
         quaternions, at = [], 0

@@ -48,7 +48,7 @@ class Measured:
             placement of code makes; APART for M, h and Q by three functions.
         operations: Executed by one call.
         text: Bytes of C.
-        compilation: From C text to machine code, with generation [s].
+        compilation: Time of compilation from C text to machine code, with generation [s].
         minimum: Time of one state [ns]; median: likewise.
         off: Largest relative difference of results from those with all passes.
     """

@@ -29,7 +29,7 @@ class Curve:
         color: Index of a colour of the page.
         kind: Style; "joined" is points on a line.
         shape: Index of the shape of points: disc, square, diamond, triangle.
-        hints: What is said when the pointer rests on a point (n), or nothing.
+        hints: Text shown when the pointer rests on a point (n), or nothing.
     """
 
     label: str
@@ -70,9 +70,9 @@ class Chart:
     """Curves over one pair of axes.
 
     Attributes:
-        title: What it shows.
+        title: Title of the figure.
         x: Name and unit of the abscissa; y: of the ordinate.
-        curves: In the order of the legend.
+        curves: Curves in the order of the legend.
         marks: Limits and thresholds.
         log: Names of the logarithmic axes.
         range_y: Part of the ordinate that is shown; None for all.
@@ -144,7 +144,7 @@ class Drawing:
         title: What it shows.
         legend: Pairs of a sample, as SVG of 24 by 12 units, and its name.
         svg: The picture as an SVG element.
-        note: What else the legend says, in words.
+        note: Further line of the legend.
     """
 
     title: str

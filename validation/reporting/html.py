@@ -22,7 +22,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
     """The page.
 
     Args:
-        report: What it shows.
+        report: Report to render.
         provenance: Origin of the numbers, told at the end.
         closing: Last line.
         listed: Whether links to the sections come before them.

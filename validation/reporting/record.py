@@ -32,7 +32,7 @@ class Cell:
         text: Content.
         ok: Verdict; None where nothing was asked.
         shade: Depth of its background, 0 to 1.
-        hint: What is said when the pointer rests on it.
+        hint: Text shown when the pointer rests on it.
     """
 
     text: str
@@ -88,7 +88,7 @@ class Fold:
 
     Attributes:
         summary: The line.
-        blocks: What is folded.
+        blocks: Blocks that are folded.
         opened: Whether it is open at first.
         page_only: Whether the Markdown summary leaves it out.
     """
@@ -137,8 +137,8 @@ class Fact:
     """One key number with its meaning.
 
     Attributes:
-        value: As shown.
-        label: What it is, with unit and bound.
+        value: Value as shown.
+        label: Label, with unit and bound.
         ok: Verdict; None where nothing was asked.
     """
 
@@ -153,13 +153,13 @@ class Report:
 
     Attributes:
         title: Heading.
-        summary: What it found, in a sentence.
+        summary: Result in one sentence.
         ok: Verdict; None for a measurement of which nothing was asked.
-        blocks: What comes before the first section.
+        blocks: Blocks before the first section.
         sections: Parts under headings.
         facts: Key numbers, for the top of the page and for the index of reports.
         highlights: Most telling charts, for the index of reports.
-        digest: What a terminal shows.
+        digest: Lines that a terminal shows.
         unfinished: Names of parts that an interrupt cut.
         refused: Inputs that could not be read, where nothing else is wrong.
     """
@@ -193,7 +193,7 @@ class Topic:
     Attributes:
         name: Name of its command and its files.
         group: Heading that it stands under in the index.
-        question: What it answers.
+        question: Question that it answers.
         compose: JSON of the report -> report.
         arguments: Arguments after `python -m validation` that write it; the name if None.
         everyday: Whether `dashboard --regenerate` writes it; one that takes a plan of one's own is left to hand.

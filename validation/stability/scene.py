@@ -222,7 +222,7 @@ class Verdict:
     """What follows from the maps.
 
     Attributes:
-        statement: What was found, in words, with its numbers.
+        statement: Result in words, with its numbers.
         see: Caption of the maps.
         findings: Claims with bounds.
     """

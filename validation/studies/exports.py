@@ -27,9 +27,9 @@ class Latency:
     """One kind of call in C.
 
     Attributes:
-        name: What was called.
-        median: [ns]; the clock's own cost is in it.
-        high: What 99.9 % stay below [ns].
+        name: Name of what was called.
+        median: Median [ns], the clock's own cost included.
+        high: Bound that 99.9 % stay below [ns].
         worst: The longest [ns].
         bins: Calls below 2, 4, 8, ... ns.
     """
@@ -47,8 +47,8 @@ class ExportStudy:
 
     Attributes:
         model: Name, and sizes.
-        calls: How many calls each latency is of.
-        latencies: In C, one a kind.
+        calls: Number of calls of each latency.
+        latencies: Latencies in C, one a kind.
         overheads: Environment -> what is called -> mean time of a call [ns]; None where a tool is missing.
         bytes: Part -> size.
     """

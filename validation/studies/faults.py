@@ -24,9 +24,9 @@ class Fault:
 
     Attributes:
         kind: Such as "sign flipped".
-        node: Which node.
-        op: What it computes instead.
-        args: Of what.
+        node: Index of the node.
+        op: Operation that it computes instead.
+        args: Operands of that operation.
     """
 
     kind: str

@@ -49,8 +49,8 @@ class Link:
         mass, mc, J: Mass, first moments, inertia about the body's origin.
         axis: Axis of its joint; None for a free one.
         slides: Whether the joint is prismatic.
-        v: Where its speeds are.
-        armature: On the diagonal of M.
+        v: Slice of its speeds in v.
+        armature: Inertia added on the diagonal of M.
         axes: Along which a free joint's speeds are.
     """
 

@@ -260,7 +260,7 @@ class CasadiTree:
 
         Args:
             name: Name as of our generated functions.
-            body: Whose Jacobian.
+            body: Body whose Jacobian is meant.
 
         Raises:
             KeyError: No such function.

@@ -135,7 +135,7 @@ def spinning_frequencies(
         rate: W, about z [rad/s].
         hub: Radius at the root [m].
         elements: ANCFCable.
-        count: How many frequencies.
+        count: Number of frequencies.
 
     Returns:
         Flap and chord (count,) [rad/s].
@@ -230,7 +230,7 @@ def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None
 
     Args:
         load: Load [N].
-        angle: From y, the stiff way, towards z, the soft way [rad].
+        angle: Angle of the load from y, the stiff direction, towards z, the soft one [rad].
         elements: ObjectBeamGeometricallyExact.
         strip: Another strip.
 

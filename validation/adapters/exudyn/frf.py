@@ -47,9 +47,9 @@ class FloatingFrameEngine:
 
     Attributes:
         elastic: The beam.
-        limp: Its motion and weight alone, so that what the difference leaves are the elastic forces.
+        limp: The beam by its motion and weight alone, so that the difference is the elastic forces.
         chart: Their positions and quaternions against our free joint.
-        gravity: What is felt as the frame's acceleration (3,) [m/s^2].
+        gravity: Gravity as felt in the frame, its acceleration included (3,) [m/s^2].
     """
 
     elastic: ExudynSystem
@@ -109,7 +109,7 @@ def build(subject: Subject, own_weight: bool = False) -> FloatingFrameEngine | U
     """Exudyn's body for the one beam of a description.
 
     Args:
-        subject: With the description.
+        subject: Subject with its description.
         own_weight: Whether the weight is Exudyn's load, which errs, rather than an acceleration of the frame.
     """
     obstacle = _obstacle(subject.system)

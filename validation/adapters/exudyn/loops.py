@@ -54,7 +54,7 @@ class JointedEngine:
 
     Attributes:
         system: Exudyn's.
-        assembly: Ours.
+        assembly: Assembly of the description.
         frames: The subject's.
     """
 

@@ -37,7 +37,7 @@ class Cable(NamedTuple):
     """What a beam is made of.
 
     Attributes:
-        elements: How many, of equal length.
+        elements: Number of elements, of equal length.
         EA: Axial stiffness [N].
     """
 
@@ -49,7 +49,7 @@ class Carrier(NamedTuple):
     """A frame on one of Exudyn's bodies.
 
     Attributes:
-        p: Its origin in the world (2,) [m].
+        p: Position of its origin in the world (2,) [m].
         angle: Angle of its x axis in the world [rad].
         body: Exudyn's.
         local: The origin in that body (2,) [m].
@@ -78,9 +78,9 @@ class PlanarTree:
     """A tree in Exudyn.
 
     Attributes:
-        evaluated: Its mass matrix and forces.
-        coordinates: How many.
-        equations: How many algebraic equations its joints take.
+        evaluated: Mass matrix and forces of the system.
+        coordinates: Number of coordinates.
+        equations: Number of algebraic equations of its joints.
     """
 
     evaluated: ExudynSystem
@@ -110,7 +110,7 @@ def planar_tree(system: sf.System, angles: Mapping[str, float], cables: Mapping[
     Args:
         system: The description.
         angles: Angles of its hinges in the reference configuration, by joint; 0 where none is given [rad].
-        cables: What its beams are made of, by body.
+        cables: Cable elements of its beams, by body.
 
     Raises:
         ValueError: A joint or a beam is beyond what this builds; with the reason.

@@ -42,7 +42,7 @@ class Rod:
         EA: Axial stiffness [N].
         rhoA: Mass per length [kg/m].
         duration: Duration of the spin-up [s].
-        rate: At its end [rad/s].
+        rate: Rate at its end [rad/s].
     """
 
     length: float
@@ -102,7 +102,7 @@ def planar(
     Args:
         system: The description, of what `validation.adapters.exudyn.planar` takes.
         angles: Angles of its hinges in the reference configuration, by joint [rad].
-        cables: What its beams are made of, by body.
+        cables: Cable elements of its beams, by body.
         place: Place of the point in the frame of the last joint [m].
     """
 
@@ -193,7 +193,7 @@ def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Tim
     Args:
         system: Hinges about z, closures of two translations, springs between frames.
         angles: Angles of the hinges, with which its loops are closed [rad].
-        torque: On the first body, about z [N m].
+        torque: Torque on the first body, about z [N m].
     """
     assembly = assemble(system)
     numbers = system.parameter_values()
@@ -258,7 +258,7 @@ def held(system: sf.System, start: Array, targets: Array, stiffness: float, damp
     Args:
         system: Hinges about x, y or z of their frames.
         start: Angles at the start, at rest (n) [rad].
-        targets: Where the tree's own springs on the joints rest (n) [rad].
+        targets: Angles at which the springs on the joints rest (n) [rad].
         stiffness: Stiffness of each [N m/rad].
         damping: Damping of each [N m s/rad].
     """

@@ -143,7 +143,7 @@ def turning_energy(beam: Flexible, q: SX, rate: Callable[[SX], SX], w_B: SX) -> 
 
     Args:
         beam: The beam.
-        q: Its elastic coordinates.
+        q: Elastic coordinates of the beam.
         rate: The rate of an expression of them.
         w_B: Angular velocity of its frame, along its axes.
     """

@@ -37,13 +37,13 @@ class LagrangianEngine:
     """The energies of a tree behind the `Engine` protocol.
 
     Attributes:
-        tree: Its equations.
+        tree: Equations of the tree.
         stated: The description's formulas of joint forces.
         poses: Poses of the subject's frames; velocities and accelerations.
-        turnings: What their velocities change by with the configuration, in the direction (a, dds).
-        frames: How many frames.
-        capabilities: What it offers for this system.
-        most_states: What it is asked for at once.
+        turnings: Change of the velocities with the configuration, in the direction (a, dds).
+        frames: Number of frames.
+        capabilities: Quantities that it offers for this system.
+        most_states: Largest number of states in one call.
     """
 
     tree: Lagrangian

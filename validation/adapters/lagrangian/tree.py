@@ -52,13 +52,14 @@ class Node:
 
     Attributes:
         parent: Index of a node, or WORLD.
-        body: None for one without mass.
+        body: Body; None for one without mass.
         count: Number of speeds of the joint.
         motion: Position and rotation in the parent's frame, of the joint's coordinates.
         prescribed: Whether the joint's motion is given.
         manifold: Manifold of the coordinates: "ball" (quaternion x, y, z, w), "free" (position, quaternion) or "flat".
-        rotors: That the joint drives.
-        at: Its first coordinate and speed, among the free or the prescribed ones; None: after those of the node before.
+        rotors: Rotors that the joint drives.
+        at: Index of its first coordinate and speed, among the free or the prescribed ones; None: after those of the
+            node before.
         tip: A rigid body fixed to the tip of a beam, in the tip's frame.
     """
 
@@ -145,8 +146,8 @@ class Lagrangian:
 
     Args:
         nodes: Parents before children; coordinates are in this order, a joint's before its beam's.
-        gravity: In the world [m/s^2].
-        symbols: Those that loads are formulas of; None: new ones.
+        gravity: Acceleration of gravity in the world [m/s^2].
+        symbols: Symbols of which loads are formulas; None: new ones.
     """
 
     def __init__(

@@ -20,9 +20,9 @@ class MujocoMotion:
     Attributes:
         q: Positions at the end (nq).
         v: Speeds at the end (nv).
-        energy: At samples on the way (n) [J].
+        energy: Energy at samples on the way (n) [J].
         violation: Largest distance between frames that are to coincide, at those samples [m].
-        warning: What the engine said of its own; "" if nothing.
+        warning: Warning of the engine; "" if none.
     """
 
     q: Array
@@ -36,11 +36,11 @@ def move(mjcf: str, q0: Array, v0: Array, t_end: float, samples: int = 200) -> M
     """Step a model of MJCF text from a state; the loop between samples is MuJoCo's own.
 
     Args:
-        mjcf: With its time step and integrator.
+        mjcf: Model as MJCF, with its time step and integrator.
         q0: Positions (nq).
         v0: Speeds (nv).
         t_end: Duration, of whole steps [s].
-        samples: How often energy and closures are looked at.
+        samples: Number of samples of energy and closures.
     """
     m: Any = mujoco.MjModel.from_xml_string(mjcf)
     d: Any = mujoco.MjData(m)
@@ -72,11 +72,11 @@ def servo(
         engine: Engine of `validation.adapters.mujoco.tree`, hinges and slides only.
         q0: Our coordinates (nq).
         v0: Our speeds (nv).
-        targets: Where the springs rest (nq).
+        targets: Coordinates at which the springs rest (nq).
         stiffness: Stiffness of each.
         damping: Damping of each.
         h: Step [s].
-        steps: How many.
+        steps: Number of steps.
 
     Returns:
         Our coordinates and speeds at the end, and the seconds that MuJoCo's loop took.

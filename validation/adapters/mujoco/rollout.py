@@ -29,11 +29,11 @@ def roll_out(
         engine: Engine of `validation.adapters.mujoco.tree`, hinges and slides only.
         q0: Our coordinates (n, nq).
         v0: Our speeds (n, nv).
-        targets: Where the springs rest (nq).
+        targets: Coordinates at which the springs rest (nq).
         stiffness: Stiffness of each.
         damping: Damping of each.
         h: Step [s].
-        steps: How many.
+        steps: Number of steps.
         threads: MjData that share the trajectories, a thread each.
 
     Returns:

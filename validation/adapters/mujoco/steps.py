@@ -24,7 +24,7 @@ def held(engine: Any, targets: Array, stiffness: float, damping: float) -> Any:
 
     Args:
         engine: Engine of `validation.adapters.mujoco.tree`.
-        targets: Where the springs rest, in our coordinates (nq).
+        targets: Coordinates at which the springs rest, in our convention (nq).
         stiffness: Stiffness of each [N m/rad].
         damping: Damping of each [N m s/rad].
     """
@@ -47,8 +47,8 @@ def stepped(m: Any, integrator: str, h: float, q0: Array, v0: Array, times: int,
         integrator: One of INTEGRATORS.
         h: Step [s].
         q0: MuJoCo's positions at the start (nq).
-        v0: Its speeds (nv).
-        times: How often to read, the start not counted.
+        v0: First speeds (nv).
+        times: Number of readings, the start not counted.
         between: Steps from one reading to the next, taken by one call.
 
     Returns:

@@ -36,10 +36,10 @@ class MujocoEngine:
 
     Attributes:
         name: "mujoco", or "mujoco-urdf" for its own reading of a file.
-        model: What MuJoCo computes with.
-        chart: Its coordinates against ours.
-        sites: Its indices of the subject's frames.
-        capabilities: What it offers on this route.
+        model: MuJoCo's model.
+        chart: Map between its coordinates and ours.
+        sites: Indices of the subject's frames among its sites.
+        capabilities: Quantities that it offers on this route.
     """
 
     name: str
@@ -287,7 +287,7 @@ def chart_of(model: Any, assembly: Assembly, names: Mapping[str, str] | None = N
 
     Args:
         model: An MjModel.
-        assembly: Ours.
+        assembly: Assembly of the description.
         names: Our joints' names -> its names, where they may differ.
 
     Raises:

@@ -49,8 +49,8 @@ class LoopEngine:
     """A `pinocchio.Model` with rigid constraints.
 
     Attributes:
-        tree: Its model without constraints.
-        closures: Ours.
+        tree: Pinocchio's model without constraints.
+        closures: Closures of the description.
         ties: Pinocchio's, in order.
     """
 

@@ -30,10 +30,10 @@ class PinocchioEngine:
 
     Attributes:
         name: "pinocchio", or "pinocchio-urdf" for its own reading of a file.
-        model: What Pinocchio computes with.
-        chart: Its coordinates against ours.
-        frames: Its indices of the subject's frames.
-        capabilities: What it offers on this route.
+        model: Pinocchio's model.
+        chart: Map between its coordinates and ours.
+        frames: Indices of the subject's frames in its model.
+        capabilities: Quantities that it offers on this route.
     """
 
     name: str
