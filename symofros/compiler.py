@@ -45,8 +45,8 @@ def compile_system(system: System, options: Options | None = None) -> Model:
     """Derive a system's equations of motion, generate C, compile it, load it.
 
     Args:
-        system: What the user stated.
-        options: What to generate and how; the defaults serve most.
+        system: System as the user stated it.
+        options: Options: what to generate and how; the defaults serve most.
 
     Raises:
         DescriptionError: The system can't be a mechanism; every problem is listed.
@@ -62,8 +62,8 @@ def compile_library(
     """The shared library of a system, for programs that call C themselves.
 
     Args:
-        system: What the user stated.
-        options: What to generate; backend "c".
+        system: System as the user stated it.
+        options: Options: what to generate; backend "c".
         precision: Precision of the lanes of functions by vectors (`sym_lanes`); "single": of batches by rows, too.
 
     Returns:
@@ -80,7 +80,7 @@ def program_of(system: System, functions: Iterable[str], frames: Iterable[str] =
     """The graph of some functions of a system, for tools that look inside: counts, mutations, other evaluators.
 
     Args:
-        system: What the user stated.
+        system: System as the user stated it.
         functions: Names of model and frame functions.
         frames: Frames of the frame functions.
 
@@ -105,8 +105,8 @@ class Compilation:
     """One system under one set of options; each stage is formed once, when it is first asked for.
 
     Args:
-        system: What the user stated.
-        options: What to generate and how; the defaults serve most.
+        system: System as the user stated it.
+        options: Options: what to generate and how; the defaults serve most.
     """
 
     def __init__(self, system: System, options: Options | None = None) -> None:
@@ -154,7 +154,7 @@ class Compilation:
         """C text of the requested functions.
 
         Args:
-            c_name: What C symbols begin with; made of the model's name by default.
+            c_name: Prefix of C symbols; made of the model's name by default.
         """
         return model_source(self.program, self.record, GENERATOR, c_name=c_name)
 

@@ -183,7 +183,7 @@ class Block:
     Attributes:
         name: Unique in its diagram: letters, digits and underscores.
         period: Seconds between samples; None: continuous.
-        offset: When the first sample is taken [s].
+        offset: Time of the first sample [s].
     """
 
     name: str

@@ -81,7 +81,7 @@ def constrained(M: Array, r: Array, G: Array, c: Array, *, solve: Solution = sol
         r: (n, nv).
         G: (n, nc, nv).
         c: (n, nc).
-        solve: For one state.
+        solve: Solver for one state.
     """
     solutions = [solve(*state) for state in zip(M, r, G, c, strict=True)]
     a, lam, rank = zip(*solutions, strict=True)

@@ -38,7 +38,7 @@ class Rate:
 
     Attributes:
         formula: Text or SymPy expression.
-        order: How often.
+        order: Number of differentiations by time.
     """
 
     formula: Any
@@ -54,8 +54,8 @@ class Functions:
         units: Functions built already.
         par: Values of the run-time parameters; None for the defaults.
         formulas: Generates and compiles a user's formulas.
-        threads: How many share a large batch.
-        precision: Of what functions take and return.
+        threads: Number of threads that share a large batch.
+        precision: Precision of what functions take and return.
     """
 
     def __init__(

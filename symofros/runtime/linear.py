@@ -53,7 +53,7 @@ def linearize(
         segments: Segments of the configuration.
         slopes: The derivatives of (v'; lam) by q, v and u.
         v: Speeds (..., nv).
-        outputs: See `Model.linearize`.
+        outputs: Outputs, as of `Model.linearize`.
         frame_derivatives: The derivatives of a frame's motion by its name, at the state and its accelerations.
     """
     nv, nu = slopes[1].shape[-1], slopes[2].shape[-1]

@@ -73,7 +73,7 @@ class ModelRecord:
         segments: The configuration manifold, in order.
         periodic: Coordinates that are angles, so that unbounded ones are sampled in one turn.
         constraint_names: One a condition: the constraint's name, and which of its conditions.
-        speed_conditions: Those of them that bind speeds only.
+        speed_conditions: Names of the conditions that bind speeds only.
         wrench_names: Constraints that act on bodies by a wrench: all but conditions by formula.
         closures: Closures of frames, for checks of their rotations.
         driven: Inputs that prescribe motion, the last of u.

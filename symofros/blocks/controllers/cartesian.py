@@ -84,7 +84,7 @@ class CartesianFeedback(_Cartesian):
     Attributes:
         model: The model; it has no closures.
         frame: Frame of the model.
-        rows: Which rows of its motion, as in `InverseKinematics`.
+        rows: Rows of its motion, as in `InverseKinematics`.
         kp: One, or one a row [1/s^2].
         kd: Derivative gain of each row, or one for all [1/s].
         idle: Damping of motion that the task leaves free [1/s].

@@ -35,7 +35,7 @@ class MovingLink:
         name: Name of the link's body.
         parent: Index of the parent, or BASE.
         R_AL: Rotation from link to parent.
-        p_AL: From Ao to Lo, in A [m].
+        p_AL: Position of Lo from Ao, in A [m].
         partial_velocities: Partial velocities of L in A, in L, one a speed.
         speeds: Edges of those speeds.
         rates: Edge of each speed's rate where the motion is prescribed; None where it is free.
@@ -140,7 +140,7 @@ def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) 
     """Lower a tree's joints, beams and offsets into a graph.
 
     Args:
-        g: Where the operations go.
+        g: Graph that receives the operations.
         tree: Checked and numbered.
         deflected_tips: Whether every tip is where its deflection puts it; otherwise the tips of beams of zeroth order
             stay at their undeformed places, as their equations of motion take it.

@@ -54,7 +54,7 @@ class Lowering:
         """A chain of constant displacements, seen from the link frame L.
 
         Args:
-            placement: From the link's body frame B outwards to a frame F.
+            placement: Steps from the link's body frame B outwards to a frame F.
             R_LB: The body frame in the link frame (same origin).
 
         Returns:

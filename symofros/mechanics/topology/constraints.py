@@ -22,7 +22,7 @@ def anchor_problems(
     Args:
         what: The thing that names it, for the message.
         anchor: (body, frame).
-        bodies: By name.
+        bodies: Bodies by name.
         base: The base, which "world" stands for.
         broken: Names that could not be read; nothing is said of them.
         where: "file:line".

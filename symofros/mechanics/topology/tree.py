@@ -32,7 +32,7 @@ class Link:
         name: Name of the body whose frame is the link's.
         joint: Joint between the link and its parent.
         parent: Index of the parent link, or BASE.
-        placement: From the parent's frame to the joint's proximal frame P.
+        placement: Steps from the parent's frame to the joint's proximal frame P.
         inertias: Inertias of the body and of the bodies fixed to it, each with its placement on the link.
         q: Slice of q as (start, size); empty where the motion is prescribed.
         v: Slice of v as (start, size); empty where the motion is prescribed.
@@ -59,7 +59,7 @@ class NamedFrame:
         name: Public name: the frame's own where that is unique in the system, otherwise "body.frame".
         qualified: "body.frame", or the body's name for a body frame.
         link: Index of the link it is on, or BASE.
-        placement: From the link's frame to it.
+        placement: Steps from the link's frame to it.
     """
 
     name: str
@@ -123,7 +123,7 @@ def build_tree(system: System) -> SpanningTree:
     """Number a system that has been checked (`graph.check`).
 
     Args:
-        system: Without problems; this function relies on it.
+        system: System without problems, on which this function relies.
     """
     children: dict[str, list[Body]] = {}
     base_names = {WORLD} | {body.name for body in system.bodies if body.joint is None}

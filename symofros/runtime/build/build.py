@@ -51,10 +51,10 @@ def recall_library(
     Args:
         recipe: All that the C text depends on, but for the code that writes it.
         source: Gives the text.
-        header: As for `build_library`, and so the others.
+        header: Header, as of `build_library`, like the others.
         toolchain: The compiler.
-        flags: In place of the default ones.
-        dispatch: What chooses among kinds of processors.
+        flags: Flags in place of the default ones.
+        dispatch: C text that chooses among kinds of processors.
         symbol: The exported function.
 
     Raises:
@@ -100,7 +100,7 @@ def build_library(
         source: Text of the C file.
         header: Text of symofros_model.h.
         toolchain: The compiler.
-        flags: In place of the default ones.
+        flags: Flags in place of the default ones.
         dispatch: Text of the C file that chooses among the kinds of processors; none: for this machine's alone.
         symbol: The exported function, which each kind has under a name of its own.
 

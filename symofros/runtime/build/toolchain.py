@@ -53,7 +53,7 @@ class Toolchain:
 
     Attributes:
         command: Program and leading arguments.
-        identity: What it says of its version; part of the cache key.
+        identity: Version as the compiler states it; part of the cache key.
         is_fallback: Whether it is the ziglang package's rather than the system's.
     """
 
@@ -103,9 +103,9 @@ def call_compiler(command: Sequence[str], folder: Path, remedy: str) -> None:
     """Run a compiler in a folder.
 
     Args:
-        command: With its arguments.
-        folder: Where.
-        remedy: What to do about a refusal.
+        command: Command with its arguments.
+        folder: Working folder.
+        remedy: Remedy to state if it fails.
 
     Raises:
         CompileError: It refused: with its command and words.

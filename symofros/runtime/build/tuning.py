@@ -37,8 +37,8 @@ class Build:
 
     Attributes:
         toolchain: The compiler.
-        flags: Its flags; None for the default.
-        packs: As in Options.
+        flags: Flags; None for the default ones.
+        packs: Whether packs share vectors, as in Options.
     """
 
     toolchain: Toolchain

@@ -26,7 +26,7 @@ class Bound:
         evaluate: Computes, on the arrays.
         arrays: Arrays of each input and output, by name.
         signature: Signature of the function.
-        kept: What must live as long as this.
+        kept: Objects that must live as long as this.
 
     Attributes:
         inputs: Group, such as "q" -> array (size), or (n, size) of a batch, to be written into.
@@ -55,7 +55,7 @@ def bind(kernel: Kernel, par: Array, given: Mapping[str, Array], defaults: Mappi
         kernel: The function.
         par: Run-time parameters (npar).
         given: Arrays of the caller's, inputs and outputs, used as they are.
-        defaults: What inputs that are not given hold at first; zeros otherwise.
+        defaults: First values of inputs that are not given; zeros otherwise.
 
     Raises:
         UnknownNameError: The function has no such input or output.
@@ -94,8 +94,8 @@ def bind_batch(
         layout: Layout of arrays that are not given: each state in a row, or the states as the fast axis.
         par: Run-time parameters (npar), or of each state (n, npar).
         given: Arrays of the caller's: inputs (n, size), or (size) for all states; outputs (n, ...).
-        defaults: What inputs that are not given hold at first, in each state; zeros otherwise.
-        threads: How many share a large batch.
+        defaults: First values of inputs that are not given, in each state; zeros otherwise.
+        threads: Number of threads that share a large batch.
 
     Raises:
         UnknownNameError: The function has no such input or output.

@@ -152,7 +152,7 @@ class BatchKernel(Kernel, Protocol):
             pre: (n or 1, npre), from `prepare`.
             inputs: Each (n or 1, size), in steps of whole numbers, in the signature's order.
             outputs: Each (n, size), alike.
-            threads: How many share a large batch.
+            threads: Number of threads that share a large batch.
         """
         ...
 

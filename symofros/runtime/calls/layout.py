@@ -40,7 +40,7 @@ def states(array: Numbers, batch: tuple[int, ...]) -> Numbers:
     A view, unless the states do not lie at equal distances in the order of the batch; then a copy, row by row.
 
     Args:
-        array: Its leading dimensions broadcast to the batch.
+        array: Array whose leading dimensions broadcast to the batch.
         batch: All leading dimensions.
     """
     size = array.shape[-1]
@@ -81,8 +81,8 @@ class Strided(NamedTuple):
     Attributes:
         array: The numbers, kept alive.
         address: Address of the first.
-        step: From one entry to the next, in numbers.
-        stride: From one state to the next; 0: one for all.
+        step: Distance from one entry to the next, in numbers.
+        stride: Distance from one state to the next, in numbers; 0: one for all.
     """
 
     array: Numbers

@@ -38,8 +38,8 @@ class CompiledUnit:
 
     Args:
         path: Path of the library.
-        symbol: Its exported function, `NAME_model`.
-        expected_hash: What the struct must say.
+        symbol: Name of its exported function, `NAME_model`.
+        expected_hash: Hash that the struct must state.
         in_lanes: Function, and how to use vectors -> the same by vectors, or None; asked for once, at the first large
             batch.
 
@@ -116,8 +116,8 @@ class CompiledKernel:
 
     Args:
         unit: The library.
-        function: Its sym_function.
-        by_vectors: Its sym_lanes, if there is code by vectors.
+        function: Its `sym_function` in C.
+        by_vectors: Its `sym_lanes` in C, if there is code by vectors.
     """
 
     def __init__(self, unit: CompiledUnit, function: Any, by_vectors: Any = None) -> None:

@@ -21,7 +21,7 @@ def share(n: int, threads: int, work: Callable[[int, int], None]) -> None:
 
     Args:
         n: Rows.
-        threads: At most; this one is one of them.
+        threads: Number of threads at most, this one included.
         work: What runs without the interpreter lock for most of its time; what it raises is raised here.
     """
     together([partial(work, first, end) for first, end in parts(n, threads)])

@@ -70,7 +70,7 @@ def shifted(S: Vec3, J: Sym3, p: Vec3) -> Sym3:
     Args:
         S: First moment about the old origin.
         J: Inertia tensor about the old origin.
-        p: From the new origin to the old.
+        p: Position of the old origin from the new one [m].
     """
     g = S.g
     twice = p + p

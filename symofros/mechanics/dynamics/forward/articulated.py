@@ -156,7 +156,7 @@ class _FreeJoint:
         v: Index of the first speed.
 
     Attributes:
-        body: That body with the joint free.
+        body: Articulated body with the joint free.
         in_parent: Whether that body is the parent.
 
     Raises:
