@@ -17,6 +17,7 @@ from symofros.generator import programs
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.topology import graph
 from symofros.runtime.build import build
+from symofros.runtime.calls import binding
 from symofros.studio.editor.jobs.operations import compile_model
 
 
@@ -35,6 +36,7 @@ def work(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Counter[str]:
         monkeypatch.setattr(owner, name, counting)
 
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
+    binding.native_library.cache_clear()  # Another test of this process may have loaded it.
     count(Equations, "__init__", "derivations")
     count(programs, "form_program", "programs")
     count(build, "call_compiler", "compilations")

@@ -14,7 +14,8 @@ import symofros.blocks as library
 from symofros.diagrams.block import Block
 
 PAGE = (Path(__file__).parents[2] / "docs" / "blocks.md").read_text()
-BLOCKS = {name: item for name, item in vars(library).items() if isinstance(item, type) and issubclass(item, Block)}
+CLASSES = {name: item for name, item in vars(library).items() if isinstance(item, type)}
+BLOCKS = {name: item for name, item in CLASSES.items() if issubclass(item, Block) and item is not Block}
 
 
 @cache

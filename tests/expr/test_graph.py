@@ -78,7 +78,7 @@ def test_labels_stay_on_computed_nodes(g: Graph) -> None:
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=2), st.sampled_from([n for n, op in OPS.items()]))
 def test_folding_equals_the_op_table(numbers: list[float], name: str) -> None:
-    """What the graph folds is what the interpreter computes."""
+    """To the bit where IEEE 754 prescribes it; functions are folded correctly rounded, which C libraries miss by an ulp."""
     g, op = Graph(), OPS[name]
     args = numbers[: op.arity]
     if name == "div" and args[1] == 0.0:
@@ -88,4 +88,7 @@ def test_folding_equals_the_op_table(numbers: list[float], name: str) -> None:
         return
     edges = [g.constant(x) for x in args]
     build = {"add": g.add, "mul": g.mul, "div": g.div}.get(name, lambda *e: g.call(name, *e))
-    assert g.number(build(*edges)) == expected
+    folded = g.number(build(*edges))
+    assert folded is not None
+    allowed = 0.0 if name in ("add", "mul", "div", "sqrt") else math.ulp(expected)
+    assert folded == expected or abs(folded - expected) <= allowed

@@ -81,7 +81,7 @@ def test_real_time(tmp_path: Path) -> None:
         (["--signals", "plant.q[7]"], "no such entry"),
         (["--set", "pd.ki=1"], "no run-time parameter 'pd.ki'"),
         (["--set", "pd.kp=1,2,3"], "does not fit"),
-        (["--input", "q1=0"], "inputs are blocks"),
+        (["--input", "q1=0"], "those of a diagram are blocks"),
         (["--jitter", "j.png"], "add --realtime"),
         (["--method", "bdf"], "no method 'bdf'"),
         (["-o", "r.xlsx"], "can't save as"),

@@ -58,7 +58,7 @@ def test_the_key_does_not_name_the_machine(monkeypatch: pytest.MonkeyPatch, tmp_
     model = (
         '#include "symofros_model.h"\nSYM_EXPORT const sym_model *m(void);\nconst sym_model *m(void) { return 0; }\n'
     )
-    header = (Path(library.__file__).parents[1] / "native/model/symofros_model.h").read_text(encoding="utf-8")
+    header = (Path(library.__file__).parents[2] / "native/model/symofros_model.h").read_text(encoding="utf-8")
     native = build_library(model, header, toolchain)
     anywhere = build_library(model, header, toolchain, None, dispatch_source("m"), "m")
     monkeypatch.setattr("symofros.runtime.build.build.cpu_identity", lambda: "another machine")
