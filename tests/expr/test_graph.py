@@ -78,7 +78,7 @@ def test_labels_stay_on_computed_nodes(g: Graph) -> None:
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=2), st.sampled_from([n for n, op in OPS.items()]))
 def test_folding_equals_the_op_table(numbers: list[float], name: str) -> None:
-    """To the bit where IEEE 754 prescribes it; functions are folded correctly rounded, which C libraries miss by an ulp."""
+    """To the bit where IEEE 754 prescribes it; functions are folded correctly rounded, C libraries miss by an ulp."""
     g, op = Graph(), OPS[name]
     args = numbers[: op.arity]
     if name == "div" and args[1] == 0.0:
