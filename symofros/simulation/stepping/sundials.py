@@ -7,6 +7,7 @@ solvers' history stays smooth.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any
@@ -54,7 +55,7 @@ class _InputFailedError(Exception):
     """A Python function of inputs has failed; the stepper holds what it raised."""
 
 
-class _Run:
+class _Run(ABC):
     """One run by SUNDIALS: from step to step, with interpolation at the times that are recorded.
 
     Attributes:
@@ -80,8 +81,9 @@ class _Run:
             status = self.stepper.place(self._reached, y)
         return status
 
+    @abstractmethod
     def _begin(self, y: Array) -> None:
-        raise NotImplementedError
+        """Create the solver and place it at the first state y = (q, v)."""
 
     def _options(self) -> dict[str, Any]:
         """What both solvers take alike."""
@@ -98,9 +100,9 @@ class _Run:
             options |= {"eventsfn": values, "num_events": len(events)}
         return options
 
+    @abstractmethod
     def _event_function(self) -> Any:
         """A function of the solver's arguments that evaluates the events; not a method, which takes no attributes."""
-        raise NotImplementedError
 
     def _evaluate_events(self, t: float, y: Array, values: Array) -> None:
         if self.stepper.event_values(t, y, values) != Status.RUNNING:
