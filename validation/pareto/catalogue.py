@@ -1,15 +1,15 @@
-"""The scenes, in the order of the report."""
+"""The problems, in the order of the report."""
 
 from __future__ import annotations
 
-from validation.pareto.scene import Scene
-from validation.pareto.scenes import andrews, arm, four_bar, pendulum, robot, spin_up
+from validation.pareto.problem import BenchmarkProblem
+from validation.pareto.problems import andrews, arm, four_bar, pendulum, robot, spin_up
 
-SCENES: dict[str, Scene] = {
-    "spin_up": spin_up.SCENE,
-    "robot": robot.SCENE,
-    "arm": arm.SCENE,
-    "four_bar": four_bar.SCENE,
-    "andrews": andrews.SCENE,
-    "pendulum": pendulum.SCENE,
+PROBLEMS: dict[str, BenchmarkProblem] = {
+    "spin_up": spin_up.PROBLEM,
+    "robot": robot.PROBLEM,
+    "arm": arm.PROBLEM,
+    "four_bar": four_bar.PROBLEM,
+    "andrews": andrews.PROBLEM,
+    "pendulum": pendulum.PROBLEM,
 }

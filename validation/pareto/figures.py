@@ -7,8 +7,8 @@ from itertools import pairwise
 from string import ascii_lowercase
 
 from validation.pareto.front import charted, front, usable
+from validation.pareto.problem import OURS, BenchmarkProblem, Point
 from validation.pareto.race import Result
-from validation.pareto.scene import OURS, Point, Scene
 from validation.reporting.figures import SHAPES, Chart, Curve, Figure, Kind, Mark, Tag
 
 TIME = "time of the processor  [s]"
@@ -22,29 +22,29 @@ def letters(count: int) -> list[str]:
     return [ascii_lowercase[i % 26] + (str(i // 26) if i >= 26 else "") for i in range(count)]
 
 
-def figure(scene: Scene, result: Result, caption: str) -> Figure:
+def figure(problem: BenchmarkProblem, result: Result, caption: str) -> Figure:
     """Everything that ran, by model; and the methods on the model that matters."""
-    points = charted(scene, result.points)
-    return Figure(caption, (models_chart(scene, result), _methods_chart(scene, result, points)))
+    points = charted(problem, result.points)
+    return Figure(caption, (models_chart(problem, result), _methods_chart(problem, result, points)))
 
 
-def models_chart(scene: Scene, result: Result) -> Chart:
+def models_chart(problem: BenchmarkProblem, result: Result) -> Chart:
     """Every run, a colour and shape a model, and the front with the letters of its runs."""
-    points = charted(scene, result.points)
+    points = charted(problem, result.points)
     best = front(points)
     stairs = [(b.seconds, a.error) for a, b in pairwise(best)] + [(p.seconds, p.error) for p in best]
     stairs.sort(key=lambda at: (at[0], -at[1]))
     line = Curve("front", [x for x, _ in stairs], [y for _, y in stairs], _FRONT)
     tags = tuple(Tag(name, p.seconds, p.error) for name, p in zip(letters(len(best)), best, strict=True))
-    title = f"{scene.title}: every run, and the front"
+    title = f"{problem.title}: every run, and the front"
     curves = (*_series(points, lambda p: p.model, "points"), line)
-    return Chart(title, TIME, scene.axis, curves, _marks(result, points), log="xy", tags=tags)
+    return Chart(title, TIME, problem.axis, curves, _marks(result, points), log="xy", tags=tags)
 
 
-def _methods_chart(scene: Scene, result: Result, points: list[Point]) -> Chart:
+def _methods_chart(problem: BenchmarkProblem, result: Result, points: list[Point]) -> Chart:
     curves = _series(_finest(points), lambda p: p.method, "joined")
     title = "methods: each on its best model"
-    return Chart(title, TIME, scene.axis, curves, _marks(result, points), log="xy")
+    return Chart(title, TIME, problem.axis, curves, _marks(result, points), log="xy")
 
 
 def _finest(points: list[Point]) -> list[Point]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
-from validation.pareto.scene import Point, Scene
+from validation.pareto.problem import BenchmarkProblem, Point
 
 
 def usable(points: Iterable[Point]) -> list[Point]:
@@ -14,9 +14,9 @@ def usable(points: Iterable[Point]) -> list[Point]:
     return [p for p in points if not p.ended and 0.0 < p.error < math.inf and 0.0 < p.seconds < math.inf]
 
 
-def charted(scene: Scene, points: Iterable[Point]) -> list[Point]:
+def charted(problem: BenchmarkProblem, points: Iterable[Point]) -> list[Point]:
     """Those worth a chart: errors far beyond what is asked for, or beyond all of a motion, are no accuracy."""
-    worst = max((target.error for target in scene.targets), default=math.inf)
+    worst = max((target.error for target in problem.targets), default=math.inf)
     return [p for p in usable(points) if p.error <= max(1e2 * worst, 1e-2)]
 
 

@@ -1,4 +1,4 @@
-"""Runs the contestants of a scene, each several times."""
+"""Runs the contestants of a problem, each several times."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from validation.pareto.scene import OURS, Contestant, Point, Prepared, Scene
+from validation.pareto.problem import OURS, BenchmarkProblem, Contestant, Point, Prepared
 
 # A run is repeated until it was done so often, or has taken so much time in all; always twice where it is short.
 REPEATS, ENOUGH = 9, 0.4
@@ -15,7 +15,7 @@ REPEATS, ENOUGH = 9, 0.4
 
 @dataclass(frozen=True)
 class Result:
-    """A scene that was run.
+    """A problem that was run.
 
     Attributes:
         points: Error and time of each contestant.
@@ -33,11 +33,14 @@ class Result:
 
 
 def race(
-    scene: Scene, quick: bool, begun: Callable[[int], None] = lambda _: None, done: Callable[[], None] = lambda: None
+    problem: BenchmarkProblem,
+    quick: bool,
+    begun: Callable[[int], None] = lambda _: None,
+    done: Callable[[], None] = lambda: None,
 ) -> Result:
-    """Prepare a scene and run it; `begun` hears how many contestants there are, `done` is called after each."""
+    """Prepare a problem and run it; `begun` hears how many contestants there are, `done` is called after each."""
     start = time.perf_counter()
-    prepared: Prepared = scene.prepare(quick)
+    prepared: Prepared = problem.prepare(quick)
     begun(len(prepared.contestants))
     points = []
     for contestant in prepared.contestants:

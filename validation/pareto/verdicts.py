@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from validation.pareto.front import charted, front, ratio, seconds_at, usable
+from validation.pareto.problem import OURS, BenchmarkProblem, Point, Target
 from validation.pareto.race import Result, engines
-from validation.pareto.scene import OURS, Point, Scene, Target
 from validation.reporting.numbers import duration
 
 
@@ -34,22 +34,22 @@ class Verdict:
         return bool(self.ratio >= self.target.ratio)
 
 
-def verdicts(scene: Scene, points: tuple[Point, ...]) -> list[Verdict]:
+def verdicts(problem: BenchmarkProblem, points: tuple[Point, ...]) -> list[Verdict]:
     """The verdict on each target."""
     judged = []
-    for target in scene.targets:
+    for target in problem.targets:
         sides = [seconds_at((p for p in points if p.who == who), target.error) for who in (OURS, target.engine)]
         judged.append(Verdict(target, sides[0], sides[1], ratio(points, OURS, target.engine, target.error)))
     return judged
 
 
-def compared(scene: Scene, points: tuple[Point, ...]) -> list[str]:
+def compared(problem: BenchmarkProblem, points: tuple[Point, ...]) -> list[str]:
     """A sentence on each target."""
-    return [_sentence(scene, verdict) for verdict in verdicts(scene, points)]
+    return [_sentence(problem, verdict) for verdict in verdicts(problem, points)]
 
 
-def _sentence(scene: Scene, verdict: Verdict) -> str:
-    at, engine = scene.shown(verdict.target.error), verdict.target.engine
+def _sentence(problem: BenchmarkProblem, verdict: Verdict) -> str:
+    at, engine = problem.shown(verdict.target.error), verdict.target.engine
     if math.isnan(verdict.ratio):
         return f"At {at} neither symofros nor {engine} has a run."
     if verdict.ratio == 0.0:
@@ -64,37 +64,37 @@ def _sentence(scene: Scene, verdict: Verdict) -> str:
     return f"At {at} {engine} wins by {1.0 / verdict.ratio:.3g}: symofros takes {times} of {engine}'s best."
 
 
-def advice(scene: Scene, result: Result) -> list[str]:
+def advice(problem: BenchmarkProblem, result: Result) -> list[str]:
     """Which to use when: the front from the fastest to the most accurate, a line for each side, model and method."""
-    best = front(charted(scene, result.points))
+    best = front(charted(problem, result.points))
     lines = []
     for (who, model, method), group in groupby(best, key=lambda p: p.series):
         run = list(group)
         times = duration(run[-1].seconds)
         lines.append(
-            f"down to an error of {scene.shown(run[-1].error)}: {who}, {model}, {method}, {run[-1].setting} ({times})"
+            f"down to an error of {problem.shown(run[-1].error)}: {who}, {model}, {method}, {run[-1].setting} ({times})"
         )
     return lines
 
 
-def below_the_floor(scene: Scene, result: Result) -> str:
+def below_the_floor(problem: BenchmarkProblem, result: Result) -> str:
     """Who serves those who want less than our model's own error."""
     if not result.floors:
         return ""
     least = min(result.floors.values())
     finer = [p for p in usable(result.points) if p.who != OURS and p.error < least]
-    floors = ", ".join(f"{scene.shown(value)} ({name})" for name, value in result.floors.items())
+    floors = ", ".join(f"{problem.shown(value)} ({name})" for name, value in result.floors.items())
     said = f"Our beam model leaves {floors}, whatever its functions and method (a step's error may hide some of it)"
     if not finer:
         return f"{said}; no run here goes below it."
     first = min(finer, key=lambda p: p.seconds)
     return (
-        f"{said}; below {scene.shown(least)} {first.who} is the tool: {first.model}, {first.method}, "
-        f"{first.setting} reach {scene.shown(first.error)} in {duration(first.seconds)}."
+        f"{said}; below {problem.shown(least)} {first.who} is the tool: {first.model}, {first.method}, "
+        f"{first.setting} reach {problem.shown(first.error)} in {duration(first.seconds)}."
     )
 
 
-def methods(scene: Scene, result: Result) -> str:
+def methods(problem: BenchmarkProblem, result: Result) -> str:
     """Which of our methods is first at the errors that matter."""
     mine = [p for p in usable(result.points) if p.who == OURS]
     if not mine:
@@ -102,29 +102,29 @@ def methods(scene: Scene, result: Result) -> str:
     parts = []
     # References can't tell what is below their disagreement.
     least = max(min(p.error for p in mine), result.agreement)
-    for error in sorted({target.error for target in scene.targets if target.error >= least} | {least}, reverse=True):
+    for error in sorted({target.error for target in problem.targets if target.error >= least} | {least}, reverse=True):
         by: dict[str, float] = {}
         for p in mine:
             by[p.method] = min(by.get(p.method, math.inf), seconds_at((o for o in mine if o.method == p.method), error))
         first, *rest = sorted((s, m) for m, s in by.items() if math.isfinite(s))
         second = f", then {rest[0][1]} ({duration(rest[0][0])})" if rest else ""
-        parts.append(f"at {scene.shown(error)} {first[1]} ({duration(first[0])}){second}")
+        parts.append(f"at {problem.shown(error)} {first[1]} ({duration(first[0])}){second}")
     return "Of our methods the fastest are " + "; ".join(parts) + "."
 
 
-def overall(results: dict[str, tuple[Scene, Result]]) -> str:
-    """What holds across scenes: whose the front is, and our first method at the smallest error asked for."""
+def overall(results: dict[str, tuple[BenchmarkProblem, Result]]) -> str:
+    """What holds across problems: whose the front is, and our first method at the smallest error asked for."""
     firsts: dict[str, list[str]] = {}
-    for scene, result in results.values():
-        if not scene.targets:
+    for problem, result in results.values():
+        if not problem.targets:
             continue
-        error = min(target.error for target in scene.targets)
+        error = min(target.error for target in problem.targets)
         mine = [p for p in usable(result.points) if p.who == OURS]
         by = {p.method: seconds_at((o for o in mine if o.method == p.method), error) for p in mine}
         if by and math.isfinite(min(by.values())):
-            firsts.setdefault(min(by, key=lambda m: by[m]), []).append(scene.title)
+            firsts.setdefault(min(by, key=lambda m: by[m]), []).append(problem.title)
     said = [f"{method} on {', '.join(where)}" for method, where in firsts.items()]
-    floors = [scene.title for scene, result in results.values() if result.floors]
+    floors = [problem.title for problem, result in results.values() if result.floors]
     where = ", ".join(floors)
     beams = (
         f" Below the floors of our beams, on {where}, the tool is a nonlinear finite element: Exudyn." if where else ""
@@ -132,10 +132,10 @@ def overall(results: dict[str, tuple[Scene, Result]]) -> str:
     return f"At the smallest error asked for, the first of our methods is {'; '.join(said) or 'none'}.{beams}"
 
 
-def see(scene: Scene, result: Result) -> str:
+def see(problem: BenchmarkProblem, result: Result) -> str:
     """The sentence under a figure."""
     others = " and ".join(engines(result.points)) or "nobody else"
-    best = front(charted(scene, result.points))
+    best = front(charted(problem, result.points))
     mine, total = sum(p.who == OURS for p in best), len(best)
     return (
         f"Down is more accurate, left is faster. {mine} of the {total} runs on the green front are ours. Cold "

@@ -19,7 +19,7 @@ import symofros as sf
 from symofros.tools import ABLATIONS, count_program
 from validation.mechanics.geometry import Array
 from validation.timing.contestants.arrays import Arrays, loops
-from validation.timing.models import SCENES
+from validation.timing.models import TIMED_MODELS
 from validation.timing.race import error, race
 from validation.timing.task import Loop
 
@@ -28,8 +28,8 @@ ALL, AGAIN, APART = "all passes", "nothing (a copy)", "functions apart"
 # Rounding differs by pass; results may not.
 SAME = 1e-11
 MODELS: dict[str, Callable[[], sf.System]] = {
-    "panda7": SCENES["panda"].load,
-    "talos": SCENES["talos"].load,
+    "panda7": TIMED_MODELS["panda"].load,
+    "talos": TIMED_MODELS["talos"].load,
     "planar_robot": lambda: reference_models.MODELS["planar_robot"],
     "flexible_mss": lambda: reference_models.MODELS["flexible_mss"],
 }

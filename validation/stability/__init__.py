@@ -1,1 +1,1 @@
-"""Where simulations fail: maps over two parameters, one module a scene or a few related ones."""
+"""Where simulations fail: maps over two parameters, one module a study or a few related ones."""

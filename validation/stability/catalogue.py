@@ -1,40 +1,27 @@
-"""The scenes of the atlas, in its order."""
+"""The studies of the atlas, in its order."""
 
 from __future__ import annotations
 
-from validation.stability.scene import Scene
-from validation.stability.scenes import (
-    baumgarte,
-    beams,
-    deflection,
-    energy,
-    euler_angles,
-    families,
-    light_bodies,
-    long_loops,
-    mass_ratio,
-    redundant,
-    singular,
-    soft_closures,
-    spin,
-    stick_slip,
-)
+from validation.stability.closed_loops import baumgarte, long_loops, redundant, singular, soft_closures
+from validation.stability.flexible import beams, deflection, families, spin
+from validation.stability.rigid import energy, euler_angles, light_bodies, mass_ratio, stick_slip
+from validation.stability.study import ParameterStudy
 
-SCENES: dict[str, Scene] = {
-    "baumgarte": baumgarte.SCENE,
-    "singular": singular.SCENE,
-    "soft_closures": soft_closures.SCENE,
-    "long_loops": long_loops.SCENE,
-    "redundant": redundant.SCENE,
-    "stiff_beam": beams.SCENE,
-    "damped_beam": beams.DAMPED_SCENE,
-    "light_link": light_bodies.SCENE,
-    "massless_cross": light_bodies.CROSS_SCENE,
-    "mass_ratio": mass_ratio.SCENE,
-    "stick_slip": stick_slip.SCENE,
-    "energy": energy.SCENE,
-    "euler_angles": euler_angles.SCENE,
-    "spin": spin.SCENE,
-    "shape_functions": families.SCENE,
-    "deflection": deflection.SCENE,
+STUDIES: dict[str, ParameterStudy] = {
+    "baumgarte": baumgarte.STUDY,
+    "singular": singular.STUDY,
+    "soft_closures": soft_closures.STUDY,
+    "long_loops": long_loops.STUDY,
+    "redundant": redundant.STUDY,
+    "stiff_beam": beams.STUDY,
+    "damped_beam": beams.DAMPED_STUDY,
+    "light_link": light_bodies.STUDY,
+    "massless_cross": light_bodies.CROSS_STUDY,
+    "mass_ratio": mass_ratio.STUDY,
+    "stick_slip": stick_slip.STUDY,
+    "energy": energy.STUDY,
+    "euler_angles": euler_angles.STUDY,
+    "spin": spin.STUDY,
+    "shape_functions": families.STUDY,
+    "deflection": deflection.STUDY,
 }

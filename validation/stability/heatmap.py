@@ -11,7 +11,7 @@ import numpy.typing as npt
 from validation.mechanics.geometry import Array
 from validation.reporting.axes import Axis, line, names, shown, svg, text
 from validation.reporting.figures import Drawing
-from validation.stability.scene import FINISHED, Grid, Limit, Map
+from validation.stability.study import FINISHED, Grid, Limit, Map
 
 WIDTH, HEIGHT = 620, 400
 _RIGHT, _TOP, _BOTTOM = 14, 12, 52

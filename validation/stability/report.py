@@ -30,18 +30,18 @@ from validation.reporting.record import (
     findings_fold,
 )
 from validation.stability import heatmap
-from validation.stability.catalogue import SCENES
-from validation.stability.scene import FINISHED, Cell, Grid, Map, Scene, survey
+from validation.stability.catalogue import STUDIES
+from validation.stability.study import FINISHED, Cell, Grid, Map, ParameterStudy, survey
 
 ENGINES = ("mujoco", "exudyn", "pin")
 INTRO = (
-    "Where simulations fail, and what to use instead. Each map runs one scene over two parameters: a cell is a run, "
+    "Where simulations fail, and what to use instead. Each map runs one study over two parameters: a cell is a run, "
     "blue where it meets the criterion, orange where it comes to its end and misses it, red where it ended before "
     "with an outcome in words, grey where it was refused before it began. The black line is the edge between good "
     "and bad as measured; a dashed line is a closed form. Numbers in cells are decades. Every claim comes back with "
-    "the command under its scene."
+    "the command under its study."
 )
-# Methods of the scene of energies that the index shows.
+# Methods of the study of energies that the index shows.
 _METHODS = ("semi_implicit_euler", "rk4", "dop853", "variational")
 # Different reasons of ends that are kept of a map.
 _MOST_NOTES = 8
@@ -49,74 +49,74 @@ _MOST_NOTES = 8
 
 def measure(
     run: Run,
-    chosen: Annotated[list[str] | None, typer.Option("--scene", help=f"Only this; of {', '.join(SCENES)}.")] = None,
+    chosen: Annotated[list[str] | None, typer.Option("--study", help=f"Only this; of {', '.join(STUDIES)}.")] = None,
     quick: Quick = False,
 ) -> Data:
     """Map where simulations fail, against closed forms and other engines.
 
-    With --scene, the report is that of these scenes alone, in the subfolder stability.
+    With --study, the report is that of these studies alone, in the subfolder stability.
     """
-    wanted = known(chosen, SCENES, "--scene", "scene")
-    if chosen:  # One scene must not overwrite the atlas of all of them.
+    wanted = known(chosen, STUDIES, "--study", "study")
+    if chosen:  # One study must not overwrite the atlas of all of them.
         run.folder = run.folder / "stability"
-    run.expect(sum(SCENES[name].runs(quick) for name in wanted))
+    run.expect(sum(STUDIES[name].runs(quick) for name in wanted))
 
     def surveyed(name: str) -> dict[str, Any]:
         run.advance(name, steps=0)
-        return scene_data(SCENES[name], quick, run)
+        return study_data(STUDIES[name], quick, run)
 
     done = run.each(wanted, surveyed)
-    ok = all(scene["ok"] for scene in done.results.values())
-    return run.head(ok, done, *ENGINES, quick=quick) | {"scenes": done.results}
+    ok = all(study["ok"] for study in done.results.values())
+    return run.head(ok, done, *ENGINES, quick=quick) | {"studies": done.results}
 
 
-def scene_data(scene: Scene, quick: bool, run: Run) -> dict[str, Any]:
-    """Run one scene and judge it."""
+def study_data(study: ParameterStudy, quick: bool, run: Run) -> dict[str, Any]:
+    """Run one study and judge it."""
     start = time.perf_counter()
-    maps = survey(scene, quick, run.advance)
-    verdict = scene.judge(maps)
+    maps = survey(study, quick, run.advance)
+    verdict = study.judge(maps)
     return {
-        "question": scene.question,
-        "setting": scene.setting,
-        "x": scene.x.name,
-        "y": scene.y.name,
-        "quantity": scene.quantity,
-        "bound": scene.bound,
+        "question": study.question,
+        "setting": study.setting,
+        "x": study.x.name,
+        "y": study.y.name,
+        "quantity": study.quantity,
+        "bound": study.bound,
         "verdict": verdict.statement,
         "see": verdict.see,
-        "advice": scene.advice,
-        "sources": scene.sources,
+        "advice": study.advice,
+        "sources": study.sources,
         "ok": all(finding.ok for finding in verdict.findings),
         "seconds": round(time.perf_counter() - start, 1),
         "checks": [finding.data() for finding in verdict.findings],
-        "maps": {name: _map_data(scene, one) for name, one in maps.items()},
+        "maps": {name: _map_data(study, one) for name, one in maps.items()},
     }
 
 
-def _map_data(scene: Scene, one: Map) -> dict[str, Any]:
+def _map_data(study: ParameterStudy, one: Map) -> dict[str, Any]:
     notes = sorted({c.note for row in one.cells for c in row if c.note})
     return {
-        "x": [scene.x.label(x) if scene.x.labels else float(x) for x in one.x],
-        "y": [scene.y.label(y) if scene.y.labels else float(y) for y in one.y],
+        "x": [study.x.label(x) if study.x.labels else float(x) for x in one.x],
+        "y": [study.y.label(y) if study.y.labels else float(y) for y in one.y],
         "values": [rounded(row) for row in one.values],
         "ended": [[c.ended for c in row] for row in one.cells],
         "said": notes[:_MOST_NOTES],
     }
 
 
-def maps_of(scene: Scene, data: Data) -> dict[str, Map]:
-    """The maps that a report holds, with the closed forms of the scene's subjects."""
-    subjects = {subject.name: subject for subject in scene.subjects}
+def maps_of(study: ParameterStudy, data: Data) -> dict[str, Map]:
+    """The maps that a report holds, with the closed forms of the study's subjects."""
+    subjects = {subject.name: subject for subject in study.subjects}
     return {
         name: Map(
             subjects[name],
-            _values(scene.x, one["x"]),
-            _values(scene.y, one["y"]),
+            _values(study.x, one["x"]),
+            _values(study.y, one["y"]),
             tuple(
                 tuple(Cell(math.nan if v is None else v, e) for v, e in zip(values, ends, strict=True))
                 for values, ends in zip(one["values"], one["ended"], strict=True)
             ),
-            scene.bound,
+            study.bound,
         )
         for name, one in data["maps"].items()
     }
@@ -128,41 +128,41 @@ def _values(grid: Grid, stated: list[Any]) -> np.ndarray:
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    scenes, failures = data["scenes"], data["failures"]
-    findings = {name: [Finding.of(check) for check in scene["checks"]] for name, scene in scenes.items()}
+    studies, failures = data["studies"], data["failures"]
+    findings = {name: [Finding.of(check) for check in study["checks"]] for name, study in studies.items()}
     every = [finding for group in findings.values() for finding in group]
-    runs = sum(len(row) for scene in scenes.values() for one in scene["maps"].values() for row in one["values"])
+    runs = sum(len(row) for study in studies.values() for one in study["maps"].values() for row in one["values"])
     quick = " (quick variant: coarse grids)" if data["quick"] else ""
-    failed = f"; {counted(len(failures), 'scene')} could not be done" if failures else ""
+    failed = f"; {counted(len(failures), 'study')} could not be done" if failures else ""
     cut = f" Interrupted: {', '.join(data['unfinished'])} not done." if data["unfinished"] else ""
-    said = f"{counted(len(every), 'claim')} about {counted(len(scenes), 'scene')}, {counted(runs, 'run')}"
+    said = f"{counted(len(every), 'claim')} about {counted(len(studies), 'study')}, {counted(runs, 'run')}"
     return Report(
         "Stability atlas",
         f"{said}: {bounds_kept(every)}{failed}{quick}.{cut}",
         bool(data["ok"]),
         (INTRO, *failure_texts(failures)),
-        tuple(_section(name, scene, findings[name], data["quick"]) for name, scene in scenes.items()),
+        tuple(_section(name, study, findings[name], data["quick"]) for name, study in studies.items()),
         (
-            Fact(str(len(scenes)), "scenes"),
+            Fact(str(len(studies)), "studies"),
             Fact(str(runs), "runs"),
             Fact(str(len(every)), f"claims, {bounds_kept(every)}", bool(data["ok"])),
         ),
-        tuple(_energies(scenes["energy"])) if "energy" in scenes else (),
-        (findings_digest(findings, failures, "scene"),),
+        tuple(_energies(studies["energy"])) if "energy" in studies else (),
+        (findings_digest(findings, failures, "study"),),
         tuple(data["unfinished"]),
     )
 
 
 def _section(name: str, data: Data, findings: list[Finding], quick: bool) -> Section:
-    scene = SCENES[name]
-    maps = maps_of(scene, data)
-    pictures = tuple(heatmap.draw(one, scene.x, scene.y, scene.quantity) for one in maps.values())
+    study = STUDIES[name]
+    maps = maps_of(study, data)
+    pictures = tuple(heatmap.draw(one, study.x, study.y, study.quantity) for one in maps.values())
     ends = tuple(f"{who}: {_ends(one, data['maps'][who]['said'])}." for who, one in maps.items())
     claims = findings_fold(findings, "claim")
     details = replace(
         claims, summary=f"{claims.summary}, and how the runs ended", blocks=(*claims.blocks, Bullets(ends))
     )
-    command = f"python -m validation stability --scene {name}{' --quick' if quick else ''}"
+    command = f"python -m validation stability --study {name}{' --quick' if quick else ''}"
     sources = f" Sources: {'; '.join(data['sources'])}." if data["sources"] else ""
     blocks: tuple[Block, ...] = (
         f"{data['setting']} **Criterion:** {data['quantity']} at most {short(data['bound'])}.",
@@ -184,13 +184,13 @@ def _ends(one: Map, notes: list[str]) -> str:
     return ", ".join(said) + (f" (such as “{notes[0]}”)" if notes else "")
 
 
-def _energies(scene: Data) -> list[Chart]:
+def _energies(study: Data) -> list[Chart]:
     """Who keeps energy, over the longest runs."""
-    title, one = list(scene["maps"].items())[-1]
+    title, one = list(study["maps"].items())[-1]
     rows = [(name, values) for name, values in zip(one["y"], one["values"], strict=True) if name in _METHODS]
     curves = tuple(Curve(name, one["x"], values, k, "joined") for k, (name, values) in enumerate(rows))
     named = f"a pendulum's energy, {title}"
-    return [Chart(named, scene["x"], scene["quantity"], curves, log="xy")] if curves else []
+    return [Chart(named, study["x"], study["quantity"], curves, log="xy")] if curves else []
 
 
 TOPIC = Topic("stability", "Stability", "Where do simulations fail?", compose)

@@ -58,7 +58,7 @@ class Following(Block):
 
 
 @dataclass(frozen=True)
-class Scene:
+class TimedDiagram:
     """One diagram to be timed.
 
     Attributes:
@@ -74,10 +74,10 @@ class Scene:
 
 @dataclass(frozen=True)
 class Timed:
-    """How one scene kept pace.
+    """How one diagram kept pace.
 
     Attributes:
-        what: The scene.
+        what: The diagram.
         first: Whether its thread came before ordinary programs (SCHED_FIFO).
         period: Between instants [s].
         jitter: How late they began.
@@ -112,11 +112,11 @@ def robot(period: float, *, python: bool = False) -> sf.Diagram:
     return d
 
 
-SCENES = (
-    Scene("the clock alone, 1 kHz", clock, 1e-3),
-    Scene("robot, 1 kHz", lambda: robot(1e-3), 1e-3),
-    Scene("robot, with Python and UDP, 1 kHz", lambda: robot(1e-3, python=True), 1e-3),
-    Scene("robot, 5 kHz", lambda: robot(2e-4), 2e-4),
+TIMED_DIAGRAMS = (
+    TimedDiagram("the clock alone, 1 kHz", clock, 1e-3),
+    TimedDiagram("robot, 1 kHz", lambda: robot(1e-3), 1e-3),
+    TimedDiagram("robot, with Python and UDP, 1 kHz", lambda: robot(1e-3, python=True), 1e-3),
+    TimedDiagram("robot, 5 kHz", lambda: robot(2e-4), 2e-4),
 )
 
 
@@ -150,30 +150,30 @@ def may_come_first() -> bool:
         return False
 
 
-def run(seconds: float, scene: Scene, first: bool = False) -> Timed:
-    """Run a scene in real time.
+def run(seconds: float, diagram: TimedDiagram, first: bool = False) -> Timed:
+    """Run a diagram in real time.
 
     Args:
         seconds: How long.
-        scene: Which.
+        diagram: Which.
         first: Whether its thread comes before ordinary programs.
 
     Raises:
         SymofrosError: The run did not come to its end, or the robot left its path: then timing it means nothing.
     """
-    simulation = sf.Simulation(scene.make())
-    settings = {"dt": scene.period, "record": scene.period}
-    simulation.run(10.0 * scene.period, **settings)  # What is loaded at first use is no jitter.
+    simulation = sf.Simulation(diagram.make())
+    settings = {"dt": diagram.period, "record": diagram.period}
+    simulation.run(10.0 * diagram.period, **settings)  # What is loaded at first use is no jitter.
     with coming_first(first):
         found = simulation.run(seconds, realtime=True, **settings)
     if not found.outcome.ok:
-        raise sf.SymofrosError(f"{scene.what}: {found.outcome}")
+        raise sf.SymofrosError(f"{diagram.what}: {found.outcome}")
     if "plant" in found.compiled.resolved.wired.blocks:
         error = np.abs(found["plant.q"][-1] - SWING * np.sin(RATE * found.t[-1])).max()
         if seconds > 1.0 and not error < 0.02:
-            raise sf.SymofrosError(f"{scene.what}: the robot is {error:.2g} rad off its path")
+            raise sf.SymofrosError(f"{diagram.what}: the robot is {error:.2g} rad off its path")
     cost = found.cost
-    return Timed(scene.what, first, scene.period, jitter_of(cost), cost.late, cost.worked / len(cost.late))
+    return Timed(diagram.what, first, diagram.period, jitter_of(cost), cost.late, cost.worked / len(cost.late))
 
 
 def _free_port() -> int:

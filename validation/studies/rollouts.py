@@ -13,7 +13,7 @@ from validation.adapters.mujoco.rollout import roll_out
 from validation.contract.interface import Subject, Unsupported
 from validation.mechanics.geometry import Array
 from validation.studies.simulation import DAMPING, STIFFNESS, TARGET
-from validation.timing.models import SCENES
+from validation.timing.models import TIMED_MODELS
 
 TRAJECTORIES, STEPS, STEP = 10_000, 100, 1e-3
 # Starts about the neutral posture: of each joint [rad], of each speed [rad/s].
@@ -47,7 +47,7 @@ class Rollout:
 
 def arm() -> sf.System:
     """The 7-joint arm, without the joints' own springs and dampers."""
-    return SCENES["panda"].load()
+    return TIMED_MODELS["panda"].load()
 
 
 def run(repeats: int, trajectories: int = TRAJECTORIES, steps: int = STEPS, threads: int = 1) -> list[Rollout]:

@@ -19,9 +19,9 @@ from validation.adapters.mujoco import motion as mujoco_motion
 from validation.adapters.mujoco import tree as mujoco
 from validation.contract.interface import Subject, Unsupported
 from validation.reporting.references import References
-from validation.stability.scenes import four_bars
-from validation.stability.scenes.singular import ends_of_crank
-from validation.stability.scenes.soft_closures import SOLIMP
+from validation.stability.closed_loops import four_bars
+from validation.stability.closed_loops.singular import ends_of_crank
+from validation.stability.closed_loops.soft_closures import SOLIMP
 from validation.timing.models import panda7
 
 # Of each joint [N m/rad, N m s/rad]: what RK4 with a millisecond holds at the wrist, whose inertia is the smallest.

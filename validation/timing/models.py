@@ -31,7 +31,7 @@ CHAINS = (2, 4, 7, 13, 22, 32, 52)
 
 
 @dataclass(frozen=True)
-class Scene:
+class TimedModel:
     """A model that is timed.
 
     Attributes:
@@ -96,16 +96,16 @@ def _reference(name: str) -> sf.System:
     return reference_models.MODELS[name]
 
 
-SCENES: dict[str, Scene] = {
-    "planar2R": Scene("planar 2R", partial(arm, 2)),
-    "planar3R": Scene("planar 3R", partial(arm, 3)),
-    "ur5": Scene("UR5", partial(_robot, "ur5")),
-    "panda": Scene("Panda, 7 joints", panda7),
-    "mss": Scene("MSS", partial(_reference, "mss")),
-    "talos": Scene("Talos", partial(_robot, "talos"), _HUMANOID),
-    "four_bar": Scene("four-bar, closed", partial(_reference, "four_bar"), ("forward_dynamics",)),
-    **{f"chain{n}": Scene(f"chain of {n}", partial(chain, n, symbolic=False), _GROWTH) for n in CHAINS[:-1]},
-    f"chain{CHAINS[-1]}": Scene(
+TIMED_MODELS: dict[str, TimedModel] = {
+    "planar2R": TimedModel("planar 2R", partial(arm, 2)),
+    "planar3R": TimedModel("planar 3R", partial(arm, 3)),
+    "ur5": TimedModel("UR5", partial(_robot, "ur5")),
+    "panda": TimedModel("Panda, 7 joints", panda7),
+    "mss": TimedModel("MSS", partial(_reference, "mss")),
+    "talos": TimedModel("Talos", partial(_robot, "talos"), _HUMANOID),
+    "four_bar": TimedModel("four-bar, closed", partial(_reference, "four_bar"), ("forward_dynamics",)),
+    **{f"chain{n}": TimedModel(f"chain of {n}", partial(chain, n, symbolic=False), _GROWTH) for n in CHAINS[:-1]},
+    f"chain{CHAINS[-1]}": TimedModel(
         f"chain of {CHAINS[-1]}",
         partial(chain, CHAINS[-1], symbolic=False),
         (*_GROWTH, "inverse_dynamics", "frame_jacobian", "step"),

@@ -17,7 +17,7 @@ from validation.reporting.record import Data, Fact, Report, Section, Table, Topi
 from validation.timing.contestants.programs import BuildError
 from validation.timing.flexible.race import LABEL, run_flexible
 from validation.timing.flexible.report import flexible_section
-from validation.timing.models import FUNCTIONS, SCENES
+from validation.timing.models import FUNCTIONS, TIMED_MODELS
 from validation.timing.record import Entry, Record, as_data, of, read
 from validation.timing.run import facts, jobs, load, prepare, run_job
 from validation.timing.tables import sections, targets_table
@@ -62,10 +62,10 @@ def measure(
     A part that is chosen replaces that part of the report's figures; the whole starts afresh. Ctrl-C keeps what was
     measured.
     """
-    chosen = known(models, [*SCENES, LABEL], "--model", "model")
+    chosen = known(models, [*TIMED_MODELS, LABEL], "--model", "model")
     record = read(run.folder / "timing.json") if models or peers or functions or resume else Record()
     todo = jobs(
-        [name for name in chosen if name in SCENES],
+        [name for name in chosen if name in TIMED_MODELS],
         tuple(known(peers, PEERS, "--peer", "peer")),
         known(functions, FUNCTIONS, "--function", "function"),
         repeats,

@@ -20,7 +20,7 @@ from validation.timing.contestants.arrays import first_compiler
 from validation.timing.contestants.engines import CLOSED, PINOCCHIO_FLAGS, pinocchio_builds
 from validation.timing.contestants.generated import BUILDS
 from validation.timing.contestants.programs import BuildError, Skipped, compilers, source
-from validation.timing.models import SCENES
+from validation.timing.models import TIMED_MODELS
 from validation.timing.race import pin_to_one_cpu
 from validation.timing.record import Record, entry, made
 from validation.timing.worker import Job
@@ -92,7 +92,7 @@ def jobs(
     wanted = set(functions)
     todo = []
     for model in models:
-        left = [name for name in SCENES[model].functions if done is None or not done.has(model, name)]
+        left = [name for name in TIMED_MODELS[model].functions if done is None or not done.has(model, name)]
         chosen = tuple(name for name in left if name in wanted)
         if chosen:
             todo.append(Job(model, peers, chosen, repeats, states))

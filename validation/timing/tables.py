@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from validation.reporting.figures import Chart, Curve, Figure
 from validation.reporting.record import Cell, Section, Table
 from validation.timing.growth import Growth, growth
-from validation.timing.models import FUNCTIONS, SCENES
+from validation.timing.models import FUNCTIONS, TIMED_MODELS
 from validation.timing.record import Entry, Made, Record
 from validation.timing.targets import Verdict, verdicts
 
@@ -49,7 +49,7 @@ def _targets(record: Record) -> Section:
 def _target(verdict: Verdict) -> tuple[str | Cell, ...]:
     target, entry = verdict.target, verdict.entry
     return (
-        SCENES[target.model].title,
+        TIMED_MODELS[target.model].title,
         FUNCTIONS[target.function],
         {"scalar": "state by state", "columns": "batch by columns"}[target.how],
         f"{target.peer}, {target.family}" if target.family else target.peer,
@@ -64,7 +64,7 @@ def _target(verdict: Verdict) -> tuple[str | Cell, ...]:
 def _function(record: Record, function: str) -> Section:
     """Times of one function, and beside them, in a table of its own, the ratios: one alone fits a page."""
     times, ratios = [], []
-    for model, scene in SCENES.items():
+    for model, timed in TIMED_MODELS.items():
         best = {peer: record.best(model, function, peer) for peer in ("pinocchio", "mujoco", "casadi", "sympy")}
         known = [entry for entry in best.values() if entry is not None]
         if not known:
@@ -72,7 +72,7 @@ def _function(record: Record, function: str) -> Section:
         first, pinocchio = known[0], best["pinocchio"]
         gcc = record.best(model, function, "pinocchio", "gcc")
         ours = (_pair(x) for x in (first.ours, first.batch, first.columns, first.single))
-        head = (scene.title, str(first.nv))
+        head = (timed.title, str(first.nv))
         times.append((*head, *ours, *(_theirs(x) for x in (gcc, *best.values()))))
         others = (_ratio(best[peer]) for peer in ("mujoco", "casadi", "sympy"))
         ratios.append((*head, _ratio(pinocchio), *_in_batches(pinocchio), *others))
@@ -133,12 +133,12 @@ def _short(x: float) -> str:
 
 def _all_costs(record: Record) -> list[Made]:
     """Costs of the fastest build of each side."""
-    costs = [record.cost(model, function, by) for model in SCENES for function in FUNCTIONS for by in _GENERATORS]
+    costs = [record.cost(model, function, by) for model in TIMED_MODELS for function in FUNCTIONS for by in _GENERATORS]
     return [cost for cost in costs if cost is not None]
 
 
 def _named(cost: Made) -> tuple[str, str, str]:
-    return SCENES[cost.model].title, FUNCTIONS[cost.function], cost.by
+    return TIMED_MODELS[cost.model].title, FUNCTIONS[cost.function], cost.by
 
 
 def _making(record: Record) -> Section:
@@ -239,7 +239,7 @@ def _skipped(record: Record) -> Section:
         key = model, peer, why.splitlines()[0] if why else ""
         merged.setdefault(key, []).append(FUNCTIONS.get(function, function))
     rows = tuple(
-        (SCENES[model].title if model in SCENES else model, peer, ", ".join(dict.fromkeys(names)), why)
+        (TIMED_MODELS[model].title if model in TIMED_MODELS else model, peer, ", ".join(dict.fromkeys(names)), why)
         for (model, peer, why), names in merged.items()
     )
     return Section("What was not timed", (Table(("model", "side", "functions", "why"), rows),), "skipped")

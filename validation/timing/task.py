@@ -13,7 +13,7 @@ from validation.contract.interface import States
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import Assembly, assemble
 from validation.mechanics.geometry import Array
-from validation.timing.models import SCENES
+from validation.timing.models import TIMED_MODELS
 
 STATES = 1000
 # Of the integrators: short, so that a motion of STATES steps stays near its start, and both sides' ends comparable [s].
@@ -89,7 +89,7 @@ class Task:
 
 def task(label: str, count: int = STATES) -> Task:
     """A model with its states."""
-    system = SCENES[label].load()
+    system = TIMED_MODELS[label].load()
     assembly = assemble(system)
     states = sample(assembly, assembly.motors + len(system.inputs), count)
     if system.constraints:

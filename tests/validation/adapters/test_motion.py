@@ -9,8 +9,8 @@ import pytest
 
 from validation.adapters.exudyn.motion import bars
 from validation.adapters.mujoco.motion import move
-from validation.stability.scenes import four_bars
-from validation.stability.scenes.energy import MJCF
+from validation.stability.closed_loops import four_bars
+from validation.stability.rigid.energy import MJCF
 
 
 def exudyn_row(loops: int, h: float, t_end: float) -> np.ndarray | None:

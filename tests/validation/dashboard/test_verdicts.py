@@ -53,9 +53,9 @@ def spoil_studies(data: dict[str, Any]) -> None:
 
 def spoil_stability(data: dict[str, Any]) -> None:
     data["ok"] = False
-    scene = next(iter(data["scenes"].values()))
-    scene["ok"] = False
-    scene["checks"][0].update(found=None, ok=False)
+    study = next(iter(data["studies"].values()))
+    study["ok"] = False
+    study["checks"][0].update(found=None, ok=False)
 
 
 def spoil_timing(data: dict[str, Any]) -> None:
@@ -68,8 +68,8 @@ def spoil_simulation(data: dict[str, Any]) -> None:
 
 def spoil_pareto(data: dict[str, Any]) -> None:
     data["ok"] = False
-    scene = next(iter(data["scenes"].values()))
-    scene["targets"][0].update(found=None, ok=False)
+    problem = next(iter(data["problems"].values()))
+    problem["targets"][0].update(found=None, ok=False)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import random
 import pytest
 
 from validation.pareto.front import front, ratio, seconds_at, usable
-from validation.pareto.scene import Point
+from validation.pareto.problem import Point
 
 
 def at(error: float, seconds: float, who: str = "one", method: str = "m", ended: str = "") -> Point:

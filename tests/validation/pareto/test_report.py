@@ -12,22 +12,22 @@ from validation.__main__ import app
 
 
 def test_report_end_to_end(tmp_path: Path) -> None:
-    first = CliRunner().invoke(app, ["pareto", "--quick", "--scene", "andrews", "--json", "--report", str(tmp_path)])
+    first = CliRunner().invoke(app, ["pareto", "--quick", "--problem", "andrews", "--json", "--report", str(tmp_path)])
     data = json.loads(first.stdout)
-    assert first.exit_code in (0, 1) and not data["failures"] and list(data["scenes"]) == ["andrews"]
+    assert first.exit_code in (0, 1) and not data["failures"] and list(data["problems"]) == ["andrews"]
     folder = tmp_path / "pareto_quick"
     page, summary = ((folder / f"pareto.{kind}").read_text() for kind in ("html", "md"))
     assert page.count('role="img"') == 2 and "symofros wins" in page and "symofros wins" in summary
     assert "single precision" in page and not re.search(r'(src|href)="(?!#)', page)
-    # Another scene goes on from what is there; a scene that is there is left out if asked.
+    # Another problem goes on from what is there; a problem that is there is left out if asked.
     then = CliRunner().invoke(
         app,
         [
             "pareto",
             "--quick",
-            "--scene",
+            "--problem",
             "andrews",
-            "--scene",
+            "--problem",
             "four_bar",
             "--resume",
             "--json",
@@ -36,10 +36,10 @@ def test_report_end_to_end(tmp_path: Path) -> None:
         ],
     )
     again = json.loads(then.stdout)
-    assert list(again["scenes"]) == ["four_bar", "andrews"]
-    assert again["scenes"]["andrews"]["points"] == data["scenes"]["andrews"]["points"]
+    assert list(again["problems"]) == ["four_bar", "andrews"]
+    assert again["problems"]["andrews"]["points"] == data["problems"]["andrews"]["points"]
 
 
-def test_an_unknown_scene_is_bad_input() -> None:
-    found = CliRunner().invoke(app, ["pareto", "--scene", "spinup"])
+def test_an_unknown_problem_is_bad_input() -> None:
+    found = CliRunner().invoke(app, ["pareto", "--problem", "spinup"])
     assert found.exit_code == 2 and "spin_up" in found.output

@@ -8,16 +8,16 @@ from dataclasses import replace
 import pytest
 
 from validation.pareto import verdicts
-from validation.pareto.catalogue import SCENES
+from validation.pareto.catalogue import PROBLEMS
 from validation.pareto.figures import figure, letters
 from validation.pareto.front import charted, front
+from validation.pareto.problem import OURS, BenchmarkProblem, Point, Target
 from validation.pareto.race import Result
-from validation.pareto.scene import OURS, Point, Scene, Target
 from validation.reporting.charts import draw
 from validation.reporting.figures import Chart
 from validation.reporting.numbers import duration
 
-SCENE = replace(SCENES["spin_up"], targets=(Target("Exudyn", 1e-2, 200.0),))
+PROBLEM = replace(PROBLEMS["spin_up"], targets=(Target("Exudyn", 1e-2, 200.0),))
 
 
 def result(mine: float, theirs: float, best: float = 1e-3) -> Result:
@@ -36,24 +36,24 @@ def result(mine: float, theirs: float, best: float = 1e-3) -> Result:
 )
 def test_the_winner_is_named(mine: float, theirs: float, winner: str, met: bool) -> None:
     found = result(mine, theirs)
-    (said,), (verdict,) = verdicts.compared(SCENE, found.points), verdicts.verdicts(SCENE, found.points)
+    (said,), (verdict,) = verdicts.compared(PROBLEM, found.points), verdicts.verdicts(PROBLEM, found.points)
     assert f"{winner} wins by {max(theirs / mine, mine / theirs):.3g}" in said and verdict.ok is met
     assert verdict.ratio == pytest.approx(theirs / mine)
 
 
 def test_who_alone_keeps_an_error_wins() -> None:
-    scene = replace(SCENE, targets=(Target("Exudyn", 1.5e-3, 1.0),))
-    assert "Exudyn wins: no model of ours" in verdicts.compared(scene, result(1e-4, 1e-1).points)[0]
-    assert not verdicts.verdicts(scene, result(1e-4, 1e-1).points)[0].ok
+    problem = replace(PROBLEM, targets=(Target("Exudyn", 1.5e-3, 1.0),))
+    assert "Exudyn wins: no model of ours" in verdicts.compared(problem, result(1e-4, 1e-1).points)[0]
+    assert not verdicts.verdicts(problem, result(1e-4, 1e-1).points)[0].ok
 
 
 def test_below_the_floor_the_engine_is_the_tool() -> None:
-    assert "below 0.2 % Exudyn is the tool: 8 elements" in verdicts.below_the_floor(SCENE, result(1e-4, 1e-1))
-    assert "no run here goes below" in verdicts.below_the_floor(SCENE, result(1e-4, 1e-1, best=3e-3))
+    assert "below 0.2 % Exudyn is the tool: 8 elements" in verdicts.below_the_floor(PROBLEM, result(1e-4, 1e-1))
+    assert "no run here goes below" in verdicts.below_the_floor(PROBLEM, result(1e-4, 1e-1, best=3e-3))
 
 
 def test_advice_goes_along_the_front() -> None:
-    lines = verdicts.advice(SCENE, result(1e-4, 1e-1))
+    lines = verdicts.advice(PROBLEM, result(1e-4, 1e-1))
     assert [OURS in lines[0], "Exudyn, 8 elements" in lines[-1], len(lines)] == [True, True, 2]
     assert any("lost" in said for said in verdicts.refused(result(1e-4, 1e-1)))
 
@@ -61,10 +61,10 @@ def test_advice_goes_along_the_front() -> None:
 def test_the_front_is_tagged_and_the_floor_drawn() -> None:
     found = result(1e-4, 1e-1)
     far_off = Point(OURS, "none", "euler", "1 s", 1e3, 1e-9)
-    drawn = figure(SCENE, replace(found, points=(far_off, *found.points)), "see")
+    drawn = figure(PROBLEM, replace(found, points=(far_off, *found.points)), "see")
     every, methods = drawn.charts
     assert isinstance(every, Chart) and isinstance(methods, Chart)
-    best = front(charted(SCENE, (far_off, *found.points)))
+    best = front(charted(PROBLEM, (far_off, *found.points)))
     assert [(t.label, t.y) for t in every.tags] == [(letters(k + 1)[k], p.error) for k, p in enumerate(best)]
     assert [tag.label for tag in every.tags] == letters(2) and every.log == "xy"
     legend = [name for _, name in draw(every).legend]
@@ -80,10 +80,10 @@ def test_durations(seconds: float, shown: str) -> None:
     assert duration(seconds) == shown
 
 
-@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
-def test_scenes_say_what_they_compare(scene: Scene) -> None:
-    assert scene.targets and scene.sources and scene.axis.endswith("]")
-    assert all(target.error > scene.trust for target in scene.targets), "references must tell what is asked"
-    assert {target.engine for target in scene.targets} <= {
-        word for e in ("Exudyn", "MuJoCo") for word in [e] if e in scene.tuned
+@pytest.mark.parametrize("problem", PROBLEMS.values(), ids=PROBLEMS)
+def test_problems_say_what_they_compare(problem: BenchmarkProblem) -> None:
+    assert problem.targets and problem.sources and problem.axis.endswith("]")
+    assert all(target.error > problem.trust for target in problem.targets), "references must tell what is asked"
+    assert {target.engine for target in problem.targets} <= {
+        word for e in ("Exudyn", "MuJoCo") for word in [e] if e in problem.tuned
     }

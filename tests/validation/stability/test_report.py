@@ -15,9 +15,9 @@ from typer.testing import CliRunner
 from validation.__main__ import app
 from validation.reporting.command import Run
 from validation.reporting.findings import Finding
-from validation.stability.catalogue import SCENES
+from validation.stability.catalogue import STUDIES
 from validation.stability.report import TOPIC, compose, measure
-from validation.stability.scene import Cell, Scene, Subject, Verdict, survey
+from validation.stability.study import Cell, ParameterStudy, Subject, Verdict, survey
 
 
 @pytest.fixture(scope="module")
@@ -25,29 +25,29 @@ def quick(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any
     folder = tmp_path_factory.mktemp("reports")
     done = CliRunner().invoke(app, ["stability", "--quick", "--json", "--report", str(folder)])
     data = json.loads(done.stdout)
-    missed = [(c["what"], c["found"]) for s in data["scenes"].values() for c in s["checks"] if not c["ok"]]
+    missed = [(c["what"], c["found"]) for s in data["studies"].values() for c in s["checks"] if not c["ok"]]
     assert done.exit_code == 0, (missed, data["failures"])
     return folder, data
 
 
 def test_the_catalogue_is_whole() -> None:
-    assert len(SCENES) >= 14
-    for name, scene in SCENES.items():
-        assert scene.question.endswith("?") and scene.advice.endswith(".") and scene.sources, name
-        assert scene.bound > 0 and re.search(r"\[.+\]$", scene.quantity), name
-        for grid in (scene.x, scene.y):
+    assert len(STUDIES) >= 14
+    for name, study in STUDIES.items():
+        assert study.question.endswith("?") and study.advice.endswith(".") and study.sources, name
+        assert study.bound > 0 and re.search(r"\[.+\]$", study.quantity), name
+        for grid in (study.x, study.y):
             assert re.search(r"\[.+\]$", grid.name), f"{name}: an axis has its unit"
             assert list(grid.values) == sorted(set(grid.values)) and len(grid.few) >= 2, name
-        assert len({subject.name for subject in scene.subjects}) == len(scene.subjects)
+        assert len({subject.name for subject in study.subjects}) == len(study.subjects)
 
 
 def test_every_claim_holds_on_a_coarse_grid(quick: tuple[Path, dict[str, Any]]) -> None:
     _, data = quick
     assert data["ok"] and data["quick"] and not data["failures"] and not data["unfinished"]
-    assert list(data["scenes"]) == list(SCENES)
-    for name, scene in data["scenes"].items():
-        assert scene["checks"] and re.search(r"\d", scene["verdict"]), f"{name}: a verdict has figures"
-        for found in scene["maps"].values():
+    assert list(data["studies"]) == list(STUDIES)
+    for name, study in data["studies"].items():
+        assert study["checks"] and re.search(r"\d", study["verdict"]), f"{name}: a verdict has figures"
+        for found in study["maps"].values():
             ended, values = np.array(found["ended"]), np.array(found["values"], dtype=object)
             assert values.shape == (len(found["y"]), len(found["x"]))
             # Nothing is silently wrong: what has no number has an outcome.
@@ -60,31 +60,31 @@ def test_every_claim_holds_on_a_coarse_grid(quick: tuple[Path, dict[str, Any]]) 
 def test_the_page_is_whole_and_self_contained(quick: tuple[Path, dict[str, Any]]) -> None:
     folder, data = quick
     page, summary = ((folder / f"stability.{kind}").read_text() for kind in ("html", "md"))
-    assert page.count("<figcaption>") == len(SCENES)
-    assert page.count('role="img"') == sum(len(scene["maps"]) for scene in data["scenes"].values())
+    assert page.count("<figcaption>") == len(STUDIES)
+    assert page.count('role="img"') == sum(len(study["maps"]) for study in data["studies"].values())
     assert not re.search(r'(src|href)="(?!#)', page) and "<script" not in page and "nan" not in page.lower().split()
-    for name in SCENES:
-        assert f"python -m validation stability --scene {name} --quick" in page and f"--scene {name}" in summary
+    for name in STUDIES:
+        assert f"python -m validation stability --study {name} --quick" in page and f"--study {name}" in summary
 
 
 def test_a_missed_bound_fails_the_command(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    missed = replace(SCENES["spin"], judge=lambda maps: Verdict("1.", "2.", (Finding("zero", 1.0, 0.0),)))
-    monkeypatch.setitem(SCENES, "spin", missed)
-    done = CliRunner().invoke(app, ["stability", "--scene", "spin", "--quick", "--report", str(tmp_path)])
+    missed = replace(STUDIES["spin"], judge=lambda maps: Verdict("1.", "2.", (Finding("zero", 1.0, 0.0),)))
+    monkeypatch.setitem(STUDIES, "spin", missed)
+    done = CliRunner().invoke(app, ["stability", "--study", "spin", "--quick", "--report", str(tmp_path)])
     assert done.exit_code == 1 and "1 miss their bounds" in done.stdout
-    # One scene has a folder of its own, and leaves the whole atlas as it is.
+    # One study has a folder of its own, and leaves the whole atlas as it is.
     assert "**missed** 1" in (tmp_path / "stability" / "stability.md").read_text()
 
 
-def test_a_scene_that_can_not_be_done_keeps_no_other_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_study_that_can_not_be_done_keeps_no_other_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(x: float, y: float) -> Cell:
         raise ArithmeticError("no")
 
-    scene = SCENES["spin"]
-    monkeypatch.setitem(SCENES, "spin", replace(scene, subjects=(Subject("s", broken),)))
+    study = STUDIES["spin"]
+    monkeypatch.setitem(STUDIES, "spin", replace(study, subjects=(Subject("s", broken),)))
     atlas = measure(Run(TOPIC), ["spin", "redundant"], quick=True)
     assert (
-        not atlas["ok"] and atlas["failures"] == {"spin": "ArithmeticError: no"} and atlas["scenes"]["redundant"]["ok"]
+        not atlas["ok"] and atlas["failures"] == {"spin": "ArithmeticError: no"} and atlas["studies"]["redundant"]["ok"]
     )
 
 
@@ -92,19 +92,19 @@ def test_ctrl_c_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(x: float, y: float) -> Cell:
         raise KeyboardInterrupt
 
-    monkeypatch.setitem(SCENES, "spin", replace(SCENES["spin"], subjects=(Subject("s", interrupted),)))
+    monkeypatch.setitem(STUDIES, "spin", replace(STUDIES["spin"], subjects=(Subject("s", interrupted),)))
     atlas = measure(Run(TOPIC), ["redundant", "spin", "deflection"], quick=True)
-    assert list(atlas["scenes"]) == ["redundant"] and atlas["unfinished"] == ("spin", "deflection") and not atlas["ok"]
+    assert list(atlas["studies"]) == ["redundant"] and atlas["unfinished"] == ("spin", "deflection") and not atlas["ok"]
     assert "Interrupted: spin, deflection" in compose(atlas).summary
 
 
-def test_an_unknown_scene_is_refused() -> None:
-    done = CliRunner().invoke(app, ["stability", "--scene", "spinn"])
-    assert done.exit_code == 2 and "no scene 'spinn'" in done.output
+def test_an_unknown_study_is_refused() -> None:
+    done = CliRunner().invoke(app, ["stability", "--study", "spinn"])
+    assert done.exit_code == 2 and "no study 'spinn'" in done.output
 
 
 def test_progress_is_told_of_every_run() -> None:
     told: list[int] = []
-    scene: Scene = SCENES["spin"]
-    survey(scene, True, lambda: told.append(1))
-    assert len(told) == scene.runs(True)
+    study: ParameterStudy = STUDIES["spin"]
+    survey(study, True, lambda: told.append(1))
+    assert len(told) == study.runs(True)

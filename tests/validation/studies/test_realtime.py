@@ -30,7 +30,7 @@ def test_report(tmp_path: Path) -> None:
     found = CliRunner().invoke(app, ["realtime", "--seconds", "0.1", "--report", str(tmp_path)])
     assert found.exit_code == 0, found.output
     data = json.loads((tmp_path / "realtime.json").read_text())
-    rows = data["scenes"]
+    rows = data["diagrams"]
     assert [row["instants"] for row in rows[:4]] == [101, 101, 101, 501]
     assert all(0 <= row["minimum"] <= row["median"] <= row["p999"] <= row["maximum"] for row in rows)
     assert {row["first"] for row in rows} == ({False, True} if realtime.may_come_first() else {False})

@@ -15,7 +15,7 @@ from validation.reporting.command import write
 from validation.reporting.record import Table
 from validation.timing import report, worker
 from validation.timing.contestants import engines
-from validation.timing.models import FUNCTIONS, SCENES
+from validation.timing.models import FUNCTIONS, TIMED_MODELS
 from validation.timing.record import Record, as_data
 from validation.timing.run import jobs, peaks, take
 from validation.timing.tables import sections
@@ -112,7 +112,7 @@ def test_the_report_shows_targets_costs_growth_and_what_was_left_out(tmp_path: P
         for block in section.blocks
         if isinstance(block, Table)
     )
-    row = next(row for row in cost.rows if row[0] == SCENES["panda"].title)
+    row = next(row for row in cost.rows if row[0] == TIMED_MODELS["panda"].title)
     # 1000 operations at 10 GFlop/s take 100 ns, which is what was measured; vectors in batches 20 ns, of 12.5.
     assert row[cost.head.index("#distance")] == "1.0" and row[cost.head.index("#of batches")] == "1.6"
 
@@ -136,5 +136,5 @@ def test_interrupted_it_keeps_what_was_measured(tmp_path: Path, monkeypatch: pyt
 
 
 def test_every_scene_loads_and_every_function_has_a_name() -> None:
-    assert {name for scene in SCENES.values() for name in scene.functions} == set(FUNCTIONS)
-    assert SCENES["panda"].load().name == "panda7"
+    assert {name for timed in TIMED_MODELS.values() for name in timed.functions} == set(FUNCTIONS)
+    assert TIMED_MODELS["panda"].load().name == "panda7"

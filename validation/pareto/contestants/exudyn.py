@@ -1,4 +1,4 @@
-"""Exudyn's contestants of a scene: a system, stepped by each of its solvers."""
+"""Exudyn's contestants of a problem: a system, stepped by each of its solvers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from validation.adapters.exudyn.steps import ADAPTIVE, Recorded, Solver, Timed
 from validation.pareto.contestants.symofros import milliseconds
-from validation.pareto.scene import Contestant, Measured
+from validation.pareto.problem import Contestant, Measured
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class ExudynModel:
     """A system of Exudyn's, ready to run.
 
     Attributes:
-        label: Name of the model among those of the scene.
+        label: Name of the model among those of the problem.
         system: Built afresh for each run, which is not timed.
         end: Duration [s].
         output: Interval of what is recorded [s].

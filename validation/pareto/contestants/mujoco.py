@@ -1,4 +1,4 @@
-"""MuJoCo's contestants of a scene: a model, stepped by each of its integrators."""
+"""MuJoCo's contestants of a problem: a model, stepped by each of its integrators."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from validation.adapters.mujoco.steps import stepped
 from validation.mechanics.geometry import Array
 from validation.pareto.contestants.symofros import milliseconds
-from validation.pareto.scene import Contestant, Measured
+from validation.pareto.problem import Contestant, Measured
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class MujocoModel:
     """A model of MuJoCo's, ready to run.
 
     Attributes:
-        label: Name of the model among those of the scene.
+        label: Name of the model among those of the problem.
         model: Step [s] -> MuJoCo's model; most do not depend on the step, soft closures do.
         q0: Positions at the start (nq).
         v0: Speeds at the start (nv).

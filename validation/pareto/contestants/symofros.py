@@ -11,7 +11,7 @@ import numpy as np
 
 import symofros as sf
 from symofros.tools import METHODS
-from validation.pareto.scene import OURS, Contestant, Measured
+from validation.pareto.problem import OURS, Contestant, Measured
 
 Judge = Callable[[sf.Trajectory], float]
 # How many digits of a step or tolerance are written.
@@ -23,7 +23,7 @@ class SymofrosModel:
     """A compiled model, ready to run.
 
     Attributes:
-        label: Name of the model among those of the scene.
+        label: Name of the model among those of the problem.
         model: Compiled model.
         arguments: Arguments of `sf.simulate` besides method, step and tolerance: state, span, inputs, output.
         judge: Trajectory -> error.

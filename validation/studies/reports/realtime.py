@@ -17,7 +17,7 @@ from validation.reporting.record import Column, Data, Fact, Report, Section, Tab
 from validation.studies import realtime
 
 _LIMITS = (
-    "Each scene runs in real time in the C loop, which sleeps until an instant is due; how late an instant began is "
+    "Each diagram runs in real time in the C loop, which sleeps until an instant is due; how late an instant began is "
     "read off the clock afterwards, so it is the operating system's waking plus whatever the instant before took too "
     "long. No core is set apart, and other programs run beside (see the load); what the machine does for a loop with "
     "nothing in it is the first row. Ordinary: a thread as any other. First: it comes before those of ordinary "
@@ -33,15 +33,15 @@ _SEE = (
 _EDGES = np.logspace(-1, 5, 73)
 
 
-def measure(run: Run, seconds: Annotated[float, typer.Option(min=0.01, help="Length of each scene.")] = 20.0) -> Data:
+def measure(run: Run, seconds: Annotated[float, typer.Option(min=0.01, help="Length of each diagram.")] = 20.0) -> Data:
     """Keep pace with the clock, and say how well."""
     ways = (False, True) if realtime.may_come_first() else (False,)
-    run.expect(len(ways) * len(realtime.SCENES), "in real time")
-    scenes = []
+    run.expect(len(ways) * len(realtime.TIMED_DIAGRAMS), "in real time")
+    diagrams = []
     for first in ways:
-        for scene in realtime.SCENES:
-            row = realtime.run(seconds, scene, first)
-            scenes.append(
+        for diagram in realtime.TIMED_DIAGRAMS:
+            row = realtime.run(seconds, diagram, first)
+            diagrams.append(
                 {
                     "what": row.what,
                     "first": row.first,
@@ -52,7 +52,7 @@ def measure(run: Run, seconds: Annotated[float, typer.Option(min=0.01, help="Len
                 }
             )
             run.advance()
-    return {"scenes": scenes, "seconds": seconds, "cores": os.cpu_count(), "load": os.getloadavg()[0], **stamp()}
+    return {"diagrams": diagrams, "seconds": seconds, "cores": os.cpu_count(), "load": os.getloadavg()[0], **stamp()}
 
 
 def _share_later(late: Array) -> dict[str, list[float]]:
@@ -64,13 +64,13 @@ def _share_later(late: Array) -> dict[str, list[float]]:
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    scenes = data["scenes"]
-    best = [row for row in scenes if row["first"]] or scenes
+    diagrams = data["diagrams"]
+    best = [row for row in diagrams if row["first"]] or diagrams
     least, most = (pick(1e6 * row["median"] for row in best) for pick in (min, max))
     table = Table.of(
-        scenes,
+        diagrams,
         {
-            "scene": "{what}",
+            "diagram": "{what}",
             "thread": lambda row: _thread(row["first"]),
             "#least": _microseconds("minimum"),
             "#median": _microseconds("median"),
@@ -81,7 +81,7 @@ def compose(data: Data) -> Report:
         },
     )
     charts = [
-        _chart([row for row in scenes if row["first"] is first and "late" in row], first) for first in (False, True)
+        _chart([row for row in diagrams if row["first"] is first and "late" in row], first) for first in (False, True)
     ]
     shown = tuple(chart for chart in charts if chart.curves)
     said = f"{data['seconds']:g} s each, at load {data['load']:.1f} on {data['cores']} cores; late by, in microseconds:"

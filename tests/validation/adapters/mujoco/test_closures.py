@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from validation.adapters.mujoco.closures import connections
-from validation.stability.scenes import four_bars
+from validation.stability.closed_loops import four_bars
 
 
 @pytest.mark.parametrize("loops", [1, 2, 5])

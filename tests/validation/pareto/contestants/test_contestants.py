@@ -8,8 +8,8 @@ import numpy as np
 
 from validation.adapters.exudyn.scenes import pendulum
 from validation.adapters.exudyn.steps import Solver
-from validation.pareto.scenes import pendulum as swing
-from validation.pareto.scenes import spin_up
+from validation.pareto.problems import pendulum as swing
+from validation.pareto.problems import spin_up
 
 
 def test_what_is_refused_says_why() -> None:

@@ -1,0 +1,76 @@
+"""Problems move alike in every engine, closed forms satisfy their equations, errors are of the motion."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.special import ellipk
+
+from validation.adapters.exudyn.scenes import Rod, pendulum
+from validation.adapters.exudyn.steps import Solver
+from validation.pareto.catalogue import PROBLEMS
+from validation.pareto.front import usable
+from validation.pareto.problems import andrews, arm, closed_forms, four_bar, rod, spin_up
+from validation.pareto.problems import pendulum as swing
+from validation.pareto.race import race
+
+
+@pytest.mark.parametrize("name", ["arm", "four_bar", "andrews"])
+def test_references_agree_and_sides_move_alike(name: str) -> None:
+    problem = PROBLEMS[name]
+    found = race(problem, quick=True)
+    assert found.agreement <= problem.trust
+    by: dict[str, float] = {}
+    for p in usable(found.points):
+        by[p.who] = min(by.get(p.who, math.inf), p.error)
+    # Every side comes near the reference: they are models of one motion.
+    assert by["symofros"] < 1e-4 and all(error < 2e-2 for error in by.values()), by
+    assert all(p.seconds > 0 for p in usable(found.points))
+
+
+def test_closed_forms_are_periodic_and_start_right() -> None:
+    period = 4.0 * ellipk(np.sin(0.5) ** 2)
+    t = np.array([0.0, period / 4, period / 2, period])
+    np.testing.assert_allclose(closed_forms.swinging(1.0, 1.0, t), [1.0, 0.0, -1.0, 1.0], atol=1e-12)
+    t = np.linspace(0.0, 1e-4, 3)
+    psi = closed_forms.turning(0.3, 2.0, t)
+    assert psi[0] == pytest.approx(np.pi) and (psi[2] - psi[0]) / 1e-4 == pytest.approx(0.3, rel=1e-6)
+
+
+def test_closed_form_of_the_four_bar_against_its_equation() -> None:
+    solved = four_bar.four_bars.exact(1, tuple(four_bar.TIMES.tolist()))[0]
+    assert four_bar.far(solved) < 1e-9 and four_bar.far(solved + 1e-3) == pytest.approx(1e-3, rel=1e-6)
+
+
+def test_the_chain_of_links_converges_with_the_square_of_their_length() -> None:
+    soft = Rod(1.0, 1.0, 1e6, 1.0, 2.0, 2.0)
+    t = np.linspace(0.0, 2.0, 21)
+    fine = rod.linked(soft, t, 24)
+    errors = [float(np.abs(rod.linked(soft, t, n) - fine).max()) for n in (3, 6)]
+    assert 3.0 < errors[0] / errors[1] < 6.0
+    assert float(np.abs(rod.tip(soft, t, 6) - fine).max()) < errors[1] / 3.0
+
+
+def test_the_spin_up_is_one_motion() -> None:
+    mine = spin_up.judged_model("3 modes", spin_up.model(3)).measured(method="rk4", dt=0.02)
+    assert 5e-4 < mine.error < 2e-3 and mine.seconds < 0.05
+    lost = spin_up.judged_model("x", spin_up.model(3, foreshortening=False, retain="all")).measured(
+        method="rk4", dt=0.02
+    )
+    assert lost.ended or not lost.error < 1.0, "without foreshortening it runs away"
+
+
+def test_exudyn_and_the_closed_form_of_the_pendulum() -> None:
+    recorded = pendulum(swing.GRAVITY).run(Solver("RK67"), 0.02, 5.0, 1.0)
+    exact = np.pi / 2 + closed_forms.swinging(-np.pi / 2, swing.GRAVITY, np.arange(6.0))
+    np.testing.assert_allclose(recorded.values[:, 0], exact, atol=1e-8)
+    assert recorded.seconds > 0 and recorded.t.tolist() == pytest.approx(list(range(6)))
+
+
+def test_errors_are_of_the_motion() -> None:
+    names = tuple(andrews.known()["end"])
+    end = np.array(list(andrews.known()["end"].values()))
+    assert andrews.far(end, names) == 0.0 and andrews.far(end + 1e-3, names) == pytest.approx(1e-3)
+    assert arm.far(arm.reference()) == 0.0

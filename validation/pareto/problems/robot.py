@@ -1,0 +1,158 @@
+"""The planar flexible robot under control: modes and steps of ours against elements and steps of Exudyn's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+import reference_models
+import symofros as sf
+from validation.adapters.exudyn.planar import Cable
+from validation.adapters.exudyn.scenes import planar
+from validation.adapters.exudyn.steps import Solver
+from validation.mechanics.geometry import Array
+from validation.pareto.contestants.exudyn import ExudynModel
+from validation.pareto.contestants.symofros import SymofrosModel
+from validation.pareto.problem import BenchmarkProblem, Contestant, Prepared, Target
+from validation.timing.flexible.equal_accuracy import EA
+
+END, OUTPUT = 2.0, 0.02
+TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT
+# Joint -> angle at the start, angle asked for [rad], stiffness [N m/rad] and damping [N m s/rad] of the control.
+CONTROL = {"q1": (0.0, 0.3, 10.0, 4.0), "q2": (0.8, 0.5, 4.0, 1.0), "q3": (-0.5, -0.2, 0.5, 0.1)}
+START = {name: row[0] for name, row in CONTROL.items()}
+# The tool in the frame of the last joint: flange, then tool.
+TOOL = (0.12, 0.0)
+TOLERANCE = 1e-6
+FINE, FINE_STEP = 12, 2.5e-4
+
+
+def system(count: int, **changed: Any) -> sf.System:
+    """The robot with so many functions a strip, and control in place of friction, which engines have each its own."""
+    stated = reference_models.MODELS["planar_robot"]
+    return replace(stated, bodies=tuple(_body(body, count, changed) for body in stated.bodies))
+
+
+def _body(body: sf.Body, count: int, changed: dict[str, Any]) -> sf.Body:
+    if isinstance(body, sf.Beam):
+        given: dict[str, Any] = {"bend_y": count, "family": "spline"} | changed
+        return replace(body, **given)
+    if body.joint is None or body.joint.name not in CONTROL:
+        return body
+    _, rest, stiffness, damping = CONTROL[body.joint.name]
+    return replace(body, joint=replace(body.joint, elements=(sf.Spring(stiffness, rest), sf.Damper(damping))))
+
+
+def exudyn(elements: int) -> ExudynModel:
+    """Exudyn's model, whose strips stretch as steel does."""
+    cables = {name: Cable(elements, stiffness) for name, stiffness in EA.items()}
+    label = f"{elements} element{'s' * (elements > 1)} a strip"
+    return ExudynModel(label, planar(system(3), START, cables, TOOL), END, OUTPUT, lambda r: far(r.values[:, :2]))
+
+
+def path(m: sf.Model, **settings: Any) -> Array:
+    """The tool of one of our models (n, 2) [m]."""
+    run = sf.simulate(m, first(m), t_end=END, output=TIMES, **settings)
+    return np.asarray(run.frames["tool"][0][:, :2])
+
+
+def first(m: sf.Model) -> Array:
+    """The configuration at the start, strips straight."""
+    return np.array([START.get(name, 0.0) for name in m.names.q])
+
+
+@cache
+def reference() -> Array:
+    """Exudyn's tool (n, 2) of a fine mesh, extrapolated from two steps."""
+    solver = Solver(full=False, tolerance=TOLERANCE)
+    fine, coarse = (exudyn(FINE).system.run(solver, step, END, OUTPUT) for step in (FINE_STEP / 2, FINE_STEP))
+    return np.asarray((4.0 * fine.values[:, :2] - coarse.values[:, :2]) / 3.0)
+
+
+@cache
+def size() -> float:
+    """How far flexibility moves the tool from that of the rigid robot [m]."""
+    rigid = path(sf.compile(system(0)), method="dop853", rtol=1e-9)
+    return float(np.linalg.norm(rigid - reference(), axis=1).max())
+
+
+def far(tool: Array) -> float:
+    """Largest distance over the run, as a share of what flexibility does."""
+    return float(np.linalg.norm(tool - reference(), axis=1).max()) / size()
+
+
+def judged_model(label: str, m: sf.Model) -> SymofrosModel:
+    """A model of ours, to be judged by its tool."""
+    given = {"q0": first(m), "t_end": END, "output": TIMES}
+    return SymofrosModel(label, m, given, lambda run: far(run.frames["tool"][0][:, :2]))
+
+
+def splines(count: int) -> str:
+    """A count for people."""
+    return f"{count} spline{'s' * (count > 1)}"
+
+
+def prepare(quick: bool) -> Prepared:
+    """References first."""
+    first_order = (
+        judged_model("4 splines", sf.compile(system(4))).measured(method="rodas4", rtol=1e-8, atol=1e-10).error
+    )
+    all_terms = far(path(sf.compile(system(4, retain="all")), method="rodas4", rtol=1e-8, atol=1e-10))
+    contestants: list[Contestant] = []
+    rtols = (1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+    retained = {"": "first_order", ", all terms": "all"}
+    for label, retain in retained.items():
+        for count in (2,) if quick else (1, 2, 3):
+            one = judged_model(f"{splines(count)}{label}", sf.compile(system(count, retain=retain)))
+            contestants += one.by("rodas4", rtols) + one.by("generalized_alpha", (0.02, 0.01, 5e-3, 2e-3, 1e-3))
+            contestants += [] if quick else one.by("rk4", (2e-3, 1e-3, 5e-4, 2e-4))
+            if count == 2 and not quick:
+                contestants += one.by("dop853", rtols[1:4]) + one.by("dopri5", rtols[1:4]) + one.by("cvode", rtols)
+                contestants += one.by("implicit_euler", (5e-3, 1e-3, 2e-4))
+                contestants += one.by("semi_implicit_euler", (2e-3, 1e-3, 5e-4, 2e-4, 1e-4))
+    if not quick:
+        changes: dict[str, dict[str, Any]] = {
+            "2 splines, zeroth order": {"retain": "zeroth_order"},
+            "3 modes": {"bend_y": 3, "family": "clamped_free"},
+            "2 Hermite": {"family": "hermite"},
+        }
+        for label, change in changes.items():
+            one = judged_model(label, sf.compile(system(2, **change)))
+            contestants += one.by("rodas4", rtols[:4]) + one.by("generalized_alpha", (0.02, 0.01, 5e-3))
+        contestants += judged_model("rigid strips", sf.compile(system(0))).by("rk4", (0.02, 0.01))
+    for elements in (1, 2) if quick else (1, 2, 3, 4):
+        steps = (0.01, 2e-3) if quick else (0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4)
+        contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE), steps)
+        if not quick:
+            contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE, full=False), steps)
+            contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE, full=False, sparse=True), steps[1:5])
+            contestants += exudyn(elements).by(Solver(tolerance=TOLERANCE, radius=0.6), steps[:4])
+    if not quick:
+        contestants += exudyn(1).by(Solver("TrapezoidalIndex2", tolerance=TOLERANCE), (5e-3, 1e-3))
+        contestants += exudyn(1).by(Solver("RK44"), (1e-4,))
+    origin = (
+        f"Exudyn, {FINE} ANCFCable2D elements a strip, extrapolated from steps of {1e3 * FINE_STEP:g} and "
+        f"{500 * FINE_STEP:g} ms; and, sharing no code with it, our model of 4 splines with all terms by rodas4 at "
+        "1e-8: their distance counts what the theory leaves, too"
+    )
+    return Prepared(tuple(contestants), all_terms, origin, {"first order": first_order, "all terms": all_terms})
+
+
+PROBLEM = BenchmarkProblem(
+    "Planar flexible robot under control",
+    "The paper's robot, three motors with harmonic drives, an elastic first joint and two steel strips, from rest to "
+    "another posture by a spring and a damper on each motor; 2 s. Every side records its tool each 20 ms.",
+    "distance of the tool, largest over the run, as a share of what flexibility does to it",
+    "error of the tool / effect of flexibility  [1]",
+    "Exudyn: ANCFCable2D with the stretch of steel, 1 to 4 elements a strip, rigid bodies in three coordinates; "
+    "generalised alpha with spectral radii 0.6 and 0.9, full and modified Newton iterations, dense and sparse; "
+    "trapezoidal rule of index 2; steps from 0.5 to 20 ms. Its explicit solvers refuse joints.",
+    prepare,
+    (Target("Exudyn", 1e-2, 30.0), Target("Exudyn", 2e-3, 30.0)),
+    1e-3,
+    ("SYMOFROS paper, section 7; parameters of reference_models/flexible/planar_robot.yaml; control of this study",),
+    percent=True,
+)

@@ -1,0 +1,1 @@
+"""Closed loops: drift, singular postures, redundant and soft closures."""

@@ -1,0 +1,1 @@
+"""Beams: stiffness against the step, spin, large deflections, families of shape functions."""

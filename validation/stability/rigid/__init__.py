@@ -1,0 +1,1 @@
+"""Open chains of rigid bodies: energy, Euler angles, masses far apart, friction."""
