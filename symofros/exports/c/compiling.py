@@ -31,6 +31,6 @@ def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path])
         for name, text in files.items():
             (Path(private) / name).write_text(text, encoding="utf-8")
         folders = [f"-I{folder}" for folder in include]
-        command = [*toolchain.command, *FLAGS, *folders, "-o", "library", main, "-lm"]
-        call_compiler(command, Path(private), "check $CC and the compiler")
+        command = [*toolchain.command, *FLAGS, *folders, main, "-lm"]
+        call_compiler(command, "library", Path(private), "check $CC and the compiler")
         return (Path(private) / "library").read_bytes()

@@ -2,7 +2,7 @@
 
 The key covers the C text, the header, flags, compiler and processor, or the processor's family where the library is for
 any of it. A library is compiled in a private folder and renamed into place, so that concurrent processes and killed
-compilations never leave a broken one behind. A second key spares the C text: what was asked for, of which state of this
+compilations never leave a broken one behind; a damaged one is compiled anew. A second key spares the C text: what was asked for, of which state of this
 package; its file names the library.
 """
 
@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from symofros.base.atomic import write_atomically
-from symofros.errors import CompileError, Problem
+from symofros.runtime.build.cache import cache_folder, create_cache_folder, install, is_intact, unusable
 from symofros.runtime.build.identity import CODE_IDENTITY
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, SHARED_FLAGS, Toolchain, call_compiler, cpu_identity, kinds
 
@@ -27,14 +27,6 @@ _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _REMEDY = "check Options(flags=…) and the compiler; backend='interpreter' needs none"
 # Linked with these, a library of gcc's up to 12 makes the whole process flush denormal numbers to zero when it loads.
 _LOOSE = {"-ffast-math", "-Ofast", "-funsafe-math-optimizations"}
-
-
-def cache_folder() -> Path:
-    """Where compiled models live: $SYMOFROS_CACHE, or symofros in the user's cache folder."""
-    stated = os.environ.get("SYMOFROS_CACHE")
-    if stated:
-        return Path(stated)
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "symofros"
 
 
 def recall_library(
@@ -64,7 +56,7 @@ def recall_library(
     known = folder / f"{_key(toolchain, flags, dispatch, recipe, CODE_IDENTITY, np.__version__, header)}.known"
     try:
         library = folder / Path(known.read_text(encoding="utf-8")).name
-        if library.is_file():
+        if is_intact(library):
             return library
     except OSError:
         pass
@@ -105,40 +97,26 @@ def build_library(
         symbol: The exported function, which each kind has under a name of its own.
 
     Raises:
-        CompileError: The compiler refused, with its command and words; or the cache folder can't be written.
+        CompileError: The compiler refused, with its command and words; or the cache folder can't be written or trusted.
     """
     key, chosen = _key(toolchain, flags, dispatch, source, header), _chosen(flags, dispatch)
     folder = cache_folder()
     library = folder / f"{key}{_SUFFIX}"
-    if library.exists():
+    if is_intact(library):
         return library
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        create_cache_folder(folder)
         with tempfile.TemporaryDirectory(prefix=f".{key[:8]}-", dir=folder) as private:
             _write(Path(private), {"symofros_model.h": header, "model.c": source, "dispatch.c": dispatch})
             if dispatch:
                 _compile_for_any(Path(private), toolchain, chosen, symbol)
             else:
                 _compile(Path(private), toolchain, chosen)
-            _flush(Path(private) / f"model{_SUFFIX}")
             os.replace(Path(private) / "model.c", folder / f"{key}.c")
-            os.replace(Path(private) / f"model{_SUFFIX}", library)
+            install(Path(private) / f"model{_SUFFIX}", library)
     except OSError as error:
-        raise CompileError(
-            Problem(
-                f"the cache folder can't be used: {error}",
-                str(folder),
-                "compiled models are kept in a folder that can be written",
-                "set SYMOFROS_CACHE to such a folder",
-            )
-        ) from error
+        raise unusable(folder, error) from error
     return library
-
-
-def _flush(path: Path) -> None:
-    """Bring a file to the disk: a crash after the renaming must not leave a truncated library under its name."""
-    with open(path, "rb+") as stream:
-        os.fsync(stream.fileno())
 
 
 def _write(private: Path, files: Mapping[str, str]) -> None:
@@ -148,23 +126,23 @@ def _write(private: Path, files: Mapping[str, str]) -> None:
 
 def _compile(private: Path, toolchain: Toolchain, flags: tuple[str, ...]) -> None:
     if not _LOOSE & set(flags):
-        output = f"model{_SUFFIX}"
-        call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-o", output, "model.c", "-lm"], private, _REMEDY)
+        command = [*toolchain.command, *flags, *SHARED_FLAGS, "model.c", "-lm"]
+        call_compiler(command, f"model{_SUFFIX}", private, _REMEDY)
         return
-    call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "-o", "model.o", "model.c"], private, _REMEDY)
+    call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "model.c"], "model.o", private, _REMEDY)
     _link(private, toolchain, ["model.o"])
 
 
 def _compile_for_any(private: Path, toolchain: Toolchain, flags: tuple[str, ...], symbol: str) -> None:
     """The model for each kind of processor, and what chooses."""
     objects = ["dispatch.o"]
-    call_compiler([*toolchain.command, *SHARED_FLAGS, "-c", "-o", "dispatch.o", "dispatch.c"], private, _REMEDY)
+    call_compiler([*toolchain.command, *SHARED_FLAGS, "-c", "dispatch.c"], objects[0], private, _REMEDY)
     for name, _, extra in kinds():
         stated = [*flags, *extra, f"-D{symbol}={symbol}_{name}", *SHARED_FLAGS]
         objects.append(f"{name}.o")
-        call_compiler([*toolchain.command, *stated, "-c", "-o", objects[-1], "model.c"], private, _REMEDY)
+        call_compiler([*toolchain.command, *stated, "-c", "model.c"], objects[-1], private, _REMEDY)
     _link(private, toolchain, objects)
 
 
 def _link(private: Path, toolchain: Toolchain, objects: list[str]) -> None:
-    call_compiler([*toolchain.command, "-shared", "-o", f"model{_SUFFIX}", *objects, "-lm"], private, _REMEDY)
+    call_compiler([*toolchain.command, "-shared", *objects, "-lm"], f"model{_SUFFIX}", private, _REMEDY)

@@ -9,6 +9,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -37,6 +38,9 @@ KINDS: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
 )
 SHARED_FLAGS = ("-shared", "-fPIC", "-fvisibility=hidden", "-std=gnu99")
 _SHOWN_LINES = 12
+# For one call [s]. The largest models of the suite take a minute; a compiler that waits for something never ends.
+COMPILATION_LIMIT = 3600.0
+VERSION_LIMIT = 60.0
 
 # What is said where C is needed and nothing can compile it.
 NO_COMPILER = Problem(
@@ -73,21 +77,11 @@ def find_toolchain(compiler: str | None = None) -> Toolchain | None:
         None if there is none.
 
     Raises:
-        CompileError: The compiler that was named does not run.
+        CompileError: The compiler that was named is none, does not run, or does not end.
     """
     wanted = compiler or os.environ.get("CC")
     if wanted:
-        command = tuple(shlex.split(wanted))
-        if shutil.which(command[0]) is None:
-            source = "Options(compiler=…)" if compiler else "$CC"
-            raise CompileError(
-                Problem(
-                    f"compiler '{wanted}' ({source}) was not found",
-                    command[0],
-                    "it is a program on the path",
-                    "install it, or leave the choice to us",
-                )
-            )
+        command = _command(wanted, "Options(compiler=…)" if compiler else "$CC")
         return Toolchain(command, _version(command))
     for name in ("cc", "gcc", "clang"):
         path = shutil.which(name)
@@ -99,28 +93,89 @@ def find_toolchain(compiler: str | None = None) -> Toolchain | None:
     return None
 
 
-def call_compiler(command: Sequence[str], folder: Path, remedy: str) -> None:
+def _command(wanted: str, source: str) -> tuple[str, ...]:
+    """Program and leading arguments of a compiler that was named.
+
+    Raises:
+        CompileError: The text is no command, or its program is not there.
+    """
+    remedy = "name a C compiler, as in 'gcc' or 'clang -m64', or leave the choice to us"
+    try:
+        command = tuple(shlex.split(wanted))
+    except ValueError as error:
+        rule = "its words are separated as in a shell"
+        raise CompileError(Problem(f"{source} can't be read: {error}", repr(wanted), rule, remedy)) from error
+    if not command or not command[0]:
+        raise CompileError(Problem(f"{source} names no compiler", repr(wanted), "it begins with a program", remedy))
+    if shutil.which(command[0]) is None:
+        what = f"compiler '{wanted}' ({source}) was not found"
+        raise CompileError(
+            Problem(what, command[0], "it is a program on the path", "install it, or leave the choice to us")
+        )
+    return command
+
+
+def call_compiler(command: Sequence[str], output: str, folder: Path, remedy: str) -> None:
     """Run a compiler in a folder.
 
     Args:
-        command: Command with its arguments.
+        command: Command with its arguments, but for the output.
+        output: Name of the file that it is to write there.
         folder: Working folder.
         remedy: Remedy to state if it fails.
 
     Raises:
-        CompileError: It refused: with its command and words.
+        CompileError: It refused: with its command and words; or it wrote nothing, or did not end.
     """
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        said = "\n".join(f"    {line}" for line in done.stderr.splitlines()[:_SHOWN_LINES])
-        what = f"the C compiler failed with status {done.returncode}"
-        rule = "the command ends with status 0"
-        raise CompileError(Problem(what, f"{' '.join(command)}\n{said}", rule, remedy))
+    stated = [*command, "-o", output]
+    status, said = _run(stated, COMPILATION_LIMIT, folder, subprocess.STDOUT)
+    shown = "\n".join([" ".join(stated), *(f"    {line}" for line in said.splitlines()[:_SHOWN_LINES])])
+    if status != 0:
+        what = f"the C compiler failed with status {status}"
+        raise CompileError(Problem(what, shown, "the command ends with status 0", remedy))
+    if not (folder / output).is_file():
+        what = "the C compiler ended well, but wrote nothing"
+        raise CompileError(Problem(what, shown, f"the command writes the file '{output}'", remedy))
 
 
 def _version(command: tuple[str, ...]) -> str:
-    done = subprocess.run([*command, "--version"], capture_output=True, text=True, check=False)
-    return f"{' '.join(command)} {done.stdout.splitlines()[0] if done.stdout else ''}"
+    said = _run([*command, "--version"], VERSION_LIMIT, None, subprocess.DEVNULL)[1]
+    return f"{' '.join(command)} {said.splitlines()[0] if said else ''}"
+
+
+def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int) -> tuple[int, str]:
+    """Status and words of a command.
+
+    What it says goes to a file: of a pipe, the end would be waited for until all its children have ended, too.
+
+    Raises:
+        CompileError: It can't be started, or does not end within the limit [s].
+    """
+    with tempfile.TemporaryFile() as said:
+        try:
+            process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=said, stderr=errors)
+        except OSError as error:
+            rule, remedy = "a compiler is a program that this machine can run", "name another compiler, or install one"
+            raise CompileError(
+                Problem(f"compiler '{command[0]}' can't be started", str(error), rule, remedy)
+            ) from error
+        try:
+            status = process.wait(limit)
+        except subprocess.TimeoutExpired as error:
+            raise CompileError(
+                Problem(
+                    f"the C compiler did not end within {limit:g} s",
+                    " ".join(command),
+                    "a compiler answers within its time limit",
+                    "name another compiler, or generate fewer functions: Options(functions=…)",
+                )
+            ) from error
+        finally:
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+        said.seek(0)
+        return status, said.read().decode(errors="replace")
 
 
 def kinds() -> tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...]:

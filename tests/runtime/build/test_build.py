@@ -16,6 +16,7 @@ import symofros as sf
 from reference_models.rigid.random_tree import random_tree
 from symofros.runtime.build import toolchain
 from symofros.runtime.build.build import build_library
+from symofros.runtime.build.cache import install
 from symofros.runtime.build.toolchain import find_toolchain
 
 SCRIPT = """
@@ -75,11 +76,12 @@ def test_a_killed_compilation_leaves_nothing_broken(cache: Path, tmp_path: Path)
     assert np.isfinite(m.mass_matrix(m.neutral())).all()
 
 
-def test_a_damaged_library_is_named(cache: Path) -> None:
+def test_a_library_that_does_not_load_is_named(cache: Path) -> None:
     sf.compile(random_tree(31))
     (library,) = libraries(cache)
     library.unlink()
-    library.write_bytes(b"not a library")
+    (cache / "text").write_bytes(b"whole, but not a library")
+    install(cache / "text", library)
     # In a new process: this one has the good library mapped under that name.
     root = Path(__file__).parents[3]
     done = subprocess.run([sys.executable, "-c", SCRIPT], cwd=root, capture_output=True, text=True)
