@@ -31,7 +31,7 @@ class ForwardDynamics(Block):
         """The model."""
         return self.model
 
-    def engaging(self) -> tuple[str, ...]:
+    def lock_inputs(self) -> tuple[str, ...]:
         """The input that says which constraints hold."""
         return ("engaged",) if self.engaged else ()
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from symofros.blocks.packets import MAX_VALUES, Reception, Silence, receiver_ports
 from symofros.diagrams.block import Environment, Port, Ports
-from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.calls.kernel import Array
 
@@ -21,7 +21,7 @@ MAX_TAKEN = 1000
 
 
 @dataclass(frozen=True, kw_only=True)
-class Exchange(OpaqueBlock):
+class Exchange(ExternalBlock):
     """A block that talks by an address."""
 
     @abstractmethod

@@ -11,7 +11,7 @@ import numpy as np
 
 from symofros.blocks.quantities import frame_ports, joint_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
-from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.settings import Plot
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.calls.kernel import Array
@@ -53,7 +53,7 @@ class Scope(Block):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Store(OpaqueBlock):
+class Store(ExternalBlock):
     """Keeps its inputs at samples of its own, whatever interval the run is recorded at.
 
     `run.kept[name]` has them afterwards: "t" (n) and each signal (n, *shape).

@@ -20,14 +20,14 @@ from symofros.blocks.graphics import open_ports
 from symofros.blocks.packets import pack
 from symofros.blocks.turns import Turn
 from symofros.diagrams.block import Environment, Ports
-from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.signals import entries
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 
 
 @dataclass(frozen=True, kw_only=True)
-class LivePlot(OpaqueBlock):
+class LivePlot(ExternalBlock):
     """Shows its inputs as curves in a browser while the run goes on.
 
     Another process draws; the loop only hands it a packet at each sample, and drops it where that would take time. The

@@ -18,7 +18,7 @@ import numpy as np
 from symofros.blocks.exchange import MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
 from symofros.blocks.packets import pack
 from symofros.diagrams.block import Environment
-from symofros.diagrams.opaque_block import Running
+from symofros.diagrams.external_block import Running
 from symofros.errors import DescriptionError, Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 

@@ -17,7 +17,7 @@ import numpy as np
 from symofros.blocks.exchange import LOCALHOST, MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
 from symofros.blocks.packets import pack
 from symofros.diagrams.block import Environment
-from symofros.diagrams.opaque_block import Running
+from symofros.diagrams.external_block import Running
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 

@@ -17,7 +17,7 @@ from symofros.blocks.turns import Turn
 from symofros.description.system import System
 from symofros.diagrams.block import Environment, Port, Ports
 from symofros.diagrams.diagram import Diagram
-from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.errors import DescriptionError, Problem
 from symofros.runtime.calls.kernel import Array
 from symofros.studio.viewer.playing.diagram_motion import chosen_block
@@ -25,7 +25,7 @@ from symofros.studio.viewer.viewer import Viewer
 
 
 @dataclass(frozen=True, kw_only=True)
-class View3D(OpaqueBlock):
+class View3D(ExternalBlock):
     """Shows a mechanism in a browser as its coordinates change (the extra `view`, docs/view.md).
 
     A run hands its coordinates over and goes on: what comes faster than pictures can be drawn is dropped. The mechanism

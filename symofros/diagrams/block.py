@@ -203,8 +203,8 @@ class Block:
         """Name of the model that this block moves; "" for none."""
         return ""
 
-    def engaging(self) -> tuple[str, ...]:
-        """Inputs, held between samples, whose change takes its mechanism onto its constraints at once."""
+    def lock_inputs(self) -> tuple[str, ...]:
+        """Inputs that engage and release constraints; held between samples, and a change projects the state at once."""
         return ()
 
     def states(self, environment: Environment) -> Mapping[str, Any]:

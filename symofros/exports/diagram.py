@@ -10,8 +10,8 @@ from string import Template
 
 import numpy as np
 
-from symofros.diagrams.opaque_block import OpaqueBlock
-from symofros.diagrams.program.compiled import Resolved, compile_diagram, fuser, looks_back, record_of
+from symofros.diagrams.external_block import ExternalBlock
+from symofros.diagrams.program.compiled import Resolved, compile_diagram, fuser, reads_accelerations, record_of
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.wiring import Source
@@ -64,12 +64,12 @@ def write_diagram(
         ExportError: The diagram calls Python, or the folder is not ours.
     """
     wired, layout = resolved.wired, resolved.layout
-    opaque = [name for name, block in wired.blocks.items() if isinstance(block, OpaqueBlock)]
-    if opaque:
+    external = [name for name, block in wired.blocks.items() if isinstance(block, ExternalBlock)]
+    if external:
         raise ExportError(
             Problem(
                 f"diagram '{wired.name}': no C program",
-                f"block '{opaque[0]}' calls Python",
+                f"block '{external[0]}' calls Python",
                 "a program of its own has no Python in it",
                 "leave the block out",
             )
@@ -98,7 +98,7 @@ def write_diagram(
     files[f"{name}_instants.c"] = model_source(
         instants, record_of(resolved, None), generator, c_name=f"{name}_instants"
     )
-    files[f"{name}_program.c"] = _program(resolved, name, sources, looks_back(instants), generator)
+    files[f"{name}_program.c"] = _program(resolved, name, sources, reads_accelerations(instants), generator)
     until, values = _reference(resolved, outputs, method, dt)
     words = {
         "name": name,
@@ -189,7 +189,7 @@ def _program(resolved: Resolved, name: str, sources: Sequence[Source], back: boo
                 ("q_offset", [part.q.start for part in parts]),
                 ("v_offset", [part.v.start for part in parts]),
                 ("c_offset", [part.conditions.start for part in parts]),
-                ("lock_inputs", layout.engaging),
+                ("lock_inputs", layout.lock_inputs),
             )
         ),
         _array("const double", "u_start", doubles(layout.u0)),
@@ -203,7 +203,7 @@ def _program(resolved: Resolved, name: str, sources: Sequence[Source], back: boo
         f"static const sym_program {name}_program_struct = {{",
         f"    {c_string(wired.name)}, {name}_instants_model,",
         f"    {len(parts)}, parts, q_offset, v_offset, c_offset, u_start,",
-        f"    {len(layout.signals)}, {len(layout.engaging)}, {len(directions)}, {int(back)},",
+        f"    {len(layout.signals)}, {len(layout.lock_inputs)}, {len(directions)}, {int(back)},",
         "    signals, lock_inputs, directions, terminal,",
         f"    {float(plan.base.numerator)!r}, {float(plan.base.denominator)!r}, {plan.cycle}, {len(plan.instants)},",
         f"    instant_tick, instant_set, {len(plan.sets)}, {len(_entries(resolved, sources))},",

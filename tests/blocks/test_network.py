@@ -18,7 +18,7 @@ import pytest
 import symofros as sf
 from symofros.blocks import UdpReceiver, UdpTransmitter, ZenohPublisher, ZenohSubscriber
 from symofros.diagrams.block import Block, Environment
-from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.result import DiagramRun
 from tests.blocks.sockets import free_port
 from tests.blocks.sources import Ramp
@@ -210,7 +210,7 @@ def test_hostile_packets_neither_stop_the_loop_nor_get_in(rng: np.random.Generat
 
 
 @dataclass(frozen=True, kw_only=True)
-class Flood(OpaqueBlock):
+class Flood(ExternalBlock):
     """Sends anything but packets."""
 
     port: int

@@ -11,7 +11,7 @@ import numpy as np
 import symofros as sf
 from symofros import blocks
 from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Ports, Values
-from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.simulation.inputs import Signal
 
 
@@ -114,7 +114,7 @@ class Twice(Block):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Spoken(OpaqueBlock):
+class Spoken(ExternalBlock):
     """A function of Python's."""
 
     heard: list[float]

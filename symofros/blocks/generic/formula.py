@@ -14,7 +14,7 @@ from symofros.blocks.checks import numbers, refuse
 from symofros.blocks.generic.sampling import needs_period
 from symofros.description.parser import ExpressionError, parse
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
-from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError
 from symofros.expr.expression import Expression, lower
@@ -162,7 +162,7 @@ class Formula(Block):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PythonBlock(OpaqueBlock):
+class PythonBlock(ExternalBlock):
     """A function of Python's, called at samples by the loop in C; its outputs are held between.
 
     Attributes:

@@ -100,8 +100,8 @@ class CompiledDiagram:
     Attributes:
         resolved: Diagram that was compiled.
         parts: A model for each part.
-        instants: Functions "due_i", "crossed_i", "heard_i_j".
-        looks_back: Whether functions of instants read accelerations and multipliers of that time.
+        instants: Functions "due_i", "crossed_i", "inputs_i_j".
+        reads_accelerations: Whether functions of instants read accelerations and multipliers of that time.
         toolchain: Compiler and its identity.
         options: Options as of `compile_diagram`; functions that are asked for later are compiled alike.
         sources: C texts, for people.
@@ -110,7 +110,7 @@ class CompiledDiagram:
     resolved: Resolved
     parts: tuple[Model, ...]
     instants: Unit
-    looks_back: bool
+    reads_accelerations: bool
     toolchain: Toolchain
     options: Options
     sources: tuple[str, ...] = ()
@@ -163,10 +163,12 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
         texts.append(text)
     program = run_passes(write.samples(resolved.schedule.sets))
     instants, text = unit_of(program, record_of(resolved, None), toolchain, options)
-    return CompiledDiagram(resolved, tuple(parts), instants, looks_back(program), toolchain, options, (*texts, text))
+    return CompiledDiagram(
+        resolved, tuple(parts), instants, reads_accelerations(program), toolchain, options, (*texts, text)
+    )
 
 
-def looks_back(program: Program) -> bool:
+def reads_accelerations(program: Program) -> bool:
     """Whether functions read accelerations or multipliers, which the loop then finds at each instant."""
     graph = program.graph
     edges = [edge for function in program.functions for edge in function.edges()]

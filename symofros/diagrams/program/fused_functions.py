@@ -81,7 +81,7 @@ class Point:
         layout, piece = self._layout, self._pieces[source[0]]
         if source in layout.samples:
             return layout.samples[source]
-        return layout.held.get(source) if piece.is_opaque or source[0] not in self._due else None
+        return layout.held.get(source) if piece.is_external or source[0] not in self._due else None
 
     def _behind(self, source: Source) -> list[Source]:
         name, port = source
@@ -264,22 +264,24 @@ class Fuser:
 
     # Samples.
 
-    def opaque(self, due: frozenset[str]) -> list[str]:
-        """Blocks of Python's that are due, in the order in which they are called."""
+    def external(self, due: frozenset[str]) -> list[str]:
+        """External blocks that are due, in the order in which they are called."""
         names = dict.fromkeys(name for name, _ in self._order if name in due)
         rest = dict.fromkeys(name for name in self._pieces if name in due)
-        return [name for name in (names | rest) if self._pieces[name].is_opaque]
+        return [name for name in (names | rest) if self._pieces[name].is_external]
 
     def samples(self, sets: Sequence[frozenset[str]], listened: Sequence[Source] = ()) -> Program:
         """What happens at instants: functions "due_i" for each set and "crossed_i" for each crossing.
 
-        "heard_i_j" gives what the j-th block of Python's of set i hears: its inputs, one after the other.
+        "inputs_i_j" gives what the j-th block of set i is called with: its inputs, one after the other.
         """
         g = Graph()
         functions = [self._due(g, f"due_{i}", due) for i, due in enumerate(sets)]
         functions += [self._crossed(g, f"crossed_{i}", *which) for i, which in enumerate(watched(self._pieces))]
         for i, due in enumerate(sets):
-            functions += [self._heard(g, f"heard_{i}_{j}", name, due) for j, name in enumerate(self.opaque(due))]
+            functions += [
+                self._gathered_inputs(g, f"inputs_{i}_{j}", name, due) for j, name in enumerate(self.external(due))
+            ]
         if listened:
             functions.append(self._signals(g, listened))
         return self._program(self._wired.name, g, functions)
@@ -311,11 +313,11 @@ class Fuser:
                 (q if key == "q" else v)[(layout.q if key == "q" else layout.v)[block].slice] = new
         return Function(name, "", AFTER, (_vector("u_next", u), _vector("q_next", q), _vector("v_next", v)))
 
-    def _heard(self, g: Graph, name: str, block: str, due: frozenset[str]) -> Function:
+    def _gathered_inputs(self, g: Graph, name: str, block: str, due: frozenset[str]) -> Function:
         at = self._at(g, due, after=True)
         sources = [self._wired.sources.get((block, port.name)) for port in self._wired.ports[block].inputs]
         edges = [edge for source in sources if source is not None for edge in at.signal(source).flat]
-        return Function(name, "", AFTER, (_vector("heard", edges),))
+        return Function(name, "", AFTER, (_vector("inputs", edges),))
 
     def signals(self, sources: Sequence[Source]) -> Program:
         """The function "signals": some outputs, from what was recorded, one after the other."""

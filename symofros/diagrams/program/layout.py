@@ -95,7 +95,7 @@ class Layout:
         par_names: Names of the run-time parameters, as q_names.
         segments: Segments of the configuration manifold.
         signals: (index in u, times, values, whether linear).
-        engaging: Entries of u whose change takes mechanisms onto their constraints.
+        lock_inputs: Entries of u that engage constraints: a change projects the state onto them.
         condition_names: Names of the conditions of constraints.
         speed_conditions: Names of the conditions on speeds only.
     """
@@ -119,7 +119,7 @@ class Layout:
     par_names: list[str] = field(default_factory=list)
     segments: list[Segment] = field(default_factory=list)
     signals: list[tuple[int, Array, Array, bool]] = field(default_factory=list)
-    engaging: list[int] = field(default_factory=list)
+    lock_inputs: list[int] = field(default_factory=list)
     condition_names: list[str] = field(default_factory=list)
     speed_conditions: list[str] = field(default_factory=list)
 
@@ -147,7 +147,7 @@ def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence
         for key, values in piece.parameters.items():
             layout.parameters[name, key] = _placed(layout.par, layout.par_names, f"{name}.{key}", values)
     for name, piece in pieces.items():
-        for port in piece.block.engaging():
+        for port in piece.block.lock_inputs():
             place = layout.held.get(wired.sources.get((name, port), ("", "")))
             if place is None:
                 raise DescriptionError(
@@ -158,7 +158,7 @@ def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence
                         "put a hold with a period before it",
                     )
                 )
-            layout.engaging += range(place.start, place.start + place.size)
+            layout.lock_inputs += range(place.start, place.start + place.size)
     for model in wired.models.names:
         names = wired.models.record(model).par_names
         layout.parameters["", model] = Place(len(layout.par), (len(names),))

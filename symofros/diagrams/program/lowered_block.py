@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from symofros.diagrams.block import Block, Crossing, EvaluationContext, Port, Terms, Values
-from symofros.diagrams.opaque_block import OpaqueBlock
+from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import DescriptionError, Problem
@@ -63,9 +63,9 @@ class Piece:
         return self.block.name
 
     @property
-    def is_opaque(self) -> bool:
+    def is_external(self) -> bool:
         """Whether it is a function of Python's."""
-        return isinstance(self.block, OpaqueBlock)
+        return isinstance(self.block, ExternalBlock)
 
     @property
     def is_discrete(self) -> bool:
@@ -144,7 +144,7 @@ def piece_of(wired: Wired, name: str) -> Piece:
     terms = block.motion(at)
     if terms.a is not None:  # Else they are known after the constraints' equations are solved.
         at = replace(at, a=terms.a)
-    outputs = {} if isinstance(block, OpaqueBlock) else dict(block.compute(at))
+    outputs = {} if isinstance(block, ExternalBlock) else dict(block.compute(at))
     crossings = dict(block.crossings(at))
     piece = Piece(
         block,
@@ -162,7 +162,7 @@ def piece_of(wired: Wired, name: str) -> Piece:
         v0,
     )
     _fit(wired, piece)
-    if piece.is_opaque:
+    if piece.is_external:
         needs = {port.name: frozenset(p.name for p in wired.ports[name].inputs) for port in wired.ports[name].outputs}
     else:
         needs = {port: piece.inputs_of(value.flat) for port, value in outputs.items()}
@@ -183,7 +183,7 @@ def _fit(wired: Wired, piece: Piece) -> None:
     """Formulas have the shapes of what they give; a block sticks to the kind that its sample time makes it."""
     name, block = piece.name, piece.block
     shapes = {port.name: port.shape for port in wired.ports[name].outputs}
-    given = set() if piece.is_opaque else shapes.keys() - block.samples().keys()
+    given = set() if piece.is_external else shapes.keys() - block.samples().keys()
     _same(name, "outputs", piece.outputs, {key: shapes[key] for key in given})
     _same(name, "rates", piece.rates, {key: value.shape for key, value in piece.states.items()})
     kept = {key: value.shape for key, value in piece.memory.items()}
@@ -212,7 +212,7 @@ def _fit(wired: Wired, piece: Piece) -> None:
                 "give a period",
             )
         )
-    if piece.is_opaque and not piece.is_discrete:
+    if piece.is_external and not piece.is_discrete:
         raise DescriptionError(
             Problem(
                 f"block '{name}' calls Python and has no sample time",

@@ -108,7 +108,7 @@ class Blocks:
             due: Blocks that are sampled.
             called: The blocks of Python's; None where none is due.
         """
-        waiting = {name for name in due if called and self.resolved.pieces[name].is_opaque}
+        waiting = {name for name in due if called and self.resolved.pieces[name].is_external}
         for source in self.resolved.order:
             name, port = source
             piece = self.resolved.pieces[name]
@@ -118,7 +118,7 @@ class Blocks:
             elif called and name in waiting:
                 waiting.remove(name)
                 self._call_python(called, name)
-            elif not piece.is_opaque and (name in due or not piece.is_discrete):
+            elif not piece.is_external and (name in due or not piece.is_discrete):
                 self.calls[name, f"out_{port}"][0]()
         for name in self.resolved.pieces:
             if called and name in waiting:
@@ -136,14 +136,14 @@ class Blocks:
 
     def _call_python(self, called: Called, name: str) -> None:
         sources = self.resolved.wired.sources
-        heard = {port: self.out[source].copy() for (block, port), source in sources.items() if block == name}
-        for key, value in called.call(name, float(self.t[0]), heard).items():
+        inputs = {port: self.out[source].copy() for (block, port), source in sources.items() if block == name}
+        for key, value in called.call(name, float(self.t[0]), inputs).items():
             self.out[name, key][...] = value
 
     def engaged(self) -> Array:
         """What says which constraints hold."""
         wired = self.resolved.wired
-        ports = [(name, port) for name, piece in self.resolved.pieces.items() for port in piece.block.engaging()]
+        ports = [(name, port) for name, piece in self.resolved.pieces.items() for port in piece.block.lock_inputs()]
         return np.concatenate([np.zeros(0), *(self.out[wired.sources[port]].reshape(-1) for port in ports)])
 
     def update(self, due: frozenset[str]) -> None:
@@ -287,7 +287,7 @@ def run_interpreted(
     """
     times: list[float] = []
     kept: dict[Source, list[Array]] = {source: [] for source in blocks.out}
-    looks_back = bool(len(blocks.lam))
+    reads_accelerations = bool(len(blocks.lam))
 
     def record() -> None:
         times.append(float(blocks.t[0]))
@@ -298,7 +298,7 @@ def run_interpreted(
         blocks.t[0] = t
         if due:
             blocks.signals()
-            if looks_back:
+            if reads_accelerations:
                 blocks.accelerate()
             before = blocks.engaged()
             blocks.signals(due, called)
@@ -307,7 +307,7 @@ def run_interpreted(
                 project_all(blocks)
         if recorded:
             blocks.signals()
-            if looks_back:
+            if reads_accelerations:
                 blocks.accelerate()
                 blocks.signals()
             record()

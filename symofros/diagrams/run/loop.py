@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.program.layout import Layout, Place
+from symofros.diagrams.program.layout import Layout
 from symofros.diagrams.rates import Schedule
+from symofros.diagrams.run.python_blocks import ExternalCalls
 from symofros.errors import CompileError
 from symofros.runtime.calls.binding import NativeMemory, native_library
 from symofros.runtime.calls.declarations import interface
@@ -30,7 +31,7 @@ class Task:
 
     Attributes:
         kernel: The function.
-        callback: Index of the Python block that takes its output; -1: the outputs are the new u (and q, v).
+        callback: Index of the external block that takes its output; -1: the outputs are the new u (and q, v).
     """
 
     kernel: CompiledKernel
@@ -48,14 +49,12 @@ class Loop:
         crossings: Task of each crossing.
         par: Run-time parameters (npar).
         u0: Initial inputs (nu).
-        opaque: Python's blocks: (index, time [s], inputs) -> outputs, one after the other.
-        places: Places in u of each Python block's outputs.
-        heard: Number of inputs of each Python block.
-        looks_back: Whether tasks read accelerations and multipliers of the instant.
+        external: Calls of the external blocks.
+        reads_accelerations: Whether tasks read accelerations and multipliers of the instant.
 
     Attributes:
         diagram: The sym_diagram: state, counters, records.
-        failure: Exception that a Python block raised; it ended the run.
+        failure: Exception that an external block raised; it ended the run.
     """
 
     def __init__(
@@ -67,17 +66,15 @@ class Loop:
         crossings: Sequence[Task],
         par: Array,
         u0: Array,
-        opaque: Callable[[int, float, Array], Array],
-        places: Sequence[Sequence[Place]],
-        heard: Sequence[int],
-        looks_back: bool,
+        external: ExternalCalls,
+        reads_accelerations: bool,
     ) -> None:
         self.native, self.parts = native_library(), parts
         self._ffi, self._memory = interface(), NativeMemory()
-        self._block, self._places, self._block_inputs, self._par = opaque, places, heard, par
+        self._external, self._par = external, par
         self.failure: BaseException | None = None
         self.diagram = self._ffi.new("sym_diagram *")
-        self.diagram.reads_accelerations = int(looks_back)
+        self.diagram.reads_accelerations = int(reads_accelerations)
         self._fill_point(layout, u0)
         self._fill_parts(layout)
         self._fill_schedule(schedule, tasks)
@@ -96,8 +93,8 @@ class Loop:
             for i, t, values, linear in layout.signals
         ]
         d.n_signals, d.signals = len(signals), memory.own("sym_signal[]", signals)
-        d.n_locks, d.lock_inputs = len(layout.engaging), memory.own("int32_t[]", layout.engaging)
-        d.lock_values = memory.doubles(u0[layout.engaging])
+        d.n_locks, d.lock_inputs = len(layout.lock_inputs), memory.own("int32_t[]", layout.lock_inputs)
+        d.lock_values = memory.doubles(u0[layout.lock_inputs])
 
     def _fill_parts(self, layout: Layout) -> None:
         """The parts, which read the inputs of the diagram: these are held between instants."""
@@ -139,11 +136,12 @@ class Loop:
         d.event_t, d.event_index = memory.shared(self._event_t), memory.shared(self._event_index)
 
     def _call_block(self, _data: Any, block: int, t: float, inputs: Any, u: Any) -> int:
-        """Call a Python block, and write its outputs into u; what it raises is kept and ends the run."""
+        """Call an external block, and write its outputs into u; what it raises is kept and ends the run."""
         try:
-            outputs = self._block(block, t, self._memory.view(inputs, int(self._block_inputs[block])).copy())
+            given = self._memory.view(inputs, self._external.input_sizes[block]).copy()
+            outputs = self._external.call(block, t, given)
             into, first = self._memory.view(u, self.diagram.nu), 0
-            for place in self._places[block]:
+            for place in self._external.output_places[block]:
                 into[place.slice] = outputs[first : first + place.size]
                 first += place.size
         except BaseException as error:  # It may not pass through C.

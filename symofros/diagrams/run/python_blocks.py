@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 
 import numpy as np
 
-from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.program.compiled import Resolved, fuser
 from symofros.diagrams.program.layout import Place
 from symofros.diagrams.wiring import Wired, surroundings
@@ -27,13 +27,13 @@ class Called:
     def __init__(self, wired: Wired, running: Mapping[str, Running]) -> None:
         self._wired, self._running = wired, running
 
-    def call(self, name: str, t: float, heard: Mapping[str, Array]) -> dict[str, Array]:
+    def call(self, name: str, t: float, inputs: Mapping[str, Array]) -> dict[str, Array]:
         """Call one.
 
         Args:
             name: Name of the block.
             t: Time [s].
-            heard: Input that is connected -> its signal, which the block may keep.
+            inputs: Signals of the connected inputs by port, which the block may keep.
 
         Returns:
             Output -> its signal, in the order of the ports.
@@ -42,13 +42,13 @@ class Called:
             SymofrosError: It returned what its ports do not promise.
         """
         ports = self._wired.ports[name]
-        inputs = {
-            port.name: heard[port.name]
-            if port.name in heard
+        signals = {
+            port.name: inputs[port.name]
+            if port.name in inputs
             else np.broadcast_to(np.asarray(port.default, dtype=np.float64), port.shape or ())
             for port in ports.inputs
         }
-        outputs = self._running[name].call(t, inputs)
+        outputs = self._running[name].call(t, signals)
         return {port.name: _output(name, outputs, port.name, port.shape or ()) for port in ports.outputs}
 
     def kept(self) -> dict[str, dict[str, Array]]:
@@ -56,13 +56,13 @@ class Called:
         return {name: dict(kept) for name, one in self._running.items() if (kept := one.kept())}
 
 
-def _output(name: str, found: Mapping[str, object], port: str, shape: tuple[int, ...]) -> Array:
-    value = np.asarray(found.get(port, np.nan), dtype=np.float64)
-    if port not in found or value.shape != shape:
+def _output(name: str, outputs: Mapping[str, object], port: str, shape: tuple[int, ...]) -> Array:
+    value = np.asarray(outputs.get(port, np.nan), dtype=np.float64)
+    if port not in outputs or value.shape != shape:
         raise SymofrosError(
             Problem(
                 f"block '{name}': output '{port}' does not fit",
-                f"{value.shape}" if port in found else "nothing",
+                f"{value.shape}" if port in outputs else "nothing",
                 f"{shape}",
                 "return it so from call",
             )
@@ -76,14 +76,14 @@ def begun(wired: Wired) -> Iterator[Called]:
     running: dict[str, Running] = {}
     with ExitStack() as ends:
         for name, block in wired.blocks.items():
-            if isinstance(block, OpaqueBlock):
+            if isinstance(block, ExternalBlock):
                 running[name] = block.begin(surroundings(wired, name))
                 ends.callback(running[name].end)
         yield Called(wired, running)
 
 
-class Opaque:
-    """The blocks of Python's of a compiled run, by number; what they hear and give lies in vectors.
+class ExternalCalls:
+    """Calls of the external blocks of a compiled run, by number, with inputs and outputs as vectors.
 
     Args:
         resolved: The diagram.
@@ -91,40 +91,37 @@ class Opaque:
 
     Attributes:
         names: Names of the blocks.
+        output_places: Places in u of each block's outputs.
+        input_sizes: Length of each block's vector of inputs.
     """
 
     def __init__(self, resolved: Resolved, called: Called) -> None:
-        self._resolved, self._called = resolved, called
+        self._called = called
         self._writer = fuser(resolved)
         self.names = list(dict.fromkeys(name for due in resolved.schedule.sets for name in self.due(due)))
         wired = resolved.wired
-        self._heard = [
+        self._input_ports = [
             [(port.name, port.shape or ()) for port in wired.ports[name].inputs if (name, port.name) in wired.sources]
             for name in self.names
         ]
+        self.input_sizes = [sum(math.prod(shape) for _, shape in ports) for ports in self._input_ports]
+        self.output_places: list[list[Place]] = [
+            [resolved.layout.held[name, port.name] for port in wired.ports[name].outputs] for name in self.names
+        ]
 
     def due(self, due: frozenset[str]) -> list[str]:
-        """Those of a set, in the order in which they are called."""
-        return self._writer.opaque(due)
+        """External blocks of a set, in the order in which they are called."""
+        return self._writer.external(due)
 
-    def places(self) -> list[list[Place]]:
-        """Where the outputs of each lie in u."""
-        ports = self._resolved.wired.ports
-        return [[self._resolved.layout.held[name, port.name] for port in ports[name].outputs] for name in self.names]
-
-    def lengths(self) -> list[int]:
-        """How many numbers each hears."""
-        return [sum(math.prod(shape) for _, shape in ports) for ports in self._heard]
-
-    def call(self, which: int, t: float, heard: Array) -> Array:
-        """Call one; its outputs one after the other.
+    def call(self, which: int, t: float, gathered: Array) -> Array:
+        """Call a block with its inputs, one after the other; its outputs likewise.
 
         Raises:
             SymofrosError: It returned what its ports do not promise.
         """
         inputs, at = {}, 0
-        for port, shape in self._heard[which]:
-            inputs[port] = heard[at : at + math.prod(shape)].reshape(shape)
+        for port, shape in self._input_ports[which]:
+            inputs[port] = gathered[at : at + math.prod(shape)].reshape(shape)
             at += math.prod(shape)
-        found = self._called.call(self.names[which], t, inputs)
-        return np.concatenate([np.zeros(0), *(value.reshape(-1) for value in found.values())])
+        outputs = self._called.call(self.names[which], t, inputs)
+        return np.concatenate([np.zeros(0), *(value.reshape(-1) for value in outputs.values())])

@@ -16,7 +16,7 @@ from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.parts import place_parts, start
-from symofros.diagrams.run.python_blocks import Opaque, begun
+from symofros.diagrams.run.python_blocks import ExternalCalls, begun
 from symofros.diagrams.run.recording import Cost, Crossed
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.runtime.calls.kernel import Array
@@ -80,19 +80,17 @@ def run_compiled(
 
     parts = place_parts(compiled, settings_of, par)
     with begun(resolved.wired) as called:
-        opaque = Opaque(resolved, called)
+        external = ExternalCalls(resolved, called)
         loop = Loop(
             resolved.layout,
             [part.stepper for part in parts],
             plan,
-            _tasks(compiled, plan, opaque),
+            _tasks(compiled, plan, external),
             [Task(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
             par,
             np.array(resolved.layout.u0, dtype=np.float64),
-            opaque.call,
-            opaque.places(),
-            opaque.lengths(),
-            compiled.looks_back,
+            external,
+            compiled.reads_accelerations,
         )
         with closing(loop):
             start(parts, name)
@@ -106,8 +104,8 @@ def _kernel(compiled: CompiledDiagram, name: str) -> CompiledKernel:
     return kernel
 
 
-def _tasks(compiled: CompiledDiagram, plan: Schedule, opaque: Opaque) -> list[list[Task]]:
-    """Tasks of each set of the plan: Python's blocks in order, then all others at once."""
+def _tasks(compiled: CompiledDiagram, plan: Schedule, external: ExternalCalls) -> list[list[Task]]:
+    """Tasks of each set of the plan: external blocks in order, then all others at once."""
     index_of = {due: i for i, due in enumerate(compiled.resolved.schedule.sets)}
     tasks: list[list[Task]] = []
     for due in plan.sets:
@@ -117,8 +115,8 @@ def _tasks(compiled: CompiledDiagram, plan: Schedule, opaque: Opaque) -> list[li
             continue
         i = index_of[own]
         callbacks = [
-            Task(_kernel(compiled, f"heard_{i}_{j}"), opaque.names.index(name))
-            for j, name in enumerate(opaque.due(own))
+            Task(_kernel(compiled, f"inputs_{i}_{j}"), external.names.index(name))
+            for j, name in enumerate(external.due(own))
         ]
         tasks.append([*callbacks, Task(_kernel(compiled, f"due_{i}"))])
     return tasks

@@ -12,7 +12,7 @@ import pytest
 import symofros as sf
 from symofros.blocks import LivePlot, PythonBlock, Store, UdpReceiver
 from symofros.diagrams.block import Block, Environment, Port, Ports
-from symofros.diagrams.opaque_block import OpaqueBlock, Running
+from symofros.diagrams.external_block import ExternalBlock, Running
 from tests.blocks.sockets import free_port
 from tests.blocks.sources import Ramp
 from tests.diagrams.parts import Counter
@@ -76,7 +76,7 @@ def test_a_page_shows_one_run_at_a_time() -> None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Promising(OpaqueBlock):
+class Promising(ExternalBlock):
     """It promises y (2) and returns something else."""
 
     returned: Any

@@ -111,7 +111,7 @@ def test_the_picture_changes_where_a_beam_bends(open_page: Open) -> None:
         little = settled(page)
         viewer.exaggeration = 12.0
         much = settled(page)
-        beam = viewer._scene_state.scene.drawing.bends[0].color
+        beam = viewer._scene_state.scene.drawing.beams[0].color
     bows = [bow(colored(image, beam)) for image in (straight, little, much)]
     # A straight beam is off its line by its thickness, a little bent one hardly more; exaggerated, it is seen to bend.
     assert bows[0] < 2.0 and bows[1] < bows[0] + 0.5 and bows[2] > 2 * bows[0]
@@ -232,7 +232,7 @@ def test_paths_are_seen_beside_it(open_page: Open) -> None:
 def test_another_system_takes_the_place_of_the_one_before(open_page: Open) -> None:
     with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
         page = open_page(viewer.url)
-        beam = viewer._scene_state.scene.drawing.bends[0].color
+        beam = viewer._scene_state.scene.drawing.beams[0].color
         assert colored(settled(page), beam).any()
         viewer.set_system(MODELS["pendulum"])
         image = settled(page)

@@ -81,7 +81,7 @@ def test_beams_bend_by_their_bones(viewer: sf.Viewer) -> None:
     q = viewer.mechanism.model.neutral()
     q[viewer.mechanism.model.names.q.index("link1.bend_y[2]")] = 0.01
     viewer.show(q)
-    bones = viewer._scene_state.scene._bends[0].bones
+    bones = viewer._scene_state.scene._beams[0].bones
     plain = bones[-1].position[1]
     viewer.exaggeration = 8.0
     assert plain > 0.005 and bones[-1].position[1] == pytest.approx(8 * plain)
@@ -162,7 +162,7 @@ class TestPlay:
     def test_a_trajectory_brings_its_parameters(self, viewer: sf.Viewer) -> None:
         model = sf.compile(viewer.mechanism.system).with_parameters(L1=0.8)
         viewer.play(sf.simulate(model, t_end=0.01, dt=1e-3))
-        assert viewer._scene_state.scene.drawing.bends[0].length == pytest.approx(0.8)
+        assert viewer._scene_state.scene.drawing.beams[0].length == pytest.approx(0.8)
 
 
 class TestMove:
@@ -183,7 +183,7 @@ class TestMove:
         after = viewer.state.par
         assert after[names.index("L1")] == 0.8
         assert np.flatnonzero(after != before).tolist() == [names.index("L1")]
-        assert viewer._scene_state.scene.drawing.bends[0].length == pytest.approx(0.8)
+        assert viewer._scene_state.scene.drawing.beams[0].length == pytest.approx(0.8)
 
     @pytest.mark.parametrize(("values", "par"), [({"q11": 1.0}, {}), ({}, {"L11": 1.0})])
     def test_a_wrong_name_moves_nothing(
@@ -208,7 +208,7 @@ class TestAnotherSystem:
         longer = tuple(replace(p, value=0.7) if p.name == "L1" else p for p in system.parameters)
         viewer.set_system(replace(system, parameters=longer))
         assert np.all(viewer.state.q == 0.01) and "frames" in viewer._scene_state.scene.layers
-        assert viewer._scene_state.scene.drawing.bends[0].length == pytest.approx(0.7)
+        assert viewer._scene_state.scene.drawing.beams[0].length == pytest.approx(0.7)
 
     def test_one_that_is_refused_leaves_the_picture(self, viewer: sf.Viewer) -> None:
         before = viewer.mechanism
@@ -233,7 +233,7 @@ class TestParameters:
         assert viewer._scene_state.scene is scene
         par[model.names.par.index("L2")] *= 2
         viewer.show(q, par=par)
-        assert viewer._scene_state.scene is not scene and viewer._scene_state.scene.drawing.bends[
+        assert viewer._scene_state.scene is not scene and viewer._scene_state.scene.drawing.beams[
             1
         ].length == pytest.approx(0.8)
 

@@ -65,7 +65,7 @@ class DrawnBeam:
 
 
 @dataclass(frozen=True)
-class Strut:
+class DrawnConnector:
     """A straight piece between two points that may move apart: a rod, a spring, the gap of a closure, a slide.
 
     Attributes:
@@ -101,8 +101,8 @@ class Drawing:
     Attributes:
         name: Name of the system.
         parts: Rigid pieces.
-        bends: Beams that bend.
-        struts: Pieces whose ends move apart.
+        beams: Deformable beams.
+        connectors: Pieces whose ends move apart.
         triads: Every named frame.
         gravity: Acceleration vector in the world (3) [m/s^2].
         size: Extent of the mechanism from end to end [m].
@@ -112,8 +112,8 @@ class Drawing:
 
     name: str
     parts: tuple[DrawnPart, ...]
-    bends: tuple[DrawnBeam, ...]
-    struts: tuple[Strut, ...]
+    beams: tuple[DrawnBeam, ...]
+    connectors: tuple[DrawnConnector, ...]
     triads: tuple[Triad, ...]
     gravity: Array
     size: float
@@ -126,10 +126,10 @@ def alike(a: Drawing, b: Drawing) -> bool:
 
     def numbers(x: Drawing) -> list[Array]:
         parts = [part.mesh.vertices for part in x.parts]
-        bends = [array for bend in x.bends for array in (np.array(bend.length), bend.outline)]
-        struts = [end.position for strut in x.struts for end in (strut.first, strut.second)]
+        beams = [array for beam in x.beams for array in (np.array(beam.length), beam.outline)]
+        connectors = [end.position for connector in x.connectors for end in (connector.first, connector.second)]
         triads = [array for triad in x.triads for array in (triad.position, triad.rotation)]
-        return [*parts, *bends, *struts, *triads, x.gravity]
+        return [*parts, *beams, *connectors, *triads, x.gravity]
 
     one, other = numbers(a), numbers(b)
     return len(one) == len(other) and all(map(np.array_equal, one, other))

@@ -6,7 +6,7 @@
 | joint, frames, joints carried | cylinders from the joint to each of them |
 | joint axis | a cylinder along it; spheres where a joint has several |
 | beam | a tube along its axis, as the equations bend it |
-| closure, rod, spring, slide | a strut between two points |
+| closure, rod, spring, slide | a connector between two points |
 | rolling contact, knife edge | a disc, a sphere, a blade |
 | visual shapes of a file | these |
 """
@@ -24,7 +24,15 @@ from symofros.description.system import RigidBody
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import BASE, Link, NamedFrame, Placement, SpanningTree, frame_of
 from symofros.studio.viewer.drawing.centre_line import CentreLine
-from symofros.studio.viewer.drawing.drawing import Color, Drawing, DrawnBeam, DrawnPart, LinkPoint, Strut, Triad
+from symofros.studio.viewer.drawing.drawing import (
+    Color,
+    Drawing,
+    DrawnBeam,
+    DrawnConnector,
+    DrawnPart,
+    LinkPoint,
+    Triad,
+)
 from symofros.studio.viewer.drawing.inertia_box import inertia_box, longest_edges
 from symofros.studio.viewer.drawing.meshes import Array, Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
 from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
@@ -108,8 +116,8 @@ class _DrawingBuilder:
         return Drawing(
             self.tree.system.name,
             parts,
-            tuple(self._bends()),
-            (*self._slides(), *self._ties()),
+            tuple(self._beams()),
+            (*self._slide_connectors(), *self._constraint_connectors()),
             triads,
             self.numbers.values(self.tree.system.gravity),
             self.size,
@@ -211,7 +219,7 @@ class _DrawingBuilder:
 
     # Beams.
 
-    def _bends(self) -> Iterator[DrawnBeam]:
+    def _beams(self) -> Iterator[DrawnBeam]:
         tips = {link.tip_of.name: link for link in self.tree.links if link.tip_of is not None}
         for i, link in enumerate(self.tree.links):
             if link.beam is not None:
@@ -241,12 +249,12 @@ class _DrawingBuilder:
 
     # What joins two points, and what touches the ground.
 
-    def _slides(self) -> Iterator[Strut]:
+    def _slide_connectors(self) -> Iterator[DrawnConnector]:
         for i, link in enumerate(self.tree.links):
             if link.joint.traits.slides:
                 start = LinkPoint(link.parent, placed(link.placement, self.numbers)[0])
                 radius = self._scaled(_ROD_RADIUS, i) / 2
-                yield Strut(
+                yield DrawnConnector(
                     f"joints/{link.joint.name}.slide",
                     "joints",
                     start,
@@ -255,18 +263,20 @@ class _DrawingBuilder:
                     _SLIDE,
                 )
 
-    def _ties(self) -> Iterator[Strut]:
+    def _constraint_connectors(self) -> Iterator[DrawnConnector]:
         system, radius = self.tree.system, _ROD_RADIUS * self.size
         for item in system.constraints:
             if isinstance(item, Closure):
-                yield self._tie(item.name, item.first, item.second, radius / 2, _CLOSURE)
+                yield self._constraint_connector(item.name, item.first, item.second, radius / 2, _CLOSURE)
             elif isinstance(item, Rod):
-                yield self._tie(item.name, item.first, item.second, radius, _ROD)
+                yield self._constraint_connector(item.name, item.first, item.second, radius, _ROD)
         for spring in system.connections:
-            yield self._tie(spring.name, spring.first, spring.second, radius / 2, _SPRING)
+            yield self._constraint_connector(spring.name, spring.first, spring.second, radius / 2, _SPRING)
 
-    def _tie(self, name: str, first: Anchor, second: Anchor, radius: float, color: Color) -> Strut:
-        return Strut(
+    def _constraint_connector(
+        self, name: str, first: Anchor, second: Anchor, radius: float, color: Color
+    ) -> DrawnConnector:
+        return DrawnConnector(
             f"constraints/{name}",
             "constraints",
             self._place(first),

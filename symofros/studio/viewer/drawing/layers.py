@@ -14,6 +14,6 @@ def shown_at_first(drawing: Drawing) -> frozenset[str]:
     hidden = {"frames", "labels"}
     if dressed or not drawing.inertias_fit:
         hidden.add("inertias")
-    if dressed and not bare - dressed and not drawing.bends:
+    if dressed and not bare - dressed and not drawing.beams:
         hidden |= {"bodies", "joints"}
     return frozenset(LAYERS) - hidden

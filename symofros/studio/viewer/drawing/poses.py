@@ -16,7 +16,7 @@ from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.tree import SpanningTree, frame_of
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.assembly import assemble
-from symofros.studio.viewer.drawing.drawing import Drawing, DrawnBeam, LinkPoint, Strut
+from symofros.studio.viewer.drawing.drawing import Drawing, DrawnBeam, DrawnConnector, LinkPoint
 from symofros.studio.viewer.drawing.geometry import draw, landmarks
 from symofros.studio.viewer.drawing.inertia_box import longest_edges
 from symofros.studio.viewer.drawing.meshes import Array, axes_along
@@ -189,15 +189,15 @@ class Sweep(NamedTuple):
     axes: Array
 
 
-def bend_sweep(bend: DrawnBeam, posture: Posture) -> Sweep:
+def beam_sweep(beam: DrawnBeam, posture: Posture) -> Sweep:
     """A beam's sections in the world."""
-    start, size = bend.q
-    q, p, R = posture.q[start : start + size], posture.p[bend.link], posture.R[bend.link]
-    return Sweep(p + bend.line.points(bend.length, q) @ R.T, R @ bend.line.axes(bend.length, q))
+    start, size = beam.q
+    q, p, R = posture.q[start : start + size], posture.p[beam.link], posture.R[beam.link]
+    return Sweep(p + beam.line.points(beam.length, q) @ R.T, R @ beam.line.axes(beam.length, q))
 
 
-def strut_sweep(strut: Strut, posture: Posture) -> Sweep:
-    """A strut's ends in the world."""
-    first, second = posture.point(strut.first), posture.point(strut.second)
+def connector_sweep(connector: DrawnConnector, posture: Posture) -> Sweep:
+    """A connector's ends in the world."""
+    first, second = posture.point(connector.first), posture.point(connector.second)
     R = axes_along(second - first)
     return Sweep(np.stack([first, second]), np.stack([R, R]))

@@ -14,7 +14,7 @@ from symofros.studio.viewer.drawing.drawing import Color, Drawing
 from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, cell_of, gravity_arrow
 from symofros.studio.viewer.drawing.layers import LAYERS
 from symofros.studio.viewer.drawing.meshes import Array, Mesh, tube, tube_stations
-from symofros.studio.viewer.drawing.poses import Posture, Sweep, bend_sweep, strut_sweep
+from symofros.studio.viewer.drawing.poses import Posture, Sweep, beam_sweep, connector_sweep
 from symofros.studio.viewer.render.camera import Camera
 
 _ROOT, _TUBES = "/mechanism", "/tubes"
@@ -48,12 +48,12 @@ class ViserScene:
             }
             for part in drawing.parts:
                 self._add_mesh(part.kind, f"{self._link(part.link)}/{_node(part.name)}", part.mesh, part.color)
-            self._bends = [
-                self._add_tube("bodies", bend.outline, bend_sweep(bend, posture), bend.color) for bend in drawing.bends
+            self._beams = [
+                self._add_tube("bodies", beam.outline, beam_sweep(beam, posture), beam.color) for beam in drawing.beams
             ]
-            self._struts = [
-                self._add_tube(strut.kind, strut.outline, strut_sweep(strut, posture), strut.color)
-                for strut in drawing.struts
+            self._connectors = [
+                self._add_tube(connector.kind, connector.outline, connector_sweep(connector, posture), connector.color)
+                for connector in drawing.connectors
             ]
             self._hide_spare_tubes()
             self._add_frames()
@@ -67,11 +67,11 @@ class ViserScene:
         with self.server.atomic():
             for i, node in self._links.items():
                 node.position, node.wxyz = posture.p[i], turns[i]
-            for bend, node in zip(self.drawing.bends, self._bends, strict=True):
-                if bend.q[1]:
-                    self._pose(node, bend_sweep(bend, posture))
-            for strut, node in zip(self.drawing.struts, self._struts, strict=True):
-                self._pose(node, strut_sweep(strut, posture))
+            for beam, node in zip(self.drawing.beams, self._beams, strict=True):
+                if beam.q[1]:
+                    self._pose(node, beam_sweep(beam, posture))
+            for connector, node in zip(self.drawing.connectors, self._connectors, strict=True):
+                self._pose(node, connector_sweep(connector, posture))
 
     def _pose(self, node: Any, sweep: Sweep) -> None:
         turns = self._rotation.from_matrix(sweep.axes).wxyz

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, gravity_arrow, ground_lines
 from symofros.studio.viewer.drawing.meshes import Array, Mesh, cone, cylinder, tube
-from symofros.studio.viewer.drawing.poses import Posture, bend_sweep, strut_sweep
+from symofros.studio.viewer.drawing.poses import Posture, beam_sweep, connector_sweep
 from symofros.studio.viewer.page.viser_scene import SEE_THROUGH
 from symofros.studio.viewer.render.camera import Camera
 
@@ -90,11 +90,16 @@ class _Canvas:
             if part.kind in layers:
                 mesh = part.mesh.transformed(posture.p[part.link], posture.R[part.link])
                 (clear if part.kind == "inertias" else opaque).append((mesh, np.array(part.color, dtype=float)))
-        for bend in drawing.bends if "bodies" in layers else ():
-            opaque.append((tube(bend.outline, *bend_sweep(bend, posture)), np.array(bend.color, dtype=float)))
-        for strut in drawing.struts:
-            if strut.kind in layers:
-                opaque.append((tube(strut.outline, *strut_sweep(strut, posture)), np.array(strut.color, dtype=float)))
+        for beam in drawing.beams if "bodies" in layers else ():
+            opaque.append((tube(beam.outline, *beam_sweep(beam, posture)), np.array(beam.color, dtype=float)))
+        for connector in drawing.connectors:
+            if connector.kind in layers:
+                opaque.append(
+                    (
+                        tube(connector.outline, *connector_sweep(connector, posture)),
+                        np.array(connector.color, dtype=float),
+                    )
+                )
         arrow = gravity_arrow(drawing) if "ground" in layers else None
         if arrow is not None:
             middle, length = 0.75 * arrow[1] + 0.25 * arrow[0], float(np.linalg.norm(arrow[1] - arrow[0]))

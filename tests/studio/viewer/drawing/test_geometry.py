@@ -13,7 +13,7 @@ from reference_models import MODELS
 from reference_models.closed.spatial import delta_guess
 from symofros.errors import ShapeError
 from symofros.studio.viewer.drawing.drawing import Drawing, alike
-from symofros.studio.viewer.drawing.poses import Mechanism, bend_sweep, strut_sweep
+from symofros.studio.viewer.drawing.poses import Mechanism, beam_sweep, connector_sweep
 
 
 @cache
@@ -29,14 +29,17 @@ def drawing(name: str) -> Drawing:
 @pytest.mark.parametrize("name", list(MODELS))
 def test_every_reference_model_is_drawn(name: str) -> None:
     found, links = drawing(name), len(mechanism(name).tree.links)
-    names = [item.name for item in (*found.parts, *found.bends, *found.struts)]
+    names = [item.name for item in (*found.parts, *found.beams, *found.connectors)]
     assert len(names) == len(set(names))
     assert all(-1 <= part.link < links and np.all(np.isfinite(part.mesh.vertices)) for part in found.parts)
     assert all(part.mesh.faces.max() < len(part.mesh.vertices) for part in found.parts)
     assert found.parts and 0.0 < found.size < 100.0
     # Where loops can't be closed from the neutral configuration, it is that which is shown.
     posture = mechanism(name).posture(mechanism(name).closed(mechanism(name).state())[0].q)
-    for sweep in (*(bend_sweep(x, posture) for x in found.bends), *(strut_sweep(x, posture) for x in found.struts)):
+    for sweep in (
+        *(beam_sweep(x, posture) for x in found.beams),
+        *(connector_sweep(x, posture) for x in found.connectors),
+    ):
         assert np.all(np.isfinite(sweep.points)) and np.all(np.isfinite(sweep.axes))
 
 
@@ -60,11 +63,11 @@ def test_links_lead_from_joint_to_joint() -> None:
 
 
 def test_a_closure_shows_its_gap() -> None:
-    (gap,) = drawing("four_bar").struts
+    (gap,) = drawing("four_bar").connectors
     it = mechanism("four_bar")
-    ends = strut_sweep(gap, it.posture([1.2, -1.2, 1.2])).points
+    ends = connector_sweep(gap, it.posture([1.2, -1.2, 1.2])).points
     assert np.linalg.norm(ends[1] - ends[0]) < 1e-12
-    assert np.linalg.norm(np.diff(strut_sweep(gap, it.posture([1.2, -1.2, 1.0])).points, axis=0)) > 0.1
+    assert np.linalg.norm(np.diff(connector_sweep(gap, it.posture([1.2, -1.2, 1.0])).points, axis=0)) > 0.1
 
 
 def test_a_rod_is_as_long_as_it_is_stated_where_loops_are_closed() -> None:
@@ -73,11 +76,13 @@ def test_a_rod_is_as_long_as_it_is_stated_where_loops_are_closed() -> None:
     assert not why
     posture = it.posture(state.q)
     lengths = {item.name: item.length for item in it.system.constraints if isinstance(item, sf.Rod)}
-    rods = [strut for strut in drawing("delta").struts if strut.name.removeprefix("constraints/") in lengths]
+    rods = [
+        connector for connector in drawing("delta").connectors if connector.name.removeprefix("constraints/") in lengths
+    ]
     assert rods
     for rod in rods:
         stated = lengths[rod.name.removeprefix("constraints/")]
-        length = np.linalg.norm(np.diff(strut_sweep(rod, posture).points, axis=0))
+        length = np.linalg.norm(np.diff(connector_sweep(rod, posture).points, axis=0))
         assert length == pytest.approx(sf.evaluate(stated, it.system.parameter_values()), abs=1e-9)
 
 
@@ -95,7 +100,7 @@ def test_a_rolling_disc_touches_the_ground() -> None:
 def test_a_beam_that_is_stiffer_one_way_is_drawn_wider_that_way() -> None:
     def outline(**more: float) -> np.ndarray:
         beam = sf.Beam("b", sf.Joint("clamp"), 1.0, 1.0, bend_y=1, bend_z=1, **({"EI_z": 4.0, "EI_y": 1.0} | more))
-        return np.ptp(Mechanism(sf.System("s", [beam])).drawing().bends[0].outline, axis=0)
+        return np.ptp(Mechanism(sf.System("s", [beam])).drawing().beams[0].outline, axis=0)
 
     wide = outline()
     assert wide[0] / wide[1] == pytest.approx(2.0)
@@ -127,8 +132,8 @@ def test_exaggeration_multiplies_elastic_coordinates_alone() -> None:
 def test_what_a_beam_carries_stays_on_its_tip_however_exaggerated() -> None:
     it = mechanism("planar_robot")
     q = np.full(it.model.nq, 0.02)
-    posture, bend = it.posture(q, exaggeration=10.0), drawing("planar_robot").bends[0]
-    end = bend_sweep(bend, posture).points[-1]
+    posture, beam = it.posture(q, exaggeration=10.0), drawing("planar_robot").beams[0]
+    end = beam_sweep(beam, posture).points[-1]
     tip = next(triad for triad in drawing("planar_robot").triads if triad.name == "link1.tip")
     assert np.allclose(end, posture.p[tip.link] + posture.R[tip.link] @ tip.position, atol=1e-12)
 
@@ -140,7 +145,7 @@ def test_parameters_change_the_drawing_where_it_depends_on_them() -> None:
     longer[names.index("L1")] *= 2
     stiffer[names.index("k1")] *= 2
     assert alike(it.drawing(), it.drawing(stiffer)) and not alike(it.drawing(), it.drawing(longer))
-    assert it.drawing(longer).bends[0].length == pytest.approx(1.0)
+    assert it.drawing(longer).beams[0].length == pytest.approx(1.0)
 
 
 def test_shapes_are_checked() -> None:
@@ -163,4 +168,4 @@ def test_a_single_body_is_as_big_as_its_inertia() -> None:
 def test_a_beam_without_a_frame_at_its_tip_is_drawn() -> None:
     beam = replace(sf.Beam("b", sf.Joint("clamp"), 1.0, 1.0, EI_z=1.0, bend_y=2), frames=())
     it = Mechanism(sf.System("s", [beam]))
-    assert bend_sweep(it.drawing().bends[0], it.posture([0.1, 0.2])).points[-1, 1] != 0.0
+    assert beam_sweep(it.drawing().beams[0], it.posture([0.1, 0.2])).points[-1, 1] != 0.0

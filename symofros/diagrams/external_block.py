@@ -1,4 +1,4 @@
-"""Blocks that are functions of Python's, and what one run of such a block holds."""
+"""External blocks, which call functions outside the diagram, and what one run of such a block holds."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from symofros.runtime.calls.kernel import Array
 
 
 class Running(ABC):
-    """A block of Python's in one run: what is open and what is counted is that run's alone."""
+    """An external block in one run: what is open and what is counted is that run's alone."""
 
     @abstractmethod
     def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
@@ -32,8 +32,8 @@ class Running(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OpaqueBlock(Block, ABC):
-    """A block that the loop calls at its samples; its formulas are not known, so all outputs need all inputs."""
+class ExternalBlock(Block, ABC):
+    """A block that the loop calls at its samples; its formulas are unknown: all inputs feed through to all outputs."""
 
     @abstractmethod
     def begin(self, environment: Environment) -> Running:
