@@ -36,7 +36,7 @@ from symofros.mechanics.dynamics.functions import Request
 from symofros.mechanics.topology.graph import check
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
-from symofros.runtime.calls.kernel import Lanes, Precision
+from symofros.runtime.calls.kernel import LaneOptions, Precision
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
 
@@ -172,7 +172,7 @@ class Compilation:
         if toolchain is None:
             raise CompileError(NO_COMPILER)
         units = UnitCompiler(self.programs, self.record, self.options, toolchain)
-        lanes = Lanes(precision=precision) if self.options.batch == "vector" else None
+        lanes = LaneOptions(precision=precision) if self.options.batch == "vector" else None
         return units.library(self.requests, lanes), units.symbol
 
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
+from symofros.base.manifold import ManifoldKind
+
 JointKindName = Literal[
     "fixed",
     "revolute",
@@ -26,7 +28,6 @@ JOINT_KINDS: tuple[JointKindName, ...] = get_args(JointKindName)
 
 Measure = Literal["angle", "length", "component"]
 AxisName = Literal["axis", "axis2", "x", "y", "z"]
-ManifoldKind = Literal["linear", "quaternion", "pose"]
 # Entries that only some kinds have: geometry by parameters alone, and others.
 ConstantEntry = Literal["axis", "axis2", "pitch"]
 Entry = ConstantEntry | Literal["limits", "coordinates", "moving_position", "moving_rotation"]

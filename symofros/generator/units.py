@@ -26,7 +26,7 @@ from symofros.native import native_text
 from symofros.runtime.build.build import build_library, recall_library
 from symofros.runtime.build.toolchain import Toolchain
 from symofros.runtime.build.tuning import Build, builds, fastest
-from symofros.runtime.calls.kernel import Lanes, Unit
+from symofros.runtime.calls.kernel import LaneOptions, Unit
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 from symofros.runtime.functions import Key, Rate
 from symofros.runtime.record import ModelRecord
@@ -65,7 +65,7 @@ class UnitCompiler:
 
         return self._unit((values, derivatives), program)
 
-    def library(self, requests: Sequence[Request], lanes: Lanes | None) -> Path:
+    def library(self, requests: Sequence[Request], lanes: LaneOptions | None) -> Path:
         """The shared library of some functions, each with code by vectors beside it if there are lanes.
 
         Raises:
@@ -103,8 +103,8 @@ class UnitCompiler:
         request: object,
         program: Callable[[], Program],
         toolchain: Toolchain,
-        lanes: Lanes | None,
-        in_lanes: Callable[[Key, Lanes], CompiledKernel | None] | None = None,
+        lanes: LaneOptions | None,
+        in_lanes: Callable[[Key, LaneOptions], CompiledKernel | None] | None = None,
     ) -> CompiledUnit:
         def recall_one(build: Build) -> Path:
             return recall_library(
@@ -122,10 +122,10 @@ class UnitCompiler:
 
     def _in_lanes(
         self, request: object, program: Callable[[], Program]
-    ) -> Callable[[Key, Lanes], CompiledKernel | None]:
+    ) -> Callable[[Key, LaneOptions], CompiledKernel | None]:
         """Compiles one function of a unit by vectors when asked for; None for a function that a solver finishes."""
 
-        def compile_in_lanes(key: Key, lanes: Lanes) -> CompiledKernel | None:
+        def compile_in_lanes(key: Key, lanes: LaneOptions) -> CompiledKernel | None:
             function = next(f for f in program().functions if (f.name, f.frame) == key)
             if function.solver is not None or self._toolchain is None:
                 return None
@@ -134,7 +134,7 @@ class UnitCompiler:
 
         return compile_in_lanes
 
-    def _build(self, build_one: Callable[[Build], Path], toolchain: Toolchain, lanes: Lanes | None) -> Path:
+    def _build(self, build_one: Callable[[Build], Path], toolchain: Toolchain, lanes: LaneOptions | None) -> Path:
         """One build as the options have it; or, to tune, the fastest of several."""
         options = self._options
         if not options.tune:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
-SegmentKind = Literal["linear", "quaternion", "pose"]
+from symofros.base.manifold import ManifoldKind
 
 
 class Segment(NamedTuple):
@@ -19,7 +19,7 @@ class Segment(NamedTuple):
         size: Number of coordinates.
     """
 
-    kind: SegmentKind
+    kind: ManifoldKind
     q: int
     v: int
     size: int

@@ -1,6 +1,6 @@
 """Rotors for engines that know none, from two models of theirs: one without rotors, one where they are bodies.
 
-With the rotors' spins tied to the joints that drive them, speeds of the second model are v' = G v; with the rotors
+With the rotors' spins coupled to the joints that drive them, speeds of the second model are v' = G v; with the rotors
 locked, v' = G_0 v. What spinning brings is the difference, so that (docs/theory/rigid.md, section 9)
 
     M = M_plain + G^T M' G - G_0^T M' G_0,     h = h_plain + G^T h'(G v) - G_0^T h'(G_0 v)
@@ -52,7 +52,7 @@ def build(factory: EngineFactory, subject: Subject) -> Engine | Unsupported:
         if isinstance(engine, Unsupported):
             return engine
     one, other = (cast(TreeEngine, engine) for engine in engines)
-    return RotorEngine(one, other, *_ties(plain, explicit.system, spins))
+    return RotorEngine(one, other, *_speed_maps(plain, explicit.system, spins))
 
 
 def without_rotors(system: sf.System) -> sf.System:
@@ -83,8 +83,8 @@ def _rotor_bodies(system: sf.System) -> tuple[list[sf.RigidBody], list[_Spin]]:
     return bodies, spins
 
 
-def _ties(plain: sf.System, explicit: sf.System, spins: list[_Spin]) -> tuple[Array, Array, Array]:
-    """G, G_0 (nv', nv), and where our coordinates are among the explicit model's (nq)."""
+def _speed_maps(plain: sf.System, explicit: sf.System, spins: list[_Spin]) -> tuple[Array, Array, Array]:
+    """G, G_0 (nv', nv), and the indices of our coordinates among those of the explicit model (nq)."""
     ours, theirs = assemble(plain), assemble(explicit)
     place = {described.joint.name: described for described in theirs.joints}
     locked, at = np.zeros((theirs.nv, ours.nv)), np.zeros(ours.nq, dtype=int)
@@ -92,10 +92,10 @@ def _ties(plain: sf.System, explicit: sf.System, spins: list[_Spin]) -> tuple[Ar
         there = place[described.joint.name]
         locked[there.v, described.v] = np.eye(described.v.stop - described.v.start)
         at[described.q] = np.arange(there.q.start, there.q.stop)
-    tied = locked.copy()
+    coupled = locked.copy()
     for spin in spins:
-        tied[place[spin.joint].v.start, spin.driver] = spin.ratio
-    return tied, locked, at
+        coupled[place[spin.joint].v.start, spin.driver] = spin.ratio
+    return coupled, locked, at
 
 
 class RotorEngine:
@@ -104,14 +104,14 @@ class RotorEngine:
     Args:
         plain: Engine without rotors, for all that rotors leave as it is.
         explicit: Engine with rotors as bodies.
-        tied: G.
-        locked: G_0.
+        coupled: G, to the speeds of the explicit model with rotors driven by their joints (nv', nv).
+        locked: G_0, the same with rotors that do not spin (nv', nv).
         at: Indices of the coordinates of `plain` among those of `explicit`; the others, angles of balls, do not matter.
     """
 
-    def __init__(self, plain: TreeEngine, explicit: TreeEngine, tied: Array, locked: Array, at: Array) -> None:
-        self._plain, self._explicit, self._tied, self._locked, self._at = plain, explicit, tied, locked, at
-        self._nq = len(at) + len(tied) - tied.shape[1]
+    def __init__(self, plain: TreeEngine, explicit: TreeEngine, coupled: Array, locked: Array, at: Array) -> None:
+        self._plain, self._explicit, self._coupled, self._locked, self._at = plain, explicit, coupled, locked, at
+        self._nq = len(at) + len(coupled) - coupled.shape[1]
         self.name, self.version = plain.name, plain.version
         # What rotors do to further quantities is not stated here.
         self.capabilities = plain.capabilities & (TREE_QUANTITIES | FORCES_STATED)
@@ -130,18 +130,20 @@ class RotorEngine:
     def mass_matrix(self, states: States) -> Array:
         """M (N, nv, nv)."""
         M = self._explicit.mass_matrix(self._moving(states, self._locked))
-        tied, locked = (G.T @ M @ G for G in (self._tied, self._locked))
-        return self._plain.mass_matrix(states) + tied - locked
+        coupled, locked = (G.T @ M @ G for G in (self._coupled, self._locked))
+        return self._plain.mass_matrix(states) + coupled - locked
 
     def bias(self, states: States) -> Array:
         """Coriolis, centrifugal, gyroscopic and gravity forces h (N, nv)."""
-        tied, locked = (self._explicit.bias(self._moving(states, G)) @ G for G in (self._tied, self._locked))
-        return self._plain.bias(states) + tied - locked
+        coupled, locked = (self._explicit.bias(self._moving(states, G)) @ G for G in (self._coupled, self._locked))
+        return self._plain.bias(states) + coupled - locked
 
     def kinetic_energy(self, states: States) -> Array:
         """T (N,) [J]."""
-        tied, locked = (self._explicit.kinetic_energy(self._moving(states, G)) for G in (self._tied, self._locked))
-        return self._plain.kinetic_energy(states) + tied - locked
+        coupled, locked = (
+            self._explicit.kinetic_energy(self._moving(states, G)) for G in (self._coupled, self._locked)
+        )
+        return self._plain.kinetic_energy(states) + coupled - locked
 
     def inverse_dynamics(self, states: States) -> Array:
         """M a + h - passive (N, nv)."""

@@ -68,8 +68,8 @@ def faults_at(graph: Graph, node: int, sizes: Mapping[str, int], rng: np.random.
         yield Fault("sine and cosine exchanged", node, "cos" if op == "sin" else "sin", args)
 
 
-class Bench:
-    """One program under test: its values over a batch of states, and how they change under a fault.
+class FaultSimulator:
+    """Fault simulation of one program: its values over a batch of states, and how they change under a fault.
 
     Args:
         program: What to plant faults in.

@@ -28,7 +28,7 @@ from validation.inputs.frames import chosen_frames
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import assemble
 from validation.mechanics.geometry import Array
-from validation.studies.faults import Bench, Fault, faults_at
+from validation.studies.faults import Fault, FaultSimulator, faults_at
 
 STATES = 60
 # Outputs that agree to this many of DIGITS digits at random points are equal.
@@ -92,7 +92,7 @@ class _Harness:
         results = self._results()
         # What nobody can judge is not part of the test: a fault there would neither be caught nor be silent.
         self.program = sf.program_of(subject.system, results, self.subject.frames)
-        self.bench = Bench(self.program, self._inputs(self.states, ours.model))
+        self.simulator = FaultSimulator(self.program, self._inputs(self.states, ours.model))
         self.reference = {function: results[function.name] for function in self.program.functions}
 
     def _results(self) -> dict[str, tuple[Quantity, Array]]:
@@ -117,12 +117,12 @@ class _Harness:
 
     def run(self, count: int) -> MutationScore:
         graph, sizes = self.program.graph, self.program.sizes
-        everything = [fault for node in self.bench.nodes for fault in faults_at(graph, node, sizes, self.rng)]
+        everything = [fault for node in self.simulator.nodes for fault in faults_at(graph, node, sizes, self.rng)]
         chosen = self.rng.permutation(len(everything))[:count]
         score = MutationScore(self.subject.label, self.engine.name)
         survivors: list[tuple[Fault, float]] = []
         largest_small = 0.0
-        sound = {f: _as_compared(f, self.bench.outputs(f)) for f in self.program.functions}
+        sound = {f: _as_compared(f, self.simulator.outputs(f)) for f in self.program.functions}
         theirs = {f: reference for f, (_, reference) in self.reference.items()}
         for index in chosen:
             fault = everything[index]
@@ -142,7 +142,7 @@ class _Harness:
 
     def _against(self, fault: Fault, references: Mapping[Function, Array]) -> tuple[float, bool]:
         """The largest relative difference of a faulty program's outputs, and whether all are within tolerance."""
-        touched, outputs = self.bench.affected(fault)
+        touched, outputs = self.simulator.affected(fault)
         worst, within = 0.0, True
         for function in touched:
             quantity, value = self.reference[function][0], _as_compared(function, outputs(function))
@@ -153,8 +153,8 @@ class _Harness:
 
     def _is_silent(self, fault: Fault) -> bool:
         """Whether the mutant computes the same to many digits, at points where doubles play no part."""
-        mutant = self.bench.mutant(fault)
-        touched, _ = self.bench.affected(fault)
+        mutant = self.simulator.mutant(fault)
+        touched, _ = self.simulator.affected(fault)
         for point in range(PROOF_POINTS):
             inputs = self._exact_inputs(point)
             for function in touched:
@@ -167,7 +167,7 @@ class _Harness:
     def _exact_inputs(self, point: int) -> Mapping[str, list[mpmath.mpf]]:
         return {
             name: [mpmath.mpf(float(x)) for x in values[-1 - point if len(values) > 1 else 0]]
-            for name, values in self.bench.inputs.items()
+            for name, values in self.simulator.inputs.items()
         }
 
 

@@ -15,7 +15,7 @@ from symofros.expr.program import Output, Program
 from symofros.generator.codegen.packs import Store, runs_of_lanes, vector_lines, vector_name
 from symofros.generator.codegen.statements import Statement, StatementWriter
 from symofros.generator.codegen.trigonometry import block_lines
-from symofros.runtime.calls.kernel import Lanes
+from symofros.runtime.calls.kernel import LaneOptions
 
 MAX_STATEMENTS = 1000
 # Past this length, shorter chunks compile twice as fast and run as fast (measured on a 52-link chain, gcc 12); below
@@ -98,7 +98,7 @@ class FunctionWriter:
         self.statements = self.writer.statements()
         self.chunked = _Chunks.of(_chunks(self.statements) or [[]])
 
-    def text(self, lanes: Lanes | None = None) -> FunctionText:
+    def text(self, lanes: LaneOptions | None = None) -> FunctionText:
         """The C text: chunk functions, then the function that unpacks pointers and calls them.
 
         Args:

@@ -12,7 +12,7 @@ from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
 from symofros.expr.program import Function, Program
 from symofros.generator.codegen import trigonometry
 from symofros.native import native_text
-from symofros.runtime.calls.kernel import Lanes
+from symofros.runtime.calls.kernel import LaneOptions
 
 # Doubles of the widest vectors: scratch is laid out for them. As many lanes of floats as of doubles take half of that.
 _WIDEST = 8
@@ -22,13 +22,13 @@ _MOST_LANES = 2 * _WIDEST
 _MOST, _CACHE = 8, 1 << 19
 
 
-def batch(c_name: str, function: Function, lanes: Lanes | None) -> str:
+def batch(c_name: str, function: Function, lanes: LaneOptions | None) -> str:
     """The C function that evaluates many states, row by row.
 
     Args:
         c_name: Name of the C function that evaluates one state.
         function: Function that it evaluates.
-        lanes: Lanes of the function on vectors, if there is one.
+        lanes: Options of the code by vectors; None for none.
     """
     n_in, n_out = len(function.inputs) + 1, len(function.returns)
     lines = [
@@ -50,7 +50,7 @@ def batch(c_name: str, function: Function, lanes: Lanes | None) -> str:
     return "\n".join(lines)
 
 
-def _rows(c_name: str, function: Function, lanes: Lanes) -> list[str]:
+def _rows(c_name: str, function: Function, lanes: LaneOptions) -> list[str]:
     """The way to the vectors, unless they share one set of parameters and are given several."""
     n_in, n_out = len(function.inputs) + 1, len(function.returns)
     return [
@@ -143,7 +143,7 @@ def _sizes(program: Program, function: Function) -> list[int]:
     ]
 
 
-def routines(lanes: Lanes) -> str:
+def routines(lanes: LaneOptions) -> str:
     """The hand-written routines that batches in lanes call."""
     makers = {1: "SYM_BY_LANE", 2: "SYM_BY_LANES"}
     functions = [
@@ -153,7 +153,7 @@ def routines(lanes: Lanes) -> str:
     ]
     return Template(native_text("model/lanes.c.in")).substitute(
         functions="\n".join(functions),
-        own=int(lanes.own),
+        own=int(lanes.own_parameters),
         single=int(lanes.single),
         sines=trigonometry.of_lanes(lanes.single),
     )

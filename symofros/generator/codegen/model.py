@@ -14,7 +14,7 @@ from symofros.generator.codegen.names import c_string, identifier
 from symofros.generator.codegen.solvers import ROUTINES, with_solver
 from symofros.generator.passes.count import count_program
 from symofros.native import native_text
-from symofros.runtime.calls.kernel import Lanes
+from symofros.runtime.calls.kernel import LaneOptions
 from symofros.runtime.record import ModelRecord
 
 _INIT = "init_par"
@@ -26,7 +26,7 @@ def model_source(
     program: Program,
     record: ModelRecord,
     generator: str,
-    in_lanes: Lanes | None = None,
+    in_lanes: LaneOptions | None = None,
     c_name: str | None = None,
     packs: bool = False,
 ) -> str:
@@ -36,8 +36,8 @@ def model_source(
         program: Staged program.
         record: Names and defaults of the model.
         generator: Name and version of the generator.
-        in_lanes: Layout in which batches take several states at once, if they do. Functions with a solver never do:
-            the solver takes the time, and it pivots (docs/theory/code.md).
+        in_lanes: Options of the code that takes several states of a batch at once; None for none.
+            Functions with a solver have none: the solver takes the time, and it pivots (docs/theory/code.md).
         c_name: Prefix of symbols; made of the record's name by default.
         packs: Whether values that are computed alike share vectors, which takes a compiler of GNU C; not in lanes,
             where every value is a vector already.
@@ -168,7 +168,7 @@ def _shaped(name: str, shape: tuple[int, ...]) -> str:
 
 
 def _one_function(
-    program: Program, record: ModelRecord, function: Function, c_name: str, in_lanes: Lanes | None, packs: bool
+    program: Program, record: ModelRecord, function: Function, c_name: str, in_lanes: LaneOptions | None, packs: bool
 ) -> tuple[str, _Row]:
     """The code of a function, with its rows of tables."""
     inputs = ["pre", *function.inputs]
@@ -207,7 +207,7 @@ def _function_table(name: str, rows: Sequence[_Row]) -> str:
     return f"static const sym_function {name}_functions[] = {{\n" + ",\n".join(row.row for row in rows) + "\n};"
 
 
-def _lane_table(name: str, rows: Sequence[_Row], vectors: Lanes | None) -> list[str]:
+def _lane_table(name: str, rows: Sequence[_Row], vectors: LaneOptions | None) -> list[str]:
     """The table of functions on vectors, for compilers that have vectors."""
     if vectors is None:
         return []

@@ -35,15 +35,15 @@ class Signature:
 
 
 @dataclass(frozen=True)
-class Lanes:
-    """How code uses vectors, with one state in each lane.
+class LaneOptions:
+    """Options of code by vectors that hold one state in each lane.
 
     Attributes:
-        own: Whether each state may have parameters of its own.
+        own_parameters: Whether each state may have parameters of its own.
         precision: Floating-point type of the lanes: "double" or "single".
     """
 
-    own: bool = False
+    own_parameters: bool = False
     precision: Precision = "double"
 
     @property
@@ -52,7 +52,7 @@ class Lanes:
         return self.precision == "single"
 
 
-SHARED = Lanes()
+SHARED_PARAMETERS = LaneOptions()
 
 
 @dataclass(frozen=True)

@@ -16,11 +16,11 @@ from symofros.errors import CompileError, Problem
 from symofros.runtime.calls.declarations import interface, model_abi
 from symofros.runtime.calls.kernel import (
     DEFAULT_OPTIONS,
-    SHARED,
+    SHARED_PARAMETERS,
     Array,
     BatchOptions,
     Kernel,
-    Lanes,
+    LaneOptions,
     Numbers,
     Precision,
     Signature,
@@ -52,7 +52,7 @@ class CompiledUnit:
         path: Path,
         symbol: str,
         expected_hash: str,
-        in_lanes: Callable[[tuple[str, str], Lanes], CompiledKernel | None] | None = None,
+        in_lanes: Callable[[tuple[str, str], LaneOptions], CompiledKernel | None] | None = None,
     ) -> None:
         self.in_lanes = in_lanes
         self.ffi = interface()
@@ -125,7 +125,7 @@ class CompiledKernel:
         self._function = function
         self._by_vectors = by_vectors
         self._scratch = _Scratch()
-        self._lanes: dict[Lanes, CompiledKernel] = {}
+        self._lanes: dict[LaneOptions, CompiledKernel] = {}
         text = unit.ffi.string
 
         def array(entry: Any) -> tuple[str, tuple[int, ...]]:
@@ -153,7 +153,7 @@ class CompiledKernel:
         """The parameter-only part of the work."""
         return self._unit.prepare(par)
 
-    def in_lanes(self, lanes: Lanes = SHARED) -> CompiledKernel:
+    def in_lanes(self, lanes: LaneOptions = SHARED_PARAMETERS) -> CompiledKernel:
         """The same by vectors, compiled at the first call; itself where there is no such thing."""
         if lanes not in self._lanes:
             make = self._unit.in_lanes
@@ -171,7 +171,7 @@ class CompiledKernel:
 
     def _for_many(self, n: int, pre: Array, precision: Precision = "double") -> CompiledKernel | None:
         """The same by vectors, where a batch is evaluated so."""
-        lanes = Lanes(len(pre) > 1 and pre.size > 0, precision)
+        lanes = LaneOptions(len(pre) > 1 and pre.size > 0, precision)
         if n < MANY and not lanes.single:
             return None
         kernel = self.in_lanes(lanes)
@@ -183,10 +183,10 @@ class CompiledKernel:
             return self._by_rows(n, [pre, *inputs], options.threads)
         return self._in_place(n, pre, inputs, options)
 
-    def has(self, lanes: Lanes) -> bool:
+    def has(self, lanes: LaneOptions) -> bool:
         """Whether there is code by such vectors in this library."""
         of = self._by_vectors
-        return of is not None and (of.bytes == 4) == lanes.single and bool(of.own or not lanes.own)
+        return of is not None and (of.bytes == 4) == lanes.single and bool(of.own or not lanes.own_parameters)
 
     def _by_rows(self, n: int, arrays: list[Array], threads: int) -> list[Array]:
         """Contiguous arrays through `batch`."""

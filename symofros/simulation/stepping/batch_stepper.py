@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.errors import CompileError
-from symofros.runtime.calls.kernel import Array, Lanes
+from symofros.runtime.calls.kernel import Array, LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
 from symofros.simulation.settings import Settings
@@ -133,7 +133,7 @@ class BatchStepper:
                 continue
             # Laws are few operations on what users gave: in double precision.
             precision = self.single.model.precision if name == "forward_dynamics" else "double"
-            by_vectors = kernel.in_lanes(Lanes(function.pre.stride != 0, precision))
+            by_vectors = kernel.in_lanes(LaneOptions(function.pre.stride != 0, precision))
             function.function = by_vectors.function
             self._memory.keep(by_vectors)
 

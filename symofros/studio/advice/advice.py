@@ -13,8 +13,8 @@ from symofros.base.options import Options
 from symofros.description.system import System
 from symofros.description.yaml.files import SUFFIXES, write_yaml
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.studio.advice.bench import Cost, Stepping
 from symofros.studio.advice.scene import Scene
+from symofros.studio.advice.scene_runner import Cost, Stepping
 
 Verdict = Literal["taken", "refused", "not tried"]
 

@@ -17,8 +17,8 @@ from symofros.description.values import Value
 from symofros.expr.expression import evaluate
 from symofros.runtime.calls.kernel import Array
 from symofros.studio.advice import estimators
-from symofros.studio.advice.bench import ReferenceSolution
 from symofros.studio.advice.scene import Scene
+from symofros.studio.advice.scene_runner import ReferenceSolution
 
 _STATIONS = np.linspace(0.0, 1.0, 5)
 # Samples at each end of a motion whose differences are one-sided.

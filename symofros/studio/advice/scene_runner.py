@@ -90,7 +90,7 @@ class Trial:
     values: Mapping[str, Array]
 
 
-class Bench:
+class SceneRunner:
     """Runs a scene with any model."""
 
     def __init__(self, scene: Scene) -> None:

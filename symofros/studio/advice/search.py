@@ -10,11 +10,11 @@ from symofros.description.beam import Beam
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem, SymofrosError, did_you_mean
 from symofros.studio.advice.advice import Advice, Choice, Verdict
-from symofros.studio.advice.bench import Bench, ReferenceSolution, Trial
 from symofros.studio.advice.candidates import Reduction, candidates, constants, fewer_functions
 from symofros.studio.advice.loads import BeamLoads, Observed
 from symofros.studio.advice.refined_model import refined
 from symofros.studio.advice.scene import Scene
+from symofros.studio.advice.scene_runner import ReferenceSolution, SceneRunner, Trial
 from symofros.studio.advice.stepping import cheapest
 
 # Shares of the tolerance: what is left out may err by the first, stepping by the second.
@@ -55,7 +55,7 @@ class _Search:
 
     def __init__(self, system: System, scene: Scene) -> None:
         _check(system, scene)
-        self.full, self.scene, self.bench = system, scene, Bench(scene)
+        self.full, self.scene, self.runner = system, scene, SceneRunner(scene)
         self.choices: list[Choice] = []
         self.notes: list[str] = []
         self.current = system
@@ -66,11 +66,11 @@ class _Search:
     def advice(self) -> Advice:
         """Reduce, then choose the stepping, of the full model as well."""
         self._reduce()
-        trial, _ = self.bench.exact(self.current)
-        stepping, _, _, methods = cheapest(self.bench, self.current, trial, STEPPING)
-        full_trial, _ = self.bench.exact(self.full)
-        full_stepping, _, _, _ = cheapest(self.bench, self.full, full_trial, STEPPING)
-        stepped = self.bench.trial(self.current, stepping)
+        trial, _ = self.runner.exact(self.current)
+        stepping, _, _, methods = cheapest(self.runner, self.current, trial, STEPPING)
+        full_trial, _ = self.runner.exact(self.full)
+        full_stepping, _, _, _ = cheapest(self.runner, self.full, full_trial, STEPPING)
+        stepped = self.runner.trial(self.current, stepping)
         self._remark()
         return Advice(
             self.scene,
@@ -78,25 +78,25 @@ class _Search:
             self.current,
             stepping,
             full_stepping,
-            self.bench.timed(self.current, stepping),
-            self.bench.timed(self.full, full_stepping),
+            self.runner.timed(self.current, stepping),
+            self.runner.timed(self.full, full_stepping),
             tuple(self.choices),
-            self.bench.errors(stepped, self.reference.trial),
+            self.runner.errors(stepped, self.reference.trial),
             self.bounds,
             self.truncation,
-            Options(self.bench.functions(self.current, stepping.method), self.scene.frames),
+            Options(self.runner.functions(self.current, stepping.method), self.scene.frames),
             tuple(methods),
-            self.bench.runs,
+            self.runner.runs,
             tuple(self.notes),
         )
 
     def _settle(self) -> ReferenceSolution:
         """The richer model; the description is refined until its own truncation is small beside the tolerance."""
-        described = self.bench.exact(self.current)[0]
+        described = self.runner.exact(self.current)[0]
         for _ in range(_ROUNDS):
             richer = refined(self.current)
-            reference = self.bench.exact(richer)[0] if richer != self.current else described
-            off = self.bench.error(described, reference)
+            reference = self.runner.exact(richer)[0] if richer != self.current else described
+            off = self.runner.error(described, reference)
             if self.current is self.full:
                 self.truncation = off
             if off <= REFINE:
@@ -191,20 +191,20 @@ class _Search:
         assert isinstance(body, Beam)
         softened = self.current.with_bodies(replace(body, foreshortening=False, retain="first_order"))
         softened_trial = self._attempt(softened)
-        off = self.bench.error(softened_trial, self.reference.trial)
+        off = self.runner.error(softened_trial, self.reference.trial)
         end = f"ends: {softened_trial.failure}" if softened_trial.failure else f"errs by {off:.3g} of the tolerance"
         reason = f"{one.reason}; a model that keeps the softening by the spin, without the stiffening, {end}"
         return replace(one, reason=reason, numbers={**one.numbers, "softened_error": off})
 
     def _try(self, some: Sequence[Reduction]) -> float:
         """The error of the current system with some reductions more."""
-        return self.bench.error(self._attempt(_all(some, self.current)), self.reference.trial)
+        return self.runner.error(self._attempt(_all(some, self.current)), self.reference.trial)
 
     def _attempt(self, system: System) -> Trial:
         """The motion of a candidate, stepped as the description was; none where it can't be stated."""
-        _, stepping = self.bench.exact(self.full)
+        _, stepping = self.runner.exact(self.full)
         try:
-            return self.bench.trial(system, stepping)
+            return self.runner.trial(system, stepping)
         except SymofrosError as error:
             return Trial(None, str(error).splitlines()[0], {})
 

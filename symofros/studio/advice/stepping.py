@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from symofros.description.system import System
 from symofros.errors import Problem, SymofrosError
 from symofros.simulation.stepping.methods import METHODS
-from symofros.studio.advice.bench import Bench, Cost, Stepping, Trial
+from symofros.studio.advice.scene_runner import Cost, SceneRunner, Stepping, Trial
 
 _FIXED = ("rk4", "semi_implicit_euler", "implicit_euler", "generalized_alpha")
 _ADAPTIVE = ("dopri5", "dop853", "rodas4")
@@ -19,11 +19,13 @@ _LOOSEST = 1e-2
 LARGEST = 250_000
 
 
-def cheapest(bench: Bench, system: System, reference: Trial, share: float) -> tuple[Stepping, Cost, float, list[str]]:
+def cheapest(
+    runner: SceneRunner, system: System, reference: Trial, share: float
+) -> tuple[Stepping, Cost, float, list[str]]:
     """The cheapest way to step a model through the scene.
 
     Args:
-        bench: Bench of the scene.
+        runner: Runner of the scene.
         system: System to step.
         reference: Exact motion of the system.
         share: Share of the tolerance, which the error of stepping may take.
@@ -34,15 +36,15 @@ def cheapest(bench: Bench, system: System, reference: Trial, share: float) -> tu
     Raises:
         SymofrosError: No method will do, as may be where only fixed steps may be taken.
     """
-    if bench.model(system).nv == 0:
-        return bench.given, bench.cost(system, reference, "rk4"), 0.0, ["no speeds are left: nothing is integrated"]
+    if runner.model(system).nv == 0:
+        return runner.given, runner.cost(system, reference, "rk4"), 0.0, ["no speeds are left: nothing is integrated"]
     best: tuple[Stepping, Cost, float] | None = None
     lines = []
-    for method in _FIXED if bench.scene.fixed_step else (*_ADAPTIVE, *_FIXED):
-        if METHODS[method].family.implicit and not _small(bench, system):
+    for method in _FIXED if runner.scene.fixed_step else (*_ADAPTIVE, *_FIXED):
+        if METHODS[method].family.implicit and not _small(runner, system):
             lines.append(f"{method}: not tried, derivatives of more than {LARGEST} operations")
             continue
-        coarsest = _coarsest(bench, system, reference, share, method, None if best is None else best[1].total)
+        coarsest = _coarsest(runner, system, reference, share, method, None if best is None else best[1].total)
         if coarsest is None:
             lines.append(f"{method}: dearer, or never within {share:.2g} of the tolerance")
             continue
@@ -62,20 +64,20 @@ def cheapest(bench: Bench, system: System, reference: Trial, share: float) -> tu
     return (*best, lines)
 
 
-def _small(bench: Bench, system: System) -> bool:
+def _small(runner: SceneRunner, system: System) -> bool:
     """Whether a model's derivatives may be compiled; those of models with few operations are not counted for it."""
-    return bench.operations(system, ("implicit_terms",))["implicit_terms"] <= LARGEST
+    return runner.operations(system, ("implicit_terms",))["implicit_terms"] <= LARGEST
 
 
 def _coarsest(
-    bench: Bench, system: System, reference: Trial, share: float, method: str, dearest: int | None
+    runner: SceneRunner, system: System, reference: Trial, share: float, method: str, dearest: int | None
 ) -> tuple[Stepping, Cost, float] | None:
     """The coarsest setting of a method that will do; None where it costs more than `dearest` before it does."""
-    for stepping in _ladder(bench.scene.t_end, method):
-        trial = bench.trial(system, stepping)
+    for stepping in _ladder(runner.scene.t_end, method):
+        trial = runner.trial(system, stepping)
         if trial.run is None:
             continue
-        cost, error = bench.cost(system, trial, method), bench.error(trial, reference)
+        cost, error = runner.cost(system, trial, method), runner.error(trial, reference)
         if dearest is not None and cost.total >= dearest:
             return None
         if error <= share:

@@ -19,7 +19,7 @@ from symofros.compiler import Compilation, compile_library
 from symofros.generator.codegen.model import model_source
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, cpu_identity
 from symofros.runtime.calls import library
-from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Lanes
+from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, LaneOptions
 from symofros.runtime.calls.library import CompiledUnit
 from tests.generator.codegen.test_source import COMPILERS, compile_strictly
 from tests.models import sampled
@@ -169,14 +169,14 @@ def test_large_batches_take_vectors_by_themselves(monkeypatch: pytest.MonkeyPatc
     model, loop = (sf.compile(MODELS["chain7"], sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
     rng = np.random.default_rng(0)
     q, v = rng.standard_normal((2, library.MANY + 3, 7))
-    made: list[tuple[tuple[str, str], Lanes]] = []
+    made: list[tuple[tuple[str, str], LaneOptions]] = []
     unit = model.kernel("dynamics")._unit  # type: ignore[attr-defined]
     original = unit.in_lanes
     monkeypatch.setattr(unit, "in_lanes", lambda key, how: made.append((key, how)) or original(key, how))
     for n in (library.MANY - 1, library.MANY, library.MANY + 3):
         for found, expected in zip(model.dynamics(q[:n], v[:n], None), loop.dynamics(q[:n], v[:n], None), strict=True):
             assert np.array_equal(found, expected)
-    assert made == [(("dynamics", ""), Lanes())]
+    assert made == [(("dynamics", ""), LaneOptions())]
 
 
 @pytest.mark.parametrize("case", ["rx90", "friction_arm", "operations"])
@@ -192,18 +192,18 @@ def test_parameters_of_each_state(case: str) -> None:
         assert np.array_equal(found, expected, equal_nan=True)
     kernel = model.kernel("dynamics")
     pre, inputs = kernel.prepare(par[:1]), [q, v, u, np.zeros((1, 1))]
-    own = kernel.in_lanes(Lanes(own=True))  # type: ignore[attr-defined]
+    own = kernel.in_lanes(LaneOptions(own_parameters=True))  # type: ignore[attr-defined]
     for found, expected in zip(own.run(n, pre, inputs), kernel.run(n, pre, inputs), strict=True):
         assert own is not kernel and np.array_equal(found, expected, equal_nan=True)
 
 
 @pytest.mark.parametrize(
-    "lanes", [Lanes(own, precision) for own in (False, True) for precision in ("double", "single")], ids=str
+    "lanes", [LaneOptions(own, precision) for own in (False, True) for precision in ("double", "single")], ids=str
 )
 @pytest.mark.parametrize(
     "flags", [(), ("-std=gnu99", "-O2"), ("-std=gnu99", "-O2", "-mavx512f"), ("-std=gnu99", "-mavx")]
 )
-def test_builds_without_warnings(flags: tuple[str, ...], lanes: Lanes, tmp_path: Path) -> None:
+def test_builds_without_warnings(flags: tuple[str, ...], lanes: LaneOptions, tmp_path: Path) -> None:
     """As strict C99, where batches are loops, and on vectors of every width."""
     if not any(word in platform.machine() for word in ("x86", "AMD64")) and len(flags) > 1:
         pytest.skip("flags of another processor")
@@ -216,7 +216,7 @@ def test_builds_without_warnings(flags: tuple[str, ...], lanes: Lanes, tmp_path:
 def test_few_sines_come_first(case: str, first: bool) -> None:
     """Those of several vectors follow each other, so that none waits; many angles fill the processor by themselves."""
     stated = Compilation(MODELS[case], sf.Options(functions=("mass_matrix",)))
-    text = model_source(stated.program, stated.record, "test", Lanes())
+    text = model_source(stated.program, stated.record, "test", LaneOptions())
     chunk = text.partition(f"{stated.record.name}_mass_matrix_f0_v_0(")[2].partition("\n}")[0]
     assert "sym_sincos_v(" in chunk
     assert ("SYM_PUT" not in chunk and "work[" in chunk) is first

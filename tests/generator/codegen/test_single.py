@@ -17,7 +17,7 @@ from reference_models import MODELS
 from symofros.compiler import Compilation, compile_library, program_of
 from symofros.expr.trigonometry import FAR
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, cpu_identity
-from symofros.runtime.calls.kernel import Lanes
+from symofros.runtime.calls.kernel import LaneOptions
 from symofros.runtime.calls.library import CompiledUnit
 
 EPS = float(np.finfo(np.float32).eps)
@@ -186,4 +186,6 @@ def test_a_library_of_floats_for_c(tmp_path: Path) -> None:
     path, symbol = compile_library(system, options, precision="single")
     unit = CompiledUnit(path, symbol, Compilation(system, options).record.hash)
     kernel = unit.compiled["mass_matrix", ""]
-    assert unit.model.lanes[0].bytes == 4 and kernel.has(Lanes(precision="single")) and not kernel.has(Lanes())
+    assert (
+        unit.model.lanes[0].bytes == 4 and kernel.has(LaneOptions(precision="single")) and not kernel.has(LaneOptions())
+    )

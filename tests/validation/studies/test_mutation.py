@@ -11,7 +11,7 @@ import reference_models
 import symofros as sf
 from validation.contract import quantities
 from validation.studies import mutation
-from validation.studies.faults import Bench, faults_at
+from validation.studies.faults import FaultSimulator, faults_at
 from validation.studies.mutation import mutate
 from validation.studies.reports.mutation import as_data, compose
 
@@ -52,16 +52,16 @@ def test_an_incremental_evaluation_equals_a_full_one() -> None:
     rng = np.random.default_rng(0)
     n = 4
     inputs = {name: rng.standard_normal((n, size)) for name, size in program.sizes.items()}
-    bench = Bench(program, inputs)
-    node = bench.nodes[len(bench.nodes) // 2]
+    simulator = FaultSimulator(program, inputs)
+    node = simulator.nodes[len(simulator.nodes) // 2]
     for fault in faults_at(program.graph, node, program.sizes, rng):
-        whole = Bench(bench.mutant(fault), inputs)
-        touched, outputs = bench.affected(fault)
+        whole = FaultSimulator(simulator.mutant(fault), inputs)
+        touched, outputs = simulator.affected(fault)
         for function in program.functions:
             expected = whole.outputs(function)
             found = outputs(function)
             assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True)), fault
-            sound = bench.outputs(function)
+            sound = simulator.outputs(function)
             if function not in touched:
                 assert all(np.array_equal(a, b) for a, b in zip(sound, expected, strict=True)), fault
 

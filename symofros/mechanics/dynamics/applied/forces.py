@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from symofros.description.joint_kinds import ManifoldKind
+from symofros.base.manifold import ManifoldKind
 from symofros.expr.derivative import along
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.quaternion import Quaternion

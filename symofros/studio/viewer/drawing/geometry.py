@@ -267,15 +267,13 @@ class _DrawingBuilder:
         system, radius = self.tree.system, _ROD_RADIUS * self.size
         for item in system.constraints:
             if isinstance(item, Closure):
-                yield self._constraint_connector(item.name, item.first, item.second, radius / 2, _CLOSURE)
+                yield self._connector(item.name, item.first, item.second, radius / 2, _CLOSURE)
             elif isinstance(item, Rod):
-                yield self._constraint_connector(item.name, item.first, item.second, radius, _ROD)
+                yield self._connector(item.name, item.first, item.second, radius, _ROD)
         for spring in system.connections:
-            yield self._constraint_connector(spring.name, spring.first, spring.second, radius / 2, _SPRING)
+            yield self._connector(spring.name, spring.first, spring.second, radius / 2, _SPRING)
 
-    def _constraint_connector(
-        self, name: str, first: Anchor, second: Anchor, radius: float, color: Color
-    ) -> DrawnConnector:
+    def _connector(self, name: str, first: Anchor, second: Anchor, radius: float, color: Color) -> DrawnConnector:
         return DrawnConnector(
             f"constraints/{name}",
             "constraints",
