@@ -20,8 +20,8 @@ import numpy as np
 
 from symofros.base.atomic import write_atomically
 from symofros.base.options import Options
-from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, Toolchain, find_toolchain
+from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 
 _STATES, _ROUNDS = 64, 15
 # A clock's reading costs less than a thousandth of this [ns].
