@@ -41,6 +41,7 @@ static int32_t sym_batch_allocate(sym_batch *b, sym_arena *arena) {
     b->y1 = sym_allocate(arena, slots * m), b->stage = sym_allocate(arena, slots * m);
     b->magnitude = sym_allocate(arena, slots * m), b->end_slope = sym_allocate(arena, slots * m);
     b->k = sym_allocate(arena, slopes * slots * m);
+    b->end_state = sym_allocate(arena, nq + nv);
     b->y0 = sym_allocate(arena, slots * m), b->length = sym_allocate(arena, slots * m);
     return sym_batch_bind(b, arena, &b->forward_dynamics) && sym_batch_bind(b, arena, &b->law);
 }
@@ -82,6 +83,7 @@ static sym_workspace sym_batch_workspace(const sym_batch *b, int32_t slot) {
     const size_t m = 2 * (size_t)b->prototype->system->nv, at = (size_t)slot * m;
     sym_workspace w;
     w.y1 = b->y1 + at, w.stage = b->stage + at, w.magnitude = b->magnitude + at, w.end_slope = b->end_slope + at;
+    w.end_state = b->end_state;
     w.k = b->k + at, w.stage_stride = (size_t)b->slots * m;
     memset(&w.implicit, 0, sizeof w.implicit);
     return w;

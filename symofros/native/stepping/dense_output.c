@@ -36,6 +36,13 @@ static int32_t sym_dense_output(sym_run *r, sym_workspace *w, double h, int32_t 
     return 0;
 }
 
+/* Evaluation point <- the state at x in [0, 1] of the step just made, projected where the run projects. Returns 0 or a
+ * status. */
+static int32_t sym_load_state_within_step(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double x) {
+    const int32_t status = sym_dense_output(r, w, h, dense_ready, x, w->stage);
+    return status != 0 ? status : sym_load_projected_state(r, r->t + x * h, w->stage);
+}
+
 /* Record the evaluation point. Returns 0 or a status. */
 static int32_t sym_record(sym_run *r) {
     const sym_system *s = r->system;
@@ -49,19 +56,32 @@ static int32_t sym_record(sym_run *r) {
     return 0;
 }
 
-/* Record the times of the grid within the step, up to x. A time within rounding of the end is recorded there.
- * Returns 0 or a status. */
-static int32_t sym_record_grid(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double x_max) {
-    while (r->next_grid < r->n_grid && r->grid[r->next_grid] <= r->t + x_max * h * (1.0 + 1e-12)) {
+/* Shares of a step within which a time of the grid is that of the step's end, on either side of it. */
+#define SYM_GRID_BEFORE 1e-9
+#define SYM_GRID_AFTER 1e-12
+
+/* Record the times of the grid within the step just made, up to x_max and before its end. Returns 0 or a status. */
+static int32_t sym_record_grid_within_step(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double x_max) {
+    while (r->next_grid < r->n_grid) {
         const double x = (r->grid[r->next_grid] - r->t) / h;
         int32_t status;
-        if (x > 1.0 - 1e-9) {
-            sym_load_chart_state(r, r->grid[r->next_grid], w->y1);
-        } else {
-            status = sym_dense_output(r, w, h, dense_ready, x, w->stage);
-            if (status != 0) return status;
-            sym_load_chart_state(r, r->grid[r->next_grid], w->stage);
-        }
+        if (x > x_max || x > 1.0 - SYM_GRID_BEFORE) return 0;
+        status = sym_load_state_within_step(r, w, h, dense_ready, x);
+        if (status != 0) return status;
+        *r->system->t = r->grid[r->next_grid];
+        status = sym_record(r);
+        if (status != 0) return status;
+        ++r->next_grid;
+    }
+    return 0;
+}
+
+/* Record the times of the grid that are the present one, which ends a step of length h. Returns 0 or a status. */
+static int32_t sym_record_grid_at_end(sym_run *r, double h) {
+    while (r->next_grid < r->n_grid && r->grid[r->next_grid] <= r->t + SYM_GRID_AFTER * h) {
+        int32_t status;
+        sym_load_state(r);
+        *r->system->t = r->grid[r->next_grid];
         status = sym_record(r);
         if (status != 0) return status;
         ++r->next_grid;

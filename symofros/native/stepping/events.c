@@ -32,9 +32,8 @@ static int32_t sym_locate_event(sym_run *r, sym_workspace *w, double h, int32_t 
         double c = (fa * b - fb * a) / (fa - fb), f;
         int32_t status;
         if (!(c > a && c < b)) c = 0.5 * (a + b);
-        status = sym_dense_output(r, w, h, dense_ready, c, w->stage);
+        status = sym_load_state_within_step(r, w, h, dense_ready, c);
         if (status != 0) return status;
-        sym_load_chart_state(r, r->t + c * h, w->stage);
         f = sym_event_value(r, which);
         if (!(f == f)) return SYM_DIVERGED;
         if ((f < 0.0) == (fa < 0.0) && f != 0.0) {
@@ -51,18 +50,16 @@ static int32_t sym_locate_event(sym_run *r, sym_workspace *w, double h, int32_t 
     return 0;
 }
 
-/* Events of the step just made, which ends at t1: recorded in the order of time, up to the first terminal one, whose x is
- * returned in *stop_x. r->event_values becomes the values at t1; the rest of it is work. Returns 0 or a
- * status. */
-static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, double t1, int32_t *dense_ready,
-                               double *stop_x) {
+/* Events of the step just made, at whose end the evaluation point is: recorded in the order of time, up to the first
+ * terminal one, whose x is returned in *stop_x. r->event_values becomes the values at the end; the rest of it is work.
+ * Returns 0 or a status. */
+static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double *stop_x) {
     sym_system *s = r->system;
     double *values = r->event_values, *after = values + s->n_events;
     double *met_x = after, *met_index = after + s->n_events; /* met_x overwrites what has been read of after */
     int32_t i, status, n = 0;
     *stop_x = 2.0;
     r->terminal_event = -1;
-    sym_load_chart_state(r, t1, w->y1);
     status = sym_event_values(r, after);
     if (status != 0) return status;
     for (i = 0; i < s->n_events; ++i) {
@@ -81,9 +78,8 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, double t1
         for (i = 0; i < n; ++i)
             if (met_x[i] <= *stop_x && (first < 0 || met_x[i] < met_x[first])) first = i;
         if (first < 0) return 0;
-        status = sym_dense_output(r, w, h, dense_ready, met_x[first], w->stage);
+        status = sym_load_state_within_step(r, w, h, dense_ready, met_x[first]);
         if (status != 0) return status;
-        sym_load_chart_state(r, r->t + met_x[first] * h, w->stage);
         r->event_t[r->n_event_records] = *s->t;
         r->event_index[r->n_event_records] = (int32_t)met_index[first];
         memcpy(r->event_q + r->n_event_records * s->nq, s->q, (size_t)s->nq * sizeof(double));

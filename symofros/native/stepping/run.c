@@ -95,43 +95,63 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     return status;
 }
 
-/* An accepted step from r->t to t1: events, records, the new state, its projection. Returns 0 or a status. */
+/* The end of the step <- the evaluation point. */
+static void sym_store_end_state(const sym_system *s, sym_workspace *w) {
+    memcpy(w->end_state, s->q, (size_t)s->nq * sizeof *s->q);
+    memcpy(w->end_state + s->nq, s->v, (size_t)s->nv * sizeof *s->v);
+}
+
+/* The present state <- the end of the step, at time t1. */
+static void sym_set_end_state(sym_run *r, const sym_workspace *w, double t1) {
+    const sym_system *s = r->system;
+    memcpy(r->q, w->end_state, (size_t)s->nq * sizeof *r->q);
+    memcpy(r->v, w->end_state + s->nq, (size_t)s->nv * sizeof *r->v);
+    r->t = t1;
+}
+
+/* An accepted step from r->t to t1: its end, projected; events and records on the way to it; the new state. Records and
+ * events are states of the path that is integrated: what lies between two ends of steps is projected as these are.
+ * Returns 0 or a status. */
 static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1) {
     sym_system *s = r->system;
     const int32_t nv = s->nv, fsal = r->method == SYM_METHOD_EXPLICIT && r->tableau.fsal_stage > 0;
     int32_t dense_ready = 0, status, stopped = 0;
     double stop_x = 2.0;
+    status = sym_load_projected_state(r, t1, w->y1);
+    if (status != 0) return status;
+    sym_store_end_state(s, w);
     if (s->n_events > 0) {
-        status = sym_find_events(r, w, h, t1, &dense_ready, &stop_x);
+        status = sym_find_events(r, w, h, &dense_ready, &stop_x);
         if (status != 0) return status;
         stopped = stop_x <= 1.0;
     }
     if (r->record_every == 0) {
-        status = sym_record_grid(r, w, h, &dense_ready, stopped ? stop_x : 1.0);
+        status = sym_record_grid_within_step(r, w, h, &dense_ready, stopped ? stop_x : 1.0);
         if (status != 0) return status;
     }
     if (stopped) {
-        status = sym_dense_output(r, w, h, &dense_ready, stop_x, w->y1);
+        status = sym_load_state_within_step(r, w, h, &dense_ready, stop_x);
         if (status != 0) return status;
-        t1 = r->t + stop_x * h;
+        sym_store_end_state(s, w);
+        t1 = *s->t;
     }
-    sym_set_chart_state(r, t1, w->y1);
+    sym_set_end_state(r, w, t1);
     r->slope_valid = 0;
-    if (r->project) {
-        status = sym_project_state(r);
-        if (status != 0) return status;
-    } else if (fsal && !stopped) { /* first same as last, but in the chart about the new state, where theta' = v */
+    if (fsal && !r->project && !stopped) { /* first same as last, but in the chart about the new state, where theta' = v */
         memcpy(w->k + nv, w->k + (size_t)r->tableau.fsal_stage * w->stage_stride + nv, (size_t)nv * sizeof(double));
         memcpy(w->k, r->v, (size_t)nv * sizeof(double));
         r->slope_valid = 1;
     }
     ++r->steps;
-    if (s->n_events > 0 && (r->project || stopped)) { /* not the state that sym_find_events evaluated */
+    if (s->n_events > 0 && stopped) { /* not the state that sym_find_events evaluated */
         sym_load_state(r);
         status = sym_event_values(r, r->event_values);
         if (status != 0) return status;
     }
-    if (r->record_every > 0 && (r->steps % r->record_every == 0 || r->t >= r->t_end || stopped)) {
+    if (r->record_every == 0) {
+        status = sym_record_grid_at_end(r, h);
+        if (status != 0) return status;
+    } else if (r->steps % r->record_every == 0 || r->t >= r->t_end || stopped) {
         sym_load_state(r);
         status = sym_record(r);
         if (status != 0) return status;

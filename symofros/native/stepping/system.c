@@ -129,14 +129,6 @@ static void sym_load_chart_state(sym_run *r, double t, const double *y) {
     *r->system->t = t;
 }
 
-/* The present state <- y = (theta, v) in the chart about r->q, at time t. */
-static void sym_set_chart_state(sym_run *r, double t, const double *y) {
-    sym_load_chart_state(r, t, y);
-    memcpy(r->q, r->system->q, (size_t)r->system->nq * sizeof *r->q);
-    memcpy(r->v, r->system->v, (size_t)r->system->nv * sizeof *r->v);
-    r->t = t;
-}
-
 /* dy = f(t, y), the accelerations at the evaluation point being those of y. */
 static void sym_slope_of_acceleration(const sym_system *s, const double *y, double *dy) {
     sym_chart_rate(s, y, y + s->nv, dy);
@@ -155,16 +147,33 @@ static int32_t sym_evaluate_slope(sym_run *r, double t, const double *y, double 
 /* Largest |phi| after a projection that counts as closed. */
 #define SYM_CLOSURE_TOLERANCE 1e-6
 
-/* Project the present state onto the constraints. Returns 0 or a status. */
-static int32_t sym_project_state(sym_run *r) {
-    sym_system *s = r->system;
+/* Project the evaluation point onto the constraints. Returns 0 or a status. */
+static int32_t sym_project_point(sym_system *s) {
     const sym_call *project = &s->project; /* q, v, |phi|, rank */
-    sym_load_state(r);
     if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(project);
     if (!(project->out[3][0] >= 0.0)) return SYM_SINGULAR;
     if (!(project->out[2][0] < SYM_CLOSURE_TOLERANCE)) return SYM_PROJECTION_FAILED;
-    memcpy(r->q, project->out[0], (size_t)s->nq * sizeof *r->q);
-    memcpy(r->v, project->out[1], (size_t)s->nv * sizeof *r->v);
+    memcpy(s->q, project->out[0], (size_t)s->nq * sizeof *s->q);
+    memcpy(s->v, project->out[1], (size_t)s->nv * sizeof *s->v);
     return 0;
+}
+
+/* Project the present state onto the constraints. Returns 0 or a status. */
+static int32_t sym_project_state(sym_run *r) {
+    sym_system *s = r->system;
+    int32_t status;
+    sym_load_state(r);
+    status = sym_project_point(s);
+    if (status != 0) return status;
+    memcpy(r->q, s->q, (size_t)s->nq * sizeof *r->q);
+    memcpy(r->v, s->v, (size_t)s->nv * sizeof *r->v);
+    return 0;
+}
+
+/* Evaluation point <- y = (theta, v) in the chart about r->q at time t, projected where the run projects. Returns 0 or a
+ * status. */
+static int32_t sym_load_projected_state(sym_run *r, double t, const double *y) {
+    sym_load_chart_state(r, t, y);
+    return r->project ? sym_project_point(r->system) : 0;
 }

@@ -66,8 +66,9 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
     if status == Status.NO_CONVERGENCE:
         return outcome("not converged", "the equations of an implicit step were not solved", "a smaller dt")
     if status == Status.PROJECTION_FAILED:
-        phi = stepper.model.constraint(q, u=stepper.inputs_now, par=stepper.par, t=t)
-        worst = int(np.argmax(np.abs(phi)))
+        t_open, q_open, _ = stepper.evaluation_point
+        phi = stepper.model.constraint(q_open, u=stepper.inputs_now, par=stepper.par, t=t_open)
+        worst = int(np.argmax(np.where(np.isnan(phi), math.inf, np.abs(phi))))
         name = stepper.model.names.constraints[worst]
         return outcome(
             "constraints lost",

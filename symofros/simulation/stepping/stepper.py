@@ -216,6 +216,13 @@ class Stepper:
         q, v = self.memory.view(self.run.q, self.model.nq), self.memory.view(self.run.v, self.model.nv)
         return float(self.run.t), q.copy(), v.copy()
 
+    @property
+    def evaluation_point(self) -> tuple[float, Array, Array]:
+        """The t, q, v at which functions were evaluated last; of a step that failed, where it failed."""
+        system, model = self.system, self.model
+        q, v = self.memory.view(system.q, model.nq), self.memory.view(system.v, model.nv)
+        return float(system.t[0]), q.copy(), v.copy()
+
 
 def fill_tableau(struct: Any, tableau: Tableau, memory: NativeMemory) -> None:
     """Write a method's coefficients into a sym_tableau."""

@@ -1,0 +1,113 @@
+"""What a run records is what it goes on from, whenever it is recorded."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.simulation.settings import CLOSED
+from tests.models import GUESSES
+
+# Of |phi| and |G v - b| after a projection.
+PROJECTED = 1e-12
+T_END, DT = 0.2, 1e-2
+# Within steps, at their ends, and at the end of the run.
+TIMES = (0.0, 0.0137, 0.05, 0.1099, 0.11, T_END)
+OWN = ("rk4", "semi_implicit_euler", "euler", "dopri5", "dop853", "implicit_euler", "rodas4", "generalized_alpha")
+BATCHED = ("rk4", "semi_implicit_euler", "dopri5", "dop853")
+# Closed loops of one and several freedoms, rolling, a condition on speeds alone; then balls and free bases.
+CLOSED_MODELS = ("four_bar", "slider_crank", "rolling_disc", "sleigh")
+TREES = ("gyroscope", "space_arm")
+
+
+@cache
+def scene(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
+    model = sf.compile(MODELS[name])
+    q, v = model.random_state(np.random.default_rng(3))
+    if model.nc:
+        assembled = sf.assemble(model, GUESSES[name], 0.5 * v)
+        q, v = assembled.q, assembled.v
+    return model, q, v
+
+
+def largest_violation(model: sf.Model, q: np.ndarray, v: np.ndarray) -> float:
+    both = np.concatenate([model.constraint(q), model.constraint_rate(q, v)], axis=-1)
+    return float(np.abs(both).max(initial=0.0))
+
+
+def quaternion_lengths(model: sf.Model, q: np.ndarray) -> np.ndarray:
+    starts = [s.q + 3 * (s.kind == "pose") for s in model.record.segments if s.kind != "linear"]
+    return np.array([np.linalg.norm(q[:, i : i + 4], axis=1) for i in starts])
+
+
+@pytest.mark.parametrize("method", OWN)
+@pytest.mark.parametrize("name", [*CLOSED_MODELS, *TREES])
+def test_states_at_given_times_are_those_of_the_run_recorded_at_every_step(name: str, method: str) -> None:
+    model, q, v = scene(name)
+    every = sf.simulate(model, q, v, T_END, method=method, dt=DT)
+    given = sf.simulate(model, q, v, T_END, method=method, dt=DT, output=TIMES)
+    assert given.outcome.kind == every.outcome.kind == "finished" and given.statistics.steps == every.statistics.steps
+    for i, t in enumerate(given.t):
+        at = np.flatnonzero(np.abs(every.t - t) < 1e-12)
+        for k in at:
+            np.testing.assert_array_equal(given.q[i], every.q[k])
+            np.testing.assert_array_equal(given.v[i], every.v[k])
+    assert given.t[-1] == every.t[-1] == T_END
+    assert largest_violation(model, given.q[1:], given.v[1:]) < PROJECTED
+    np.testing.assert_allclose(quaternion_lengths(model, given.q), 1.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("method", [*OWN, "ida"])
+@pytest.mark.parametrize("name", CLOSED_MODELS)
+def test_a_run_starts_from_each_recorded_state(name: str, method: str) -> None:
+    model, q, v = scene(name)
+    run = sf.simulate(model, q, v, T_END, method=method, dt=DT, output=TIMES)
+    assert largest_violation(model, run.q, run.v) < CLOSED
+    for start_q, start_v in zip(run.q, run.v, strict=True):
+        assert sf.simulate(model, start_q, start_v, DT, dt=DT).outcome.ok
+
+
+@pytest.mark.parametrize("method", BATCHED)
+@pytest.mark.parametrize("name", ["slider_crank", "rolling_disc", "space_arm"])
+def test_a_batch_records_the_states_of_single_runs(name: str, method: str) -> None:
+    model, q, v = scene(name)
+    many = sf.simulate_batch(model, np.tile(q, (3, 1)), v, T_END, method=method, dt=DT, output=TIMES)
+    alone = sf.simulate(model, q, v, T_END, method=method, dt=DT, output=TIMES)
+    np.testing.assert_array_equal(many.q[:, -1], many.q_last)
+    np.testing.assert_array_equal(many.v[:, -1], many.v_last)
+    np.testing.assert_allclose(many.q[1], alone.q, atol=1e-11)
+    assert largest_violation(model, many.q[1, 1:], many.v[1, 1:]) < PROJECTED
+
+
+@pytest.mark.parametrize("method", ["semi_implicit_euler", "dopri5", "generalized_alpha"])
+def test_events_lie_on_the_constraints_and_end_the_run_there(method: str) -> None:
+    """The event is a zero of its formula where the run ends, after the projection."""
+    model, q, v = scene("slider_crank")
+    middle = float(sf.simulate(model, q, v, 0.0937, method=method, dt=DT).q[-1, 0])
+    events = {"passing": sf.Event(f"{model.names.q[0]} - ({middle!r})", terminal=True)}
+    run = sf.simulate(model, q, v, T_END, method=method, dt=DT, events=events)
+    assert run.outcome.kind == "event" and len(run.events) == 1
+    np.testing.assert_array_equal(run.events[0].q, run.q[-1])
+    np.testing.assert_array_equal(run.events[0].v, run.v[-1])
+    assert largest_violation(model, run.q[-1:], run.v[-1:]) < PROJECTED
+    assert run.q[-1, 0] == pytest.approx(middle, abs=1e-12)
+
+
+def test_a_projection_that_fails_names_the_constraint_and_how_far_it_is_off() -> None:
+    """The slider of a slider-crank is led beyond the reach of crank and rod together."""
+    system = MODELS["slider_crank"]
+    bodies = [
+        replace(body, joint=replace(body.joint, prescribed=True)) if body.name == "slider" else body
+        for body in system.bodies
+    ]
+    model = sf.compile(replace(system, name="led_slider_crank", bodies=bodies))
+    turn, swing = np.arccos(0.4375 / 0.45), -1.5 * np.arccos(0.4375 / 0.45)
+    start = sf.assemble(model, [turn, swing], u=[0.0, 0.4375, 0.0, 0.0])
+    run = sf.simulate(model, start.q, start.v, 1.0, u={"slide": "0.4375 + 0.1*t^2"}, dt=1e-2)
+    assert run.outcome.kind == "constraints lost" and "'gudgeon" in run.outcome.reason
+    assert float(run.outcome.reason.split("off by ")[1].split()[0]) > CLOSED
