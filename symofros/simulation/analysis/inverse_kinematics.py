@@ -4,34 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from symofros.errors import AssemblyError, Problem
+from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import RANK
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.analysis.assembly import Indices, free_speeds
+from symofros.simulation.analysis.assembly import LARGEST_STEP, Indices, free_speeds
+from symofros.simulation.analysis.nearest_posture import OPTIMALITY, NearestPosture, coordinate_limits
+from symofros.simulation.analysis.targets import Target as Target
+from symofros.simulation.analysis.targets import Task, finite_array, rotations_checked
 
 # Damping of the least squares, relative to the largest singular value: first value, and factors after a good step and
 # a bad one (Levenberg-Marquardt).
 _DAMPING, _RELAX, _TIGHTEN = 1e-3, 0.2, 8.0
-_LARGEST_STEP = 0.5
 _SMALLEST_GAIN = 1e-16
-
-
-@dataclass(frozen=True)
-class Target:
-    """Where a frame is wanted.
-
-    Attributes:
-        position: p_WF (3,) [m]; None if it does not matter.
-        rotation: R_WF (3, 3); None if it does not matter.
-    """
-
-    position: ArrayLike | None = None
-    rotation: ArrayLike | None = None
 
 
 @dataclass(frozen=True)
@@ -41,14 +29,20 @@ class Reached:
     Attributes:
         q: Configuration (nq), within its limits.
         error: Largest remaining error of position [m], rotation [rad] and constraints.
-        converged: Whether it is below the tolerance; otherwise the target is out of reach from here.
+        converged: Whether the error is below the tolerance and, with a posture of rest, the distance from it is least
+            among the solutions nearby, to first order; otherwise the target is out of reach from here.
         iterations: Steps taken.
+        distance: Distance from rest: norm of differences of coordinates and of rotation vectors; 0 without rest.
+        gradient: Norm of the distance's gradient along the solutions, times the distance: of what remains of q - rest
+            in the null space of the targets' Jacobian, less what joint limits hold; 0 without rest.
     """
 
     q: Array
     error: float
     converged: bool
     iterations: int
+    distance: float = 0.0
+    gradient: float = 0.0
 
 
 def inverse_kinematics(
@@ -65,45 +59,96 @@ def inverse_kinematics(
 ) -> Reached:
     """Damped least squares on the targets and, for mechanisms with loops, on their constraints.
 
+    With a posture of rest, descent on the solutions follows, from what is reached from the guess and from what is
+    reached from rest, and the nearer end counts (docs/theory/constraints.md, section 9). It is a local minimum: branches
+    of solutions that neither start leads to are not searched.
+
     Args:
         model: Model, whose joint limits are kept.
         targets: Frame -> where it is wanted.
-        q: Guess (nq); the neutral configuration if not given.
-        rest: Configuration to stay near with the freedom that is left (nq).
+        q: Guess (nq); rest, or the neutral configuration, if not given.
+        rest: Configuration to stay nearest to with the freedom that is left (nq).
         held: Names of speeds whose coordinates stay.
         u: Inputs, for prescribed motions.
         par: Run-time parameters.
         tolerance: Bound of the largest error.
-        iterations: Most steps.
+        iterations: Most steps from one start.
 
     Raises:
         UnknownNameError: No such frame or speed.
+        ShapeError: A target, the guess or rest does not fit, or is not of finite numbers.
+        SymofrosError: A target's matrix is not a rotation, or nothing is asked for.
     """
     model = model.with_precision("double")
-    q = model.neutral() if q is None else np.array(q, dtype=np.float64)
     free = free_speeds(model, held)
-    task = _Task(model, targets, u, par)
+    task = Task(model, targets, u, par)
+    resting = None if rest is None else _configuration(model, "rest", rest)
+    if q is not None:
+        starts = [_configuration(model, "q", q)]
+    else:
+        starts = [np.array(model.neutral() if resting is None else resting)]
+    if resting is None:
+        return _reach(task, starts[0], free, tolerance, iterations)
+    if q is not None and not held:
+        starts.append(resting)
+    return min(
+        (_reach_near(task, start, resting, free, tolerance, iterations) for start in starts),
+        key=lambda reached: (not reached.converged, reached.distance if reached.converged else reached.error),
+    )
+
+
+def _reach(task: Task, q: Array, free: Indices, tolerance: float, iterations: int) -> Reached:
+    """Damped least squares from a guess, within the limits."""
+    model = task.model
+    q = _within(model, q, free)
     error, damping, count = task.error(q), _DAMPING, 0
+    _refuse_nan(task, error)
     while np.abs(error).max(initial=0.0) > tolerance and count < iterations:
         J = task.jacobian(q)
         movable = _movable(model, q, J.T @ error, free)
         step = np.zeros(model.nv)
         step[movable] = _damped(J[:, movable], error, damping)
-        if rest is not None:
-            step[movable] += _towards(model, q, np.asarray(rest, dtype=np.float64), J, movable, error)
-        step *= min(1.0, _LARGEST_STEP / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-        tried = _within(model, model.integrate(q, step))
+        step *= min(1.0, LARGEST_STEP / max(float(np.abs(step).max(initial=0.0)), 1e-300))
+        tried = _within(model, model.integrate(q, step), free)
         error_tried = task.error(tried)
         count += 1
         gain = float(error @ error - error_tried @ error_tried)
-        if gain > 0.0 or rest is not None:
+        if gain > 0.0:
             q, error, damping = tried, error_tried, damping * _RELAX
         else:
             damping *= _TIGHTEN
-        if damping > 1e8 or (0.0 <= gain <= _SMALLEST_GAIN * float(error @ error) and rest is None):
+        if damping > 1e8 or 0.0 <= gain <= _SMALLEST_GAIN * float(error @ error):
             break
     left = float(np.abs(error).max(initial=0.0))
     return Reached(q, left, left <= tolerance, count)
+
+
+def _polished(task: Task, q: Array, free: Indices) -> Array:
+    """The solution after a step without damping, to rounding: distances of solutions are compared to all digits."""
+    error, J = task.error(q), task.jacobian(q)
+    movable = _movable(task.model, q, J.T @ error, free)
+    step = np.zeros(task.model.nv)
+    step[movable] = np.linalg.pinv(J[:, movable], rcond=RANK) @ error
+    tried = _within(task.model, task.model.integrate(q, step), free)
+    return tried if np.linalg.norm(task.error(tried)) < np.linalg.norm(error) else q
+
+
+def _reach_near(task: Task, q: Array, rest: Array, free: Indices, tolerance: float, iterations: int) -> Reached:
+    """A solution from a guess, then descent of the distance from rest among the solutions."""
+    reached = _reach(task, q, free, tolerance, iterations)
+
+    def restore(at: Array, movable: Indices, most: int) -> tuple[Array, float, int]:
+        near = _reach(task, at, movable, tolerance, most)
+        return (_polished(task, near.q, movable) if near.converged else near.q), near.error, near.iterations
+
+    nearest = NearestPosture(task, rest, free, restore, tolerance)
+    q, count = reached.q, 0
+    if reached.converged:
+        q, count = nearest.descend(_polished(task, q, free), iterations - reached.iterations)
+    error, distance = float(np.abs(task.error(q)).max(initial=0.0)), nearest.distance(q)
+    gradient = float(np.linalg.norm(nearest.projected_pull(q)[0]))
+    converged = error <= tolerance and gradient <= OPTIMALITY * (1.0 + distance)
+    return Reached(q, error, converged, reached.iterations + count, distance, gradient)
 
 
 def joint_motion(
@@ -136,10 +181,22 @@ def joint_motion(
 
     Raises:
         AssemblyError: A sample is out of reach; says which.
+        ShapeError: An array does not fit the others, or is not of finite numbers.
+        SymofrosError: A matrix is not a rotation.
     """
     model = model.with_precision("double")
-    p, V, A = (np.asarray(x, dtype=np.float64) for x in (positions, velocities, accelerations))
-    R = None if rotations is None else np.asarray(rotations, dtype=np.float64)
+    what = f"motion of frame '{frame}'"
+    p = finite_array(f"{what}: positions", positions, ("n", 3), "give one row of x, y and z a sample")
+    n, columns = len(p), 3 if rotations is None else 6
+    R = None
+    if rotations is not None:
+        R = finite_array(f"{what}: rotations", rotations, (n, 3, 3), "give one matrix R_WF for each position")
+        R = rotations_checked(what, R)
+    remedy = f"give {columns} columns and one row for each position; linear first, then angular if rotations are given"
+    V, A = (
+        finite_array(f"{what}: {name}", x, (n, columns), remedy)
+        for name, x in (("velocities", velocities), ("accelerations", accelerations))
+    )
     rows = 3 if R is None else 6
     motion: list[tuple[Array, Array, Array]] = []
     for i in range(len(p)):
@@ -165,86 +222,46 @@ def joint_motion(
     return np.array(qs), np.array(vs), np.array(accs)
 
 
-class _Task:
-    """Errors of targets and constraints, and how speeds change them."""
-
-    def __init__(self, model: Model, targets: Mapping[str, Target], u: ArrayLike | None, par: ArrayLike | None) -> None:
-        self.model, self.targets = model, targets
-        self.more: dict[str, Any] = {"u": u, "par": par}
-        self.coordinates = [i for i, n in enumerate(model.names.constraints) if n not in model.record.speed_conditions]
-
-    def error(self, q: Array) -> Array:
-        parts: list[Array] = []
-        for frame, target in self.targets.items():
-            p, R = self.model.frame_pose(frame, q, **self.more)
-            if target.position is not None:
-                parts.append(np.asarray(target.position, dtype=np.float64) - p)
-            if target.rotation is not None:
-                parts.append(rotation_vector(np.asarray(target.rotation, dtype=np.float64) @ R.T))
-        if self.coordinates:
-            parts.append(-self.model.constraint(q, **self.more)[self.coordinates])
-        return np.concatenate(parts)
-
-    def jacobian(self, q: Array) -> Array:
-        parts: list[Array] = []
-        for frame, target in self.targets.items():
-            J = self.model.frame_jacobian(frame, q, **self.more)
-            parts += [J[:3]] if target.position is not None else []
-            parts += [J[3:]] if target.rotation is not None else []
-        if self.coordinates:
-            parts.append(self.model.constraint_jacobian(q, **self.more)[self.coordinates])
-        return np.concatenate(parts)
-
-
-def rotation_vector(R: Array) -> Array:
-    """Axis times angle (3,) of a rotation (3, 3), the angle in [0, pi]."""
-    twice = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    sine, cosine = 0.5 * float(np.linalg.norm(twice)), 0.5 * (float(np.trace(R)) - 1.0)
-    angle = np.arctan2(sine, cosine)
-    if sine > 1e-7:
-        return np.asarray(twice * (0.5 * angle / sine))
-    if cosine > 0.0:
-        return 0.5 * twice
-    # Half a turn: the axis is a column of R + 1.
-    column = (R + np.eye(3))[:, int(np.argmax(np.diag(R)))]
-    return np.asarray(angle * column / np.linalg.norm(column))
-
-
 def _damped(J: Array, error: Array, damping: float) -> Array:
     U, s, Vt = np.linalg.svd(J, full_matrices=False)
     floor = damping * s.max(initial=0.0)
     return np.asarray(Vt.T @ (s / (s**2 + floor**2 + 1e-300) * (U.T @ error)))
 
 
-def _towards(model: Model, q: Array, rest: Array, J: Array, movable: Indices, error: Array) -> Array:
-    """A step towards the posture of rest that does not move the task; small once the task is done."""
-    pull = 0.2 * model.difference(q, rest)[movable]
-    J = J[:, movable]
-    kept = pull - np.linalg.pinv(J, rcond=RANK) @ (J @ pull)
-    # Fades out with the error, or the task would never be met to its last digits.
-    return np.asarray(kept * min(1.0, 10.0 * float(np.abs(error).max(initial=0.0))))
-
-
-def _limited(model: Model) -> list[tuple[int, int, float, float]]:
-    """(index in q, index in v, lower, upper) of coordinates whose rates are the speeds."""
-    limits = []
-    for segment in model.record.segments:
-        if segment.kind == "linear":
-            for k in range(segment.size):
-                i = segment.q + k
-                limits.append((i, segment.v + k, model.record.q_lower[i], model.record.q_upper[i]))
-    return limits
-
-
 def _movable(model: Model, q: Array, wish: Array, free: Indices) -> Indices:
     """The free speeds without those that would push a coordinate through its limit."""
     stuck = {
-        k for i, k, low, high in _limited(model) if (q[i] <= low and wish[k] < 0.0) or (q[i] >= high and wish[k] > 0.0)
+        k for i, k, low, high in coordinate_limits(model) if (q[i] <= low and wish[k] < 0.0) or (q[i] >= high and wish[k] > 0.0)
     }
     return np.array([k for k in free if k not in stuck], dtype=np.intp)
 
 
-def _within(model: Model, q: Array) -> Array:
-    for i, _, low, high in _limited(model):
-        q[i] = min(max(q[i], low), high)
+def _within(model: Model, q: Array, free: Indices) -> Array:
+    """The configuration with its free coordinates moved to their limits where they are beyond them."""
+    q, movable = np.array(q), set(free.tolist())
+    for i, k, low, high in coordinate_limits(model):
+        if k in movable:
+            q[i] = min(max(q[i], low), high)
     return q
+
+
+def _configuration(model: Model, name: str, values: ArrayLike) -> Array:
+    """A configuration (nq) on the manifold."""
+    remedy = f"give one number for each of {', '.join(model.names.q[:8])}" + (", …" if model.nq > 8 else "")
+    q = finite_array(f"inverse kinematics: {name}", values, (model.nq,), remedy)
+    with np.errstate(all="ignore"):
+        on_manifold = model.integrate(q, np.zeros(model.nv))
+    return finite_array(f"inverse kinematics: {name}", on_manifold, (model.nq,), "give quaternions that are not zero")
+
+
+def _refuse_nan(task: Task, error: Array) -> None:
+    if np.all(np.isfinite(error)):
+        return
+    raise SymofrosError(
+        Problem(
+            f"model '{task.model.record.name}': the error of the targets is not a number",
+            f"{error[~np.isfinite(error)][0]} at the guess",
+            "poses and constraints are finite at the guess",
+            "check the inputs and parameters that are passed, or start from another guess",
+        )
+    )

@@ -10,7 +10,6 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from reference_models.closed.spatial import delta_guess
-from symofros.simulation.analysis.inverse_kinematics import rotation_vector
 
 
 @cache
@@ -60,15 +59,6 @@ def test_out_of_reach_comes_as_near_as_it_can() -> None:
     assert not found.converged and found.error == pytest.approx(1.0, abs=1e-4)
 
 
-def test_the_freedom_that_is_left_goes_to_rest() -> None:
-    m, rest = arm(), np.array([0.9, -0.5, -0.2])
-    target = {"b2.end": sf.Target([2.0, 0.8, 0.0])}
-    start = [-0.6, 0.9, 0.5]
-    plain, near = sf.inverse_kinematics(m, target, start), sf.inverse_kinematics(m, target, start, rest=rest)
-    assert plain.converged and near.converged
-    assert np.linalg.norm(near.q - rest) < np.linalg.norm(plain.q - rest)
-
-
 def test_held_coordinates_stay() -> None:
     found = sf.inverse_kinematics(arm(), {"b2.end": sf.Target([2.0, 0.8, 0.0])}, [0.2, 0.3, 0.1], held=["q0"])
     assert found.converged and found.q[0] == 0.2
@@ -80,14 +70,6 @@ def test_a_loop_stays_closed() -> None:
     p, _ = m.frame_pose("platform", start)
     found = sf.inverse_kinematics(m, {"platform": sf.Target(p + [0.05, -0.03, 0.08])}, start)
     assert found.converged and np.abs(m.constraint(found.q)).max() < 1e-10
-
-
-@pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-3, 1.0, np.pi - 1e-9, np.pi])
-def test_rotation_vectors(angle: float) -> None:
-    axis = np.array([2.0, -1.0, 2.0]) / 3.0
-    K = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    found = rotation_vector(np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K)
-    assert min(np.abs(found - angle * axis).max(), np.abs(found + angle * axis).max()) < 1e-7
 
 
 def test_a_path_in_space_becomes_a_motion_of_joints() -> None:

@@ -1,0 +1,170 @@
+"""Targets of frames, checked, with their errors and how speeds change them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.model import ArrayLike, Model
+
+# Deviation of a target's matrix from a rotation, max |R R^T - 1|, up to which the nearest rotation stands for it.
+# Entries in single precision (6e-8) or typed with seven digits pass, as they do in descriptions; what is farther off is
+# no rotation written with few digits. A deviation d leaves the nearest rotation uncertain by d/2: below any tolerance
+# on how near to the target a frame comes that such digits can mean.
+ROTATION_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True)
+class Target:
+    """Where a frame is wanted.
+
+    Attributes:
+        position: p_WF (3,) [m]; None if it does not matter.
+        rotation: R_WF (3, 3); None if it does not matter. Rounded to seven digits, it stands for the nearest rotation.
+    """
+
+    position: ArrayLike | None = None
+    rotation: ArrayLike | None = None
+
+
+class Task:
+    """Errors of targets and constraints, and how speeds change them.
+
+    Args:
+        model: Model.
+        targets: Frame -> where it is wanted.
+        u: Inputs, for prescribed motions.
+        par: Run-time parameters.
+
+    Raises:
+        ShapeError: A position or a rotation has the wrong shape, or is not of finite numbers.
+        SymofrosError: A matrix is not a rotation, or a target is not one.
+    """
+
+    def __init__(self, model: Model, targets: Mapping[str, Target], u: ArrayLike | None, par: ArrayLike | None) -> None:
+        self.model = model
+        self.wanted = {frame: _checked(frame, target) for frame, target in targets.items()}
+        self.inputs: dict[str, Any] = {"u": u, "par": par}
+        self.coordinates = [i for i, n in enumerate(model.names.constraints) if n not in model.record.speed_conditions]
+
+    def error(self, q: Array) -> Array:
+        """What is missing: positions [m], rotation vectors [rad] in world axes, residuals of constraints."""
+        parts = [np.zeros(0)]
+        for frame, (position, rotation) in self.wanted.items():
+            p, R = self.model.frame_pose(frame, q, **self.inputs)
+            if position is not None:
+                parts.append(position - p)
+            if rotation is not None:
+                parts.append(rotation_vector(rotation @ R.T))
+        if self.coordinates:
+            parts.append(-self.model.constraint(q, **self.inputs)[self.coordinates])
+        return np.concatenate(parts)
+
+    def jacobian(self, q: Array) -> Array:
+        """How speeds reduce the error, row by row, where it is small."""
+        parts = [np.zeros((0, self.model.nv))]
+        for frame, (position, rotation) in self.wanted.items():
+            J = self.model.frame_jacobian(frame, q, **self.inputs)
+            parts += [J[:3]] if position is not None else []
+            parts += [J[3:]] if rotation is not None else []
+        if self.coordinates:
+            parts.append(self.model.constraint_jacobian(q, **self.inputs)[self.coordinates])
+        return np.concatenate(parts)
+
+
+def rotation_vector(R: Array) -> Array:
+    """Axis times angle (3,) of a rotation (3, 3), the angle in [0, pi]."""
+    twice = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    sine, cosine = 0.5 * float(np.linalg.norm(twice)), 0.5 * (float(np.trace(R)) - 1.0)
+    angle = np.arctan2(sine, cosine)
+    if sine > 1e-7:
+        return np.asarray(twice * (0.5 * angle / sine))
+    if cosine > 0.0:
+        return 0.5 * twice
+    # Half a turn: the axis is a column of R + 1.
+    column = (R + np.eye(3))[:, int(np.argmax(np.diag(R)))]
+    return np.asarray(angle * column / np.linalg.norm(column))
+
+
+def finite_array(what: str, values: ArrayLike, shape: tuple[int | str, ...], remedy: str) -> Array:
+    """The values as an array of finite numbers.
+
+    Args:
+        what: Name of the values in messages.
+        values: Values.
+        shape: Shape; a name stands for any number.
+        remedy: Change to make where they do not fit.
+
+    Raises:
+        ShapeError: They are not such an array.
+    """
+    try:
+        array = np.array(values, dtype=np.float64) if np.asarray(values).dtype.kind in "fiu" else None
+    except ValueError:  # Rows of unequal length.
+        array = None
+    fits = (
+        array is not None
+        and array.ndim == len(shape)
+        and all(isinstance(n, str) or n == size for n, size in zip(shape, array.shape, strict=True))
+    )
+    if array is not None and fits and np.all(np.isfinite(array)):
+        return array
+    if array is None:
+        seen = f"{type(values).__name__} {values!r:.60}"
+    else:
+        seen = f"{array[~np.isfinite(array)][0]} among its numbers" if fits else f"shape {array.shape}"
+    size = f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
+    raise ShapeError(Problem(f"{what} does not fit", seen, f"finite real numbers of shape {size}", remedy))
+
+
+def rotations_checked(what: str, R: Array) -> Array:
+    """The rotations nearest to matrices (..., 3, 3) that are rotations but for rounding.
+
+    Raises:
+        SymofrosError: One of them is none, or a reflection.
+    """
+    U, s, Vt = np.linalg.svd(R)
+    # The singular values are those of R: max |s^2 - 1| bounds every entry of R R^T - 1.
+    with np.errstate(over="ignore", invalid="ignore"):
+        error, determinant = np.abs(s**2 - 1.0).max(axis=-1), np.linalg.det(R)
+    bad = np.flatnonzero((error > ROTATION_TOLERANCE) | (determinant < 0.0))
+    if bad.size:
+        at = f" of sample {bad[0]}" if R.ndim > 2 else ""
+        error, determinant = np.ravel(error)[bad[0]], np.ravel(determinant)[bad[0]]
+        raise SymofrosError(
+            Problem(
+                f"{what}: the matrix{at} is not a rotation",
+                f"|R R^T - 1| = {error:.2g}, determinant {determinant:.3g}",
+                f"R R^T = 1 within {ROTATION_TOLERANCE:g} and determinant +1",
+                "give columns of unit length that form a right-handed frame, to seven digits or more",
+            )
+        )
+    return np.asarray(U @ Vt)
+
+
+def _checked(frame: str, target: Target) -> tuple[Array | None, Array | None]:
+    """Position (3,) and rotation (3, 3) of a target."""
+    what = f"target of frame '{frame}'"
+    if not isinstance(target, Target) or (target.position is None and target.rotation is None):
+        raise SymofrosError(
+            Problem(
+                f"{what}: says nothing of where the frame is wanted",
+                f"{target!r:.80}",
+                "a target is a Target with a position, a rotation or both",
+                "write Target(position), Target(rotation=R) or Target(position, R)",
+            )
+        )
+    position, rotation = target.position, target.rotation
+    if position is not None:
+        position = finite_array(
+            f"{what}: position", position, (3,), "give x, y and z in world axes, in metres; planar targets too"
+        )
+    if rotation is not None:
+        remedy = "give the matrix R_WF; sf.Rotation forms and quaternions are converted before"
+        rotation = rotations_checked(what, finite_array(f"{what}: rotation", rotation, (3, 3), remedy))
+    return position, rotation
