@@ -60,8 +60,8 @@ def inverse_kinematics(
     """Damped least squares on the targets and, for mechanisms with loops, on their constraints.
 
     With a posture of rest, descent on the solutions follows, from what is reached from the guess and from what is
-    reached from rest, and the nearer end counts (docs/theory/constraints.md, section 9). It is a local minimum: branches
-    of solutions that neither start leads to are not searched.
+    reached from rest, and the nearer end counts (docs/theory/constraints.md, section 9). It is a local minimum:
+    branches of solutions that neither start leads to are not searched.
 
     Args:
         model: Model, whose joint limits are kept.
@@ -230,9 +230,8 @@ def _damped(J: Array, error: Array, damping: float) -> Array:
 
 def _movable(model: Model, q: Array, wish: Array, free: Indices) -> Indices:
     """The free speeds without those that would push a coordinate through its limit."""
-    stuck = {
-        k for i, k, low, high in coordinate_limits(model) if (q[i] <= low and wish[k] < 0.0) or (q[i] >= high and wish[k] > 0.0)
-    }
+    limits = coordinate_limits(model)
+    stuck = {k for i, k, low, high in limits if (q[i] <= low and wish[k] < 0.0) or (q[i] >= high and wish[k] > 0.0)}
     return np.array([k for k in free if k not in stuck], dtype=np.intp)
 
 

@@ -113,12 +113,14 @@ def test_rest_that_meets_the_target_is_the_answer() -> None:
 
 
 def test_a_farthest_posture_is_no_answer() -> None:
-    """A link of 2 m on two slides, its tip held: d^2 = 5 + 4 cos c + c^2 has a maximum at c = 0, where both starts lead.
+    """A link of 2 m on two slides, its tip held: d^2 = 5 + 4 cos c + c^2.
 
-    Its minima are where sin c = c/2.
+    It has a maximum at c = 0, where both starts lead, and minima where sin c = c/2.
     """
-    slides = [sf.RigidBody(n, sf.Joint(n, "prismatic", p, axis=x), sf.Inertia(1.0)) for n, p, x in (
-        ("x", "world", (1, 0, 0)), ("y", "x", (0, 1, 0)))]
+    slides = [
+        sf.RigidBody(n, sf.Joint(n, "prismatic", p, axis=x), sf.Inertia(1.0))
+        for n, p, x in (("x", "world", (1, 0, 0)), ("y", "x", (0, 1, 0)))
+    ]
     link = sf.RigidBody("link", sf.Joint("c", "revolute", "y"), sf.Inertia(1.0), (sf.Frame("tip", (2.0, 0, 0)),))
     m = sf.compile(sf.System("gantry", (*slides, link)), FUNCTIONS)
     reached = sf.inverse_kinematics(m, {"tip": sf.Target([0.0, 0, 0])}, [-2.0, 0, 0], rest=[1.0, 0, 0])
