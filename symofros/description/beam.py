@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
@@ -24,7 +25,7 @@ STATION = "x"
 
 @dataclass(frozen=True)
 class Samples:
-    """A shape function by its values at stations; a cubic spline goes through them.
+    """A shape function by its values at stations; a cubic spline goes through them, the cubic itself where it is one.
 
     Attributes:
         xi: Stations x/L of the samples, rising from 0 to 1.
@@ -46,6 +47,16 @@ class Samples:
                     f"{len(self.xi)} stations, {len(self.values)} values",
                     "at least 4 stations that rise from 0 to 1, and one value for each",
                     "sort the stations, divide them by the length, and give each its value",
+                )
+            )
+        if not all(map(math.isfinite, self.values)):
+            at = next(i for i, value in enumerate(self.values) if not math.isfinite(value))
+            raise DescriptionError(
+                Problem(
+                    "sampled shape function: a value is not a finite number",
+                    f"{self.values[at]} at xi = {self.xi[at]:g}",
+                    "values of shape functions are finite numbers",
+                    "mend or leave out the sample",
                 )
             )
 

@@ -134,8 +134,8 @@ def _shaft_mode(a: float, L: float) -> Shape:
 
 
 def through(xi: Sequence[float], values: Sequence[float], L: float, bending: bool = True) -> Shape:
-    """The cubic spline through samples, without slope (twist: curvature) at the root and curvature at the tip."""
-    s = scipy.interpolate.CubicSpline(xi, values, bc_type=((1 if bending else 2, 0.0), (2, 0.0)))
+    """The cubic spline through samples: without slope at the root in bending, and not-a-knot at all other ends."""
+    s = scipy.interpolate.CubicSpline(xi, values, bc_type=((1, 0.0) if bending else "not-a-knot", "not-a-knot"))
     return stretched(s, s.derivative(), s.derivative(2), L)
 
 

@@ -248,7 +248,11 @@ def _formula(formula: Expression | float) -> ExtendedFunction:
 
 
 def _through(xi: Sequence[float], values: Sequence[float], bending: bool) -> Piecewise:
-    """The cubic spline through sampled values: no slope at the root if clamped, no curvature at the free end."""
+    """The cubic spline through sampled values, which is the cubic itself where a cubic was sampled.
+
+    In bending it has no slope at the root. Elsewhere nothing is known of the ends: the two intervals there share one
+    cubic (docs/theory/beams.md, section 2).
+    """
     x, y = ([CONTEXT.mpf(number) for number in numbers] for numbers in (xi, values))
     h = [b - a for a, b in pairwise(x)]
     chords = [(b - a) / step for (a, b), step in zip(pairwise(y), h, strict=True)]
@@ -260,22 +264,47 @@ def _through(xi: Sequence[float], values: Sequence[float], bending: bool) -> Pie
     return Piecewise(tuple(xi), tuple(pieces))
 
 
-def _spline_curvatures(h: Sequence[Extended], chords: Sequence[Extended], bending: bool) -> list[Extended]:
-    """Second derivatives at the samples that make the spline's slope continuous, by elimination without pivots.
+def _spline_curvatures(h: Sequence[Extended], chords: Sequence[Extended], clamped: bool) -> list[Extended]:
+    """Second derivatives at the samples that make the spline's slope continuous.
 
     Args:
-        h: Distances between samples (n - 1).
+        h: Distances between samples (n - 1), three at least.
         chords: Slopes of the straight lines between them (n - 1).
-        bending: Whether the spline has no slope at the root; else it has no curvature there.
+        clamped: Whether the spline has no slope at its first sample; else its first two intervals share one cubic.
     """
-    # Row i is h_(i-1) c_(i-1) + diagonal c_i + h_i c_(i+1) = right; that of the tip is c_n = 0.
-    diagonal, right = ([2 * h[0]], [6 * chords[0]]) if bending else ([CONTEXT.one], [CONTEXT.zero])
-    upper = [h[0] if bending else CONTEXT.zero, *h[1:]]
-    for i in range(1, len(h)):
-        factor = h[i - 1] / diagonal[i - 1]
-        diagonal.append(2 * (h[i - 1] + h[i]) - factor * upper[i - 1])
-        right.append(6 * (chords[i] - chords[i - 1]) - factor * right[i - 1])
-    curvatures = [CONTEXT.zero]
-    for i in reversed(range(len(h))):
-        curvatures.append((right[i] - upper[i] * curvatures[-1]) / diagonal[i])
-    return curvatures[::-1]
+    # Row i is lower c_(i-1) + diagonal c_i + upper c_(i+1) = right (equations (5a) and (5b) of the theory).
+    rows = [[h[i - 1], 2 * (h[i - 1] + h[i]), h[i], 6 * (chords[i] - chords[i - 1])] for i in range(1, len(h))]
+    # One cubic on two intervals: c_n = (1 + r) c_(n-1) - r c_(n-2), put into the last row; alike at the root.
+    r = h[-1] / h[-2]
+    rows[-1] = _without_end(rows[-1], 2, 0, r)
+    if clamped:
+        rows.insert(0, [CONTEXT.zero, 2 * h[0], h[0], 6 * chords[0]])
+    else:
+        rows[0] = _without_end(rows[0], 0, 2, h[0] / h[1])
+    c = _tridiagonal(rows)
+    if not clamped:
+        c.insert(0, c[0] + (c[0] - c[1]) * h[0] / h[1])
+    return [*c, c[-1] + (c[-1] - c[-2]) * r]
+
+
+def _without_end(row: list[Extended], end: int, inner: int, r: Extended) -> list[Extended]:
+    """A row without the unknown at its end, which is (1 + r) times the middle one less r times the inner one."""
+    reduced = list(row)
+    reduced[1] += (1 + r) * row[end]
+    reduced[inner] -= r * row[end]
+    reduced[end] = CONTEXT.zero
+    return reduced
+
+
+def _tridiagonal(rows: Sequence[Sequence[Extended]]) -> list[Extended]:
+    """The unknowns of a tridiagonal system of rows (lower, diagonal, upper, right), diagonally dominant."""
+    reduced: list[tuple[Extended, Extended]] = []  # (upper, right) of rows with a unit diagonal and nothing below.
+    above = (CONTEXT.zero, CONTEXT.zero)
+    for lower, diagonal, upper, right in rows:
+        pivot = diagonal - lower * above[0]
+        above = (upper / pivot, (right - lower * above[1]) / pivot)
+        reduced.append(above)
+    unknowns = [CONTEXT.zero]
+    for upper, right in reversed(reduced):
+        unknowns.append(right - upper * unknowns[-1])
+    return unknowns[:0:-1]

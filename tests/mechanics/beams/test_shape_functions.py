@@ -183,14 +183,6 @@ def test_roots_are_those_of_the_characteristic_equation() -> None:
     np.testing.assert_allclose(roots[:3] ** 2, CANTILEVER, rtol=1e-15)
 
 
-def test_samples_become_a_clamped_spline() -> None:
-    xi = np.linspace(0, 1, 9)
-    known = xi**2 * (3 - xi) / 2  # Clamped, free of curvature at the tip, and cubic: reproduced exactly.
-    (shape,) = shapes("user", "bend_y", 1, (sf.Samples(tuple(xi), tuple(known)),))
-    x = np.linspace(0, 1, 33)
-    np.testing.assert_allclose([float(shape.phi(s)) for s in x], x**2 * (3 - x) / 2, atol=1e-14)
-
-
 def test_formulas_are_followed() -> None:
     (shape,) = shapes("user", "bend_z", 1, (sf.formula("1 - cos(pi*xi/2)"),))
     x = np.linspace(0, 1, 33)
