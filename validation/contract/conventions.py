@@ -27,12 +27,12 @@ from validation.mechanics.geometry import (
 
 
 class Difference(NamedTuple):
-    """One thing that an engine states otherwise."""
+    """One convention that an engine states otherwise."""
 
     engine: str
     what: str
-    ours: str
-    theirs: str
+    symofros_convention: str
+    engine_convention: str
 
 
 Encoding = Literal["same", "cos_sin", "wxyz", "free_in_world", "free_in_parent"]

@@ -200,7 +200,7 @@ def _method() -> Section:
         )
         for q in (*QUANTITIES.values(), MOTION_ENERGY)
     )
-    conventions = tuple((d.engine, d.what, d.ours, d.theirs) for d in differences())
+    conventions = tuple((d.engine, d.what, d.symofros_convention, d.engine_convention) for d in differences())
     text = (
         "The error of a state is the largest difference of any entry, divided by the largest entry of the other "
         f"engine's result in that state. Where that result happens to be small, it is divided by {SMALL} of what the "
@@ -216,7 +216,7 @@ def _method() -> Section:
         Table(("quantity", "symbol", "unit", "#tolerance", "reason"), quantities),
         Fold(
             "Conventions that differ between engines, and are converted",
-            (Table(("engine", "what", "ours", "theirs"), conventions),),
+            (Table(("engine", "what", "SYMOFROS", "the engine"), conventions),),
         ),
     )
     return Section("How it is measured", blocks, page_only=True)

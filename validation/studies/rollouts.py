@@ -25,7 +25,7 @@ class Rollout:
     """One way to move all trajectories.
 
     Attributes:
-        scene: What moves.
+        motion: What moves.
         who: Whose loop.
         how: Method and step, in words.
         threads: That share the work.
@@ -35,7 +35,7 @@ class Rollout:
         ratio: Median over the repeats of MuJoCo's processor time over this; 1 for MuJoCo itself.
     """
 
-    scene: str
+    motion: str
     who: str
     how: str
     threads: int
@@ -65,13 +65,13 @@ def run(repeats: int, trajectories: int = TRAJECTORIES, steps: int = STEPS, thre
     q0 = m.neutral() + _SPREAD * rng.standard_normal((trajectories, m.nq))
     v0 = _SPEED * rng.standard_normal((trajectories, m.nv))
     rows = []
-    for scene, stiffness, damping in (("PD control", STIFFNESS, DAMPING), ("let go", 0.0, 0.0)):
-        rows += _scene(scene, m, engine, (q0, v0), stiffness, damping, steps, repeats, threads)
+    for motion, stiffness, damping in (("PD control", STIFFNESS, DAMPING), ("let go", 0.0, 0.0)):
+        rows += _motion(motion, m, engine, (q0, v0), stiffness, damping, steps, repeats, threads)
     return rows
 
 
-def _scene(
-    scene: str,
+def _motion(
+    motion: str,
     m: sf.Model,
     engine: object,
     start: tuple[Array, Array],
@@ -116,7 +116,7 @@ def _scene(
         ratio = median(theirs / mine for theirs, mine in zip(times["mujoco"], spent, strict=True))
         who = "MuJoCo, rollout" if name == "mujoco" else "SYMOFROS"
         rows.append(
-            Rollout(scene, who, words[name], threads, errors[name], counts[name], (min(each), median(each)), ratio)
+            Rollout(motion, who, words[name], threads, errors[name], counts[name], (min(each), median(each)), ratio)
         )
     return rows
 

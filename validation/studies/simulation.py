@@ -29,12 +29,12 @@ STIFFNESS, DAMPING, TARGET = 20.0, 1.0, 0.4
 
 
 @dataclass(frozen=True)
-class Side:
-    """One way through a scene.
+class TimedRun:
+    """The timed motion of one side.
 
     Attributes:
         how: Method and step, in words.
-        error: Against the scene's reference, in its unit.
+        error: Distance to the reference, in the unit of the measure.
         seconds: Minimum and median over the repeats.
     """
 
@@ -45,30 +45,30 @@ class Side:
 
 @dataclass(frozen=True)
 class Race:
-    """One scene.
+    """One motion by the generated C and by an engine.
 
     Attributes:
-        scene: What moves.
+        motion: Name of the motion.
         span: Seconds of motion.
-        measure: What errors are of, with the reference.
-        ours: Our side.
-        engine: Whose the other side is; "" where there is none.
-        theirs: The other side.
-        ratio: Median over the repeats of theirs / ours; 0 where there is no other.
+        measure: Definition of the error, with the reference.
+        generated: Run by the generated C.
+        engine: Name of the engine; "" for none.
+        engine_run: Run by the engine; None for none.
+        ratio: Median over the repeats of the engine's time over that of the generated C; 0 without an engine.
     """
 
-    scene: str
+    motion: str
     span: float
     measure: str
-    ours: Side
+    generated: TimedRun
     engine: str = ""
-    theirs: Side | None = None
+    engine_run: TimedRun | None = None
     ratio: float = 0.0
 
     @property
     def real_time(self) -> float:
-        """Seconds of motion a second of ours, at our fastest."""
-        return self.span / self.ours.seconds[0]
+        """Seconds of motion a second, at the fastest run of the generated C."""
+        return self.span / self.generated.seconds[0]
 
 
 def done(run: sf.Trajectory) -> sf.Trajectory:
@@ -86,7 +86,7 @@ Timed = Callable[[], tuple[float, float]]  # -> error, seconds
 
 
 def race(
-    scene: str,
+    motion: str,
     span: float,
     measure: str,
     ours: tuple[str, Timed],
@@ -102,11 +102,11 @@ def race(
             errors[k], seconds = side()
             times[k].append(seconds)
     summary = [(min(side), median(side)) if side else (0.0, 0.0) for side in times]
-    mine = Side(ours[0], errors[0], summary[0])
+    generated = TimedRun(ours[0], errors[0], summary[0])
     if other is None:
-        return Race(scene, span, measure, mine)
+        return Race(motion, span, measure, generated)
     ratio = median(b / a for a, b in zip(*times, strict=True))
-    return Race(scene, span, measure, mine, other[0], Side(other[1], errors[1], summary[1]), ratio)
+    return Race(motion, span, measure, generated, other[0], TimedRun(other[1], errors[1], summary[1]), ratio)
 
 
 def arm(repeats: int, span: float = 10.0, h: float = 1e-3) -> Race:
@@ -284,7 +284,7 @@ def iftomm(repeats: int) -> list[Benchmark]:
     def drift(run: sf.Trajectory) -> float:
         return float(np.abs(run.energy - run.energy[0]).max())
 
-    scenes: list[tuple[str, float, str, str, float, Callable[[], sf.Trajectory], Callable[[sf.Trajectory], float]]] = [
+    cases: list[tuple[str, float, str, str, float, Callable[[], sf.Trajectory], Callable[[sf.Trajectory], float]]] = [
         (
             "A01 simple pendulum",
             10.0,
@@ -340,7 +340,7 @@ def iftomm(repeats: int) -> list[Benchmark]:
         ),
     ]
     found = []
-    for name, span, how, measure, threshold, move, judge in scenes:
+    for name, span, how, measure, threshold, move, judge in cases:
         runs = [done(move()) for _ in range(repeats)]
         seconds = min(run.statistics.seconds for run in runs)
         found.append(Benchmark(name, span, how, measure, judge(runs[-1]), threshold, seconds))

@@ -51,12 +51,12 @@ def growth(record: Record) -> list[Growth]:
     curves = []
     for function in FUNCTIONS:
         own = {n: x for n in CHAINS for x in record.entries if (x.model, x.function) == (f"chain{n}", function)}
-        curves.append(_curve(function, "time [ns]", "symofros", {n: x.ours[1] for n, x in own.items()}))
+        curves.append(_curve(function, "time [ns]", "symofros", {n: x.generated_time[1] for n, x in own.items()}))
         in_batches = {n: x.batch[1] for n, x in own.items() if x.batch is not None}
         curves.append(_curve(function, "time [ns]", "symofros, batch", in_batches))
         for peer in ("pinocchio", "mujoco", "casadi"):
             races = {n: record.best(f"chain{n}", function, peer) for n in CHAINS}
-            curves.append(_curve(function, "time [ns]", peer, {n: x.theirs[1] for n, x in races.items() if x}))
+            curves.append(_curve(function, "time [ns]", peer, {n: x.peer_time[1] for n, x in races.items() if x}))
         for by in ("symofros", "casadi"):
             made = {n: record.cost(f"chain{n}", function, by) for n in CHAINS}
             for quantity, cost in _COSTS.items():

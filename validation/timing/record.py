@@ -20,14 +20,16 @@ def _now() -> str:
 
 @dataclass(frozen=True)
 class Entry:
-    """One function of one model by us and by one build of one peer, timed in turn.
+    """One function of one model by the generated C and by one build of one peer, timed in turn.
 
     Attributes:
         model: Label of the model.
         nv: Degrees of freedom.
         function: Timed function.
-        peer: Whom we raced; variant: how it was built and which way it went.
-        ours: Minimum and median, nanoseconds a state, state by state; theirs: likewise.
+        peer: Name of the engine or generator that the generated C is compared with.
+        variant: Build of the peer and formulation of the function.
+        generated_time: Minimum and median of the generated C, nanoseconds a state, state by state.
+        peer_time: Minimum and median of the peer, nanoseconds a state.
         batch: Minimum and median of the generated C by vectors, row by row; None without such code.
         error: Largest relative difference of the results.
         date: Date of the race (UTC).
@@ -40,9 +42,9 @@ class Entry:
     function: str
     peer: str
     variant: str
-    ours: tuple[float, float]
+    generated_time: tuple[float, float]
     batch: tuple[float, float] | None
-    theirs: tuple[float, float]
+    peer_time: tuple[float, float]
     error: float
     date: str = field(default_factory=_now)
     columns: tuple[float, float] | None = None
@@ -56,9 +58,9 @@ class Entry:
         function: str,
         peer: str,
         variant: str,
-        ours: Times,
+        generated_time: Times,
         vectors: Sequence[Times | None],
-        theirs: Times,
+        peer_time: Times,
         error: float,
     ) -> Self:
         """From the times of one race; vectors: by rows, by columns, and by columns of floats."""
@@ -69,9 +71,9 @@ class Entry:
             function,
             peer,
             variant,
-            (ours.minimum, ours.median),
+            (generated_time.minimum, generated_time.median),
             batch,
-            (theirs.minimum, theirs.median),
+            (peer_time.minimum, peer_time.median),
             error,
             columns=columns,
             single=single,
@@ -79,18 +81,18 @@ class Entry:
 
     @property
     def ratio(self) -> float:
-        """Of the medians, theirs to ours."""
-        return self.theirs[1] / self.ours[1]
+        """Ratio of the medians, the peer's to that of the generated C."""
+        return self.peer_time[1] / self.generated_time[1]
 
     @property
     def batch_ratio(self) -> float | None:
-        """Of the medians, theirs to ours by vectors, row by row."""
-        return None if self.batch is None else self.theirs[1] / self.batch[1]
+        """Ratio of the medians, the peer's to that of the generated C by vectors, row by row."""
+        return None if self.batch is None else self.peer_time[1] / self.batch[1]
 
     @property
     def columns_ratio(self) -> float | None:
         """The same column by column."""
-        return None if self.columns is None else self.theirs[1] / self.columns[1]
+        return None if self.columns is None else self.peer_time[1] / self.columns[1]
 
 
 @dataclass(frozen=True)
@@ -171,7 +173,7 @@ class Record:
             for x in self.entries
             if (x.model, x.function, x.peer) == (model, function, peer) and x.variant.startswith(family)
         ]
-        return min(alike, key=lambda x: x.theirs[1], default=None)
+        return min(alike, key=lambda x: x.peer_time[1], default=None)
 
     def cost(self, model: str, function: str, by: str) -> Made | None:
         """Of the fastest build."""
@@ -214,7 +216,7 @@ def read(path: Path) -> Record:
 def entry(row: Mapping[str, Any]) -> Entry:
     """An entry from JSON; what was measured before there were columns has none."""
     values: dict[str, Any] = {item.name: row.get(item.name) for item in fields(Entry)}
-    for name in ("ours", "batch", "theirs", "columns", "single"):
+    for name in ("generated_time", "batch", "peer_time", "columns", "single"):
         values[name] = None if values[name] is None else tuple(values[name])
     return Entry(**values)
 

@@ -31,8 +31,8 @@ LIMITS = (
     "One thread, pinned to one processor, whose time on it is what is measured. All sides of a function run in one "
     "process, in turns of 10 ms or more, each a loop in C over the same random states; before, each side's results "
     "are compared with ours, to 1e-12 of the largest entry (1e-9 where a system is solved), and sides that differ are "
-    "not timed. Cells hold minimum and median over the repeats, in nanoseconds a state; ratios are of medians, theirs "
-    "to ours.",
+    "not timed. Cells hold minimum and median over the repeats, in nanoseconds a state; ratios are of medians, the "
+    "peer's to ours.",
     "Ours is generated C, one state after the other through the public header, in the fastest of its builds by gcc "
     "and clang (Options(tune=True)), and (batch) several at a time by vectors, likewise, in calls of 64 states, or of "
     "as many as keep their results within 384 KiB, by rows, by columns, and by columns of floats (checked to 5e-4, "
@@ -162,7 +162,7 @@ def _best(record: Record) -> list[Entry]:
     best: dict[tuple[str, str, str], Entry] = {}
     for row in record.entries:
         key = row.model, row.function, row.peer
-        if key not in best or row.theirs[1] < best[key].theirs[1]:
+        if key not in best or row.peer_time[1] < best[key].peer_time[1]:
             best[key] = row
     return list(best.values())
 

@@ -39,7 +39,7 @@ def targets_table(record: Record) -> Table:
 
 def _targets(record: Record) -> Section:
     text = (
-        "Ratios of medians, theirs to ours, each of one race. A peer's best is the fastest of its builds and ways, "
+        "Ratios of medians, the peer's to ours, each of one race. A peer's best is the fastest of its builds and ways, "
         "chosen by its median alone. Batches are column by column: the states are the fast axis (NumPy's Fortran "
         "order), and arrays are read and written in place; beside them the same by rows."
     )
@@ -71,9 +71,9 @@ def _function(record: Record, function: str) -> Section:
             continue
         first, pinocchio = known[0], best["pinocchio"]
         gcc = record.best(model, function, "pinocchio", "gcc")
-        ours = (_pair(x) for x in (first.ours, first.batch, first.columns, first.single))
+        generated_time = (_pair(x) for x in (first.generated_time, first.batch, first.columns, first.single))
         head = (timed.title, str(first.nv))
-        times.append((*head, *ours, *(_theirs(x) for x in (gcc, *best.values()))))
+        times.append((*head, *generated_time, *(_peer_time(x) for x in (gcc, *best.values()))))
         others = (_ratio(best[peer]) for peer in ("mujoco", "casadi", "sympy"))
         ratios.append((*head, _ratio(pinocchio), *_in_batches(pinocchio), *others))
     notes = (_NOTES[function],) if function in _NOTES else ()
@@ -82,7 +82,7 @@ def _function(record: Record, function: str) -> Section:
         *notes,
         "Nanoseconds a state, minimum and median:",
         Table(("model", "#nv", "#ours", "#batch, rows", "#columns", "#floats", *engines), tuple(times)).without_empty(),
-        "Ratios of medians, theirs to ours:",
+        "Ratios of medians, the peer's to ours:",
         Table(
             ("model", "#nv", "#Pinocchio", "#batch by rows", "#batch by columns", "#MuJoCo", "#CasADi", "#SymPy"),
             tuple(ratios),
@@ -114,8 +114,8 @@ def _pair(times: tuple[float, float] | None) -> str:
     return "-" if times is None else ", ".join(_short(x) for x in times)
 
 
-def _theirs(entry: Entry | None) -> str:
-    return "-" if entry is None else _pair(entry.theirs)
+def _peer_time(entry: Entry | None) -> str:
+    return "-" if entry is None else _pair(entry.peer_time)
 
 
 def _ratio(entry: Entry | None) -> str:

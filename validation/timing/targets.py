@@ -10,7 +10,7 @@ from validation.timing.record import Entry, Record
 
 @dataclass(frozen=True)
 class Target:
-    """A ratio of medians, theirs to ours, that is to be reached.
+    """A ratio of medians, the peer's to that of the generated C, that is to be reached.
 
     Attributes:
         model, function, peer: Race that the target is of.

@@ -42,7 +42,7 @@ def test_every_row_names_an_adapter_that_exists(name: str) -> None:
 
 def test_differences_are_stated_by_the_engines_of_the_table() -> None:
     assert {row.engine for row in differences()} <= set(ROUTES)
-    assert all(row.ours != row.theirs for row in differences())
+    assert all(row.symofros_convention != row.engine_convention for row in differences())
 
 
 def test_the_command_check_imports_no_engine_that_it_does_not_ask(tmp_path: Path) -> None:

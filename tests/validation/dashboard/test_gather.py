@@ -93,14 +93,14 @@ def test_a_package_that_is_not_installed_makes_nothing_stale() -> None:
 def test_origins_are_found_wherever_a_report_keeps_them(place: str) -> None:
     told = {
         "date": "2026-01-01",
-        "flags": {"ours": "-O2", "theirs": "-O3"},
+        "flags": {"symofros": "-O2", "pinocchio": "-O3"},
         "versions": {"numpy": "2"},
         "processor": "Z80",
     }
     data = told | {"machine": {"processor": "Z80"}} if place == "top" else {place: told}
     origin = Provenance.of(data)
     assert (origin.date, origin.machine, origin.versions) == ("2026-01-01", "Z80", {"numpy": "2"})
-    assert origin.flags == "ours -O2; theirs -O3"
+    assert origin.flags == "symofros -O2; pinocchio -O3"
 
 
 REPORTS = Path(__file__).parents[3] / "reports"

@@ -1,4 +1,4 @@
-"""Races of motions: each side moves the scene it says, and errs as little as it says."""
+"""Races of motions: each side moves the motion it says, and errs as little as it says."""
 
 from __future__ import annotations
 
@@ -14,31 +14,31 @@ from validation.studies import simulation
 
 def test_arm_is_the_same_motion_on_both_sides() -> None:
     row = simulation.arm(1, span=0.5)
-    assert row.theirs is not None
+    assert row.engine_run is not None
     # RK4 with a millisecond on both sides: alike to a fraction of their error, and far from the start.
-    assert 0 < row.ours.error < 1e-4 and row.theirs.error == pytest.approx(row.ours.error, rel=0.05)
+    assert 0 < row.generated.error < 1e-4 and row.engine_run.error == pytest.approx(row.generated.error, rel=0.05)
 
 
 def test_spinning_beam_at_equal_accuracy() -> None:
     row = simulation.spinning_beam(1, meshes=((8, 0.0125),))
-    assert row.theirs is not None
-    assert row.ours.error < 2.5e-3 and row.theirs.error <= row.ours.error
+    assert row.engine_run is not None
+    assert row.generated.error < 2.5e-3 and row.engine_run.error <= row.generated.error
 
 
 def test_planar_robot() -> None:
     row = simulation.planar_robot(1, span=0.2)
-    assert row.theirs is None and row.ours.error < 1e-2 and row.real_time > 0
+    assert row.engine_run is None and row.generated.error < 1e-2 and row.real_time > 0
 
 
 def test_report(tmp_path: Path) -> None:
     found = CliRunner().invoke(
-        app, ["simulation", "--scene", "planar_robot", "--repeats", "1", "--report", str(tmp_path)]
+        app, ["simulation", "--motion", "planar_robot", "--repeats", "1", "--report", str(tmp_path)]
     )
     assert found.exit_code == 0
-    assert json.loads((tmp_path / "simulation.json").read_text())["races"][0]["scene"].startswith("planar")
+    assert json.loads((tmp_path / "simulation.json").read_text())["races"][0]["motion"].startswith("planar")
     assert "| planar flexible robot with friction |" in (tmp_path / "simulation.md").read_text()
 
 
-def test_unknown_scene() -> None:
-    found = CliRunner().invoke(app, ["simulation", "--scene", "moon"])
-    assert found.exit_code == 2 and "no scene 'moon'" in found.output
+def test_unknown_motion() -> None:
+    found = CliRunner().invoke(app, ["simulation", "--motion", "moon"])
+    assert found.exit_code == 2 and "no motion 'moon'" in found.output

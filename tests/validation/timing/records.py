@@ -11,14 +11,24 @@ def entry(
     function: str = "dynamics",
     peer: str = "pinocchio",
     variant: str = "gcc 12, local",
-    ours: float = 100.0,
-    theirs: float = 800.0,
+    generated_time: float = 100.0,
+    peer_time: float = 800.0,
     batch: float | None = 20.0,
     columns: float | None = None,
 ) -> Entry:
     rows, by_columns = (None if time is None else (time - 1.0, time) for time in (batch, columns))
     return Entry(
-        model, 7, function, peer, variant, (ours - 1.0, ours), rows, (theirs - 1.0, theirs), 1e-15, "2026", by_columns
+        model,
+        7,
+        function,
+        peer,
+        variant,
+        (generated_time - 1.0, generated_time),
+        rows,
+        (peer_time - 1.0, peer_time),
+        1e-15,
+        "2026",
+        by_columns,
     )
 
 
@@ -33,6 +43,6 @@ def cubic() -> Record:
     """Chains whose times grow with n^3 by us and n^1.5 by Pinocchio; operations with n^2."""
     record = Record()
     for n in CHAINS:
-        record.entries.append(entry(f"chain{n}", ours=2.0 * n**3, theirs=70.0 * n**1.5, batch=None))
+        record.entries.append(entry(f"chain{n}", generated_time=2.0 * n**3, peer_time=70.0 * n**1.5, batch=None))
         record.costs.append(made(f"chain{n}", operations=8 * n**2))
     return record

@@ -15,19 +15,19 @@ from validation.timing.targets import TARGETS, Target, Verdict, verdicts
 
 
 def test_ratios_are_of_medians() -> None:
-    pair = entry(ours=100.0, theirs=800.0, batch=20.0)
+    pair = entry(generated_time=100.0, peer_time=800.0, batch=20.0)
     assert pair.ratio == 8.0 and pair.batch_ratio == 40.0
     assert entry(batch=None).batch_ratio is None and pair.columns_ratio is None
-    assert entry(theirs=800.0, columns=16.0).columns_ratio == 50.0
+    assert entry(peer_time=800.0, columns=16.0).columns_ratio == 50.0
 
 
 def test_a_peers_best_is_its_fastest_way_by_the_median() -> None:
     record = Record(
         [
-            entry(variant="gcc 12, local", theirs=900.0),
-            entry(variant="clang 19, world", theirs=700.0),
-            entry(variant="clang 19, local", theirs=750.0),
-            entry(peer="mujoco", theirs=10.0),
+            entry(variant="gcc 12, local", peer_time=900.0),
+            entry(variant="clang 19, world", peer_time=700.0),
+            entry(variant="clang 19, local", peer_time=750.0),
+            entry(peer="mujoco", peer_time=10.0),
         ]
     )
     best, gcc = (record.best("panda", "dynamics", "pinocchio", family) for family in ("", "gcc"))
@@ -70,7 +70,7 @@ def test_what_was_not_measured_is_not_met() -> None:
 def test_targets_use_the_family_and_the_batch_they_name() -> None:
     record = Record(
         [
-            entry(variant=variant, theirs=time, columns=16.0)
+            entry(variant=variant, peer_time=time, columns=16.0)
             for variant, time in (("gcc 12, local", 1200.0), ("clang 19, local", 800.0))
         ]
     )

@@ -28,18 +28,18 @@ LINES = [
     json.dumps({"doing": "dynamics"}),
     "a warning of an engine",
     "3",
-    json.dumps({"entry": asdict(entry(theirs=5.0))}),
+    json.dumps({"entry": asdict(entry(peer_time=5.0))}),
     json.dumps({"cost": asdict(made())}),
     json.dumps({"skipped": ["panda", "dynamics", "sympy", "too large"]}),
 ]
 
 
 def test_what_a_worker_prints_becomes_a_record() -> None:
-    record, told = Record([entry(theirs=1.0)]), []
+    record, told = Record([entry(peer_time=1.0)]), []
     for line in LINES:
         take(line, JOB, record, lambda *what: told.append(what))
     assert told == [("panda", "dynamics")]
-    assert [x.theirs[1] for x in record.entries] == [5.0], "the old figure is replaced"
+    assert [x.peer_time[1] for x in record.entries] == [5.0], "the old figure is replaced"
     assert record.costs == [made()] and record.skipped == [("panda", "dynamics", "sympy", "too large")]
 
 
@@ -60,7 +60,7 @@ def test_a_model_is_timed_beside_engines_and_symbolic_peers() -> None:
     pairs = {(x["function"], x["peer"]) for x in entries}
     assert {(name, peer) for name in functions[:2] for peer in ("mujoco", "casadi", "sympy")} <= pairs
     assert ("step", "mujoco") in pairs and ("frame_jacobian", "casadi") in pairs
-    assert all(x["error"] < 1e-9 and 0.0 < x["ours"][0] <= x["ours"][1] for x in entries)
+    assert all(x["error"] < 1e-9 and 0.0 < x["generated_time"][0] <= x["generated_time"][1] for x in entries)
     costs = [value for kind, value in said if kind == "cost" and isinstance(value, dict)]
     assert {x["by"] for x in costs} == {"symofros", "casadi", "sympy"}
     assert all(x["generation"] > 0 and x["text"] > 0 and x["code"] > 0 and x["memory"] > 0 for x in costs)
@@ -88,7 +88,7 @@ def test_a_core_has_a_peak() -> None:
 
 def test_the_report_shows_targets_costs_growth_and_what_was_left_out(tmp_path: Path) -> None:
     record = cubic()
-    record.entries.append(entry(theirs=650.0))
+    record.entries.append(entry(peer_time=650.0))
     record.costs.append(made())
     record.skipped.append(("panda", "bias", "sympy", "too large\nwith details"))
     record.machine = {

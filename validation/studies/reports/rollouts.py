@@ -52,7 +52,7 @@ def compose(data: Data) -> Report:
     motions = counted(data["trajectories"], "motion")
     rate = 1e3 / fastest["nanoseconds"][0]
     columns: dict[str, Column] = {
-        "scene": "{scene}",
+        "motion": "{motion}",
         "who": "{who}",
         "how": "{how}",
         "#threads": "{threads}",
@@ -70,8 +70,8 @@ def compose(data: Data) -> Report:
         (_LIMITS,),
         (Section("Time of a step", (table, f"{data['repeats']} repeats; load {data['load']:.1f}.")),),
         (
-            Fact(f"{fastest['nanoseconds'][0]:.0f} ns", f"a step: {fastest['scene']}, {fastest['how']}"),
-            Fact(times(best["ratio"]), f"mujoco.rollout's time over ours: {best['scene']}, {best['how']}"),
+            Fact(f"{fastest['nanoseconds'][0]:.0f} ns", f"a step: {fastest['motion']}, {fastest['how']}"),
+            Fact(times(best["ratio"]), f"mujoco.rollout's time over ours: {best['motion']}, {best['how']}"),
         ),
         digest=(table,),
     )

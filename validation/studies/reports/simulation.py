@@ -14,7 +14,7 @@ from validation.reporting.provenance import stamp
 from validation.reporting.record import Cell, Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies import simulation
 
-_SCENES = {
+_MOTIONS = {
     "arm": simulation.arm,
     "four_bar": simulation.four_bar,
     "planar_robot": simulation.planar_robot,
@@ -36,15 +36,15 @@ _IFTOMM = (
 
 def measure(
     run: Run,
-    chosen: Annotated[list[str] | None, typer.Option("--scene", help=f"Only this: {', '.join(_SCENES)}.")] = None,
+    chosen: Annotated[list[str] | None, typer.Option("--motion", help=f"Only this: {', '.join(_MOTIONS)}.")] = None,
     repeats: Annotated[int, typer.Option(min=1, help="Interleaved repeats.")] = 7,
 ) -> Data:
     """Time motions: times real time, and against MuJoCo and Exudyn at equal accuracy."""
-    scenes = known(chosen, _SCENES, "--scene", "scene")
-    run.expect(len(scenes), "motions")
+    motions = known(chosen, _MOTIONS, "--motion", "motion")
+    run.expect(len(motions), "motions")
     races = []
-    for name in scenes:
-        row = _SCENES[name](repeats)
+    for name in motions:
+        row = _MOTIONS[name](repeats)
         races.append(asdict(row) | {"real_time": row.real_time})
         run.advance()
     benchmarks = [] if chosen else [asdict(row) for row in simulation.iftomm(repeats)]
@@ -54,11 +54,11 @@ def measure(
 def compose(data: Data) -> Report:
     """The report of its JSON."""
     races, benchmarks = data["races"], data["iftomm"]
-    raced = [row for row in races if row["theirs"]]
+    raced = [row for row in races if row["engine_run"]]
     missed = [row for row in benchmarks if not row["error"] <= row["threshold"]]
     fastest = max(row["real_time"] for row in races)
     beyond = f"; {len(missed)} of the IFToMM benchmarks are beyond their thresholds" if missed else ""
-    facts = [Fact(times(row["ratio"]), f"{row['engine']}'s time over ours: {row['scene']}") for row in raced]
+    facts = [Fact(times(row["ratio"]), f"{row['engine']}'s time over ours: {row['motion']}") for row in raced]
     sections = [Section("Times real time, and against engines at equal accuracy", (_LIMITS, Table.of(races, _RACES)))]
     if benchmarks:
         facts.append(
@@ -84,20 +84,20 @@ def _milliseconds(row: Data) -> str:
 
 def _of_other(cell: Callable[[Data], str]) -> Column:
     """A column that is empty where there is no other engine."""
-    return lambda row: cell(row) if row["theirs"] else ""
+    return lambda row: cell(row) if row["engine_run"] else ""
 
 
 _RACES: dict[str, Column] = {
-    "scene": "{scene}",
+    "motion": "{motion}",
     "#seconds of motion": "{span:g}",
     "error of": "{measure}",
-    "ours": "{ours[how]}",
-    "#error": "{ours[error]:.1e}",
-    "#ms (min, median)": lambda row: _milliseconds(row["ours"]),
+    "ours": "{generated[how]}",
+    "#error": "{generated[error]:.1e}",
+    "#ms (min, median)": lambda row: _milliseconds(row["generated"]),
     "#times real time": "**{real_time:.0f}**",
-    "other": _of_other("{engine}: {theirs[how]}".format_map),
-    "#its error": _of_other("{theirs[error]:.1e}".format_map),
-    "#its ms": _of_other(lambda row: _milliseconds(row["theirs"])),
+    "other": _of_other("{engine}: {engine_run[how]}".format_map),
+    "#its error": _of_other("{engine_run[error]:.1e}".format_map),
+    "#its ms": _of_other(lambda row: _milliseconds(row["engine_run"])),
     "#ratio": _of_other("**{ratio:.1f}**".format_map),
 }
 _BENCHMARKS: dict[str, Column] = {

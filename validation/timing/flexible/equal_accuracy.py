@@ -63,7 +63,7 @@ def exudyn_robot(elements: int) -> PlanarTree:
     return planar_tree(reference_models.MODELS[LABEL], POSTURE, cables)
 
 
-def our_frequencies(functions: int) -> Array:
+def generated_frequencies(functions: int) -> Array:
     """Undamped elastic circular frequencies about the posture at rest, rising (ELASTIC,)."""
     model = sf.compile(robot(functions), sf.Options(backend="interpreter"))
     q = np.array([POSTURE.get(name, 0.0) for name in model.names.q])
@@ -73,7 +73,7 @@ def our_frequencies(functions: int) -> Array:
     return np.sqrt(squares[RIGID : RIGID + ELASTIC])
 
 
-def their_frequencies(tree: PlanarTree) -> Array:
+def exudyn_frequencies(tree: PlanarTree) -> Array:
     """The same of Exudyn's model."""
     return tree.frequencies(RIGID + ELASTIC)[RIGID:]
 
@@ -87,21 +87,21 @@ def pairs(counts: Iterable[int]) -> Iterator[Pair]:
     Raises:
         NotTheSameError: The frequencies of the two sides are not those of one robot.
     """
-    reference = their_frequencies(exudyn_robot(FINE))
+    reference = exudyn_frequencies(exudyn_robot(FINE))
     for count in counts:
-        ours = _worst(our_frequencies(count), reference)
-        if not ours <= SAME_ROBOT:
-            raise NotTheSameError(f"{LABEL}, {count} functions: frequencies err by {ours:.1e}, so times mean nothing")
-        yield _matched(count, ours, reference)
+        generated = _worst(generated_frequencies(count), reference)
+        if not generated <= SAME_ROBOT:
+            raise NotTheSameError(f"{LABEL}, {count} functions: frequencies err by {generated:.1e}: times mean nothing")
+        yield _matched(count, generated, reference)
 
 
-def _matched(count: int, ours: float, reference: Array) -> Pair:
+def _matched(count: int, generated: float, reference: Array) -> Pair:
     for elements in range(1, MOST_ELEMENTS + 1):
         tree = exudyn_robot(elements)
-        theirs = _worst(their_frequencies(tree), reference)
-        if theirs <= ours:
-            return Pair(count, elements, (ours, theirs), tree)
-    raise NotTheSameError(f"{LABEL}, {count} functions: no mesh of up to {MOST_ELEMENTS} elements errs {ours:.1e}")
+        engine = _worst(exudyn_frequencies(tree), reference)
+        if engine <= generated:
+            return Pair(count, elements, (generated, engine), tree)
+    raise NotTheSameError(f"{LABEL}, {count} functions: no mesh of up to {MOST_ELEMENTS} elements errs {generated:.1e}")
 
 
 def _worst(frequencies: Array, reference: Array) -> float:

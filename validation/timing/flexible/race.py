@@ -33,11 +33,11 @@ class FlexibleTiming:
         elements: Elements a strip of Exudyn's.
         sizes: Our degrees of freedom; Exudyn's coordinates and algebraic equations.
         error: Worst relative error of the frequencies, ours and Exudyn's.
-        ours: Minimum and median of the generated C, nanoseconds a state.
-        theirs: Minimum and median of Exudyn with the calls from Python, nanoseconds a state.
+        generated_time: Minimum and median of the generated C, nanoseconds a state.
+        engine_time: Minimum and median of Exudyn with the calls from Python, nanoseconds a state.
         calls: Minimum and median of the same calls on a system of one coordinate, nanoseconds a state.
-        ratio: Median over the repeats of theirs / ours.
-        corrected: Median over the repeats of (theirs - calls) / ours.
+        ratio: Median over the repeats of engine_time / generated_time.
+        corrected: Median over the repeats of (engine_time - calls) / generated_time.
     """
 
     quantity: str
@@ -45,8 +45,8 @@ class FlexibleTiming:
     elements: int
     sizes: tuple[int, int, int]
     error: tuple[float, float]
-    ours: tuple[float, float]
-    theirs: tuple[float, float]
+    generated_time: tuple[float, float]
+    engine_time: tuple[float, float]
     calls: tuple[float, float]
     ratio: float
     corrected: float

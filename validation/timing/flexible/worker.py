@@ -50,14 +50,14 @@ def _timed(pair: Pair, repeats: int, calls: int) -> list[FlexibleTiming]:
     nv, n = assemble(system).nv, pair.tree.coordinates
     q, v = _DEFLECTION * rng.standard_normal((calls, nv)), rng.standard_normal((calls, nv))
     loop = GeneratedLoop(system, ("mass_matrix", "bias", "dynamics"), q, v)
-    theirs, empty = pair.tree.evaluated, smallest()
-    theirs.at(_DEFLECTION * rng.standard_normal(n), rng.standard_normal(n))
+    engine_time, empty = pair.tree.evaluated, smallest()
+    engine_time.at(_DEFLECTION * rng.standard_normal(n), rng.standard_normal(n))
     times: dict[str, tuple[Times, Times, Times]] = {quantity: ([], [], []) for quantity in JOBS}
     for _ in range(repeats):
         for quantity, (functions, parts) in JOBS.items():
             runs = (
                 partial(loop.run, functions),
-                partial(theirs.repeat, parts, calls),
+                partial(engine_time.repeat, parts, calls),
                 partial(empty.repeat, parts, calls),
             )
             for run, collected in zip(runs, times[quantity], strict=True):
@@ -65,8 +65,8 @@ def _timed(pair: Pair, repeats: int, calls: int) -> list[FlexibleTiming]:
     return [_row(quantity, pair, nv, *collected) for quantity, collected in times.items()]
 
 
-def _row(quantity: str, pair: Pair, nv: int, ours: Times, theirs: Times, calls: Times) -> FlexibleTiming:
-    triples = list(zip(ours, theirs, calls, strict=True))
+def _row(quantity: str, pair: Pair, nv: int, generated_time: Times, engine_time: Times, calls: Times) -> FlexibleTiming:
+    triples = list(zip(generated_time, engine_time, calls, strict=True))
     sizes = nv, pair.tree.coordinates, pair.tree.equations
     return FlexibleTiming(
         quantity,
@@ -74,8 +74,8 @@ def _row(quantity: str, pair: Pair, nv: int, ours: Times, theirs: Times, calls: 
         pair.elements,
         sizes,
         pair.error,
-        _summary(ours),
-        _summary(theirs),
+        _summary(generated_time),
+        _summary(engine_time),
         _summary(calls),
         median(b / a for a, b, _ in triples),
         median((b - c) / a for a, b, c in triples),

@@ -16,11 +16,11 @@ from validation.timing.flexible.equal_accuracy import (
     EA,
     POSTURE,
     NotTheSameError,
+    exudyn_frequencies,
     exudyn_robot,
-    our_frequencies,
+    generated_frequencies,
     pairs,
     robot,
-    their_frequencies,
 )
 from validation.timing.flexible.loop import GeneratedLoop
 from validation.timing.flexible.report import flexible_section
@@ -36,10 +36,10 @@ ALL = 3e-4
 def test_both_sides_are_one_robot() -> None:
     """Seven frequencies: drives, rotors, strips and what they carry are in all of them; hinges turn freely."""
     fine = exudyn_robot(12)
-    ours, theirs = our_frequencies(8), their_frequencies(fine)
-    np.testing.assert_allclose(ours, theirs, rtol=ALL)
-    np.testing.assert_allclose(our_frequencies(3)[:2], their_frequencies(exudyn_robot(2))[:2], rtol=LOWEST)
-    assert fine.frequencies(3).max() < 1e-3 * theirs[0]
+    generated, expected = generated_frequencies(8), exudyn_frequencies(fine)
+    np.testing.assert_allclose(generated, expected, rtol=ALL)
+    np.testing.assert_allclose(generated_frequencies(3)[:2], exudyn_frequencies(exudyn_robot(2))[:2], rtol=LOWEST)
+    assert fine.frequencies(3).max() < 1e-3 * expected[0]
 
 
 @pytest.mark.parametrize("changed", ["rotors", "elements"])
@@ -49,19 +49,19 @@ def test_rotors_and_the_elastic_drive_are_in_the_frequencies(changed: str) -> No
     bodies = [replace(b, joint=replace(b.joint, **{changed: ()})) for b in system.bodies if b.joint is not None]  # type: ignore[arg-type]
     cables = {name: Cable(2, stiffness) for name, stiffness in EA.items()}
     without = planar_tree(replace(system, bodies=tuple(bodies)), POSTURE, cables).frequencies(10)
-    assert np.abs(without[3:] / their_frequencies(exudyn_robot(2)) - 1.0).max() > 0.1
+    assert np.abs(without[3:] / exudyn_frequencies(exudyn_robot(2)) - 1.0).max() > 0.1
 
 
 def test_elements_converge_with_their_fourth_power() -> None:
-    reference = their_frequencies(exudyn_robot(32))
-    errors = [np.abs(their_frequencies(exudyn_robot(n)) / reference - 1.0).max() for n in (4, 8)]
+    reference = exudyn_frequencies(exudyn_robot(32))
+    errors = [np.abs(exudyn_frequencies(exudyn_robot(n)) / reference - 1.0).max() for n in (4, 8)]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.2)
 
 
 def test_the_coarsest_mesh_that_errs_no_more_is_chosen() -> None:
     (pair,) = pairs([3])
-    reference = their_frequencies(exudyn_robot(equal_accuracy.FINE))
-    coarser = np.abs(their_frequencies(exudyn_robot(pair.elements - 1)) / reference - 1.0).max()
+    reference = exudyn_frequencies(exudyn_robot(equal_accuracy.FINE))
+    coarser = np.abs(exudyn_frequencies(exudyn_robot(pair.elements - 1)) / reference - 1.0).max()
     assert pair.error[1] <= pair.error[0] < coarser
 
 
@@ -76,7 +76,8 @@ def test_the_study_runs_and_reports() -> None:
     assert [row.quantity for row in rows] == list(JOBS)
     for row in rows:
         assert row.sizes == (10, 42, 32) and row.elements == 2
-        assert 0 < row.ours[0] <= row.ours[1] and row.calls[0] < row.theirs[0] and 0 < row.corrected < row.ratio
+        assert 0 < row.generated_time[0] <= row.generated_time[1]
+        assert row.calls[0] < row.engine_time[0] and 0 < row.corrected < row.ratio
     section = flexible_section(asdict(row) for row in rows)
     (table,) = (block for block in section.blocks if isinstance(block, Table))
     assert "at equal accuracy" in section.title
