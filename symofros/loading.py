@@ -47,9 +47,9 @@ def load(
     """
     file = Path(path)
     reading = _waived(_read(file, floating_base, snap_tol), waive)
-    found = find_problems(reading.system, reading.broken) if reading.system is not None else []
-    if reading.problems or found or reading.system is None:
-        raise DescriptionError(in_order([*reading.problems, *found]))
+    problems = find_problems(reading.system, reading.broken) if reading.system is not None else []
+    if reading.problems or problems or reading.system is None:
+        raise DescriptionError(in_order([*reading.problems, *problems]))
     return reading.system
 
 
@@ -127,9 +127,12 @@ def _missing(file: Path) -> Problem:
             "a description is an existing file",
             _PATHS,
         )
-    found = f"in its folder: {', '.join(there[:12])}" if there else "no description in its folder"
+    neighbours = f"in its folder: {', '.join(there[:12])}" if there else "no description in its folder"
     return Problem(
-        f"'{file}' does not exist", found, "a description is an existing file", did_you_mean(file.name, there) or _PATHS
+        f"'{file}' does not exist",
+        neighbours,
+        "a description is an existing file",
+        did_you_mean(file.name, there) or _PATHS,
     )
 
 

@@ -47,9 +47,9 @@ def read_bytes(path: Path, limit: int) -> bytes:
     """
     try:
         if not path.is_file():
-            found = "a folder" if path.is_dir() else "no such file"
+            actual = "a folder" if path.is_dir() else "no such file"
             raise DescriptionError(
-                Problem(f"'{path}' can't be read", found, "a description is a file", "check the path")
+                Problem(f"'{path}' can't be read", actual, "a description is a file", "check the path")
             )
         with path.open("rb") as stream:
             data = stream.read(limit + 1)

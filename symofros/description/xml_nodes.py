@@ -61,13 +61,13 @@ def parse_xml(data: bytes, file: str) -> Element:
     try:
         builder.parser.Parse(data, True)
     except expat.ExpatError as error:
-        found = f"{expat.ErrorString(error.code)}, column {error.offset + 1}"
+        syntax_error = f"{expat.ErrorString(error.code)}, column {error.offset + 1}"
         if builder.open:
-            found += f"; <{builder.open[-1].tag:.60}> of line {builder.open[-1].line} is not closed"
+            syntax_error += f"; <{builder.open[-1].tag:.60}> of line {builder.open[-1].line} is not closed"
         raise XmlFault(
             Problem(
                 "the text is not well-formed XML",
-                found,
+                syntax_error,
                 "a robot file is one XML document",
                 "mind unclosed elements and quotes near this line",
                 f"{file}:{error.lineno}",

@@ -59,7 +59,7 @@ def parse(text: str) -> Unit:
     Raises:
         DescriptionError: The text names no unit.
     """
-    found, inverse = _unit(), False
+    product, inverse = _unit(), False
     for part in re.split(r"\s*([/*])\s*|\s+", text.strip()):
         if part in (None, "", "*", "1"):
             continue
@@ -78,8 +78,8 @@ def parse(text: str) -> Unit:
                 )
             )
         power = int(match["power"] or 1)
-        found = found * unit ** (-power if inverse else power)
-    return found
+        product = product * unit ** (-power if inverse else power)
+    return product
 
 
 def agree(first: str, second: str) -> bool:

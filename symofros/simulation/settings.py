@@ -27,11 +27,11 @@ def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
     """
     array = np.asarray(values, dtype=np.float64)
     if array.shape != (size,) or not np.all(np.isfinite(array)):
-        found = str(array.shape) if array.shape != (size,) else "a number that is not finite"
+        fault = str(array.shape) if array.shape != (size,) else "a number that is not finite"
         raise ShapeError(
             Problem(
                 f"model '{model.record.name}': {name} does not fit",
-                found,
+                fault,
                 f"{name} is a finite array of shape ({size},)",
                 "one state a run: see model.nq, model.nv",
             )

@@ -124,9 +124,9 @@ def _check_batch(settings: Settings, options: SimulationOptions) -> None:
         what, rule = f"simulate_batch: '{name}' is no explicit method", f"batches take {explicit}"
         raise SymofrosError(Problem(what, name, rule, "run sf.simulate for each state"))
     if options.realtime or options.every != 1:
-        found = f"realtime = {options.realtime}, every = {options.every}"
+        stated_options = f"realtime = {options.realtime}, every = {options.every}"
         rule = "a batch records at `output`, and is not paced"
-        raise SymofrosError(Problem("simulate_batch: an option of single runs", found, rule, "leave them out"))
+        raise SymofrosError(Problem("simulate_batch: an option of single runs", stated_options, rule, "leave them out"))
 
 
 def _rows(model: Model, name: str, values: ArrayLike, size: int) -> Array:
@@ -147,11 +147,11 @@ def _batch_shape(rows: dict[str, Array], inputs: list[Shape]) -> Shape:
     try:
         return np.broadcast_shapes(*(array.shape[:-1] for array in rows.values()), *inputs)
     except ValueError:
-        found = [f"{name} {array.shape}" for name, array in rows.items()] + [f"inputs {shape}" for shape in inputs]
+        shapes = [f"{name} {array.shape}" for name, array in rows.items()] + [f"inputs {shape}" for shape in inputs]
         raise ShapeError(
             Problem(
                 "simulate_batch: batch dimensions do not broadcast",
-                ", ".join(found),
+                ", ".join(shapes),
                 "all but the last dimension of each array broadcast together",
                 "give each array the same leading dimensions, or none",
             )

@@ -94,8 +94,8 @@ class ConstrainedEngine:
     def _solved(self, states: States) -> tuple[Array, Array]:
         M, rows = self._tree.mass_matrix(states), self._rows(states)
         free = states.applied - self._tree.bias(states)
-        found = [_solve(*state) for state in zip(M, free, rows.G, rows.gamma, strict=True)]
-        return np.array([a for a, _ in found]), np.array([lam for _, lam in found])
+        solutions = [_solve(*state) for state in zip(M, free, rows.G, rows.gamma, strict=True)]
+        return np.array([a for a, _ in solutions]), np.array([lam for _, lam in solutions])
 
     def _rows(self, states: States) -> Rows:
         frames = self._kinematics(states)
@@ -107,14 +107,14 @@ class ConstrainedEngine:
         n, nv = len(states), states.v.shape[1]
         still = np.zeros((n, 3))
         none = np.zeros((n, 3, nv))
-        found = {"": _Kinematics(still, np.tile(np.eye(3), (n, 1, 1)), still, still, still, still, none, none)}
+        kinematics = {"": _Kinematics(still, np.tile(np.eye(3), (n, 1, 1)), still, still, still, still, none, none)}
         if not self._names:
-            return found
+            return kinematics
         pose = self._anchored.frame_pose(states)
         velocity, J = self._anchored.frame_velocity(states), self._anchored.frame_jacobian(states)
         drift = self._anchored.frame_acceleration(replace(states, a=0.0 * states.a))
         for i, name in enumerate(self._names):
-            found[name] = _Kinematics(
+            kinematics[name] = _Kinematics(
                 pose[:, i, :3],
                 pose[:, i, 3:].reshape(n, 3, 3),
                 velocity[:, i, :3],
@@ -124,7 +124,7 @@ class ConstrainedEngine:
                 J[:, i, :3],
                 J[:, i, 3:],
             )
-        return found
+        return kinematics
 
     def _one(self, item: sf.Constraint, frames: dict[str, _Kinematics], states: States) -> tuple[Array, Array, Array]:
         if isinstance(item, sf.Nonholonomic):
@@ -234,7 +234,7 @@ _EPSILON = _skew(np.eye(3))
 
 def _rotation_weights(blocked: tuple[str, ...]) -> list[Array]:
     """Matrices whose inner product with R_AB is a condition."""
-    found = []
+    weights = []
     free = [k for k in range(3) if AXES[k] not in blocked]
     for k in map(AXES.index, blocked):
         E = np.zeros((3, 3))
@@ -247,8 +247,8 @@ def _rotation_weights(blocked: tuple[str, ...]) -> list[Array]:
         else:
             i, j = (k + 1) % 3, (k + 2) % 3
             E[j, i] = 1.0
-        found.append(E)
-    return found
+        weights.append(E)
+    return weights
 
 
 def _rod(length: float, A: _Kinematics, B: _Kinematics) -> tuple[Array, Array, Array]:

@@ -177,19 +177,19 @@ def cases(plan: Plan) -> list[Case]:
     """
     names = [plan.model] if isinstance(plan, SweepPlan) else list(plan.models)
     try:
-        found = named(names, isinstance(plan, CheckPlan) and plan.floating_base)
+        chosen = named(names, isinstance(plan, CheckPlan) and plan.floating_base)
     except (LookupError, OSError) as error:
         rule = "a model is a name of the standard set, or a file below the folder that the command runs in"
         raise PlanError("models", str(error.args[0]), rule, "mend the name") from None
-    for case in found:
+    for case in chosen:
         if case.path is not None and not case.path.is_file():
             rule = "a model's file stays where it is until the campaign is done"
             raise PlanError("models", f"no file {case.path}", rule, "run in the folder that the path starts from")
-    if len({case.label for case in found}) < len(names):
+    if len({case.label for case in chosen}) < len(names):
         raise PlanError(
             "models", ", ".join(names), "each model is named once", "leave out the second, or rename a file"
         )
-    return found
+    return chosen
 
 
 def identities(models: Sequence[Case]) -> dict[str, str]:

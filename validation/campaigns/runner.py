@@ -87,8 +87,8 @@ class Pool:
 
 def _connected(address: str) -> distributed.Client:
     """A client of a scheduler that answers; a port that nobody listens at is told at once."""
-    found = _ADDRESS.match(address)
-    if found is None or int(found[2]) > 65535:
+    match = _ADDRESS.match(address)
+    if match is None or int(match[2]) > 65535:
         raise ClusterError(
             address,
             "no such address",
@@ -96,7 +96,7 @@ def _connected(address: str) -> distributed.Client:
             "give what `dask scheduler` prints when it starts",
         )
     try:
-        socket.create_connection((found[1].strip("[]"), int(found[2])), timeout=ANSWER).close()
+        socket.create_connection((match[1].strip("[]"), int(match[2])), timeout=ANSWER).close()
         return distributed.Client(address, timeout=ANSWER)
     except OSError as error:  # Of a name that is not known, a port that is closed, time that has run out.
         said = str(error).partition("\n")[0] or type(error).__name__

@@ -72,9 +72,9 @@ class Store:
         before = manifest_of(folder)
         for what in ("plan", "models", "versions"):
             if before[what] != manifest[what]:
-                found = f"{what} changed since: {_difference(before[what], manifest[what])}"
+                change = f"{what} changed since: {_difference(before[what], manifest[what])}"
                 rule = "all rows of a campaign come from one plan, the same models and the same versions"
-                raise StoreError(folder, found, rule, "give the changed campaign a new folder, or undo the change")
+                raise StoreError(folder, change, rule, "give the changed campaign a new folder, or undo the change")
         (folder / "parts").mkdir(exist_ok=True)
         return cls(folder, before["hash"])
 
@@ -100,13 +100,13 @@ class Store:
 
     def finished(self) -> set[int]:
         """Numbers of the batches whose parts are whole; what is broken is removed, to be done again."""
-        found = set()
+        parts = set()
         for path in self.parts.glob("*.parquet"):
             if self._sound(path):
-                found.add(int(path.stem))
+                parts.add(int(path.stem))
             else:
                 path.unlink()
-        return found
+        return parts
 
     def part(self, number: int) -> bytes | None:
         """The part of a batch, if it is there and whole."""
@@ -172,9 +172,9 @@ def manifest_of(folder: Path) -> dict[str, Any]:
     except FileNotFoundError:
         raise StoreError(folder, "no plan.json", "`campaign run -o` makes the folder", "name that folder") from None
     except (ValueError, KeyError, TypeError, UnicodeDecodeError) as error:
-        found = f"plan.json: {type(error).__name__}: {error}"
+        fault = f"plan.json: {type(error).__name__}: {error}"
         raise StoreError(
-            folder, found, "plan.json is as `campaign run` wrote it", "begin anew in a new folder"
+            folder, fault, "plan.json is as `campaign run` wrote it", "begin anew in a new folder"
         ) from None
 
 
@@ -185,8 +185,8 @@ def provenance_of(path: Path) -> dict[str, Any]:
         KeyError: It is no file of a campaign.
         OSError: It can't be read.
     """
-    found: dict[str, Any] = json.loads(parquet.read_metadata(path).metadata[KEY])
-    return found
+    provenance: dict[str, Any] = json.loads(parquet.read_metadata(path).metadata[KEY])
+    return provenance
 
 
 def _encoded(rows: pa.Table, facts: dict[str, Any]) -> bytes:

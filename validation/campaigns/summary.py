@@ -41,8 +41,8 @@ def effort(journal: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
 def summarised(rows: pa.Table, provenance: Mapping[str, Any]) -> dict[str, Any]:
     """The verdict and the figures behind it, for JSON."""
     kind = provenance["plan"]["kind"]
-    found = checked(rows) if kind == "check" else swept(rows)
-    return {"kind": kind, **found, "rows": rows.num_rows, **provenance}
+    counts = checked(rows) if kind == "check" else swept(rows)
+    return {"kind": kind, **counts, "rows": rows.num_rows, **provenance}
 
 
 def checked(rows: pa.Table) -> dict[str, Any]:

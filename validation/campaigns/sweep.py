@@ -35,10 +35,10 @@ class Sweeper:
         names = model.names
         for name in plan.over:
             if (name in names.par) == (name in names.u):
-                found = "both a parameter and an input" if name in names.u else "no parameter and no input"
+                kind = "both a parameter and an input" if name in names.u else "no parameter and no input"
                 listed = ", ".join((*names.par, *names.u)) or "there are none"
                 raise sf.UnknownNameError(
-                    f"over.{name}: '{name}' is {found} of '{case.label}'; to choose from: {listed}"
+                    f"over.{name}: '{name}' is {kind} of '{case.label}'; to choose from: {listed}"
                 )
         self.q = placed("start.q", model.neutral(), names.q, plan.start.get("q", {}))
         self.v = placed("start.v", np.zeros(model.nv), names.v, plan.start.get("v", {}))
@@ -78,7 +78,7 @@ class Sweeper:
 
     def _frequencies(self, par: Array, u: Array) -> tuple[Array, list[str]]:
         """Of small motions about the equilibrium near the start [rad/s], the lowest first."""
-        found, outcomes = np.full((len(par), self.plan.modes), np.nan), []
+        frequencies, outcomes = np.full((len(par), self.plan.modes), np.nan), []
         for row, (values, inputs) in enumerate(zip(par, u, strict=True)):
             try:
                 rest = sf.equilibrium(self.model, self.q, self.v, inputs, held=self.plan.held, par=values)
@@ -86,9 +86,9 @@ class Sweeper:
             except sf.EquilibriumError as error:
                 outcomes.append(str(error).partition("\n")[0])
                 continue
-            found[row, : len(lowest)] = lowest
+            frequencies[row, : len(lowest)] = lowest
             outcomes.append(DONE)
-        return found, outcomes
+        return frequencies, outcomes
 
     def _motions(self, par: Array, u: Array) -> tuple[Array, list[str]]:
         """Where the motions end; of one that ends before its time, nothing."""

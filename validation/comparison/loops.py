@@ -37,16 +37,16 @@ def assembled_states(system: sf.System, states: States) -> States:
         states: States to start from; accelerations and inputs stay as they are, forces are computed anew.
     """
     model = sf.compile(system, sf.Options(functions=FUNCTIONS))
-    found, kept = [], []
+    assemblies, kept = [], []
     for i in range(min(len(states), TRIED)):
         try:
-            found.append(sf.assemble(model, states.q[i], states.v[i], u=states.u[i]))
+            assemblies.append(sf.assemble(model, states.q[i], states.v[i], u=states.u[i]))
         except sf.AssemblyError:
             continue
         kept.append(i)
     if not kept:
         return states[:0]
-    q, v = np.array([one.q for one in found]), np.array([one.v for one in found])
+    q, v = np.array([one.q for one in assemblies]), np.array([one.v for one in assemblies])
     sound = _sound(model, q, states.u[kept])
     sound[sound] = _consistent(model, q[sound], v[sound], states.u[kept][sound])
     started = _chosen(states, np.array(kept)[sound])
@@ -74,8 +74,8 @@ def _sound(model: sf.Model, q: Array, u: Array) -> Array:
     M, G = model.mass_matrix(q, u=u), model.constraint_jacobian(q, u=u)
     size = np.sqrt(np.diagonal(M, axis1=1, axis2=2))
     scaled = M / (size[:, :, None] * size[:, None, :])
-    found = of_clear_rank(M, G)
-    for i in np.flatnonzero(found):
+    sound = of_clear_rank(M, G)
+    for i in np.flatnonzero(sound):
         amplified = condition(M[i : i + 1], G[i : i + 1])
-        found[i] = np.linalg.cond(scaled[i]) < WORST_CONDITION_OF_M and amplified < WORST_CONDITION
-    return found
+        sound[i] = np.linalg.cond(scaled[i]) < WORST_CONDITION_OF_M and amplified < WORST_CONDITION
+    return sound

@@ -101,8 +101,8 @@ def _mount(run: sf.DiagramRun) -> Array:
     resolved = run.compiled.resolved
     names = resolved.layout.q_names[resolved.layout.q["plant"].slice]
     places = [names.index(f"plant.{name}") for name in _SPRINGS[:3]]
-    found: Array = run["plant.q"][:, places]
-    return found
+    positions: Array = run["plant.q"][:, places]
+    return positions
 
 
 def _motion(held: sf.DiagramRun, free: sf.DiagramRun) -> Figure:

@@ -33,9 +33,9 @@ GROUND = Moving(Placement.identity(), np.zeros(3), np.zeros(3))
 
 def bodies(assembly: Assembly, q: Array, v: Array) -> list[Moving]:
     """Every moving body at one state, q (nq,) and v (nv,)."""
-    found: list[Moving] = []
+    moving: list[Moving] = []
     for mover in assembly.movers:
-        parent = GROUND if mover.parent == BASE else found[mover.parent]
+        parent = GROUND if mover.parent == BASE else moving[mover.parent]
         P = parent.X @ mover.X_AP
         X = P @ _across(mover, q[mover.q])
         rate = v[mover.v]
@@ -48,8 +48,8 @@ def bodies(assembly: Assembly, q: Array, v: Array) -> list[Moving]:
             turning = X.R @ rate[-3:]
             speed = X.R @ rate[:3] if mover.kind == "free" else speed
         carried = parent.v + np.cross(parent.w, X.p - parent.X.p)
-        found.append(Moving(X, carried + speed, parent.w + turning))
-    return found
+        moving.append(Moving(X, carried + speed, parent.w + turning))
+    return moving
 
 
 def _across(mover: Mover, q: Array) -> Placement:

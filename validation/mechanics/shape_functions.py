@@ -81,13 +81,13 @@ def splines(dropped: int, count: int, L: float) -> tuple[Shape, ...]:
     degree = min(3, count + dropped - 1)
     inner = np.linspace(0.0, 1.0, count + dropped - degree + 1)
     knots = np.concatenate([[0.0] * degree, inner, [1.0] * degree])
-    found = []
+    functions = []
     for i in range(dropped, dropped + count):
         b = scipy.interpolate.BSpline(knots, np.eye(count + dropped)[i], degree)
         # A single function of twist is a straight line, which SciPy differentiates only once.
         curvature = b.derivative(2) if degree > 1 else np.zeros_like
-        found.append(stretched(b, b.derivative(), curvature, L))
-    return tuple(found)
+        functions.append(stretched(b, b.derivative(), curvature, L))
+    return tuple(functions)
 
 
 def spline_breaks(dropped: int, count: int, L: float) -> tuple[float, ...]:

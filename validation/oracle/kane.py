@@ -232,7 +232,7 @@ class _Model:
 
     def loads(self) -> list[tuple[Any, Any]]:
         """(point, force) and (frame, torque) of the loads on bodies."""
-        found = []
+        loads = []
         for body in self.scope.bodies:
             for load in body.loads:
                 B, point = self.frame(body.name, load.at if load.at not in ("body", "center_of_mass") else None)
@@ -240,8 +240,8 @@ class _Model:
                     assert body.inertia is not None
                     point = self.at(self.placed[body.name], self.vector(body.inertia.center_of_mass, B))
                 axes = self.N if load.axes == "world" else B
-                found += [(point, self.vector(load.force, axes)), (B, self.vector(load.torque, axes))]
-        return found
+                loads += [(point, self.vector(load.force, axes)), (B, self.vector(load.torque, axes))]
+        return loads
 
     def _ends(self, connection: sf.Connection) -> tuple[Any, Any, Any]:
         """Both points, and the line between them."""
@@ -250,7 +250,7 @@ class _Model:
 
     def pulls(self) -> list[tuple[Any, Any]]:
         """(point, force) of the connections."""
-        found = []
+        forces = []
         for connection in self.scope.system.connections:
             one, two, d = self._ends(connection)
             k, c, rest = (self.scope.value(x) for x in (connection.stiffness, connection.damping, connection.length))
@@ -259,8 +259,8 @@ class _Model:
             if rest != 0:
                 length = sympy.sqrt(d.dot(d))
                 force = (k * (length - rest) + c * v.dot(d) / length) / length * d
-            found += [(one, force), (two, -force)]
-        return found
+            forces += [(one, force), (two, -force)]
+        return forces
 
     def pull_energy(self) -> Any:
         """Of the connections' springs."""

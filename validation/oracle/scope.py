@@ -95,13 +95,13 @@ class Scope:
     def _carried_by(self, name: str | None) -> list[sf.RigidBody]:
         """Depth first; None for the ground, which the base is, too."""
         bases = {"world"} | {body.name for body in self.system.bodies if body.joint is None}
-        found: list[sf.RigidBody] = []
+        carried: list[sf.RigidBody] = []
         for body in self.system.bodies:
             if body.joint is not None and (body.joint.parent in bases if name is None else body.joint.parent == name):
                 if isinstance(body, sf.Beam):
                     raise NotDerivable(f"beam '{body.name}': the oracle knows rigid bodies")
-                found += [body, *self._carried_by(body.name)]
-        return found
+                carried += [body, *self._carried_by(body.name)]
+        return carried
 
     def _add_coordinates(self, joint: sf.Joint) -> None:
         names, speeds = coordinate_symbols(joint), speed_symbols(joint)

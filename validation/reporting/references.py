@@ -16,13 +16,13 @@ class References:
 
     def data(self, name: str) -> dict[str, Any]:
         """The numbers of one file."""
-        found: dict[str, Any] = self._read(name)["reference"]
-        return found
+        reference: dict[str, Any] = self._read(name)["reference"]
+        return reference
 
     def source(self, name: str) -> str:
         """Where they come from, in words."""
         return str(self._read(name)["source"])
 
     def _read(self, name: str) -> dict[str, Any]:
-        found: dict[str, Any] = json.loads((self.folder / f"{name}.json").read_text())
-        return found
+        document: dict[str, Any] = json.loads((self.folder / f"{name}.json").read_text())
+        return document

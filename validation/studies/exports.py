@@ -90,11 +90,11 @@ def _command(*words: str | Path, cwd: Path) -> str:
 def _latencies(package: Path, name: str, calls: int) -> tuple[Latency, ...]:
     parts = [f"{name}.c", f"{name}_plant.c", "symofros_stepper.c"]
     _command("cc", *_FLAGS, "-I.", f"-DNAME={name}", "-o", "latency", _NATIVE, *parts, "-lm", cwd=package)
-    found = []
+    latencies = []
     for line in _command("./latency", str(calls), cwd=package).splitlines():
         label, median, high, worst, *bins = line.split()
-        found.append(Latency(label, float(median), float(high), float(worst), tuple(map(int, bins))))
-    return tuple(found)
+        latencies.append(Latency(label, float(median), float(high), float(worst), tuple(map(int, bins))))
+    return tuple(latencies)
 
 
 def _python(model: sf.Model) -> dict[str, float | None]:

@@ -156,12 +156,12 @@ def _diagram(folder: Path, data: bytes) -> None:
     path = folder / "hostile.yaml"
     path.write_bytes(data)
     (folder / "arm.yaml").write_text(_ARM)
-    found = sf.load_diagram(path)
-    sf.Simulation(found)
+    diagram = sf.load_diagram(path)
+    sf.Simulation(diagram)
     again = path.with_name("again.yaml")
-    sf.save_diagram(found, again)
+    sf.save_diagram(diagram, again)
     read = sf.load_diagram(again)
-    if (read.wires, read.outlets, read.simulation) != (found.wires, found.outlets, found.simulation):
+    if (read.wires, read.outlets, read.simulation) != (diagram.wires, diagram.outlets, diagram.simulation):
         raise _Changed("accepted, written, read again: another diagram")
 
 

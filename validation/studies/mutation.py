@@ -98,14 +98,14 @@ class _Harness:
     def _results(self) -> dict[str, tuple[Quantity, Array]]:
         """What the engine, and for forces the description's own formulas, say of each function."""
         forces = description.build(self.subject)
-        found = {}
+        results = {}
         for quantity in QUANTITIES.values():
             source = forces if quantity.name in FORCES_STATED else self.engine
             offered = not isinstance(source, Unsupported) and quantity.name in source.capabilities
             if offered and not quantity.at_rest:
                 assert not isinstance(source, Unsupported)
-                found[quantity.name] = (quantity, compute(source, quantity, self.states))
-        return found
+                results[quantity.name] = (quantity, compute(source, quantity, self.states))
+        return results
 
     def _inputs(self, states: States, model: sf.Model) -> dict[str, Array]:
         par = np.array([list(model.parameters.values())]).reshape(1, -1)

@@ -165,14 +165,14 @@ def run(seconds: float, diagram: TimedDiagram, first: bool = False) -> Timed:
     settings = {"dt": diagram.period, "record": diagram.period}
     simulation.run(10.0 * diagram.period, **settings)  # What is loaded at first use is no jitter.
     with coming_first(first):
-        found = simulation.run(seconds, realtime=True, **settings)
-    if not found.outcome.ok:
-        raise sf.SymofrosError(f"{diagram.what}: {found.outcome}")
-    if "plant" in found.compiled.resolved.wired.blocks:
-        error = np.abs(found["plant.q"][-1] - SWING * np.sin(RATE * found.t[-1])).max()
+        result = simulation.run(seconds, realtime=True, **settings)
+    if not result.outcome.ok:
+        raise sf.SymofrosError(f"{diagram.what}: {result.outcome}")
+    if "plant" in result.compiled.resolved.wired.blocks:
+        error = np.abs(result["plant.q"][-1] - SWING * np.sin(RATE * result.t[-1])).max()
         if seconds > 1.0 and not error < 0.02:
             raise sf.SymofrosError(f"{diagram.what}: the robot is {error:.2g} rad off its path")
-    cost = found.cost
+    cost = result.cost
     return Timed(diagram.what, first, diagram.period, jitter_of(cost), cost.late, cost.worked / len(cost.late))
 
 

@@ -339,9 +339,9 @@ def iftomm(repeats: int) -> list[Benchmark]:
             lambda run: abs(float(run["s"][-1]) - rows[1]),
         ),
     ]
-    found = []
+    benchmarks = []
     for name, span, how, measure, threshold, move, judge in cases:
         runs = [done(move()) for _ in range(repeats)]
         seconds = min(run.statistics.seconds for run in runs)
-        found.append(Benchmark(name, span, how, measure, judge(runs[-1]), threshold, seconds))
-    return found
+        benchmarks.append(Benchmark(name, span, how, measure, judge(runs[-1]), threshold, seconds))
+    return benchmarks

@@ -53,11 +53,11 @@ class Folder:
         try:
             return self._bounded(path, MAX_MESH_BYTES)
         except DescriptionError as error:
-            found = error.problems[0].found
+            reason = error.problems[0].found
             self.fault(
                 user,
                 f"{what}: its file can't be read",
-                f"'{file}': {found}",
+                f"'{file}': {reason}",
                 "a mesh that gives a body its inertia lies in the model's folder",
                 "put the file there, or give the body an <inertial>",
             )
@@ -135,9 +135,9 @@ class Folder:
         try:
             root = self._parsed(path, str(path))
         except DescriptionError as error:
-            found = error.problems[0]
+            refusal = error.problems[0]
             self.fault(
-                include, f"'{file}' can't be included", found.found, found.rule or "the file exists", found.remedy
+                include, f"'{file}' can't be included", refusal.found, refusal.rule or "the file exists", refusal.remedy
             )
             return []
         self._expand(root, path.parent, depth)

@@ -243,11 +243,11 @@ class _Importer:
         # With several roots none floats: each stays a base, and that there are several is found by the topology.
         floating = roots[0] if self.floating_base and len(roots) == 1 else None
         if self.floating_base and roots in ([], [WORLD]):
-            found = f"the root link is '{WORLD}', which is the ground" if roots else "each link has a parent"
+            cause = f"the root link is '{WORLD}', which is the ground" if roots else "each link has a parent"
             self.values.fault(
                 self.robot,
                 "no root link that could float",
-                found,
+                cause,
                 "a floating robot has a root link",
                 "drop floating_base",
             )

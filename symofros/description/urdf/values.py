@@ -141,11 +141,11 @@ class Values:
         mass, matrix = element.first("mass"), element.first("inertia")
         for part, tag in ((mass, "mass"), (matrix, "inertia")):
             if part is None:
-                found = ", ".join(f"<{child.tag}>" for child in element.children) or "nothing inside"
+                child_tags = ", ".join(f"<{child.tag}>" for child in element.children) or "nothing inside"
                 self.fault(
                     element,
                     f"{owner}: <inertial> lacks <{tag}>",
-                    found,
+                    child_tags,
                     "<inertial> holds <mass> and <inertia>",
                     "add it, or remove <inertial>",
                 )

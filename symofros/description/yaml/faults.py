@@ -89,11 +89,11 @@ def _missing(path: Path, owner: Any, where: str) -> Problem:
             f"begin with: symofros: {VERSION}",
             where,
         )
-    found = ", ".join(map(_short, owner)) if isinstance(owner, Mapping) and owner else "nothing"
+    stated_keys = ", ".join(map(_short, owner)) if isinstance(owner, Mapping) and owner else "nothing"
     choices = " | ".join(str(choice) for schema in _schemas(path) for choice in _choices(schema))
     return Problem(
         _about(path[:-1], f"entry '{path[-1]}' is missing"),
-        found,
+        stated_keys,
         f"'{path[-1]}' is always given here",
         f"add {path[-1]}: {choices or '…'}",
         where,
@@ -110,10 +110,10 @@ def _not_a_choice(path: Path, value: Any, where: str) -> Problem:
             "update symofros, or convert the file",
             where,
         )
-    found = f"'{_short(value)}'"
+    quoted = f"'{_short(value)}'"
     return Problem(
-        _about(path, f"unknown choice {found}"),
-        found,
+        _about(path, f"unknown choice {quoted}"),
+        quoted,
         f"one of {', '.join(choices)}",
         did_you_mean(str(value), choices),
         where,

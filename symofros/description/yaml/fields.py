@@ -131,8 +131,10 @@ class RotationEntry(PartEntry):
     def _one_form(self) -> Self:
         given = [kind for kind in ROTATIONS if getattr(self, kind) is not None]
         if len(given) != 1:
-            found = ", ".join(given) or "none of them"
-            raise fault(Problem("not exactly one form", found, f"exactly one of {', '.join(ROTATIONS)}", "keep one"))
+            stated_forms = ", ".join(given) or "none of them"
+            raise fault(
+                Problem("not exactly one form", stated_forms, f"exactly one of {', '.join(ROTATIONS)}", "keep one")
+            )
         return self
 
     def build(self) -> Rotation:

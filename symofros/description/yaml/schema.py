@@ -118,9 +118,9 @@ class BodyEntry(Entry):
         if self.beam is not None:
             also = [key for key in ("inertia", "loads") if getattr(self, key)]
             if also or self.joint is None:
-                found = f"also {' and '.join(also)}" if also else "no joint"
+                joint_entries = f"also {' and '.join(also)}" if also else "no joint"
                 rule = "a beam has a joint, its mass in rhoA and its loads under beam"
-                raise fault(Problem("a beam that is not only a beam", found, rule, "kind: fixed clamps a beam"))
+                raise fault(Problem("a beam that is not only a beam", joint_entries, rule, "kind: fixed clamps a beam"))
         return self
 
     def build(self, name: str) -> Body:

@@ -117,9 +117,9 @@ def decoded(data: bytes, file: str) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        found = f"byte 0x{data[error.start]:02x}"
+        bad_byte = f"byte 0x{data[error.start]:02x}"
         raise YamlFault(
-            Problem("the text is not UTF-8", found, "files are in UTF-8", "save the file as UTF-8", f"{file}:{line}")
+            Problem("the text is not UTF-8", bad_byte, "files are in UTF-8", "save the file as UTF-8", f"{file}:{line}")
         ) from None
 
 
@@ -134,11 +134,11 @@ def compose_text(text: str, file: str) -> tuple[Node, list[Problem]]:
         for event in YAML(typ="safe", pure=True).parse(text):
             builder.take(event)
     except MarkedYAMLError as error:
-        found = f"{error.problem or error.context}"
+        syntax_error = f"{error.problem or error.context}"
         # What the end of the file cuts short is mended where it begins.
-        mark = (error.context_mark if "stream" in found else None) or error.problem_mark
+        mark = (error.context_mark if "stream" in syntax_error else None) or error.problem_mark
         line = mark.line + 1 if mark else 1
-        raise YamlFault(_not_yaml(_plainly(found), f"{file}:{line}")) from None
+        raise YamlFault(_not_yaml(_plainly(syntax_error), f"{file}:{line}")) from None
     except (YAMLError, ValueError, OverflowError) as error:  # The scanner lets chr() complain about bad escapes.
         raise YamlFault(_not_yaml(" ".join(str(error).split())[:200], file)) from None
     if builder.root is None:

@@ -126,11 +126,11 @@ class _Reader(Entries):
                 diagram.origin["outlet", one] = self.where(node)
         return diagram
 
-    def model(self, found: Diagram, name: str, node: Node) -> None:
+    def model(self, diagram: Diagram, name: str, node: Node) -> None:
         """A model by its file."""
         what = f"model '{name:.60}'"
         entries = self.mapping(node, what, MODEL)
-        found.origin["model", name] = self.where(node, key=True)
+        diagram.origin["model", name] = self.where(node, key=True)
         if self.missing(node, what, "file", entries, "a model is read from a file"):
             return
         floating = "floating_base" in entries and self.one_of(entries["floating_base"], what, (True, False)) is True
@@ -155,7 +155,7 @@ class _Reader(Entries):
             return
         path, floats = str((self.base / entries["file"].value).resolve()), floating
         try:
-            found.add_model(name, system, start, parameters, functions, ModelFile(path, functions, floats))
+            diagram.add_model(name, system, start, parameters, functions, ModelFile(path, functions, floats))
         except DescriptionError as error:
             self.take(node, error.problems)
 
@@ -177,10 +177,10 @@ class _Reader(Entries):
                 self.take(node, error.problems)
         return self.shared.systems[key]
 
-    def block(self, found: Diagram, name: str, node: Node) -> None:
+    def block(self, diagram: Diagram, name: str, node: Node) -> None:
         """A block of a kind, its fields by the class."""
         what = f"block '{name:.60}'"
-        if len(found.blocks) >= MAX_BLOCKS:
+        if len(diagram.blocks) >= MAX_BLOCKS:
             self.fault(node, "too many blocks", f"more than {MAX_BLOCKS}", f"at most {MAX_BLOCKS}", "split the diagram")
             return
         entries = self.mapping(node, what)
@@ -211,14 +211,14 @@ class _Reader(Entries):
                 "load_diagram(path, network=True), or simulate --network",
             )
         try:
-            found.add(block)
+            diagram.add(block)
         except DescriptionError as error:
             self.take(node, error.problems)
             return
-        found.origin["block", name] = self.where(node, key=True)
+        diagram.origin["block", name] = self.where(node, key=True)
         if "inputs" in entries:
             for port, item in self.mapping(entries["inputs"], f"{what}: inputs").items():
-                self.wire(found, name, port, item)
+                self.wire(diagram, name, port, item)
 
     def made(
         self, what: str, kind: str, owner: type[Block], name: str, node: Node, entries: Mapping[str, Node]
@@ -268,18 +268,18 @@ class _Reader(Entries):
         self.take(node, [problem] if problem else [])
         return str((self.base / value).resolve()) if not problem else value
 
-    def wire(self, found: Diagram, block: str, port: str, node: Node) -> None:
+    def wire(self, diagram: Diagram, block: str, port: str, node: Node) -> None:
         """An input and its source."""
         source = self.text(node, f"input '{block:.60}.{port:.60}'", 1000)
         if not source:
             return
         try:
-            found.connect(source, f"{block}.{port}")
+            diagram.connect(source, f"{block}.{port}")
         except DescriptionError as error:
             self.take(node, error.problems)
-        found.origin.setdefault(("input", block, port), self.where(node))
+        diagram.origin.setdefault(("input", block, port), self.where(node))
 
-    def part(self, found: Diagram, name: str, node: Node) -> None:
+    def part(self, diagram: Diagram, name: str, node: Node) -> None:
         """A diagram inside this one, from a file or inline."""
         what = f"part '{name:.60}'"
         entries = self.mapping(node, what, PART)
@@ -302,7 +302,7 @@ class _Reader(Entries):
         )
         if inner is None:
             return
-        if len(found.blocks) + len(inner.blocks) > MAX_BLOCKS:
+        if len(diagram.blocks) + len(inner.blocks) > MAX_BLOCKS:
             self.fault(node, "too many blocks", f"more than {MAX_BLOCKS}", f"at most {MAX_BLOCKS}", "drop parts")
             return
         for reserved in inputs.keys() & _ARGUMENTS:
@@ -315,13 +315,13 @@ class _Reader(Entries):
             )
             del inputs[reserved]
         try:
-            found.include(name, inner, models, **inputs)
+            diagram.include(name, inner, models, **inputs)
         except DescriptionError as error:
             self.take(node, error.problems)
         for inlet in inputs.keys() & inner.inlets.keys():
             for target in inner.inlets[inlet]:
                 block, _, port = f"{name}/{target}".rpartition(".")
-                found.origin["input", block, port] = self.where(entries["inputs"].value[inlet])
+                diagram.origin["input", block, port] = self.where(entries["inputs"].value[inlet])
 
     def from_file(self, node: Node, what: str) -> Diagram | None:
         """A part's file."""

@@ -14,12 +14,12 @@ from symofros.simulation.stepping.methods import METHODS
 SETTINGS = tuple(item.name for item in fields(RunSettings))
 
 
-def read_settings(entries: Entries, found: Diagram, node: Node) -> RunSettings:
+def read_settings(entries: Entries, diagram: Diagram, node: Node) -> RunSettings:
     """How to run a diagram; the lines of its plots are noted in it."""
     values: dict[str, Any] = {}
     for key, item in entries.mapping(node, "simulation", SETTINGS).items():
         if key == "plots":
-            plots = [_plot(entries, found, i, one) for i, one in enumerate(entries.listed(item, "simulation: plots"))]
+            plots = [_plot(entries, diagram, i, one) for i, one in enumerate(entries.listed(item, "simulation: plots"))]
             values[key] = tuple(plots)
         elif key == "method":
             values[key] = entries.one_of(item, "simulation: method", tuple(METHODS))
@@ -31,9 +31,9 @@ def read_settings(entries: Entries, found: Diagram, node: Node) -> RunSettings:
     return RunSettings(**values)
 
 
-def _plot(entries: Entries, found: Diagram, i: int, node: Node) -> Plot:
+def _plot(entries: Entries, diagram: Diagram, i: int, node: Node) -> Plot:
     """One picture: a signal, a list of them, or these with a title."""
-    found.origin["plot", str(i)] = entries.where(node)
+    diagram.origin["plot", str(i)] = entries.where(node)
     what = f"plot {i + 1}"
     if isinstance(node.value, str):
         return Plot(node.value, (node.value,))

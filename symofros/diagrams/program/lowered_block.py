@@ -223,9 +223,9 @@ def _fit(wired: Wired, piece: Piece) -> None:
         )
 
 
-def _same(name: str, what: str, found: Values, shapes: Mapping[str, object]) -> None:
-    for key in found.keys() | shapes.keys():
-        shape = found[key].shape if key in found else "nothing"
+def _same(name: str, what: str, values: Values, shapes: Mapping[str, object]) -> None:
+    for key in values.keys() | shapes.keys():
+        shape = values[key].shape if key in values else "nothing"
         if key not in shapes or shape != shapes[key]:
             raise DescriptionError(
                 Problem(

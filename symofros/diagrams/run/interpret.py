@@ -71,9 +71,9 @@ class Blocks:
             kernel = unit.kernels[function.name, ""]
             inputs = [self._memory_of(piece, group) for group in function.inputs]
             port = function.name.removeprefix("out_")
-            found = {key: self.out[name, port] if key == "y" else np.zeros(shape) for key, shape in function.returns}
+            returned = {key: self.out[name, port] if key == "y" else np.zeros(shape) for key, shape in function.returns}
             pre = kernel.prepare(np.zeros((1, 0)))
-            self.calls[name, function.name] = kernel.bind(pre, inputs, list(found.values())), found
+            self.calls[name, function.name] = kernel.bind(pre, inputs, list(returned.values())), returned
 
     def _memory_of(self, piece: Piece, group: str) -> Array:
         """The array that an input group of a block is read from, flat."""

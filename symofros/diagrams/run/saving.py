@@ -32,10 +32,10 @@ def save_run(run: Recording, path: Path, signals: Iterable[str]) -> list[Path]:
     if path.suffix == ".npz":
         _save_npz(run, path, wanted)
         return [path]
-    found, units = columns(run, wanted), {"t": "s"}
-    for name in found.keys() - {"t"}:
+    table, units = columns(run, wanted), {"t": "s"}
+    for name in table.keys() - {"t"}:
         units[name] = run.unit(split(name)[0])
-    write_columns(path, found, "run", units)
+    write_columns(path, table, "run", units)
     files = [path]
     for block, arrays in run.kept.items():
         if "t" not in arrays:

@@ -23,12 +23,12 @@ _BASES: dict[str, dict[str, str]] = {
 }
 
 
-def description_xml(material: Material, found: Sequence[Variable], version: int, token: str, created: str) -> str:
+def description_xml(material: Material, variables: Sequence[Variable], version: int, token: str, created: str) -> str:
     """The text of modelDescription.xml.
 
     Args:
         material: The model.
-        found: Variables of the model.
+        variables: Variables of the model.
         version: 2 or 3.
         token: GUID, or instantiation token.
         created: Date and time, ISO.
@@ -46,7 +46,7 @@ def description_xml(material: Material, found: Sequence[Variable], version: int,
         head["numberOfEventIndicators"] = "0"
     root = Tree.Element("fmiModelDescription", head)
     _interfaces(root, material, version)
-    _units(root, found)
+    _units(root, variables)
     categories = Tree.SubElement(root, "LogCategories")
     for name in ("logStatusError", "logStatusDiscard"):
         Tree.SubElement(categories, "Category", {"name": name})
@@ -54,9 +54,9 @@ def description_xml(material: Material, found: Sequence[Variable], version: int,
         root, "DefaultExperiment", {"startTime": "0", "stopTime": "1", "stepSize": repr(_communication(material))}
     )
     into = Tree.SubElement(root, "ModelVariables")
-    for variable in found:
+    for variable in variables:
         (_variable2 if version == 2 else _variable3)(into, variable)
-    (_structure2 if version == 2 else _structure3)(root, found)
+    (_structure2 if version == 2 else _structure3)(root, variables)
     Tree.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + Tree.tostring(root, encoding="unicode") + "\n"
 
@@ -84,9 +84,9 @@ def _interfaces(root: Tree.Element, material: Material, version: int) -> None:
             Tree.SubElement(Tree.SubElement(entry, "SourceFiles"), "File", {"name": f"{material.c_name}_fmi2.c"})
 
 
-def _units(root: Tree.Element, found: Sequence[Variable]) -> None:
+def _units(root: Tree.Element, variables: Sequence[Variable]) -> None:
     into = Tree.SubElement(root, "UnitDefinitions")
-    for unit in sorted({variable.unit for variable in found if variable.unit}):
+    for unit in sorted({variable.unit for variable in variables if variable.unit}):
         entry = Tree.SubElement(into, "Unit", {"name": unit})
         if unit in _BASES:
             Tree.SubElement(entry, "BaseUnit", _BASES[unit])
@@ -129,14 +129,14 @@ def _variable3(into: Tree.Element, variable: Variable) -> None:
     Tree.SubElement(into, "Float64", _common(variable) | typed)
 
 
-def _groups(found: Sequence[Variable]) -> list[tuple[str, str, list[Variable]]]:
+def _groups(variables: Sequence[Variable]) -> list[tuple[str, str, list[Variable]]]:
     """(element of FMI 2, element of FMI 3, variables)."""
-    derivatives = [variable for variable in found if variable.derivative is not None]
+    derivatives = [variable for variable in variables if variable.derivative is not None]
     states = {variable.derivative for variable in derivatives}
-    outputs = [variable for variable in found if variable.causality == "output"]
+    outputs = [variable for variable in variables if variable.causality == "output"]
     unknown = [
         variable
-        for variable in found
+        for variable in variables
         if variable.initial in ("approx", "calculated")
         and (variable.causality == "output" or variable.derivative is not None or variable.reference in states)
     ]
@@ -147,9 +147,9 @@ def _groups(found: Sequence[Variable]) -> list[tuple[str, str, list[Variable]]]:
     ]
 
 
-def _structure2(root: Tree.Element, found: Sequence[Variable]) -> None:
+def _structure2(root: Tree.Element, variables: Sequence[Variable]) -> None:
     structure = Tree.SubElement(root, "ModelStructure")
-    for element, _, members in _groups(found):
+    for element, _, members in _groups(variables):
         if not members:
             continue
         into = Tree.SubElement(structure, element)
@@ -160,9 +160,9 @@ def _structure2(root: Tree.Element, found: Sequence[Variable]) -> None:
             Tree.SubElement(into, "Unknown", {"index": str(variable.reference + 1), **stated})
 
 
-def _structure3(root: Tree.Element, found: Sequence[Variable]) -> None:
+def _structure3(root: Tree.Element, variables: Sequence[Variable]) -> None:
     structure = Tree.SubElement(root, "ModelStructure")
-    for _, element, members in _groups(found):
+    for _, element, members in _groups(variables):
         for variable in members:
             depends = None if element == "InitialUnknown" else variable.depends
             stated = {} if depends is None else {"dependencies": " ".join(map(str, depends))}

@@ -156,16 +156,16 @@ def _variables(material: Material) -> Iterator[Variable]:
         reference += 3
 
 
-def _distinct(found: list[Variable]) -> list[Variable]:
+def _distinct(variables: list[Variable]) -> list[Variable]:
     """Names that replaced characters made equal get a number."""
     seen: dict[str, int] = {}
-    for i, variable in enumerate(found):
+    for i, variable in enumerate(variables):
         count = seen.get(variable.name, 0)
         seen[variable.name] = count + 1
         if count:
             head, _, tail = variable.name.rpartition("'")
-            found[i] = Variable(**{**variable.__dict__, "name": f"{head} {count}'{tail}"})
-    return found
+            variables[i] = Variable(**{**variable.__dict__, "name": f"{head} {count}'{tail}"})
+    return variables
 
 
 def _units(material: Material) -> dict[str, str]:

@@ -21,12 +21,12 @@ def operations(function: Any) -> Mapping[str, int]:
         ca.OP_SIN: "call",
         ca.OP_COS: "call",
     }
-    found = dict.fromkeys(("mul", "add", "div", "call"), 0)
+    counts = dict.fromkeys(("mul", "add", "div", "call"), 0)
     for k in range(function.n_instructions()):
         kind = kinds.get(function.instruction_id(k))
         if kind is not None:
-            found[kind] += 1
-    return found
+            counts[kind] += 1
+    return counts
 
 
 def c_text(function: Any) -> str:

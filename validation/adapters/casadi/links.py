@@ -104,14 +104,14 @@ def _link(mover: Mover, q_all: Any, armature: float) -> Link:
 
 def in_world(links: Sequence[Link]) -> list[Link]:
     """The same bodies along world axes, so that wrenches pass from body to body without a rotation."""
-    found: list[Link] = []
+    aligned: list[Link] = []
     rotations: list[Matrix] = []
     for link in links:
         R_A = rotations[link.parent] if link.parent != BASE else UNIT
         R = product(R_A, link.R)
         rotations.append(R)
         axis = None if link.axis is None else times(R, link.axis)
-        found.append(
+        aligned.append(
             replace(
                 link,
                 R=UNIT,
@@ -122,7 +122,7 @@ def in_world(links: Sequence[Link]) -> list[Link]:
                 axes=transposed(R),
             )
         )
-    return found
+    return aligned
 
 
 def shifted(link: Link, n: Vector, f: Vector) -> Motion:

@@ -96,9 +96,9 @@ class CasadiTree:
 
     def _motions(self, rates: Any | None) -> list[tuple[Vector, Vector, Vector]]:
         """Of each body: w, its rate, and the acceleration of its origin less gravity, in body axes."""
-        found: list[tuple[Vector, Vector, Vector]] = []
+        motions: list[tuple[Vector, Vector, Vector]] = []
         for link in self.links:
-            w_A, turning_A, a_A = found[link.parent] if link.parent != BASE else (ZERO, ZERO, self._up)
+            w_A, turning_A, a_A = motions[link.parent] if link.parent != BASE else (ZERO, ZERO, self._up)
             w_in = times(transposed(link.R), w_A)
             turning, a = self._carried(link, w_A, turning_A, a_A)
             w_J, v_J = self._joint(link, self.v)
@@ -109,8 +109,8 @@ class CasadiTree:
             if rates is not None:
                 more = self._joint(link, rates)
                 turning, a = add(turning, more[0]), add(a, more[1])
-            found.append((w, turning, a))
-        return found
+            motions.append((w, turning, a))
+        return motions
 
     def _newton_euler(self, rates: Any | None) -> Vector:
         forces = []
@@ -191,16 +191,16 @@ class CasadiTree:
 
     def _velocity_terms(self) -> list[tuple[Link, Vector, Motion]]:
         """Of each body: w, and what accelerates it without its joint and its parent's acceleration."""
-        found: list[tuple[Link, Vector, Motion]] = []
+        terms: list[tuple[Link, Vector, Motion]] = []
         for link in self.links:
-            w_A = found[link.parent][1] if link.parent != BASE else ZERO
+            w_A = terms[link.parent][1] if link.parent != BASE else ZERO
             w_in = times(transposed(link.R), w_A)
             w_J, v_J = self._joint(link, self.v)
             w = add(w_in, w_J)
             _, a = self._carried(link, w_A, ZERO, ZERO)
             a = add(a, cross(add(w_in, w_in) if link.axis is not None else add(w_in, w), v_J))
-            found.append((link, w, (cross(w_in, w_J), a)))
-        return found
+            terms.append((link, w, (cross(w_in, w_J), a)))
+        return terms
 
     @staticmethod
     def _bias(link: Link, w: Vector, terms: Motion) -> tuple[Motion, Motion]:
@@ -275,8 +275,8 @@ class CasadiTree:
             "inverse_dynamics_derivatives": lambda: [ca.vec(slope.T) for slope in self._inverse_slopes(self.a)],
             "forward_dynamics_derivatives": self._forward_slopes,
         }
-        found = ca.cse([ca.densify(result) for result in results[name]()])
-        return ca.Function(name, [self.q, self.v, self.a, self.tau], found)
+        outputs = ca.cse([ca.densify(result) for result in results[name]()])
+        return ca.Function(name, [self.q, self.v, self.a, self.tau], outputs)
 
     def _inverse_slopes(self, rates: Any) -> list[Any]:
         tau = ca.vertcat(*self._newton_euler(self.a))

@@ -99,9 +99,9 @@ class JointedEngine:
             drift += (
                 weight / h * (self.system.jacobian(x + k * h * rate) - self.system.jacobian(x - k * h * rate)) @ rate
             )
-        found = _index_one(M, f, C, -drift)
+        solution = _index_one(M, f, C, -drift)
         # R' = [w]x R, and the Euler parameters' own second rate |w|^2/4 turns nothing.
-        acceleration = (T @ found).reshape(-1, 6)
+        acceleration = (T @ solution).reshape(-1, 6)
         return _Solved(moving, acceleration[:, :3], acceleration[:, 3:])
 
 

@@ -138,13 +138,13 @@ class Translation:
 
     def _rotors(self, mover: Mover) -> list[Rotor]:
         armature = self.number(mover.joint.armature)
-        found = [Rotor(armature, 1.0, k, WORLD, (0, 0, 1)) for k in range(mover.part.speeds) if armature]
+        rotors = [Rotor(armature, 1.0, k, WORLD, (0, 0, 1)) for k in range(mover.part.speeds) if armature]
         for rotor in mover.joint.rotors:
             k = rotor.coordinate - mover.part.first
             if 0 <= k < mover.part.speeds:
                 carrier, axis = self._bearing(mover, rotor)
-                found.append(Rotor(self.number(rotor.inertia), self.number(rotor.ratio), k, carrier, axis))
-        return found
+                rotors.append(Rotor(self.number(rotor.inertia), self.number(rotor.ratio), k, carrier, axis))
+        return rotors
 
     def _bearing(self, mover: Mover, rotor: sf.Rotor) -> tuple[int, list[float]]:
         if rotor.axis is None:
@@ -193,15 +193,15 @@ class Translation:
         bending = direction != "twist"
         if beam.family != "user":
             return families.of_family(beam.family, count, L, bending)
-        found, breaks = [], set()
+        shapes, breaks = [], set()
         for stated in beam.user_shapes(direction):
             if isinstance(stated, sf.Samples):
-                found.append(families.through(stated.xi, stated.values, L, bending))
+                shapes.append(families.through(stated.xi, stated.values, L, bending))
                 breaks |= {L * xi for xi in stated.xi}
             else:
-                found.append(self._formula(stated, L))
+                shapes.append(self._formula(stated, L))
                 breaks |= {L * k / 8 for k in range(1, 8)}
-        return tuple(found), tuple(breaks)
+        return tuple(shapes), tuple(breaks)
 
     def _formula(self, stated: sf.Expression | float, L: float) -> Shape:
         """A function of xi, differentiated by CasADi."""

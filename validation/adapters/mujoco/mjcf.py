@@ -70,7 +70,7 @@ def build(subject: Subject) -> MjcfEngine | Unsupported:
     chart = _chart(model, assembly)
     if isinstance(chart, Unsupported):
         return chart
-    frames = tuple(found for name in subject.frames if (found := _frame(model, name)) is not None)
+    frames = tuple(frame for name in subject.frames if (frame := _frame(model, name)) is not None)
     capabilities = MJCF_ROUTE if len(frames) == len(subject.frames) else MJCF_ROUTE - FRAME_QUANTITIES
     return MjcfEngine(NAME, model, chart, capabilities=capabilities, frames=frames)
 

@@ -85,8 +85,8 @@ class LoopEngine:
 
     def constraint_force(self, states: States) -> Array:
         """J^T of its forces, with its own Jacobian; of both, the signs are opposite to ours."""
-        found = self._each(states, lambda solved: solved.jacobian.T @ solved.forces)
-        return self.tree.chart.our_forces(states.q, found)
+        forces = self._each(states, lambda solved: solved.jacobian.T @ solved.forces)
+        return self.tree.chart.our_forces(states.q, forces)
 
     def closure_gap(self, states: States) -> Array:
         """The largest distance between points that are to coincide, and angle between axes that are to be parallel."""
@@ -100,10 +100,10 @@ class LoopEngine:
         """Of v' by q, v and the forces (N, nv, nv), on the constraints."""
 
         def result(solved: _Solved) -> Any:
-            found = pin.computeConstraintDynamicsDerivatives(
+            derivatives = pin.computeConstraintDynamicsDerivatives(
                 self.tree.model, solved.data, solved.models, solved.datas, solved.settings
             )
-            return [np.array(part) for part in found[:3]]
+            return [np.array(part) for part in derivatives[:3]]
 
         parts = self._each(states, result)
         return parts[:, 0], parts[:, 1], parts[:, 2]

@@ -32,7 +32,7 @@ class Held:
 
     def rk4(self, h: float, q0: Array, times: int, between: int) -> tuple[Array, float]:
         """The classical Runge-Kutta method from rest: positions (times + 1, nq), seconds of the processor."""
-        y, found = np.concatenate([q0, np.zeros_like(q0)]), [q0]
+        y, configurations = np.concatenate([q0, np.zeros_like(q0)]), [q0]
         began = time.thread_time()
         for _ in range(times):
             for _ in range(between):
@@ -40,8 +40,8 @@ class Held:
                 k2 = self.rate(0.0, y + h / 2 * k1)
                 k3 = self.rate(0.0, y + h / 2 * k2)
                 y = y + h / 6 * (k1 + 2 * k2 + 2 * k3 + self.rate(0.0, y + h * k3))
-            found.append(y[: len(q0)])
-        return np.array(found), time.thread_time() - began
+            configurations.append(y[: len(q0)])
+        return np.array(configurations), time.thread_time() - began
 
     def motion(self, rtol: float, q0: Array, end: float) -> Callable[[Array], Array]:
         """SciPy's DOP853 from rest to an end, as times (n) -> positions (n, nq)."""

@@ -30,11 +30,11 @@ def chosen_block(name: str, blocks: Mapping[str, Block], block: str = "") -> str
     remedy = "name one of them" if moving else "add forward dynamics"
     rule = f"blocks that move one: {', '.join(moving) or 'none'}"
     if block:
-        what, found = f"view of diagram '{name}': no mechanism '{block}'", f"'{block}'"
+        what, actual = f"view of diagram '{name}': no mechanism '{block}'", f"'{block}'"
         remedy = did_you_mean(block, moving) or remedy
     else:
-        what, found = f"view of diagram '{name}': which mechanism?", f"{len(moving)} mechanisms"
-    raise UnknownNameError(Problem(what, found, rule, remedy))
+        what, actual = f"view of diagram '{name}': which mechanism?", f"{len(moving)} mechanisms"
+    raise UnknownNameError(Problem(what, actual, rule, remedy))
 
 
 def shown_of(run: DiagramRun, block: str = "") -> tuple[System, States]:
