@@ -9,8 +9,8 @@ Post-condition: packs are valid, as before; functions share no node that they co
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from symofros.expr.edges import ONE, ZERO, Edge
@@ -47,15 +47,20 @@ def chain_sums(program: Program) -> Program:
     # Precomputed values are kept without the sign that their node has got.
     init = tuple(abs(mapped_edge(new, edge)) for edge in program.init)
     pre = {abs(new[node]): slot for node, slot in program.pre.items()}
-    common, lane_sums, functions = len(graph), frozenset(_sums_of_lanes(old)), []
+    common, lane_sums, packs_of, functions = len(graph), frozenset(_sums_of_lanes(old)), _packs_by_lane(old), []
     for function in program.functions:
         graph.stop_sharing_from(common)
-        functions.append(_with_chains(program, function, lane_sums, graph, dict(new)))
+        functions.append(_with_chains(program, function, lane_sums, packs_of, graph, dict(new)))
     return replace(program, graph=graph, functions=tuple(functions), init=init, pre=pre)
 
 
 def _with_chains(
-    program: Program, function: Function, lane_sums: frozenset[int], graph: Graph, new: dict[int, Edge]
+    program: Program,
+    function: Function,
+    lane_sums: frozenset[int],
+    packs_of: Mapping[int, Sequence[int]],
+    graph: Graph,
+    new: dict[int, Edge],
 ) -> Function:
     """One function, formed in another graph.
 
@@ -63,6 +68,7 @@ def _with_chains(
         program: Program of the function.
         function: Function to be formed.
         lane_sums: Sums of the program that stay.
+        packs_of: Indices of the packs that have a node as a lane, keyed by node.
         graph: The other graph.
         new: Edges there of numbers, inputs and precomputed values; receives those of all nodes.
     """
@@ -78,7 +84,9 @@ def _with_chains(
             new[node] = graph.apply(old.op[node], *(mapped_edge(new, arg) for arg in old.args[node]))
         if node in old.label:
             graph.name(new[node], old.label[node])
-    carry_packs(old.packs, graph, new, sizes)
+    # A program of many functions has many packs: only those that the function computes two lanes of are looked at.
+    lanes = Counter(index for node in sizes for index in packs_of.get(node, ()))
+    carry_packs((old.packs[index] for index in sorted(lanes) if lanes[index] > 1), graph, new, sizes)
 
     def rewritten(part: Function) -> Function:
         outputs = tuple(replace(o, edges=tuple(mapped_edge(new, edge) for edge in o.edges)) for o in part.outputs)
@@ -86,6 +94,15 @@ def _with_chains(
         return replace(part, outputs=outputs, solver=solver)
 
     return rewritten(function)
+
+
+def _packs_by_lane(graph: Graph) -> dict[int, list[int]]:
+    """Indices of the packs that have a node as a lane, keyed by node; an index appears once a lane."""
+    packs_of: dict[int, list[int]] = defaultdict(list)
+    for index, pack in enumerate(graph.packs):
+        for edge in pack.lanes:
+            packs_of[abs(edge)].append(index)
+    return packs_of
 
 
 class _Sums:
