@@ -18,7 +18,7 @@ from symofros.description.yaml.files import read_yaml, write_yaml
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.mechanics.topology.graph import find_problems
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.physics import inertia_problems
+from symofros.mechanics.topology.physics import inertia_fault
 
 _PATHS = "check the path; a relative one starts at the current folder"
 _READABLE = (*files.SUFFIXES, ".urdf", ".xml")
@@ -145,9 +145,10 @@ def _accept_inertias(reading: Reading) -> Reading:
     if system is None:
         return reading
     numbers = Numbers(system)
-    odd = [b.name for b in system.bodies if any(inertia_problems(replace(system, bodies=(b,)), numbers))]
+    odd = {body.name for body in system.bodies if inertia_fault(body, numbers)}
     if not odd:
         return reading
     waived = [replace(b, waive=(*b.waive, "nonphysical_inertia")) if b.name in odd else b for b in system.bodies]
-    remark = note("non-physical inertias accepted as the file states them", "link", odd)
+    names = [body.name for body in system.bodies if body.name in odd]
+    remark = note("non-physical inertias accepted as the file states them", "link", names)
     return replace(reading, system=replace(system, bodies=tuple(waived), notes=(*system.notes, remark)))

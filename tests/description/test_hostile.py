@@ -86,6 +86,11 @@ CASES: dict[str, tuple[str, Callable[[], str], str]] = {
     "merge keys": ("yaml", lambda: "symofros: 1\nsystem: {<<: {name: a}}\n", "merge keys are refused"),
     "tag": ("yaml", lambda: "symofros: !!python/object/apply:os.system ['touch ran']", "tags are refused"),
     "bodies without number": ("yaml", lambda: bodies(*(f"  b{i}:\n" for i in range(10_001))), "at most 10000"),
+    "parameters without number": (
+        "yaml",
+        lambda: "symofros: 1\nparameters:\n" + "".join(f"  p{i}: 1\n" for i in range(220_000)),
+        "too many values",
+    ),
     "faults without number": (
         "yaml",
         lambda: bodies(*(body(f"b{i}", f"c{i}") for i in range(2500))),
@@ -213,6 +218,26 @@ def test_links_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(urdf, "MAX_LINKS", 3)
     (tmp_path / "a.urdf").write_text('<robot name="r">' + "".join(map(link, "abcd")) + "</robot>")
     assert "4 links" in faults(tmp_path / "a.urdf")
+
+
+def test_a_long_chain_of_links_is_read_in_linear_time(tmp_path: Path) -> None:
+    """Systems, each with a copy of all lines, are made a few times, not once a link."""
+    made = []
+    initialize = sf.System.__post_init__
+
+    def counted(system: sf.System) -> None:
+        made.append(len(system.origin))
+        initialize(system)
+
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="9" ixy="0" ixz="0" iyz="0"/></inertial>'
+    links = "".join(f'<link name="l{i}">{inertial}</link>' for i in range(50))
+    joints = "".join(joint(f"j{i}", f"l{i - 1}", f"l{i}").replace("fixed", "continuous") for i in range(1, 50))
+    (tmp_path / "a.urdf").write_text(f'<robot name="r">{links}{joints}</robot>')
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sf.System, "__post_init__", counted)
+        system = sf.load(tmp_path / "a.urdf")
+    assert len(made) < 10
+    assert all(body.waive == ("nonphysical_inertia",) for body in system.bodies[1:])
 
 
 def test_a_long_chain_is_checked_in_linear_time() -> None:

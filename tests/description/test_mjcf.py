@@ -275,6 +275,11 @@ def test_an_include_that_is_missing(tmp_path: Path) -> None:
         (world('<attach model="m"/>'), ["<attach> can't be read"]),
         (world('<body><plugin plugin="x"/></body>'), ["<plugin> can't be read"]),
         (world('<replicate count="1000000"><body/></replicate>'), ["too many elements"]),
+        (world('<replicate count="10001"/>'), ["too many elements: 10001"]),
+        (world('<replicate count="99999999"></replicate>'), ["too many elements: 99999999"]),
+        (world('<replicate count="200"><replicate count="200"/></replicate>'), ["too many elements: 40199"]),
+        (world('<replicate count="4000"><body><joint/><geom/></body></replicate>'), ["too many elements: 11997"]),
+        (world("<body/>" * 30_000), ["the model is too large", "at most 30000"]),
         (world('<replicate count="-1"><body/></replicate>'), ["bad 'count'"]),
     ],
 )

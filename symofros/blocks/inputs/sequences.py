@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.npz import TooLargeError, read_npz
 from symofros.blocks.checks import choice, increasing, known_name, numbers, refuse
 from symofros.diagrams.block import Block, Environment, Port, Ports
 from symofros.errors import DescriptionError, Problem
@@ -136,11 +136,13 @@ def _read(block: str, path: Path) -> dict[str, Any]:
         DescriptionError: It is missing, too large, or not what its ending says.
     """
     try:
-        size = path.stat().st_size
+        size, is_file = path.stat().st_size, path.is_file()
     except OSError as error:
         raise refuse(
             block, f"file '{path}'", error.strerror or "unreadable", "an existing file", "mend the path"
         ) from None
+    if not is_file:  # A pipe would be waited for.
+        raise refuse(block, f"file '{path}'", "a folder, a pipe or the like", "samples are in a file", "mend the path")
     if size > MOST_BYTES:
         raise refuse(block, f"file '{path}' is too large", f"{size} bytes", f"at most {MOST_BYTES}", "thin it out")
     readers = {".csv": _read_csv, ".npz": _read_npz}
@@ -148,31 +150,22 @@ def _read(block: str, path: Path) -> dict[str, Any]:
         raise refuse(
             block, f"file '{path}' of unknown kind", repr(path.suffix), "names end in .csv or .npz", "convert it"
         )
-    return readers[path.suffix.lower()](block, path)
+    try:
+        return readers[path.suffix.lower()](block, path)
+    except csv.Error as error:
+        what, rule = f"file '{path}' is no CSV file", "lines of numbers between commas"
+        raise refuse(block, what, error, rule, "write it anew") from None
 
 
 def _read_npz(block: str, path: Path) -> dict[str, Any]:
     try:
-        with zipfile.ZipFile(path) as archive:
-            unpacked = sum(item.file_size for item in archive.infolist())
-        if unpacked > 8 * MOST_NUMBERS:
-            raise refuse(
-                block,
-                f"file '{path}' is too large",
-                f"{unpacked} bytes unpacked",
-                f"at most {MOST_NUMBERS} numbers",
-                "thin it out",
-            )
-        with np.load(path, allow_pickle=False) as stored:
-            return {name: stored[name] for name in stored.files}
-    except (OSError, ValueError, zipfile.BadZipFile) as error:
-        raise refuse(
-            block,
-            f"file '{path}' is no NPZ file",
-            error,
-            "arrays of numbers, as numpy.savez writes them",
-            "write it anew",
-        ) from None
+        return dict(read_npz(path, MOST_NUMBERS))
+    except TooLargeError as error:
+        what, rule = f"file '{path}' is too large", f"at most {MOST_NUMBERS} numbers in all its arrays"
+        raise refuse(block, what, error, rule, "thin it out") from None
+    except (OSError, ValueError) as error:
+        what, rule = f"file '{path}' is no NPZ file", "arrays of numbers, as numpy.savez writes them"
+        raise refuse(block, what, error, rule, "write it anew") from None
 
 
 def _read_csv(block: str, path: Path) -> dict[str, Any]:

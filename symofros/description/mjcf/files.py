@@ -10,7 +10,8 @@ from symofros.errors import DescriptionError, Problem
 
 MAX_BYTES = 16 << 20
 MAX_MESH_BYTES = 256 << 20
-MAX_ELEMENTS = 100_000
+# Ten thousand bodies with a joint and a shape each; MuJoCo's time grows with the square.
+MAX_ELEMENTS = 30_000
 
 
 class Folder:
@@ -70,7 +71,7 @@ class Folder:
     def _parsed(self, path: Path, shown: str) -> Element:
         self._read.add(path)
         root = parse_xml(self._bounded(path, MAX_BYTES), shown)
-        self._elements += _size(root)
+        self._elements += size(root)
         if self._elements > MAX_ELEMENTS:
             problem = Problem(
                 "the model is too large", f"{self._elements} elements", f"at most {MAX_ELEMENTS}", "split it", shown
@@ -161,5 +162,6 @@ class Folder:
         return None
 
 
-def _size(element: Element) -> int:
-    return 1 + sum(map(_size, element.children))
+def size(element: Element) -> int:
+    """How many elements an element is, itself counted."""
+    return 1 + sum(map(size, element.children))

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from symofros.description.mjcf.files import MAX_ELEMENTS, Folder
+from symofros.description.mjcf.files import Folder, size
 from symofros.description.remarks import Remarks
 from symofros.description.xml_nodes import Element
 from symofros.errors import did_you_mean
+
+# MuJoCo's time for copies grows with the square of their number: seconds for as many.
+MAX_COPIES = 10_000
 
 _KEPT_SECTIONS = frozenset({"compiler", "option", "default", "asset", "worldbody"})
 _IGNORED_SECTIONS = frozenset(
@@ -76,12 +79,13 @@ class Sections:
             if (name := actuator.attributes.get("joint") or actuator.attributes.get("jointinparent"))
         )
         result = self._kept(root)
-        if self._expanded(result) > MAX_ELEMENTS:
+        copies = self._expanded(result) - size(result)
+        if copies > MAX_COPIES:
             self.folder.fault(
                 result,
                 "the model is too large",
-                "<replicate> makes too many elements",
-                f"at most {MAX_ELEMENTS}",
+                f"<replicate> makes too many elements: {copies}, empty copies counted",
+                f"at most {MAX_COPIES}",
                 "replicate fewer",
             )
         return result
@@ -124,15 +128,17 @@ class Sections:
             self.remarks.add(f"<{element.tag}> ignored", "element", name)
 
     def _expanded(self, element: Element) -> int:
-        """How many elements MuJoCo makes of one."""
+        """How many elements MuJoCo makes of one; it takes time for copies of nothing, too."""
         inside = sum(map(self._expanded, element.children))
         if element.tag != "replicate":
             return 1 + inside
         count = element.attributes.get("count", "1").strip()
         if not (count.isascii() and count.isdigit() and len(count) <= 9):
-            self.folder.fault(element, "<replicate> has a bad 'count'", f"'{count:.60}'", "a whole number")
+            self.folder.fault(
+                element, "<replicate> has a bad 'count'", f"'{count:.60}'", "a whole number", 'write count="10"'
+            )
             return 1
-        return 1 + int(count) * inside
+        return 1 + int(count) * max(1, inside)
 
 
 def _listed(tags: frozenset[str] | dict[str, str]) -> str:

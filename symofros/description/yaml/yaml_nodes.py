@@ -27,8 +27,8 @@ from ruamel.yaml.events import (
 from symofros.errors import MAX_PROBLEMS, Problem, SymofrosError
 
 MAX_DEPTH = 50
-# Ten thousand bodies of thirty values each have fewer.
-MAX_NODES = 500_000
+# Two thousand bodies of twenty-five values each have no more. The scanner is written in Python: seconds for as many.
+MAX_NODES = 50_000
 
 _WORDS: dict[str, bool | None] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL")),

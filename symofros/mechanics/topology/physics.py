@@ -19,9 +19,7 @@ PHYSICAL_TOLERANCE = 1e-6
 def inertia_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
     """Bodies whose inertia no distribution of mass can have, unless they waive the check."""
     for body in system.bodies:
-        if isinstance(body, Beam) or body.inertia is None or "nonphysical_inertia" in body.waive:
-            continue
-        fault = _fault(body, numbers)
+        fault = inertia_fault(body, numbers)
         if fault:
             yield Problem(
                 f"body '{body.name}': non-physical inertia",
@@ -32,8 +30,10 @@ def inertia_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
             )
 
 
-def _fault(body: RigidBody, numbers: Numbers) -> str:
-    assert body.inertia is not None
+def inertia_fault(body: Body, numbers: Numbers) -> str:
+    """What no distribution of mass can have of a body's inertia; "" for none, and where the check is waived."""
+    if isinstance(body, Beam) or body.inertia is None or "nonphysical_inertia" in body.waive:
+        return ""
     mass = numbers.value(body.inertia.mass)
     if mass < 0.0:
         return f"mass {mass:g}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -77,19 +76,26 @@ def test_large_and_foreign_files_are_not_read(tmp_path: Path, csv: Path, monkeyp
         return str(caught.value)
 
     assert "No such file" in refused(tmp_path / "none.csv")
-    assert "names end in .csv or .npz" in refused(tmp_path)
+    assert "samples are in a file" in refused(tmp_path)
+    (tmp_path / "moves.txt").touch()
+    assert "names end in .csv or .npz" in refused(tmp_path / "moves.txt")
     # A pickle inside an archive of arrays would run code.
     np.savez(tmp_path / "objects.npz", t=np.array([{}, {}], dtype=object))
     assert "no NPZ file" in refused(tmp_path / "objects.npz")
     (tmp_path / "text.npz").write_text("not an archive")
     assert "no NPZ file" in refused(tmp_path / "text.npz")
-    with zipfile.ZipFile(tmp_path / "bomb.npz", "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("t.npy", bytes(5_000_000))
     monkeypatch.setattr(sequences, "MOST_NUMBERS", 4)
-    assert "bytes unpacked" in refused(tmp_path / "bomb.npz")
+    np.savez_compressed(tmp_path / "bomb.npz", t=np.zeros(5, dtype=np.int8))
+    assert "at most 4 numbers" in refused(tmp_path / "bomb.npz")
     assert "4 in all" in refused(csv)
     monkeypatch.setattr(sequences, "MOST_BYTES", 10)
     assert "at most 10" in refused(csv)
+
+
+def test_a_line_longer_than_the_reader_of_lines_takes_is_said(tmp_path: Path) -> None:
+    (tmp_path / "long.csv").write_text("t,y\n0," + "1" * 200_000 + "\n")
+    with pytest.raises(sf.DescriptionError, match="larger than field limit"):
+        Sequence(name="s", file=str(tmp_path / "long.csv"))
 
 
 @pytest.mark.parametrize(

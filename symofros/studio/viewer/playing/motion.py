@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -12,12 +11,15 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
+from symofros.base.npz import TooLargeError, read_npz
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.meshes import Array
 
 SUFFIXES = (".npz", ".csv", ".parquet")
+# Half a gigabyte.
+MAX_NUMBERS = 64_000_000
 
 
 @dataclass(frozen=True)
@@ -131,9 +133,12 @@ def read_motion(path: str | Path, model: Model) -> PlayedMotion:
     readers = {".npz": _read_arrays, ".csv": _read_csv, ".parquet": _read_parquet}
     try:
         return readers[file.suffix](file, model)
-    except (OSError, ValueError, zipfile.BadZipFile) as error:
-        if isinstance(error, ShapeError):
-            raise
+    except ShapeError:
+        raise
+    except TooLargeError as error:
+        what, rule = f"trajectory: '{file.name}' is too large", f"at most {MAX_NUMBERS} numbers are shown"
+        raise SymofrosError(Problem(what, str(error)[:200], rule, "save fewer states")) from None
+    except (OSError, ValueError, csv.Error, NotImplementedError, MemoryError) as error:
         fault = Problem(
             f"trajectory: '{file.name}' is not a {file.suffix} file",
             str(error)[:200],
@@ -144,20 +149,19 @@ def read_motion(path: str | Path, model: Model) -> PlayedMotion:
 
 
 def _read_arrays(file: Path, model: Model) -> PlayedMotion:
-    with np.load(file, allow_pickle=False) as arrays:
-        for name in ("t", "q"):
-            if name not in arrays:
-                _refuse(file.name, f"arrays {_some(arrays.files)}", "arrays t (n) and q (n, nq)", f"add {name}")
-        names = tuple(arrays["names_q"].tolist()) if "names_q" in arrays else model.names.q
-        if names != model.names.q:
-            _refuse(
-                file.name,
-                f"coordinates {_some(names)}",
-                f"the model's are {_some(model.names.q)}",
-                "show it with the model that it was simulated with",
-            )
-        u, par = (arrays[name] if name in arrays else None for name in ("u", "par"))
-        return _checked(model, arrays["t"], arrays["q"], u, par, file.name)
+    arrays = read_npz(file, MAX_NUMBERS, ("t", "q", "u", "par", "names_q"))
+    for name in ("t", "q"):
+        if name not in arrays:
+            _refuse(file.name, f"arrays {_some(tuple(arrays))}", "arrays t (n) and q (n, nq)", f"add {name}")
+    names = tuple(arrays["names_q"].tolist()) if "names_q" in arrays else model.names.q
+    if names != model.names.q:
+        _refuse(
+            file.name,
+            f"coordinates {_some(names)}",
+            f"the model's are {_some(model.names.q)}",
+            "show it with the model that it was simulated with",
+        )
+    return _checked(model, arrays["t"], arrays["q"], arrays.get("u"), arrays.get("par"), file.name)
 
 
 def _read_csv(file: Path, model: Model) -> PlayedMotion:
@@ -180,7 +184,13 @@ def _read_parquet(file: Path, model: Model) -> PlayedMotion:
                 "pip install 'symofros[parquet]', or use .npz",
             )
         ) from None
-    table = parquet.read_table(file)
+    with parquet.ParquetFile(file) as stored:
+        wanted = {"t", *model.names.q, *model.names.u, *(f"u.{name}" for name in model.names.u)}
+        columns = [name for name in stored.schema_arrow.names if name in wanted]
+        # A column of one value, repeated, takes a few bytes whatever its length.
+        if stored.metadata.num_rows * len(columns) > MAX_NUMBERS:
+            raise TooLargeError(f"{stored.metadata.num_rows} rows of {len(columns)} columns")
+        table = stored.read(columns)
     return _from_columns({name: table[name].to_numpy() for name in table.column_names}, file, model)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.errors import ShapeError, SymofrosError
+from symofros.studio.viewer.playing import motion as motion_module
 from symofros.studio.viewer.playing.motion import PlayedMotion, motion_of, read_motion
 from symofros.studio.viewer.playing.player import Player
 
@@ -116,6 +118,23 @@ def test_pickles_in_archives_are_not_opened(pendulum: sf.Model, tmp_path: Path) 
     np.savez(tmp_path / "m.npz", t=np.array([{"a": 1}], dtype=object), q=np.zeros((1, 2)))
     with pytest.raises(SymofrosError, match=r"is not a .npz file\n.*allow_pickle"):
         read_motion(tmp_path / "m.npz", pendulum)
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".parquet"])
+def test_archives_are_not_unpacked_beyond_what_is_shown(
+    pendulum: sf.Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str
+) -> None:
+    """A few kilobytes can stand for gigabytes."""
+    monkeypatch.setattr(motion_module, "MAX_NUMBERS", 50)
+    columns = {"t": np.zeros(100), "q1": np.zeros(100), "q2": np.zeros(100)}
+    if suffix == ".npz":
+        np.savez_compressed(tmp_path / "m.npz", t=columns["t"], q=np.zeros((100, 2)))
+    else:
+        pa = pytest.importorskip("pyarrow")
+        importlib.import_module("pyarrow.parquet").write_table(pa.table(columns), tmp_path / "m.parquet")
+    with pytest.raises(SymofrosError, match=f"'m{suffix}' is too large") as caught:
+        read_motion(tmp_path / f"m{suffix}", pendulum)
+    assert "100" in caught.value.problem.found
 
 
 def test_a_run_of_another_system_is_refused(run: sf.Trajectory) -> None:

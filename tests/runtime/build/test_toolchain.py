@@ -1,0 +1,83 @@
+"""Compilers that are none, write nothing, or never end: each is told in four parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import symofros as sf
+from symofros.errors import Problem
+from symofros.exports.c.compiling import shared_library
+from symofros.runtime.build import toolchain
+from symofros.runtime.build.build import build_library
+from symofros.runtime.build.toolchain import find_toolchain
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
+    find_toolchain.cache_clear()
+    yield tmp_path / "cache"
+    find_toolchain.cache_clear()
+
+
+def script(folder: Path, text: str) -> Path:
+    path = folder / "compiler"
+    path.write_text(text)
+    path.chmod(0o755)
+    return path
+
+
+def refused() -> Problem:
+    """What is said of the compiler of the environment when a library is built."""
+    with pytest.raises(sf.CompileError) as caught:
+        named = find_toolchain()
+        assert named is not None
+        build_library("int x;\n", "", named)
+    problem = caught.value.problem
+    assert problem.what and problem.found and problem.rule and problem.remedy
+    return problem
+
+
+@pytest.mark.parametrize(
+    ("stated", "what"),
+    [
+        ("   ", "names no compiler"),
+        ("''", "names no compiler"),
+        ("gcc '", "can't be read: No closing quotation"),
+        ("/bin/true", "wrote nothing"),
+        ("/bin/false", "failed with status 1"),
+        ("nosuchcc -m64", "was not found"),
+    ],
+)
+def test_what_is_no_compiler_is_told(monkeypatch: pytest.MonkeyPatch, stated: str, what: str, cache: Path) -> None:
+    monkeypatch.setenv("CC", stated)
+    assert what in refused().what
+    assert not list(cache.glob("*.so"))
+
+
+def test_a_program_that_the_machine_can_t_run_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("CC", str(script(tmp_path, "\x7fELF of another machine")))
+    assert "can't be started" in refused().what
+
+
+# The child of the script keeps its output open, as cc1 does of gcc.
+@pytest.mark.parametrize("hangs", ["sleep 20", 'case "$*" in *--version*) echo slow;; *) sleep 20;; esac'])
+def test_a_compiler_that_does_not_end_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, hangs: str) -> None:
+    monkeypatch.setattr(toolchain, "VERSION_LIMIT", 0.3)
+    monkeypatch.setattr(toolchain, "COMPILATION_LIMIT", 0.3)
+    monkeypatch.setenv("CC", str(script(tmp_path, f"#!/bin/sh\n{hangs}\n")))
+    assert "did not end within 0.3 s" in refused().what
+
+
+def test_a_compiler_does_not_wait_for_input(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("CC", str(script(tmp_path, '#!/bin/sh\ncase "$*" in *--version*) ;; *) exec cat;; esac\n')))
+    assert "wrote nothing" in refused().what
+
+
+def test_an_export_says_so_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "/bin/true")
+    with pytest.raises(sf.CompileError, match="wrote nothing"):
+        shared_library({"a.c": "int x;\n"}, "a.c", [])
