@@ -43,6 +43,7 @@ from symofros.description.system import System as System
 from symofros.description.values import Rotation as Rotation
 from symofros.description.values import as_value
 from symofros.errors import AssemblyError as AssemblyError
+from symofros.errors import BeamTheoryError as BeamTheoryError
 from symofros.errors import CompileError as CompileError
 from symofros.errors import CompilerMissingWarning as CompilerMissingWarning
 from symofros.errors import DescriptionError as DescriptionError

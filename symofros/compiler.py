@@ -27,6 +27,7 @@ from symofros.description.beam import Beam
 from symofros.description.system import System
 from symofros.errors import CompileError, CompilerMissingWarning, InconsistentModelWarning
 from symofros.expr.program import Program
+from symofros.generator.beams import beams_at
 from symofros.generator.codegen.model import model_source
 from symofros.generator.programs import ProgramBuilder, requested
 from symofros.generator.record import GENERATOR as GENERATOR
@@ -164,7 +165,8 @@ class Compilation:
         _warn_inconsistent(self.system)
         units = UnitCompiler(self.programs, self.record, self.options, _choose_toolchain(self.options))
         on_demand = units.functions if self.options.functions is None else None
-        return Model(self.record, on_demand, (units.functions(requests),), formulas=units.formulas)
+        built = (units.functions(requests),)
+        return Model(self.record, on_demand, built, formulas=units.formulas, beams=beams_at(self.tree))
 
     def library(self, precision: Precision = "double") -> tuple[Path, str]:
         """Path and exported function of the shared library of the requested functions: see `compile_library`."""

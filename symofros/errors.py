@@ -111,6 +111,10 @@ class EquilibriumError(SymofrosError):
     """No configuration was found in which the speeds stay as they are."""
 
 
+class BeamTheoryError(EquilibriumError):
+    """A beam is bent beyond second-order theory, or that theory has no equilibrium; says which beam, where, how far."""
+
+
 class CompilerMissingWarning(UserWarning):
     """No C compiler was found; a slower way is used."""
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike as ArrayLike
 
 from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.record import ModelRecord
@@ -54,6 +55,7 @@ class Functions:
         units: Functions built already.
         par: Values of the run-time parameters; None for the defaults.
         formulas: Generates and compiles a user's formulas.
+        beams: Gives the elastic beams at values of the run-time parameters (npar).
         threads: Number of threads that share a large batch.
         precision: Precision of what functions take and return.
     """
@@ -65,6 +67,7 @@ class Functions:
         units: tuple[Unit, ...] = (),
         par: Array | None = None,
         formulas: Callable[[tuple[Any, ...], bool], Unit] | None = None,
+        beams: Callable[[Array], tuple[ElasticBeam, ...]] | None = None,
         threads: int = 1,
         precision: Precision = "double",
     ) -> None:
@@ -73,6 +76,7 @@ class Functions:
         self._precision = precision
         self._build = build
         self._build_formulas = formulas
+        self._beams_at = beams
         self._par = np.array(record.par_default if par is None else par, dtype=np.float64)
         self._par.flags.writeable = False
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
@@ -199,11 +203,18 @@ class Functions:
             (),
             self._par if par is None else par,
             self._build_formulas,
+            self._beams_at,
             threads or self._threads,
             precision or self._precision,
         )
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
+
+    def beams(self, par: ArrayLike | None = None) -> tuple[ElasticBeam, ...]:
+        """The elastic beams as numbers, at these run-time parameters (npar): what judges how far they bend."""
+        if self._beams_at is None:
+            return ()
+        return self._beams_at(self._par if par is None else self._array("par", par, self.npar))
 
     def kernel(self, name: str) -> Kernel:
         """A function of the whole model as the thing that is called, made on demand; for loops of one's own.

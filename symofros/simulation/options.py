@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Literal
 
 from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.model import ArrayLike
 
 Stabilisation = Literal["projection", "baumgarte", "none"]
@@ -37,6 +38,8 @@ class SimulationOptions:
         stabilisation: How constraints are kept: "projection" onto them after each step, "baumgarte" by gains, or
             "none", by accelerations alone, which drifts.
         gains: Baumgarte's gains, as `Model.forward_dynamics` takes them; both min(20, 1/(2 dt)) [1/s] by default.
+        beam_limit: Estimated error of the beams' second-order theory, relative to the deflection, beyond which the run
+            ends (docs/theory/beams.md, section 6); `math.inf` for no limit. From 0.01 on it is noted.
         realtime: Pace against the clock: True, or seconds of motion a second; overruns are counted; single runs only.
     """
 
@@ -52,6 +55,7 @@ class SimulationOptions:
     every: int = 1
     stabilisation: Stabilisation = "projection"
     gains: ArrayLike | None = None
+    beam_limit: float = BEAM_LIMIT
     realtime: float | bool = False
 
     def changed(self, changes: Mapping[str, Any]) -> SimulationOptions:

@@ -62,6 +62,7 @@ class Settings:
         grid: Times to record at (n) [s].
         project: Whether the state is projected onto the constraints after each step.
         gains: Baumgarte's gains (2 nc).
+        beam_limit: Estimated error of the beams' theory beyond which the run ends.
         realtime: Seconds of motion a second; 0: as fast as possible.
     """
 
@@ -79,6 +80,7 @@ class Settings:
     grid: Array
     project: bool
     gains: Array
+    beam_limit: float
     realtime: float
 
     @classmethod
@@ -109,6 +111,7 @@ class Settings:
             grid=_grid(options.output, options.t0, t_end),
             project=model.nc > 0 and options.stabilisation == "projection" and not method.family.keeps_constraints,
             gains=_gains(model, options.stabilisation, options.gains, step),
+            beam_limit=options.beam_limit,
             realtime=float(options.realtime),
         )
 
@@ -119,6 +122,7 @@ class Settings:
         run.adaptive = int(self.adaptive)
         run.t_end, run.h, run.rtol, run.atol = self.t_end, self.dt, self.rtol, self.atol
         run.max_step, run.record_every, run.project = self.max_step, self.every, int(self.project)
+        run.beam_limit = self.beam_limit
         run.grid, run.n_grid = stepper.memory.doubles(self.grid), len(self.grid)
         run.realtime_scale = 1.0 / self.realtime if self.realtime else 0.0
         stepper.set_gains(self.gains)
@@ -134,7 +138,7 @@ def _check(options: SimulationOptions, t_end: float) -> None:
         raise _wrong("no span of time", f"t0 = {o.t0}, t_end = {t_end}", "t_end is not before t0", "set t_end")
     if o.dt is not None and not (math.isfinite(o.dt) and o.dt > 0):
         raise _wrong("the step is not positive", o.dt, "dt > 0", "1e-3 s suits most arms")
-    for name, value in (("rtol", o.rtol), ("atol", o.atol), ("max_step", o.max_step)):
+    for name, value in (("rtol", o.rtol), ("atol", o.atol), ("max_step", o.max_step), ("beam_limit", o.beam_limit)):
         if not value > 0:
             raise _wrong(f"{name} is not positive", value, f"{name} > 0", "leave it out")
     if o.every < 1:

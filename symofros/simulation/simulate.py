@@ -80,7 +80,7 @@ def simulate(
     met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
     statistics = _statistics(stepper, seconds, worked)
     t, q_all, v_all, u_all = states
-    return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics)
+    return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics, stepper.bendings)
 
 
 def _statistics(stepper: Stepper, seconds: float, worked: float) -> Statistics:

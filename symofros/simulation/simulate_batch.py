@@ -111,6 +111,9 @@ def simulate_batch(
         results.status.reshape(shape),
         results.steps.reshape(shape),
         results.rejected.reshape(shape),
+        _shaped(results.beam_errors, shape),
+        _shaped(results.beam_times, shape),
+        _shaped(results.beam_coordinates, shape),
         settings.method.name,
         *seconds,
     )

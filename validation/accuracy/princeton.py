@@ -54,7 +54,7 @@ def beam_tips(m: sf.Model, load: float, angles: Array) -> tuple[Array, Array]:
             for share in STEPS:
                 force = share * load
                 loaded = m.with_parameters(Fy=force * np.cos(angle), Fz=force * np.sin(angle))
-                q = sf.equilibrium(loaded, q, iterations=20).q
+                q = sf.equilibrium(loaded, q, iterations=20, beam_limit=np.inf).q
         except sf.EquilibriumError:
             continue
         p, R = loaded.frame_pose("tip", q)

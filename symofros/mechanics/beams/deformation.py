@@ -16,6 +16,8 @@ _HALF = Fraction(1, 2)
 SMALL = 0.1
 # Intervals of the stations at which the largest angle of a shape function is looked for.
 _SAMPLES = 32
+# Fewest intervals between the stations at which bending is judged.
+_FEWEST_INTERVALS = 8
 
 
 @dataclass(frozen=True)
@@ -112,6 +114,19 @@ class Deformation:
             Pi, Ti, Fi = P.by(i), T.by(i), self.roll.by(i)
             triples.append((Fi - P.times(Ti), Ti + P.times(Fi), Pi - T.times(Fi)))
         return tuple(triples)
+
+    @cached_property
+    def station_angles(self) -> tuple[tuple[float, ...], tuple[tuple[float, ...], ...]]:
+        """Stations xi (s), and the yaw, pitch or twist there by each coordinate of a beam of unit length (s, n).
+
+        Yaw and pitch without their signs; there are enough stations to meet the largest angle within a few per cent.
+        """
+        intervals = max(_FEWEST_INTERVALS, 2 * max(self.counts, default=0))
+        stations = [Fraction(k, intervals) for k in range(intervals + 1)]
+        bending = sum(self.counts[:2])
+        angles = [f.phi.derivative() if i < bending else f.phi for i, f in enumerate(self.functions)]
+        rows = tuple(tuple(float(angle(xi)) for angle in angles) for xi in stations)
+        return tuple(map(float, stations)), rows
 
     @cached_property
     def curvatures(self) -> tuple[Field, Field, Field]:

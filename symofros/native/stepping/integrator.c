@@ -15,6 +15,7 @@
 #include "rosenbrock.c"
 #include "second_order.c"
 #include "real_time.c"
+#include "beams.c"
 #include "dense_output.c"
 #include "events.c"
 #include "run.c"

@@ -82,6 +82,8 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
         if (status != 0) return status;
         if (r->record_every == 0) ++r->next_grid;
     }
+    status = sym_run_judge_beams(r);
+    if (status != 0) return status;
     status = sym_first_slope(r, w.k);
     if (status != 0) return status;
     if (s->n_events > 0) {
@@ -115,7 +117,7 @@ static void sym_set_end_state(sym_run *r, const sym_workspace *w, double t1) {
 static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1) {
     sym_system *s = r->system;
     const int32_t nv = s->nv, fsal = r->method == SYM_METHOD_EXPLICIT && r->tableau.fsal_stage > 0;
-    int32_t dense_ready = 0, status, stopped = 0;
+    int32_t dense_ready = 0, status, beyond, stopped = 0;
     double stop_x = 2.0;
     status = sym_load_projected_state(r, t1, w->y1);
     if (status != 0) return status;
@@ -143,6 +145,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
         r->slope_valid = 1;
     }
     ++r->steps;
+    beyond = sym_run_judge_beams(r);
     if (s->n_events > 0 && stopped) { /* not the state that sym_find_events evaluated */
         sym_load_state(r);
         status = sym_event_values(r, r->event_values);
@@ -151,13 +154,13 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     if (r->record_every == 0) {
         status = sym_record_grid_at_end(r, h);
         if (status != 0) return status;
-    } else if (r->steps % r->record_every == 0 || r->t >= r->t_end || stopped) {
+    } else if (r->steps % r->record_every == 0 || r->t >= r->t_end || stopped || beyond != 0) {
         sym_load_state(r);
         status = sym_record(r);
         if (status != 0) return status;
     }
     if (r->realtime_scale > 0.0) sym_wait_for_clock(r);
-    return stopped ? SYM_TERMINAL_EVENT : 0;
+    return beyond != 0 ? beyond : stopped ? SYM_TERMINAL_EVENT : 0;
 }
 
 /* Whether one more step fits into the records. */

@@ -21,7 +21,8 @@ typedef enum sym_status {
     SYM_STEP_TOO_SMALL = -3,     /* the error bound asks for steps below rounding */
     SYM_CALLBACK_FAILED = -4,    /* a function of the caller's failed */
     SYM_NO_CONVERGENCE = -5,     /* the equations of an implicit step were not solved */
-    SYM_PROJECTION_FAILED = -6   /* the state could not be projected onto the constraints */
+    SYM_PROJECTION_FAILED = -6,  /* the state could not be projected onto the constraints */
+    SYM_BEYOND_THEORY = -7       /* a beam is bent beyond second-order theory */
 } sym_status;
 
 typedef enum sym_method {
@@ -38,6 +39,7 @@ typedef enum sym_segment_kind {
     SYM_SEGMENT_POSE = 2         /* position, then quaternion; 6 speeds: linear, then angular, in body axes */
 } sym_segment_kind;
 
+enum { SYM_MAX_BEAM_COORDINATES = 120 };
 enum { SYM_MAX_INPUTS = 10, SYM_MAX_OUTPUTS = 10 }; /* of a model function that is called here; "pre" is an input */
 
 typedef struct sym_segment {
@@ -51,6 +53,14 @@ typedef struct sym_signal { /* one input, sampled over time */
     int32_t n;
     const double *t, *value;
 } sym_signal;
+
+typedef struct sym_beam { /* one elastic body: angles of its sections are linear in its elastic coordinates */
+    int32_t q, first;            /* first index in q; first index in beam_scale and beam_q */
+    int32_t n_y, n_z, n_twist;   /* number of coordinates by direction */
+    int32_t stations;
+    const double *angles;        /* (stations, n_y + n_z + n_twist): yaw, pitch and twist per scaled coordinate [rad] */
+    double EI_z, EI_y;           /* stiffness against n_y and n_z at mid-length */
+} sym_beam;
 
 typedef struct sym_call { /* a model function with the arrays it reads and writes */
     const sym_function *function; /* NULL: absent */
@@ -79,8 +89,9 @@ typedef struct sym_tableau { /* coefficients of a Runge-Kutta or Rosenbrock meth
 
 /* The differential equations of one model: its functions bound to one evaluation point, its inputs, its events. */
 typedef struct sym_system {
-    int32_t nq, nv, nu, nc, n_segments, n_signals, n_law, n_events;
+    int32_t nq, nv, nu, nc, n_segments, n_signals, n_law, n_events, n_beams;
     const sym_segment *segments;
+    const sym_beam *beams;          /* (n_beams) */
     const sym_signal *signals;
     const int32_t *law_inputs;      /* (n_law) indices in u of the inputs that the law gives */
     const int32_t *event_direction; /* (n_events) 1 rising, -1 falling, 0 both */
@@ -123,6 +134,11 @@ typedef struct sym_run {
     /* Real time: the clock at the start, steps that began late, and by how much [s]. */
     double clock_start, late_max, late_sum;
     int64_t late_steps, paced_steps;
+    /* Bending of the beams, each at the accepted state where its theory errs most: the estimated relative error, when,
+     * and the elastic coordinates. The caller clears beam_error. */
+    double beam_limit;         /* error beyond which the run ends */
+    const double *beam_scale;  /* 1/L of coordinates that are displacements, else 1 */
+    double *beam_error, *beam_t, *beam_q;
     /* Records, row after row; full at capacity, which is n_grid at least. */
     int64_t capacity, n_records;
     double *record_t, *record_q, *record_v, *record_u;
@@ -143,6 +159,8 @@ int32_t sym_system_bind(sym_system *system, sym_call *call);
 int32_t sym_run_start(sym_run *run);
 /* At most max_steps further steps, accepted or rejected. Returns a status. */
 int32_t sym_run_advance(sym_run *run, int64_t max_steps);
+/* Compare the present state's beams with the limit, and keep the largest error of each. Returns 0 or SYM_BEYOND_THEORY. */
+int32_t sym_run_judge_beams(sym_run *run);
 /* For external integrators, whose states are y = (q, v) with quaternions of any length; each returns a status. */
 /* The present state becomes y, normalised, and the system's inputs those of that state. */
 int32_t sym_run_set_state(sym_run *run, double t, const double *y);

@@ -7,13 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.errors import EquilibriumError, Problem
+from symofros.errors import BeamTheoryError, EquilibriumError, Problem
+from symofros.runtime.beams import BEAM_LIMIT, BETTER_MODELS, BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.assembly import free_speeds
+from symofros.simulation.analysis.beam_theory import bendings_at, bendings_at_rest, beyond_critical_load, refuse_beyond
 
-# Largest step of a coordinate at once.
+# Largest step of a coordinate at once; of a beam's displacements over its length.
 LARGEST_STEP = 0.5
+# Estimated error of a beam's theory from which it is what a search without success is blamed on.
+_BLAMED = 0.05
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,8 @@ class Equilibrium:
         effort: Effort that holds the held coordinates (nv); zero for the others [N m or N].
         residual: Largest imbalance, relative to the largest force.
         iterations: Steps taken.
+        bendings: Bending of each beam, with the error of its theory.
+        notes: Remarks: beams whose theory errs by more than a per cent, or that are loaded beyond their critical load.
     """
 
     q: Array
@@ -37,6 +43,8 @@ class Equilibrium:
     effort: Array
     residual: float
     iterations: int
+    bendings: tuple[BeamBending, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def equilibrium(
@@ -50,6 +58,7 @@ def equilibrium(
     t: float = 0.0,
     tolerance: float = 1e-11,
     iterations: int = 100,
+    beam_limit: float = BEAM_LIMIT,
 ) -> Equilibrium:
     """Solve M 0 + h - Q - G^T lam = 0, phi = 0 for the configuration, by Newton's method with exact derivatives.
 
@@ -63,8 +72,11 @@ def equilibrium(
         t: Time.
         tolerance: Bound of the imbalance, relative to the largest force.
         iterations: Most steps.
+        beam_limit: Estimated error of the beams' second-order theory, relative to the deflection, beyond which there is
+            no result (docs/theory/beams.md, section 6); `math.inf` for no limit.
 
     Raises:
+        BeamTheoryError: A beam is bent beyond the limit, or its theory has no equilibrium here.
         EquilibriumError: None was found; names the coordinate with the largest imbalance.
         UnknownNameError: `held` names something that is not a speed.
     """
@@ -85,6 +97,7 @@ def equilibrium(
             return np.concatenate([balance, model.constraint(at, u=u, par=par, t=t)]), scale or 1.0
         return balance, scale or 1.0
 
+    reach = _reach(model, par)
     rows = np.concatenate([free, np.arange(nv, nv + nc)])
     R, scale = residual(q, lam)
     count = 0
@@ -96,7 +109,7 @@ def equilibrium(
         columns = rows
         step = np.zeros(nv + nc)
         step[columns] = -np.linalg.lstsq(K[np.ix_(rows, columns)], R[rows], rcond=1e-13)[0]
-        step[:nv] *= min(1.0, LARGEST_STEP / max(float(np.abs(step[:nv]).max(initial=0.0)), 1e-300))
+        step[:nv] *= min(1.0, LARGEST_STEP / max(float(np.abs(step[:nv] / reach).max(initial=0.0)), 1e-300))
         for _ in range(20):
             tried, lam_tried = model.integrate(q, step[:nv]), lam + step[nv:]
             R_tried, scale_tried = residual(tried, lam_tried)
@@ -105,8 +118,10 @@ def equilibrium(
             step *= 0.5
         # Forces may vanish one and all at rest: the largest on the way there is what small is measured by.
         q, lam, R, scale, count = tried, lam_tried, R_tried, max(scale, scale_tried), count + 1
+    bendings, unstable = _bendings(model, q, v, u, lam, par, t)
     left = _size(R[rows], scale, nc)
     if not left <= max(tolerance, 1e-9):
+        _refuse_without_rest(model, bendings, count)
         worst = int(rows[np.argmax(np.abs(R[rows]))])
         names = (*model.names.v, *model.names.constraints)
         raise EquilibriumError(
@@ -117,13 +132,57 @@ def equilibrium(
                 "start nearer, give the inputs that hold it, or hold coordinates that have no place of rest",
             )
         )
+    refuse_beyond(model, bendings, beam_limit, "the equilibrium")
     effort = np.zeros(nv)
     held_rows = np.setdiff1d(np.arange(nv), free)
     effort[held_rows] = R[held_rows]
-    return Equilibrium(q, v, u, lam, effort, left, count)
+    return Equilibrium(q, v, u, lam, effort, left, count, bendings, unstable + bending_notes(bendings))
 
 
 def _size(R: Array, scale: float, nc: int) -> float:
     """The largest imbalance relative to the largest force; residuals of constraints as they are."""
     forces, bound = R[: len(R) - nc], R[len(R) - nc :]
     return max(float(np.abs(forces).max(initial=0.0)) / scale, float(np.abs(bound).max(initial=0.0)))
+
+
+def _reach(model: Model, par: ArrayLike | None) -> Array:
+    """Size of each speed's coordinate for the bound of a step (nv): the length of a beam for displacements along it."""
+    reach = np.ones(model.nv)
+    for beam in model.beams(par):
+        reach[beam.in_v] = 1.0 / beam.scale
+    return reach
+
+
+def _bendings(
+    model: Model, q: Array, v: Array, u: Array, lam: Array, par: ArrayLike | None, t: float
+) -> tuple[tuple[BeamBending, ...], tuple[str, ...]]:
+    """Bending of each beam, and notes on those beyond their critical load."""
+    beams = model.beams(par)
+    if not beams or not np.all(np.isfinite(q)):
+        return (), ()
+    if np.any(v):  # Motion stiffens and softens; stability is then no matter of stiffness alone.
+        return bendings_at(model, q, par), ()
+    K, _, _ = model.residual_derivatives(q, v, np.zeros(model.nv), u, lam, par=par, t=t)
+    notes = tuple(
+        f"beam '{name}' is loaded past its critical load: this rest is unstable, and second-order theory has no bent one"
+        for name in beyond_critical_load(beams, q, K)
+    )
+    return bendings_at_rest(model, q, K, par), notes
+
+
+def _refuse_without_rest(model: Model, bendings: tuple[BeamBending, ...], count: int) -> None:
+    """Name the theory of the beams where the search has come to its end.
+
+    Raises:
+        BeamTheoryError: A beam is bent so far, or has so little stiffness left, that its theory may have no equilibrium.
+    """
+    worst = largest_bending(bendings)
+    if worst is not None and worst.error > _BLAMED:
+        raise BeamTheoryError(
+            Problem(
+                f"model '{model.record.name}': no equilibrium was found, and the theory of its beams may have none",
+                f"after {count} steps, where the search has come to: {worst}",
+                "strain energy to second order bounds small deflections only; large loads have no equilibrium in it",
+                f"smaller loads have one; {BETTER_MODELS}",
+            )
+        )

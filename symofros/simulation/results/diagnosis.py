@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from symofros.errors import SymofrosError
+from symofros.runtime.beams import BETTER_MODELS, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.postures import nearest_to_singular
 from symofros.simulation.results.outcome import Kind, Outcome
@@ -30,7 +31,7 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
     """
     status, interrupted = recorded.status, recorded.interrupted
     t, q, v = stepper.state
-    run, notes = stepper.run, _notes(stepper, states)
+    run, notes = stepper.run, _notes(stepper, states, status)
 
     def outcome(kind: Kind, reason: str, advice: str = "") -> Outcome:
         return Outcome(kind, t, reason, advice, notes)
@@ -75,6 +76,10 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
             f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it",
             "a smaller step; the loop may be stretched to its end",
         )
+    if status == Status.BEYOND_THEORY:
+        beyond = largest_bending(stepper.bendings)
+        limit = f"the limit is {100.0 * settings.beam_limit:g} %"
+        return outcome("beyond theory", f"{beyond}; {limit}", f"{BETTER_MODELS}; or move the limit, beam_limit=...")
     if status == Status.RUNNING and t < float(run.t_end):
         return outcome("interrupted", f"max_steps: {int(run.steps)} steps are done")
     return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")
@@ -110,7 +115,7 @@ def _steady(settings: Settings) -> str:
     return "a smaller dt, an adaptive or an implicit method; for stiff beams and contacts, an implicit one"
 
 
-def _notes(stepper: Stepper, states: Sequence[Array]) -> tuple[str, ...]:
+def _notes(stepper: Stepper, states: Sequence[Array], status: int) -> tuple[str, ...]:
     run = stepper.run
     notes = []
     if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
@@ -127,6 +132,8 @@ def _notes(stepper: Stepper, states: Sequence[Array]) -> tuple[str, ...]:
                 f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of"
                 " their strength: compare with another step"
             )
+    if status != Status.BEYOND_THEORY:  # The reason says it then.
+        notes += bending_notes(stepper.bendings)
     if run.late_steps:
         notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")
     return tuple(notes)

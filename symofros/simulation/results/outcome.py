@@ -15,6 +15,7 @@ Kind = Literal[
     "input failed",
     "not converged",
     "constraints lost",
+    "beyond theory",
 ]
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from symofros.runtime.beams import BETTER_MODELS, BeamBending, bending_notes, largest_bending, worst_bendings
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.results.outcome import Kind, Outcome
@@ -40,6 +41,7 @@ _ENDS: dict[int, tuple[Kind, str, str]] = {
         "the state is off the constraints and projection does not mend it",
         "start from sf.assemble; a smaller step; the loop may be stretched to its end",
     ),
+    Status.BEYOND_THEORY: ("beyond theory", "a beam is bent beyond second-order theory", BETTER_MODELS),
 }
 
 
@@ -60,6 +62,9 @@ class Trajectories:
         status: C's last word for each (...); `kinds` and `outcome` put it in words.
         steps: Steps taken (...).
         rejected: Steps tried in vain (...).
+        beam_errors: Largest estimated error of each beam's theory in each run (..., number of beams).
+        beam_times: When that was (..., number of beams) [s].
+        beam_coordinates: Elastic coordinates of all beams, each then (..., number of elastic coordinates).
         method: Name of the method.
         seconds: Wall time of all runs together [s].
         processor_seconds: Processor time of all threads together [s]; other programs do not lengthen it.
@@ -77,6 +82,9 @@ class Trajectories:
     status: npt.NDArray[np.int32]
     steps: npt.NDArray[np.int64]
     rejected: npt.NDArray[np.int64]
+    beam_errors: Array
+    beam_times: Array
+    beam_coordinates: Array
     method: str
     seconds: float
     processor_seconds: float
@@ -99,7 +107,15 @@ class Trajectories:
     def outcome(self, index: Index) -> Outcome:
         """How one run ended."""
         kind, reason, advice = _ENDS[int(self.status[index])]
-        return Outcome(kind, float(self.t_last[index]), reason, advice)
+        bendings = self.bendings(index)
+        if self.status[index] == Status.BEYOND_THEORY:
+            return Outcome(kind, float(self.t_last[index]), str(largest_bending(bendings)), advice)
+        return Outcome(kind, float(self.t_last[index]), reason, advice, bending_notes(bendings))
+
+    def bendings(self, index: Index) -> tuple[BeamBending, ...]:
+        """Bending of each beam in one run, at the step where its theory errs most."""
+        par = self.par[index] if self.par.ndim > 1 else self.par
+        return worst_bendings(self.model.beams(par), self.beam_times[index], self.beam_coordinates[index])
 
     def __getitem__(self, index: Index) -> Trajectory:
         """One run, as far as it was recorded; `index` addresses all batch dimensions."""
@@ -117,6 +133,7 @@ class Trajectories:
             self.outcome(index),
             (),
             statistics,
+            self.bendings(index),
         )
 
     def __len__(self) -> int:

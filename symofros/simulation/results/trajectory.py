@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.results.outcome import Outcome
@@ -90,6 +91,7 @@ class Trajectory:
         outcome: Outcome: how the run ended.
         events: Events met, in the order of time.
         statistics: Cost of the run: steps, evaluations, time.
+        bendings: Bending of each beam at the step where its theory errs most.
     """
 
     model: Model
@@ -101,6 +103,7 @@ class Trajectory:
     outcome: Outcome
     events: tuple[Found, ...] = ()
     statistics: Statistics = field(default_factory=lambda: Statistics("", 0, 0, 0, 0, 0.0))
+    bendings: tuple[BeamBending, ...] = ()
 
     def __len__(self) -> int:
         """Number of recorded states."""

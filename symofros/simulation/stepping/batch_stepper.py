@@ -56,6 +56,9 @@ class BatchResults:
         v: Final speeds (n, nv).
         steps: Accepted steps (n).
         rejected: Rejected steps (n).
+        beam_errors: Largest estimated error of each beam (n, number of beams).
+        beam_times: When that was (n, number of beams) [s].
+        beam_coordinates: Elastic coordinates of all beams, each then (n, number of elastic coordinates).
         q_samples: Configurations at the times of the grid (n, m, nq); NaN where a trajectory ended before.
         v_samples: Speeds (n, m, nv), as q_samples.
         u_samples: Inputs (n, m, nu), as q_samples.
@@ -67,6 +70,9 @@ class BatchResults:
     v: Array
     steps: npt.NDArray[np.int64]
     rejected: npt.NDArray[np.int64]
+    beam_errors: Array
+    beam_times: Array
+    beam_coordinates: Array
     q_samples: Array
     v_samples: Array
     u_samples: Array
@@ -77,7 +83,10 @@ class BatchResults:
         q, v, u = (np.full((n, samples, size), np.nan) for size in (model.nq, model.nv, model.nu))
         steps, rejected = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
         final_q, final_v = np.zeros((n, model.nq)), np.zeros((n, model.nv))
-        return cls(np.zeros(n, dtype=np.int32), np.zeros(n), final_q, final_v, steps, rejected, q, v, u)
+        beams = model.beams()
+        errors, times, elastic = (np.zeros((n, k)) for k in (len(beams), len(beams), sum(beam.size for beam in beams)))
+        status = np.zeros(n, dtype=np.int32)
+        return cls(status, np.zeros(n), final_q, final_v, steps, rejected, errors, times, elastic, q, v, u)
 
 
 class BatchStepper:
@@ -110,6 +119,7 @@ class BatchStepper:
         self._fill_prototype()
         self._fill_functions(initial.par)
         self._fill_rows(initial, results)
+        self._fill_beams(initial.par, results)
         if not self._native.sym_batch_start(batch, self._memory.zeros(self._native.sym_batch_size(batch))):
             raise CompileError("the integrator does not know every input of a batch function")
 
@@ -159,6 +169,16 @@ class BatchStepper:
         }
         for name, array in arrays.items():
             setattr(batch, name, memory.shared(array))
+
+    def _fill_beams(self, par: Array, results: BatchResults) -> None:
+        batch, memory, model = self._batch, self._memory, self.single.model
+        scales = [np.concatenate([np.zeros(0), *(beam.scale for beam in model.beams(values))]) for values in par]
+        self._fill_shared_rows(batch.beam_scale, np.array(scales))
+        batch.n_beam_coordinates = results.beam_coordinates.shape[1]
+        batch.beam_error, batch.beam_t, batch.beam_q = (
+            memory.shared(array if array.size else np.zeros(1))
+            for array in (results.beam_errors, results.beam_times, results.beam_coordinates)
+        )
 
     def run(self, stop: Event) -> None:
         """Step every trajectory to its end, or until `stop` is set. The interpreter lock is released meanwhile."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
 from symofros.errors import CompileError
+from symofros.runtime.beams import BeamBending, worst_bendings
 from symofros.runtime.calls.binding import NativeMemory, native_library
 from symofros.runtime.calls.declarations import constants, interface
 from symofros.runtime.calls.kernel import Array, Kernel
@@ -38,6 +40,7 @@ class Stepper:
         system: The sym_system: the model's functions and the evaluation point.
         run: The sym_run: settings, present state, counters.
         kernels: Slot of the system, such as "forward_dynamics" -> the function bound to it.
+        beams: Elastic beams at the parameters.
         failure: Exception that an input function raised; it ended the run.
 
     Raises:
@@ -48,11 +51,13 @@ class Stepper:
         self.ffi, self.native = interface(), native_library()
         self.model, self.method, self.events, self.par = model, method, events, par
         self.failure: BaseException | None = None
+        self.beams = model.beams(par)
         self.memory = NativeMemory()
         self.kernels: dict[str, CompiledKernel] = {}
         self.system = self.ffi.new("sym_system *")
         self.run = self.ffi.new("sym_run *")
         self._fill_system()
+        self._fill_beams()
         self._fill_inputs(inputs)
         self._fill_events()
         self._bind_functions()
@@ -71,6 +76,35 @@ class Stepper:
         sizes = {"q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "gains": 2 * model.nc}
         for name, size in (sizes | {"a": model.nv, "lam": model.nc, "rank": 1}).items():
             setattr(system, name, memory.zeros(size))
+
+    def _fill_beams(self) -> None:
+        """What judges the bending of the beams, and room for the largest of each."""
+        system, run, memory = self.system, self.run, self.memory
+        firsts = np.cumsum([0, *(beam.size for beam in self.beams)])
+        system.n_beams = len(self.beams)
+        system.beams = memory.own(
+            "sym_beam[]",
+            [
+                (beam.q, first, *beam.counts, len(beam.xi), memory.doubles(beam.angles), beam.EI_z, beam.EI_y)
+                for beam, first in zip(self.beams, firsts.tolist(), strict=False)
+            ],
+        )
+        run.beam_limit = math.inf
+        run.beam_scale = memory.doubles(np.concatenate([np.zeros(0), *(beam.scale for beam in self.beams)]))
+        self._beam_record = np.zeros(len(self.beams)), np.zeros(len(self.beams)), np.zeros(int(firsts[-1]))
+        run.beam_error, run.beam_t, run.beam_q = (
+            memory.shared(array if array.size else np.zeros(1)) for array in self._beam_record
+        )
+
+    @property
+    def bendings(self) -> tuple[BeamBending, ...]:
+        """Bending of each beam at the accepted step where its theory errs most."""
+        _, t, q = self._beam_record
+        return worst_bendings(self.beams, t, q)
+
+    def judge_beams(self) -> int:
+        """Judge the present state's beams, for integrators of others; returns a Status."""
+        return int(self.native.sym_run_judge_beams(self.run))
 
     def _fill_inputs(self, inputs: InputPlan) -> None:
         system, memory = self.system, self.memory

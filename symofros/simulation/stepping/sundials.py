@@ -133,7 +133,9 @@ class _Run(ABC):
     def _placed(self, t: float, y: Array) -> int:
         """Make a state the run's own; returns a status."""
         state = np.asarray(y, dtype=np.float64).reshape(-1)
-        return self.stepper.place(t, state) if np.all(np.isfinite(state)) else Status.DIVERGED
+        if not np.all(np.isfinite(state)):
+            return Status.DIVERGED
+        return self.stepper.place(t, state) or self.stepper.judge_beams()
 
 
 class Cvode(_Run):

@@ -1,0 +1,187 @@
+"""How far a state bends the beams, and what second-order theory errs there (docs/theory/beams.md, section 6)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from symofros.runtime.calls.kernel import Array
+
+# Error over the square of the largest slope, and where it begins to grow as the slope itself (24). The same numbers
+# stand in native/stepping/beams.c, which judges each step; tests compare the two.
+SLOPE_ERROR, LARGE_SLOPE = 0.457, 0.47
+# Estimated error from which results carry a note.
+NOTED_ERROR = 0.01
+# Estimated error beyond which a result fails by default: up to there the estimate is calibrated (section 6).
+BEAM_LIMIT = 0.5
+# Slope [rad] below which a beam is straight but for rounding.
+_STRAIGHT = 1e-9
+# Tangent stiffness over elastic stiffness below which an axial load counts as critical.
+_CRITICAL = 1e-9
+BETTER_MODELS = (
+    "divide the beam into several beams joined end to end, whose slopes relative to their own roots are small, or use"
+    " a geometrically exact beam, such as Exudyn's"
+)
+
+
+@dataclass(frozen=True)
+class BeamBending:
+    """How far one beam is bent, and the error of second-order theory that follows.
+
+    Attributes:
+        beam: Name of the beam.
+        station: Place of the largest slope, from the root along the axis [m].
+        slope: Largest rotation by bending of a section relative to the root [rad].
+        twist: Largest rotation about the axis of a section relative to the root [rad].
+        foreshortening: Share of the length by which bending draws the tip towards the root.
+        error: Estimated error of the deflection relative to its exact value; infinite past a critical load.
+        t: Instant [s]; NaN where the result has none.
+    """
+
+    beam: str
+    station: float
+    slope: float
+    twist: float
+    foreshortening: float
+    error: float
+    t: float = math.nan
+
+    def __str__(self) -> str:
+        """One sentence."""
+        instant = "" if math.isnan(self.t) else f" at t = {self.t:.6g} s"
+        if math.isinf(self.error):
+            return f"beam '{self.beam}' is loaded past its critical load{instant}: second-order theory has no bent rest"
+        percent = 100.0 * self.error
+        twisted = f" and is twisted by {self.twist:.2g} rad" if self.twist > 0.01 else ""
+        return (
+            f"beam '{self.beam}' bends by {self.slope:.2g} rad at x = {self.station:.3g} m{twisted}{instant}:"
+            f" second-order theory errs by about {percent:.{0 if percent >= 10 else 1}f} % of the deflection"
+        )
+
+
+@dataclass(frozen=True)
+class ElasticBeam:
+    """One beam at given parameters, as far as its bending is to be judged.
+
+    Attributes:
+        name: Name of the beam.
+        length: Length [m].
+        q: First index of the elastic coordinates in q.
+        v: First index of their rates in v.
+        counts: Number of coordinates of bend_y, bend_z and twist.
+        xi: Stations x/L (s).
+        angles: Yaw, pitch and twist of the section at each station per scaled coordinate (s, n).
+        scale: Factor of each coordinate (n): 1/L of a displacement, else 1.
+        elastic_stiffness: Forms the elastic stiffness (n, n).
+        EI_z: Stiffness against bending in the x-y plane at mid-length [N m^2].
+        EI_y: Stiffness against bending in the x-z plane at mid-length [N m^2].
+    """
+
+    name: str
+    length: float
+    q: int
+    v: int
+    counts: tuple[int, int, int]
+    xi: Array
+    angles: Array
+    scale: Array
+    elastic_stiffness: Callable[[], Array]
+    EI_z: float
+    EI_y: float
+
+    @property
+    def size(self) -> int:
+        """Number of elastic coordinates."""
+        return sum(self.counts)
+
+    @property
+    def in_q(self) -> slice:
+        """Place of the elastic coordinates in q."""
+        return slice(self.q, self.q + self.size)
+
+    @property
+    def in_v(self) -> slice:
+        """Place of their rates in v."""
+        return slice(self.v, self.v + self.size)
+
+    def bending(self, elastic: Array, t: float = math.nan, amplification: float = 1.0) -> BeamBending:
+        """Judge a deformation.
+
+        Args:
+            elastic: Elastic coordinates (n).
+            t: Instant [s].
+            amplification: Elastic stiffness over the stiffness that axial loads leave (26).
+        """
+        n_y, n_z, _ = self.counts
+        by_coordinate = self.angles * (self.scale * elastic)
+        yaw, pitch, twist = (part.sum(axis=1) ** 2 for part in np.split(by_coordinate, (n_y, n_y + n_z), axis=1))
+        slope = yaw + pitch
+        at = int(np.argmax(slope))
+        error = self._error(float(yaw.max()), float(pitch.max()), float(slope[at]), float(twist.max()))
+        if amplification <= 0.0:
+            error = math.inf if slope[at] > _STRAIGHT**2 else 0.0
+        return BeamBending(
+            self.name,
+            float(self.xi[at]) * self.length,
+            math.sqrt(slope[at]),
+            math.sqrt(twist.max()),
+            0.5 * float(np.trapezoid(slope, self.xi)),
+            error * 0.25 * (amplification + 3.0),
+            t,
+        )
+
+    def _error(self, yaw: float, pitch: float, slope: float, twist: float) -> float:
+        """Estimated error from squares of the largest angles (24), (25)."""
+        error = SLOPE_ERROR * slope / math.sqrt(1.0 + LARGE_SLOPE * slope)
+        stiffness = self.EI_y * pitch + self.EI_z * yaw
+        if twist > 0.0 and self.counts[0] and self.counts[1] and stiffness > 0.0:
+            contrast = abs(self.EI_z - self.EI_y) * abs(pitch - yaw) / stiffness
+            error += contrast * twist * slope / (slope + twist)
+        return error
+
+    def amplification(self, elastic: Array, tangent: Array) -> float:
+        """Elastic stiffness over the stiffness that loads leave, in the direction of a deformation (26).
+
+        Args:
+            elastic: Elastic coordinates (n).
+            tangent: Tangent stiffness of the elastic coordinates at rest under loads (n, n).
+
+        Returns:
+            One without axial loads, more under compression, below one in tension; zero past the critical load, where
+            the stiffness has a negative direction.
+        """
+        stiffness, symmetric = self.elastic_stiffness(), 0.5 * (tangent + tangent.T)
+        try:
+            left = float(scipy.linalg.eigh(symmetric, stiffness, eigvals_only=True)[0])
+        except (np.linalg.LinAlgError, ValueError):  # A direction without elastic stiffness.
+            return 1.0
+        if left <= _CRITICAL:
+            return 0.0
+        energy = float(elastic @ stiffness @ elastic)
+        return energy / float(elastic @ symmetric @ elastic) if energy > 0.0 else 1.0
+
+
+def worst_bendings(beams: Sequence[ElasticBeam], t: Array, elastic: Array) -> tuple[BeamBending, ...]:
+    """The bending of each beam at an instant of its own.
+
+    Args:
+        beams: Beams.
+        t: Instant of each (k) [s].
+        elastic: Elastic coordinates of all, one beam after the other.
+    """
+    parts = np.split(elastic, np.cumsum([beam.size for beam in beams])[:-1]) if beams else []
+    return tuple(beam.bending(q, float(when)) for beam, q, when in zip(beams, parts, t, strict=True))
+
+
+def largest_bending(bendings: Sequence[BeamBending]) -> BeamBending | None:
+    """The bending with the largest error; None without beams."""
+    return max(bendings, key=lambda bending: bending.error, default=None)
+
+
+def bending_notes(bendings: Sequence[BeamBending]) -> tuple[str, ...]:
+    """Sentences on the beams whose error is worth a note."""
+    return tuple(f"{bending}; {BETTER_MODELS}" for bending in bendings if bending.error > NOTED_ERROR)

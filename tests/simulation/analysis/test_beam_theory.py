@@ -1,0 +1,92 @@
+"""Equilibria say how far second-order theory of beams holds, and end where it ends (docs/theory/beams.md, section 6)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import scipy.optimize
+import scipy.special
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import symofros as sf
+from tests.simulation.beam_models import cantilever, critical_load
+
+
+def error_of(**par: float) -> float:
+    """Estimated error of the beam's equilibrium."""
+    (bending,) = sf.equilibrium(cantilever().with_parameters(**par), beam_limit=math.inf).bendings
+    return bending.error
+
+
+def elastica(load: float) -> tuple[float, float]:
+    """Deflection and shortening over L under F = load EI/L^2 at the tip, in elliptic integrals."""
+
+    def load_of(k: float) -> float:
+        return float(scipy.special.ellipk(k * k) - scipy.special.ellipkinc(np.arcsin(1 / (k * np.sqrt(2))), k * k)) ** 2
+
+    k = scipy.optimize.brentq(lambda k: load_of(k) - load, np.sqrt(0.5) + 1e-15, 1 - 1e-12, xtol=1e-16)
+    turned = np.arcsin(1 / (k * np.sqrt(2)))
+    second = float(scipy.special.ellipe(k * k) - scipy.special.ellipeinc(turned, k * k))
+    return 1 - 2 * second / math.sqrt(load), 1 - math.sqrt(2 * (2 * k * k - 1) / load)
+
+
+@pytest.mark.parametrize("load", [0.3, 0.6, 1.0, 1.5, 2.0, 2.2])
+def test_the_error_under_a_force_at_the_tip_is_that_against_the_elastica(load: float) -> None:
+    loaded = cantilever().with_parameters(F=load)
+    rest = sf.equilibrium(loaded, beam_limit=math.inf)
+    exact = np.array([-elastica(load)[1], elastica(load)[0]])
+    p, _ = loaded.frame_pose("tip", rest.q)
+    error = float(np.linalg.norm(p[:2] - (1.0, 0.0) - exact) / np.linalg.norm(exact))
+    assert 0.01 < error < 0.5
+    assert rest.bendings[0].error == pytest.approx(error, rel=0.1)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(-6, 6), st.floats(-9, 9), st.floats(0.01, 3.0))
+def test_the_estimate_does_not_change_with_length_and_stiffness(length: float, stiffness: float, load: float) -> None:
+    L, EI = 10.0**length, 10.0**stiffness
+    assert error_of(L=L, EI=EI, F=load * EI / L**2) == pytest.approx(error_of(F=load), rel=1e-9)
+
+
+def test_a_straight_beam_has_no_error_and_more_load_has_more() -> None:
+    errors = [error_of(F=load) for load in (0.0, 0.01, 0.1, 0.5, 1.0, 2.0, 5.0, 50.0)]
+    assert errors[0] == 0.0
+    assert np.all(np.diff(errors) > 0.0)
+
+
+def test_compression_amplifies_the_error_and_tension_lessens_it() -> None:
+    pulled, free, pushed = (
+        sf.equilibrium(cantilever().with_parameters(P=share * critical_load(), F=0.1)).bendings[0]
+        for share in (-2.0, 0.0, 0.9)
+    )
+    # Of the slope alone, without the load: (24).
+    assert pulled.error / pulled.slope**2 == pytest.approx(0.457 * (1 / 3 + 3) / 4, rel=0.03)
+    assert free.error / free.slope**2 == pytest.approx(0.457, rel=0.01)
+    assert pushed.error / pushed.slope**2 == pytest.approx(0.457 * (10 + 3) / 4, rel=0.1)
+
+
+def test_results_carry_a_note_from_one_per_cent_on() -> None:
+    assert not sf.equilibrium(cantilever().with_parameters(F=0.29)).notes
+    (note,) = sf.equilibrium(cantilever().with_parameters(F=0.31)).notes
+    assert "'blade'" in note and "x = 1 m" in note and "1.1 %" in note
+
+
+def test_a_beam_bent_beyond_the_limit_is_refused_unless_the_limit_is_moved() -> None:
+    limp = cantilever().with_parameters(g=60.0)
+    with pytest.raises(sf.BeamTheoryError, match="'blade' bends by 10 rad at x = 1 m"):
+        sf.equilibrium(limp)
+    assert sf.equilibrium(limp, beam_limit=math.inf).bendings[0].error > 5.0
+    with pytest.raises(sf.BeamTheoryError):
+        sf.equilibrium(cantilever().with_parameters(F=1.0), beam_limit=0.1)
+
+
+def test_a_column_past_its_critical_load_has_no_bent_equilibrium() -> None:
+    past = 1.05 * critical_load()
+    with pytest.raises(sf.BeamTheoryError, match="loaded past its critical load"):
+        sf.equilibrium(cantilever().with_parameters(P=past, F=1e-3))
+    (note,) = sf.equilibrium(cantilever().with_parameters(P=past)).notes
+    assert "unstable" in note
+    assert not sf.equilibrium(cantilever().with_parameters(P=0.95 * critical_load())).notes

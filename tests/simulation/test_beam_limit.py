@@ -1,0 +1,79 @@
+"""Runs note how far they bend their beams, and end where second-order theory does (docs/theory/beams.md, section 6)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.simulation.beam_models import cantilever, critical_load
+
+METHODS = ("rk4", "semi_implicit_euler", "dopri5", "rodas4", "generalized_alpha")
+
+
+def swung(load: float, **changes: object) -> sf.Trajectory:
+    """A tip force that comes on at once."""
+    model = cantilever().with_parameters(F=load)
+    return sf.simulate(model, t_end=1.0, **{"dt": 1e-3, **changes})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_run_ends_where_a_beam_bends_beyond_its_theory(method: str) -> None:
+    limp = cantilever().with_parameters(g=60.0)
+    run = sf.simulate(limp, t_end=2.0, method=method, dt=1e-4)
+    assert run.outcome.kind == "beyond theory" and not run.outcome.ok
+    assert run.outcome.t == pytest.approx(0.143, abs=3e-3)
+    assert "'blade'" in run.outcome.reason and "rad at x = " in run.outcome.reason
+    assert run.t[-1] == run.outcome.t
+    assert run.bendings[0].error == pytest.approx(0.5, abs=0.02)
+    assert sf.simulate(limp, t_end=0.3, dt=1e-4, beam_limit=math.inf).outcome.kind == "finished"
+
+
+def test_a_note_names_the_largest_bending_between_recorded_states() -> None:
+    run = swung(0.3, output=[0.0, 1.0])
+    (note,) = run.outcome.notes
+    (bending,) = run.bendings
+    assert "'blade'" in note and "t = " in note and 0.0 < bending.t < 1.0
+    every = swung(0.3)
+    slopes = [cantilever().beams()[0].bending(q).slope for q in every.q]
+    assert bending.slope == pytest.approx(max(slopes), rel=1e-12)
+    assert bending.t == pytest.approx(every.t[int(np.argmax(slopes))])
+    assert not swung(0.1).outcome.notes
+
+
+def test_the_steps_judge_as_python_does() -> None:
+    strip = sf.Beam(
+        "strip", sf.Joint("root", "fixed"), 0.5, 1.0, EI_z=16.0, EI_y=1.0, GJ=2.0, rhoJ=0.1, bend_y=2, bend_z=2, twist=2
+    )
+    model = sf.compile(sf.System("strip", (strip,)))
+    rng = np.random.default_rng(1)
+    q = 0.05 * rng.normal(size=(20, model.nq)) * np.repeat([1, 1, 10], 2)
+    runs = sf.simulate_batch(model, q, t_end=0.0, beam_limit=math.inf)
+    errors = [model.beams()[0].bending(row).error for row in q]
+    assert runs.beam_errors[:, 0] == pytest.approx(errors, rel=1e-12)
+
+
+def test_each_trajectory_of_a_batch_is_judged_by_its_own_length() -> None:
+    model = cantilever()
+    lengths = np.array([0.5, 1.0, 2.0])
+    par = np.tile(model.parameter_values, (3, 1))
+    par[:, model.names.par.index("L")], par[:, model.names.par.index("F")] = lengths, 0.5
+    runs = sf.simulate_batch(model, t_end=4.0, par=par, dt=1e-3)
+    alone = [sf.simulate(model, t_end=4.0, par=row, dt=1e-3) for row in par]
+    assert list(runs.kinds) == [run.outcome.kind for run in alone] == ["finished", "finished", "beyond theory"]
+    for run, single in zip(runs, alone, strict=True):
+        assert run.outcome.notes == single.outcome.notes
+        assert run.bendings[0].error == pytest.approx(single.bendings[0].error, rel=1e-9)
+    assert "'blade'" in runs.outcome(2).reason
+
+
+def test_a_column_past_its_critical_load_ends_when_it_swings_out() -> None:
+    column = cantilever().with_parameters(P=1.05 * critical_load(), F=1e-3)
+    assert sf.simulate(column, t_end=100.0, dt=1e-3).outcome.kind == "beyond theory"
+
+
+def test_a_limit_is_positive() -> None:
+    with pytest.raises(sf.SymofrosError, match="beam_limit is not positive"):
+        swung(0.1, beam_limit=0.0)
