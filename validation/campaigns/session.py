@@ -102,7 +102,6 @@ def _complete(store: Store, plan: Plan, pool: Pool) -> None:
         **{name: manifest[name] for name in ("hash", "plan", "begun")},
         "identities": manifest["models"],
         "effort": effort(store.journal()),
-        "versions": provenance.versions("distributed", "pyarrow"),
         **provenance.stamp(),
     }
     store.merge(len(wanted), told)

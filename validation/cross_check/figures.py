@@ -12,11 +12,11 @@ from validation.adapters import ROUTES
 from validation.comparison.errors import BIN_EDGES, BINS_PER_DECADE, HIGHEST_DECADE, LOWEST_DECADE
 from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, SOLVE, Quantity
 from validation.cross_check.record import Distributions, Record
-from validation.reporting.axes import Axis, line, names, shown, svg, text
+from validation.reporting.axes import Axis, line, shown, svg, text
 from validation.reporting.figures import SHAPES, Chart, Curve, Drawing, Mark
 
 WIDTH = 760
-_LEFT, _EXACT, _RIGHT, _TOP, _BOTTOM = 225, 46, 30, 8, 56
+_LEFT, _EXACT, _RIGHT, _TOP, _BOTTOM = 225, 46, 30, 8, 28
 _ROW = 42
 EPS = 2.0**-52
 
@@ -53,14 +53,13 @@ def error_distributions(distributions: Distributions) -> Drawing | None:
         at = x.at(quantity.tolerance)
         parts.append(line("bound", at, at, base, base - _ROW + 4))
     parts.append(text(_LEFT + _EXACT / 2 - 5, bottom + 17, "exact", "middle", "tick"))
-    said = "relative error of a state [1]; height: share of states [1]"
-    parts += names((0, WIDTH), (_TOP, bottom), bottom + _BOTTOM, said, "")
     legend = [
         (f'<rect class="bar {_color(name)}" x="6" width="12" height="12"/>', engine_label(name)) for name in engines
     ]
     legend.append((line("bound", 12, 12, 0, 12), "tolerance"))
     title = "Distribution of relative errors for each quantity and engine"
-    return Drawing(title, tuple(legend), svg(WIDTH, bottom + _BOTTOM, title, parts))
+    said = "relative error of a state [1]; height: share of states [1]"
+    return Drawing(title, tuple(legend), svg(WIDTH, bottom + _BOTTOM, title, parts), said)
 
 
 def _color(engine: str) -> str:

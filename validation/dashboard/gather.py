@@ -59,23 +59,22 @@ def gather(folder: Path, installed: Mapping[str, str], today: datetime.date) -> 
 
 
 def _entry(folder: Path, topic: Topic, installed: Mapping[str, str], today: datetime.date) -> Entry:
-    nowhere, name = Provenance.of(None), topic.name
-    pages = [f"{name}.{kind}" for kind in ("html", "md", "json") if (folder / f"{name}.{kind}").is_file()]
-    page = pages[0] if pages else ""
+    pages = (f"{topic.name}.{kind}" for kind in ("html", "md", "json"))
+    page = next((page for page in pages if (folder / page).is_file()), "")
+    report, data, origin = None, {}, Provenance()
     try:
-        data = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        return Entry(topic, None, {}, nowhere, ("is not made yet",), page)
-    except (ValueError, OSError) as error:
-        return Entry(topic, None, {}, nowhere, (f"can't be read: {error}",), page)
-    origin = Provenance.of(data)
-    try:
+        data = json.loads((folder / f"{topic.name}.json").read_text(encoding="utf-8"))
+        origin = Provenance.of(data)
         report = topic.compose(data)
+        remarks = doubts(origin, installed, today)
+    except FileNotFoundError:
+        remarks = ["is not made yet"]
+    except (json.JSONDecodeError, OSError) as error:
+        remarks = [f"can't be read: {error}"]
     # A layout of another version may differ in any way; what went wrong with it is told, and the index stands.
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
-        remark = f"has a layout that is not known here ({type(error).__name__}: {error})"
-        return Entry(topic, None, {}, origin, (remark,), page)
-    return Entry(topic, report, data, origin, tuple(doubts(origin, installed, today)), page)
+        remarks = [f"has a layout that is not known here ({type(error).__name__}: {error})"]
+    return Entry(topic, report, data, origin, tuple(remarks), page)
 
 
 def doubts(origin: Provenance, installed: Mapping[str, str], today: datetime.date) -> list[str]:

@@ -91,7 +91,7 @@ def _section(name: str, entry: Entry) -> Section:
         for remark in entry.remarks
     ]
     whole = f"[The whole report]({entry.page}). " if entry.page else ""
-    origin = "; ".join(f"{what} {value}" for what, value in entry.provenance.rows())
+    origin = "; ".join(f"{what} {value}" for what, value in entry.provenance.rows)
     blocks.append(Text(f"{whole}Written by `{entry.topic.command}`{': ' if origin else ''}{origin}.", "soft"))
     ok = {"good": True, "missed": False}.get(entry.verdict)
     return Section(f"{entry.topic.group}: {entry.topic.question}", tuple(blocks), name, ok, badge=entry.verdict)

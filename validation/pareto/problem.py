@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from validation.reporting.plain import Number
+
 OURS = "symofros"
 
 
@@ -57,8 +59,8 @@ class Point:
     model: str
     method: str
     setting: str
-    error: float
-    seconds: float
+    error: Number
+    seconds: Number
     ended: str = ""
 
     @property

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from validation.pareto.problem import OURS, BenchmarkProblem, Contestant, Point, Prepared
+from validation.reporting.plain import Number
 
 # A run is repeated until it was done so often, or has taken so much time in all; always twice where it is short.
 REPEATS, ENOUGH = 9, 0.4
@@ -26,7 +27,7 @@ class Result:
     """
 
     points: tuple[Point, ...]
-    agreement: float
+    agreement: Number
     references: str
     floors: Mapping[str, float]
     seconds: float

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Annotated, Any
 
 import typer
@@ -14,28 +12,15 @@ from validation.pareto import verdicts
 from validation.pareto.catalogue import PROBLEMS
 from validation.pareto.figures import figure, letters, models_chart
 from validation.pareto.front import charted, front
-from validation.pareto.problem import BenchmarkProblem, Point
+from validation.pareto.problem import BenchmarkProblem
 from validation.pareto.race import Result, race
 from validation.reporting.command import Done, Quick, Run, known
-from validation.reporting.numbers import counted, duration, finite, short, times
+from validation.reporting.numbers import counted, duration, short, times
+from validation.reporting.plain import plain, restored
 from validation.reporting.provenance import machine, now
-from validation.reporting.record import (
-    Block,
-    Bullets,
-    Cell,
-    Data,
-    Fact,
-    Fold,
-    Report,
-    Section,
-    Table,
-    Text,
-    Topic,
-    failure_texts,
-    verdict_word,
-)
+from validation.reporting.questions import failure_texts
+from validation.reporting.record import Bullets, Cell, Column, Data, Fact, Fold, Report, Section, Table, Text, Topic
 
-ENGINES = ("mujoco", "exudyn", "pin")
 INTRO = (
     "Error against time, both logarithmic. One thread; times are those of the processor, of the stepping alone, "
     "least of up to nine repeats; models are compiled, and engines' systems assembled, before. Both sides record at "
@@ -72,9 +57,7 @@ def measure(
         problems = kept | done.results
         whole = Done(problems, done.failures, done.unfinished)
         ok = all(problem["ok"] for problem in problems.values())
-        return run.head(ok, whole, *ENGINES, quick=quick) | {
-            "problems": {n: problems[n] for n in PROBLEMS if n in problems}
-        }
+        return whole.head(ok, quick) | {"problems": {name: problems[name] for name in PROBLEMS if name in problems}}
 
     # Each is kept as soon as it is done.
     return data(run.each(names, raced, lambda done: run.save(data(done))))
@@ -90,130 +73,105 @@ def _kept(run: Run, quick: bool) -> dict[str, Any]:
 
 
 def problem_data(problem: BenchmarkProblem, result: Result, date: str) -> dict[str, Any]:
-    """A problem that was run, for JSON."""
+    """A problem that was run, for JSON: what was measured, and the verdicts on it."""
     judged = verdicts.verdicts(problem, result.points)
-    points = [asdict(p) | {"error": finite(p.error), "seconds": finite(p.seconds)} for p in result.points]
     return {
+        **plain(result),
         "title": problem.title,
-        "measure": problem.measure,
         "ok": result.agreement <= problem.trust and all(v.ok for v in judged),
         "date": date,
-        "agreement": finite(result.agreement),
-        "trust": problem.trust,
-        "references": result.references,
-        "floors": dict(result.floors),
-        "seconds": round(result.seconds, 1),
         "targets": [
-            asdict(v.target) | {"found": "only ours" if math.isinf(v.ratio) else finite(v.ratio), "ok": v.ok}
+            {**vars(v.target), "found": "only ours" if math.isinf(v.ratio) else plain(v.ratio), "ok": v.ok}
             for v in judged
         ],
         "words": [*verdicts.compared(problem, result.points), *verdicts.advice(problem, result)],
         "front": [point.name for point in front(charted(problem, result.points))],
-        "points": points,
     }
 
 
-def result_of(problem: Data) -> Result:
-    """The result that `problem_data` wrote."""
-
-    def real(x: float | None) -> float:
-        return math.nan if x is None else float(x)
-
-    points = tuple(Point(**p | {"error": real(p["error"]), "seconds": real(p["seconds"])}) for p in problem["points"])
-    return Result(points, real(problem["agreement"]), problem["references"], problem["floors"], problem["seconds"])
+_TARGETS: dict[str, Column] = {
+    "problem": lambda row: f"[{row[1].title}](#{row[0]})",
+    "#at error": lambda row: row[1].shown(row[2].target.error),
+    "against": lambda row: row[2].target.engine,
+    "#ours": lambda row: duration(row[2].seconds),
+    "#its best": lambda row: duration(row[2].engine_seconds),
+    "#ratio": lambda row: Cell("only ours" if math.isinf(row[2].ratio) else f"{row[2].ratio:.3g}", row[2].ok),
+    "#asked": lambda row: short(row[2].target.ratio),
+    "verdict": lambda row: "ok" if row[2].ok else "missed",
+}
 
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    results = {name: (PROBLEMS[name], result_of(problem)) for name, problem in data["problems"].items()}
-    failures, unfinished = data["failures"], tuple(data["unfinished"])
+    results = {name: (PROBLEMS[name], restored(Result, problem)) for name, problem in data["problems"].items()}
+    failures, unfinished = failure_texts(data["failures"]), tuple(data["unfinished"])
     targets = [target for problem in data["problems"].values() for target in problem["targets"]]
-    met = sum(target["ok"] for target in targets)
+    met, problems = sum(target["ok"] for target in targets), counted(len(results), "problem")
     runs = sum(len(result.points) for _, result in results.values())
     doubted = [name for name, (problem, result) in results.items() if not result.agreement <= problem.trust]
-    said = f"{met} of {counted(len(targets), 'target')} met, in {counted(len(results), 'problem')}"
+    said = f"{met} of {counted(len(targets), 'target')} met, in {problems}"
     said += " (quick variant: few contestants, so its ratios mean little)" if data["quick"] else ""
     said += f"; references disagree on {', '.join(doubted)}" if doubted else ""
     said += f"; {counted(len(failures), 'problem')} could not be done" if failures else ""
     said += f"; interrupted before {', '.join(unfinished)}" if unfinished else ""
     most = max((t["found"] for t in targets if isinstance(t["found"], float)), default=0.0)
-    table = _targets(results)
+    verdict_rows = [
+        (n, problem, v) for n, (problem, result) in results.items() for v in verdicts.verdicts(problem, result.points)
+    ]
+    table = Table.of(verdict_rows, _TARGETS)
     advice = tuple(
-        f"**{problem.title}.** {_which(problem, result)} {verdicts.methods(problem, result)}"
+        f"**{problem.title}.** {verdicts.which(problem, result)} {verdicts.methods(problem, result)}"
         for problem, result in results.values()
     )
-    which: tuple[Block, ...] = (verdicts.overall(results), table, Bullets(advice))
-    first = next(iter(results.values()), None)
     return Report(
         "Speed against accuracy",
         f"{said}.",
         bool(data["ok"]),
-        (*INTRO, *failure_texts(failures)),
+        (*INTRO, *failures),
         (
-            Section("Which to use when", which, "which"),
+            Section("Which to use when", (verdicts.overall(results), table, Bullets(advice)), "which"),
             *(_section(name, *results[name], problem, data["quick"]) for name, problem in data["problems"].items()),
         ),
         (
             Fact(f"{met} of {len(targets)}", "targets are met", met == len(targets)),
-            Fact(str(runs), f"ways through {counted(len(results), 'problem')}"),
+            Fact(str(runs), f"ways through {problems}"),
             Fact(times(most), "an engine's best time over ours, at equal error, where it is most"),
         ),
-        (models_chart(*first),) if first else (),
-        (table, *failure_texts(failures)),
+        tuple(models_chart(*first) for first in list(results.values())[:1]),
+        (table, *failures),
         unfinished,
     )
 
 
-def _targets(results: Mapping[str, tuple[BenchmarkProblem, Result]]) -> Table:
-    head = ("problem", "#at error", "against", "#ours", "#its best", "#ratio", "#asked", "verdict")
-    rows = [
-        (
-            f"[{problem.title}](#{name})",
-            problem.shown(v.target.error),
-            v.target.engine,
-            duration(v.seconds),
-            duration(v.engine_seconds),
-            Cell("only ours" if math.isinf(v.ratio) else f"{v.ratio:.3g}", v.ok),
-            short(v.target.ratio),
-            verdict_word(v.ok),
-        )
-        for name, (problem, result) in results.items()
-        for v in verdicts.verdicts(problem, result.points)
-    ]
-    return Table(head, tuple(rows))
-
-
-def _which(problem: BenchmarkProblem, result: Result) -> str:
-    return " ".join([*verdicts.compared(problem, result.points), verdicts.below_the_floor(problem, result)]).strip()
-
-
 def _section(name: str, problem: BenchmarkProblem, result: Result, data: Data, quick: bool) -> Section:
     best = front(charted(problem, result.points))
-    rows = tuple(
-        (letter, p.who, p.model, p.method, p.setting, problem.shown(p.error), duration(p.seconds))
-        for letter, p in zip(letters(len(best)), best, strict=True)
-    )
-    trusted = result.agreement <= problem.trust
-    agree = problem.shown(result.agreement)
+    rows = [(letter, point) for letter, point in zip(letters(len(best)), best, strict=True)]
+    runs: dict[str, Column] = {
+        "run": lambda row: row[0],
+        **{name: _field(name) for name in ("who", "model", "method")},
+        "step or tolerance": _field("setting"),
+        "#error": lambda row: problem.shown(row[1].error),
+        "#time": lambda row: duration(row[1].seconds),
+    }
+    agree = f"They agree to {problem.shown(result.agreement)}; asked for is {problem.shown(problem.trust)}."
     command = f"python -m validation pareto --problem {name}{' --quick' if quick else ''}"
-    blocks: tuple[Block, ...] = (
+    ended = Bullets(tuple(verdicts.refused(result)))
+    blocks = (
         f"{problem.setting} **Error:** {problem.measure}.",
         figure(problem, result, verdicts.see(problem, result)),
-        Text(f"**Which when.** {_which(problem, result)}", "advice"),
-        Table(("run", "who", "model", "method", "step or tolerance", "#error", "#time"), rows),
+        Text(f"**Which when.** {verdicts.which(problem, result)}", "advice"),
+        Table.of(rows, runs),
         f"**Tuned:** {problem.tuned}",
-        Text(
-            f"**References:** {result.references}. They agree to {agree}; asked for is {problem.shown(problem.trust)}.",
-            "plain" if trusted else "bad",
-        ),
-        Fold(
-            f"{len(result.points)} runs; those that did not come to their end",
-            (Bullets(tuple(verdicts.refused(result))),),
-            page_only=True,
-        ),
+        Text(f"**References:** {result.references}. {agree}", "plain" if result.agreement <= problem.trust else "bad"),
+        Fold(f"{len(result.points)} runs; those that did not come to their end", (ended,), page_only=True),
         Text(f"`{command}`, {result.seconds:.0f} s, {data['date']}. Sources: {'; '.join(problem.sources)}.", "soft"),
     )
     return Section(problem.title, blocks, name, bool(data["ok"]))
+
+
+def _field(name: str) -> Column:
+    """A field of the point of a row."""
+    return lambda row: str(getattr(row[1], name))
 
 
 TOPIC = Topic("pareto", "Accuracy against time", "Which model is the cheapest that is good enough?", compose)

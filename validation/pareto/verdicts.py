@@ -94,6 +94,11 @@ def below_the_floor(problem: BenchmarkProblem, result: Result) -> str:
     )
 
 
+def which(problem: BenchmarkProblem, result: Result) -> str:
+    """Who wins at the errors that are asked for, and below the floor of our beams."""
+    return " ".join([*compared(problem, result.points), below_the_floor(problem, result)]).strip()
+
+
 def methods(problem: BenchmarkProblem, result: Result) -> str:
     """Which of our methods is first at the errors that matter."""
     mine = [p for p in usable(result.points) if p.who == OURS]

@@ -13,7 +13,6 @@ from validation.passes.measure import ALL, APART, MODELS
 from validation.passes.measure import measure as measured
 from validation.reporting.command import Run, known
 from validation.reporting.numbers import counted, times
-from validation.reporting.provenance import stamp
 from validation.reporting.record import Column, Data, Fact, Report, Section, Table, Topic
 
 _REPEATS = 101
@@ -43,7 +42,7 @@ def measure(
     chosen = known(models, MODELS, "--model", "model")
     run.expect(len(chosen) * len(ABLATIONS))
     rows = [asdict(row) for label in chosen for row in measured(label, repeats, run.advance)]
-    return {**stamp(), "seconds": run.seconds, "rows": rows}
+    return {"rows": rows}
 
 
 def compose(data: Data) -> Report:

@@ -61,24 +61,6 @@ def grid(x: Axis, y: Axis) -> list[str]:
     return [*parts, line("axis", x.start, x.end, y.start, y.start), line("axis", x.start, x.start, y.start, y.end)]
 
 
-def names(x: tuple[float, float], y: tuple[float, float], height: float, x_name: str, y_name: str) -> list[str]:
-    """What the two axes are, beside them.
-
-    Args:
-        x: Ends of the abscissa [px].
-        y: Ends of the ordinate [px].
-        height: Height of the picture [px].
-        x_name: Name and unit of the abscissa.
-        y_name: Name and unit of the ordinate.
-    """
-    middle = (y[0] + y[1]) / 2
-    turned = f'transform="rotate(-90 16 {middle:.0f})"'
-    return [
-        text((x[0] + x[1]) / 2, height - 10, escape(x_name), "middle", "name"),
-        f'<text class="name" x="16" y="{middle:.0f}" text-anchor="middle" {turned}>{escape(y_name)}</text>',
-    ]
-
-
 def line(kind: str, x1: float, x2: float, y1: float, y2: float) -> str:
     """A straight line of a kind that the style sheet knows."""
     return f'<line class="{kind}" x1="{x1:.1f}" x2="{x2:.1f}" y1="{y1:.1f}" y2="{y2:.1f}"/>'

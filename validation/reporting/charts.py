@@ -8,12 +8,12 @@ from html import escape
 import numpy as np
 
 from validation.mechanics.geometry import Array
-from validation.reporting.axes import Axis, grid, line, names, point, svg, text
+from validation.reporting.axes import Axis, grid, line, point, svg, text
 from validation.reporting.figures import Chart, Curve, Drawing
 from validation.reporting.numbers import short
 
-WIDTH, HEIGHT = 620, 400
-_LEFT, _RIGHT, _TOP, _BOTTOM = 78, 14, 12, 52
+WIDTH, HEIGHT = 620, 376
+_LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 12, 28
 # Points of a polyline; more are not seen.
 _MOST_POINTS = 600
 # Styles of the lines of limits.
@@ -27,13 +27,12 @@ def draw(chart: Chart) -> Drawing:
     parts += [_limit(chart, k, x, y) for k in range(len(chart.marks))]
     parts += [_curve(curve, chart, x, y) for curve in chart.curves]
     parts += [text(x.at(tag.x) - 5, y.at(tag.y) + 14, escape(tag.label), "end", "tag") for tag in chart.tags]
-    parts += names((x.start, x.end), (y.start, y.end), HEIGHT, chart.x, chart.y)
     legend = [(_sample(curve), curve.label) for curve in chart.curves]
     legend += [
         (line(f"limit l{k % _LIMITS}", 0, 24, 6, 6), f"{mark.label}: {short(float(format(mark.at, '.3g')))}")
         for k, mark in enumerate(chart.marks)
     ]
-    return Drawing(chart.title, tuple(legend), svg(WIDTH, HEIGHT, chart.title, parts))
+    return Drawing(chart.title, tuple(legend), svg(WIDTH, HEIGHT, chart.title, parts), chart.x, chart.y)
 
 
 def _axes(chart: Chart) -> tuple[Axis, Axis]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 import time
-from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from pathlib import Path
@@ -55,6 +54,15 @@ class Done:
     failures: dict[str, str] = field(default_factory=dict)
     unfinished: tuple[str, ...] = ()
 
+    def head(self, ok: bool, quick: bool) -> dict[str, Any]:
+        """How they went, for JSON; `ok`: whether the results are what was asked for."""
+        return {
+            "ok": ok and bool(self.results) and not self.failures and not self.unfinished,
+            "quick": quick,
+            "failures": self.failures,
+            "unfinished": self.unfinished,
+        }
+
 
 def progress_bar(console: Console) -> Progress:
     """A bar for eyes: a file or a pipe gets nothing."""
@@ -74,22 +82,20 @@ class Run:
         self.topic, self.folder = topic, folder
         self.start = time.perf_counter()
         self._console = Console(stderr=True)
-        self._bar = progress_bar(self._console)
-        self._task = self._bar.add_task(topic.name, total=None)
-
-    @contextmanager
-    def progress(self) -> Iterator[None]:
-        """The bar is there meanwhile."""
-        with self._bar:
-            yield
+        self.bar = progress_bar(self._console)
+        self._task = self.bar.add_task(topic.name, total=None)
 
     def expect(self, total: int, doing: str | None = None) -> None:
         """So many steps are to be done."""
-        self._bar.reset(self._task, total=total, description=doing or self.topic.name)
+        self.bar.reset(self._task, total=total, description=doing or self.topic.name)
 
     def advance(self, doing: str | None = None, steps: int = 1) -> None:
         """Steps are done; `doing` says what comes next, or came out."""
-        self._bar.update(self._task, advance=steps, description=doing)
+        self.bar.update(self._task, advance=steps, description=doing)
+
+    def reached(self, number: int) -> None:
+        """So many steps are done in all."""
+        self.bar.update(self._task, completed=number)
 
     def say(self, text: str, bad: bool = False) -> None:
         """A line on the error stream."""
@@ -115,25 +121,18 @@ class Run:
             after(Done(done.results, done.failures, tuple(names[position + 1 :])))
         return done
 
-    def head(self, ok: bool, done: Done, *tools: str, quick: bool = False) -> dict[str, Any]:
-        """How a run of several parts went and on what, for JSON; `tools`: packages whose versions matter."""
-        return {
-            "ok": ok and bool(done.results) and not done.failures and not done.unfinished,
-            "quick": quick,
-            "seconds": self.seconds,
-            "failures": done.failures,
-            "unfinished": done.unfinished,
-            **stamp(*tools),
-        }
-
     @property
     def seconds(self) -> float:
         """Wall time so far."""
         return round(time.perf_counter() - self.start, 1)
 
-    def save(self, data: Data) -> Report:
+    def stamped(self, data: Data) -> Data:
+        """All of the JSON: with the origin of the numbers, where the data does not state it."""
+        return {"seconds": self.seconds, **stamp(), **data}
+
+    def save(self, data: Data) -> None:
         """Write the report as far as it is."""
-        return write(self.topic, data, self.folder)
+        write(self.topic, self.stamped(data), self.folder)
 
 
 Measure = Callable[..., Data]
@@ -146,19 +145,17 @@ def write(topic: Topic, data: Data, folder: Path) -> Report:
         OSError: The folder can't be written to.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    write_atomically(folder / f"{topic.name}.json", json.dumps(data, allow_nan=False) + "\n")
-    return render(topic, json.loads(json.dumps(data)), folder)
+    text = json.dumps(data, allow_nan=False)
+    write_atomically(folder / f"{topic.name}.json", f"{text}\n")
+    return render(topic, json.loads(text), folder)
 
 
 def render(topic: Topic, data: Data, folder: Path) -> Report:
     """Write NAME.md and NAME.html from what NAME.json holds."""
     report, provenance = topic.compose(data), Provenance.of(data)
-    written = f"Written by `{topic.command}`; everything is in `{topic.name}.json`"
-    page = html.page(report, provenance, f"{written}.")
-    write_atomically(folder / f"{topic.name}.html", page)
-    write_atomically(
-        folder / f"{topic.name}.md", markdown.page(report, provenance, f"{written}, figures in `{topic.name}.html`.")
-    )
+    written = f"Written by `{topic.command}`; everything is in `{topic.name}.json`, figures in `{topic.name}.html`."
+    for kind, renderer in (("html", html), ("md", markdown)):
+        write_atomically(folder / f"{topic.name}.{kind}", renderer.page(report, provenance, written))
     return report
 
 
@@ -186,15 +183,15 @@ def execute(
     """
     run = Run(topic, folder)
     try:
-        with run.progress():
+        with run.bar:
             data = measure(run, **options)
     except KeyboardInterrupt:
         run.say(f"{topic.name}: interrupted, nothing is written", bad=True)
         raise typer.Exit(Exit.INTERRUPTED) from None
-    report = run.save(data)
+    data = run.stamped(data)
+    report = write(topic, data, run.folder)
     if as_json:
-        chosen = {name: data[name] for name in printed} if printed else data
-        typer.echo(json.dumps(chosen, allow_nan=False))
+        typer.echo(json.dumps({name: data[name] for name in printed or data}, allow_nan=False))
     else:
         terminal.show(report)
         typer.echo(f"Report: {run.folder / topic.name}.html")

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import PlainValidator
 
 from validation.mechanics.geometry import Array
-from validation.reporting.numbers import rounded
+from validation.reporting.plain import as_array
 
-Values = Array | Sequence[float]
+Values = Annotated[Array | Sequence[float], PlainValidator(as_array)]
 Kind = Literal["line", "dashed", "dotted", "points", "joined"]
 Logarithmic = Literal["", "x", "y", "xy"]
 # Colours of the page, and shapes of points: a pair of the two tells more series apart than colours alone.
@@ -39,6 +40,16 @@ class Curve:
     kind: Kind = "line"
     shape: int = 0
     hints: tuple[str, ...] = ()
+
+
+def curves(
+    x: Any, named: Mapping[str, Any], kind: Kind = "joined", colors: Mapping[str, int] | None = None
+) -> tuple[Curve, ...]:
+    """Curves over common abscissae, by label; colours are those of the labels, or follow their order."""
+    return tuple(
+        Curve(label, x, np.asarray(y, float), k if colors is None else colors[label], kind)
+        for k, (label, y) in enumerate(named.items())
+    )
 
 
 @dataclass(frozen=True)
@@ -90,51 +101,6 @@ class Chart:
     tags: tuple[Tag, ...] = ()
     equal: bool = False
 
-    def data(self) -> dict[str, Any]:
-        """The chart for JSON."""
-        marks: dict[str, dict[str, float]] = {"x": {}, "y": {}}
-        for mark in self.marks:
-            marks[mark.axis][mark.label] = mark.at
-        curves = [
-            {"label": c.label, "kind": c.kind, "color": c.color, "x": rounded(c.x), "y": rounded(c.y)}
-            for c in self.curves
-        ]
-        return {
-            "title": self.title,
-            "x": self.x,
-            "y": self.y,
-            "log": ["x" in self.log, "y" in self.log],
-            "curves": curves,
-            "marks": marks["y"],
-            "marks_x": marks["x"],
-            "range_y": self.range_y,
-            "tags": [[tag.label, tag.x, tag.y] for tag in self.tags],
-            "equal": self.equal,
-        }
-
-    @classmethod
-    def of(cls, data: Mapping[str, Any]) -> Chart:
-        """The chart that `data` wrote; of reports made before axes of limits were kept, it has no limits."""
-        curves = tuple(
-            Curve(c["label"], np.array(c["x"], float), np.array(c["y"], float), c.get("color", k % COLORS), c["kind"])
-            for k, c in enumerate(data["curves"])
-        )
-        along = {"y": data["marks"], "x": data["marks_x"]} if "marks_x" in data else {}
-        marks = [Mark(label, at, "x" if axis == "x" else "y") for axis, of in along.items() for label, at in of.items()]
-        span = data.get("range_y")
-        logarithmic: Any = "".join(name for name, log in zip("xy", data["log"], strict=True) if log)
-        return cls(
-            data["title"],
-            data["x"],
-            data["y"],
-            curves,
-            tuple(marks),
-            log=logarithmic,
-            range_y=None if span is None else (span[0], span[1]),
-            tags=tuple(Tag(*tag) for tag in data.get("tags", ())),
-            equal=data.get("equal", False),
-        )
-
 
 @dataclass(frozen=True)
 class Drawing:
@@ -144,12 +110,15 @@ class Drawing:
         title: What it shows.
         legend: Pairs of a sample, as SVG of 24 by 12 units, and its name.
         svg: The picture as an SVG element.
+        x: Name and unit of the abscissa, written below; y: of the ordinate, written above.
         note: Further line of the legend.
     """
 
     title: str
     legend: tuple[tuple[str, str], ...]
     svg: str
+    x: str
+    y: str = ""
     note: str = ""
 
 
@@ -159,13 +128,3 @@ class Figure:
 
     caption: str
     charts: tuple[Chart | Drawing, ...]
-
-    def data(self) -> dict[str, Any]:
-        """The figure for JSON: its caption, and the curves of each chart."""
-        charts = [chart.data() for chart in self.charts if isinstance(chart, Chart)]
-        return {"caption": self.caption, "charts": charts}
-
-    @classmethod
-    def of(cls, data: Mapping[str, Any]) -> Figure:
-        """The figure that `data` wrote."""
-        return cls(data["caption"], tuple(map(Chart.of, data["charts"])))

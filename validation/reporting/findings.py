@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from pydantic import BeforeValidator
 
 from validation.mechanics.geometry import Array
 from validation.reporting.figures import Figure
-from validation.reporting.numbers import finite
+from validation.reporting.plain import Number
+
+# A bound: JSON writes null where a side is open.
+_High = Annotated[float, BeforeValidator(lambda x: math.inf if x is None else x)]
+_Low = Annotated[float, BeforeValidator(lambda x: -math.inf if x is None else x)]
 
 
 @dataclass(frozen=True)
@@ -27,28 +32,15 @@ class Finding:
     """
 
     quantity: str
-    value: float
-    high: float
-    low: float = -math.inf
+    value: Number
+    high: _High
+    low: _Low = -math.inf
     reason: str = ""
 
     @property
     def ok(self) -> bool:
         """Whether the number is within its bounds; NaN is not."""
         return bool(self.low <= self.value <= self.high)
-
-    def data(self) -> dict[str, Any]:
-        """The finding for JSON, which has neither NaN nor infinity."""
-        low, high, value = (finite(float(x)) for x in (self.low, self.high, self.value))
-        return {"what": self.quantity, "found": value, "high": high, "low": low, "reason": self.reason, "ok": self.ok}
-
-    @classmethod
-    def of(cls, data: Mapping[str, Any]) -> Finding:
-        """The finding that `data` wrote."""
-        value = math.nan if data["found"] is None else data["found"]
-        high = math.inf if data["high"] is None else data["high"]
-        low = -math.inf if data["low"] is None else data["low"]
-        return cls(data["what"], value, high, low, data["reason"])
 
 
 @dataclass(frozen=True)
@@ -67,7 +59,7 @@ class Study:
     answer: str
     figures: tuple[Figure, ...]
     findings: tuple[Finding, ...]
-    sources: tuple[str, ...] = field(default=())
+    sources: tuple[str, ...] = ()
 
     @property
     def ok(self) -> bool:

@@ -12,6 +12,20 @@ from validation.reporting.figures import Chart, Drawing, Figure
 from validation.reporting.provenance import Provenance
 from validation.reporting.record import Block, Bullets, Cell, Fact, Fold, Report, Section, Table, Text
 
+_PAGE = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>
+{style}</style>
+</head>
+<body>
+{body}
+</body>
+</html>
+"""
 # Tones of verdicts in the style sheet.
 _TONE = {True: "good", False: "bad", None: "soft"}
 # Tables of more columns are set closer.
@@ -27,25 +41,21 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
         closing: Last line.
         listed: Whether links to the sections come before them.
     """
-    style = files("validation.reporting").joinpath("style.css").read_text(encoding="utf-8")
     links = [section for section in report.sections if section.anchor]
     parts = [
         f"<h1>{escape(report.title)}</h1>",
         f'<p class="verdict {_TONE[report.ok]}">{prose(report.summary)}</p>',
         facts(report.facts),
-        *(block(one, "") for one in report.blocks),
+        *map(block, report.blocks),
         contents(links) if listed and len(links) > 1 else "",
         *(section(one, k + 1) for k, one in enumerate(report.sections)),
     ]
     if provenance is not None:
-        parts += ["<h2>Versions and machine</h2>", table(Table(("what", "value"), tuple(provenance.rows())))]
-    parts.append(f'<p class="soft">{prose(closing)}</p>' if closing else "")
+        parts += ["<h2>Versions and machine</h2>", table(Table(("what", "value"), provenance.rows))]
+    parts.append(block(Text(closing, "soft")) if closing else "")
+    style = files("validation.reporting").joinpath("style.css").read_text(encoding="utf-8")
     body = "\n".join(filter(None, parts))
-    return (
-        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(report.title)}</title>\n<style>\n{style}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n"
-    )
+    return _PAGE.format(title=escape(report.title), style=style, body=body)
 
 
 def prose(text: str) -> str:
@@ -86,7 +96,7 @@ def section(one: Section, number: int) -> str:
     return f"<h2{anchor}>{prose(one.title)}{badge}</h2>\n" + "\n".join(parts)
 
 
-def block(item: Block, figure_name: str) -> str:
+def block(item: Block, figure_name: str = "") -> str:
     """Any block."""
     match item:
         case str():
@@ -107,40 +117,33 @@ def block(item: Block, figure_name: str) -> str:
 
 
 def chart(item: Chart | Drawing) -> str:
-    """A picture under its title and legend."""
+    """A picture under its title and legend; the ordinate is named above it, the abscissa below."""
     drawing = item if isinstance(item, Drawing) else draw(item)
-    legend = [
+    samples = [
         f'<span><svg class="sample" viewBox="0 0 24 12">{sample}</svg>{escape(name)}</span>'
         for sample, name in drawing.legend
     ]
-    note = f'<p class="soft">{escape(drawing.note)}</p>' if drawing.note else ""
-    return (
-        f'<div class="chart"><h4>{escape(drawing.title)}</h4><div class="legend">{"".join(legend)}</div>{note}'
-        f"{drawing.svg}</div>"
-    )
+    lines = ("y", drawing.y), ("x", drawing.x), ("soft", drawing.note)
+    y, x, note = (f'<p class="{kind}">{escape(text)}</p>' if text else "" for kind, text in lines)
+    title, legend = f"<h4>{escape(drawing.title)}</h4>", f'<div class="legend">{"".join(samples)}</div>'
+    return f'<div class="chart">{title}{legend}{note}{y}{drawing.svg}{x}</div>'
 
 
 def table(item: Table) -> str:
-    """A table that scrolls by itself where it is wider than the page; its first column stays."""
+    """A table that scrolls by itself where it is wider than the page."""
     numeric = [name.startswith("#") for name in item.head]
-    head = "".join(
-        f"<th{' class=n' if is_number else ''}>{prose(name.removeprefix('#'))}</th>"
-        for name, is_number in zip(item.head, numeric, strict=True)
-    )
-    rows = "\n".join(
-        "<tr>" + "".join(cell(one, is_number) for one, is_number in zip(row, numeric, strict=True)) + "</tr>"
-        for row in item.rows
-    )
     dense = " class=dense" if len(item.head) > _MANY_COLUMNS else ""
-    return f'<div class="scroll"><table{dense}>\n<tr>{head}</tr>\n{rows}\n</table></div>'
+    names = [(Cell(name.removeprefix("#")), "th") for name in item.head]
+    rows = [names, *([(one if isinstance(one, Cell) else Cell(one), "td") for one in row] for row in item.rows)]
+    lines = ["".join(cell(*one, n) for one, n in zip(row, numeric, strict=True)) for row in rows]
+    body = "\n".join(f"<tr>{line}</tr>" for line in lines)
+    return f'<div class="scroll"><table{dense}>\n{body}\n</table></div>'
 
 
-def cell(item: str | Cell, is_number: bool) -> str:
-    """A cell of a table."""
-    kinds = ["n"] if is_number else []
-    if isinstance(item, str):
-        return f"<td{' class=n' if is_number else ''}>{prose(item)}</td>"
-    kinds += ["wrong"] if item.ok is False else []
-    shade = f' style="background: rgba(var(--shade), {item.shade:.2f})"' if item.shade else ""
-    hint = f' title="{escape(item.hint)}"' if item.hint else ""
-    return f'<td class="{" ".join(kinds)}"{shade}{hint}>{prose(item.text)}</td>'
+def cell(item: Cell, tag: str, is_number: bool) -> str:
+    """A cell of a table: of its head (th) or of its body (td)."""
+    kinds = " ".join(kind for kind, applies in (("n", is_number), ("wrong", item.ok is False)) if applies)
+    attributes = f' class="{kinds}"' if kinds else ""
+    attributes += f' style="background: rgba(var(--shade), {item.shade:.2f})"' if item.shade else ""
+    attributes += f' title="{escape(item.hint)}"' if item.hint else ""
+    return f"<{tag}{attributes}>{prose(item.text)}</{tag}>"

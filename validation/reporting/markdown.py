@@ -16,7 +16,7 @@ def page(report: Report, provenance: Provenance, closing: str) -> str:
     for section in report.sections:
         if not section.page_only:
             parts += [f"## {section.title}", *map(block, section.blocks)]
-    told = "; ".join(f"{name} {value}" for name, value in provenance.rows())
+    told = "; ".join(f"{name} {value}" for name, value in provenance.rows)
     parts += [f"{told}.", closing]
     return "\n\n".join(filter(None, parts)) + "\n"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -46,6 +47,11 @@ def duration(seconds: float) -> str:
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
     return f"{seconds / 1e-6:.3g} µs"
+
+
+def named(values: Mapping[str, object], separator: str) -> str:
+    """Names, each with its value."""
+    return separator.join(f"{name} {value}" for name, value in values.items())
 
 
 def finite(x: float) -> float | None:

@@ -6,18 +6,21 @@ import datetime
 import os
 import platform
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
 import symofros as sf
 from symofros.tools import DEFAULT_FLAGS, find_toolchain
+from validation.reporting.numbers import named
 
 # Packages that have a say in the numbers of one report or another.
-_PACKAGES = ("numpy", "scipy", "pin", "mujoco", "exudyn", "casadi", "example-robot-data")
-# Distribution -> further names that reports have for it.
-_ALIASES = {"pin": ("pinocchio", "pinocchio-urdf"), "mujoco": ("mujoco-urdf",)}
+_PACKAGES = tuple(
+    "numpy scipy sympy pydantic ruamel.yaml pyarrow distributed pin mujoco exudyn casadi example-robot-data".split()
+)
+# Further names that reports have for a distribution.
+_ALIASES = {"pinocchio": "pin", "pinocchio-urdf": "pin", "mujoco-urdf": "mujoco"}
 
 
 @dataclass(frozen=True)
@@ -27,77 +30,52 @@ class Provenance:
     Attributes:
         date: Time when it was made (UTC).
         machine: Processor, cores, system.
-        flags: Flags of the generated C.
-        compiler: Compiler of the generated C.
-        revision: Revision of the source.
         versions: Package -> version.
-        seconds: Wall time.
+        rows: Everything for people: pairs of what, and its value.
     """
 
-    date: str
-    machine: str
-    flags: str
-    compiler: str
-    revision: str
-    versions: dict[str, str]
-    seconds: float | None
+    date: str = ""
+    machine: str = ""
+    versions: dict[str, str] = field(default_factory=dict)
+    rows: tuple[tuple[str, str], ...] = ()
 
     @classmethod
     def of(cls, data: Any) -> Provenance:
-        """From wherever a report says it: at the top, with the machine, or among its facts."""
-        levels = [data] if isinstance(data, dict) else []
-        levels += [data[key] for level in levels for key in ("machine", "facts") if isinstance(level.get(key), dict)]
-
-        def stated(key: str, default: Any) -> Any:
-            return next((level[key] for level in levels if level.get(key)), default)
-
-        flags, versions = stated("flags", ""), stated("versions", {})
-        if isinstance(flags, dict):
-            flags = "; ".join(f"{name} {value}" for name, value in flags.items())
-        flags = flags if isinstance(flags, str) else " ".join(map(str, flags))
-        machine = [
-            str(value) for value in (stated("processor", ""), stated("cores", ""), stated("system", "")) if value
-        ]
-        if len(machine) > 1:
-            machine[1] += " cores"
-        compiler = stated("compiler", "") or "; ".join(stated("compilers", []))
-        versions = {str(name): str(value) for name, value in versions.items()} if isinstance(versions, dict) else {}
-        seconds = stated("seconds", None)
-        return cls(
-            str(stated("date", "")),
-            ", ".join(machine),
-            flags,
-            str(compiler),
-            str(stated("revision", "")),
-            versions,
-            float(seconds) if isinstance(seconds, int | float) else None,
-        )
-
-    def rows(self) -> list[tuple[str, str]]:
-        """What it says, for people."""
-        versions = ", ".join(f"{name} {version}" for name, version in self.versions.items())
-        took = "" if self.seconds is None else f"{self.seconds:.0f} s"
+        """From the top of a report, and from what it says of the machine, which may be of several compilers."""
+        stated = {**data, **data.get("machine", {})}
+        flags, cores = stated.get("flags", ""), stated.get("cores", "")
+        parts = (stated.get("processor"), f"{cores} cores" if cores else "", stated.get("system"))
+        machine = ", ".join(filter(None, parts))
         pairs = {
-            "made": self.date,
-            "took": took,
-            "machine": self.machine,
-            "versions": versions,
-            "compiler": self.compiler,
-            "flags": self.flags,
-            "revision": self.revision,
+            "made": stated.get("date", ""),
+            "took": f"{stated['seconds']:.0f} s" if "seconds" in stated else "",
+            "machine": machine,
+            "versions": named(stated.get("versions", {}), ", "),
+            "compiler": stated.get("compiler") or "; ".join(stated.get("compilers", ())),
+            "flags": named(flags, "; ") if isinstance(flags, dict) else flags,
+            "revision": stated.get("revision", ""),
         }
-        return [(name, value) for name, value in pairs.items() if value]
+        rows = tuple((what, value) for what, value in pairs.items() if value)
+        return cls(pairs["made"], machine, stated.get("versions", {}), rows)
 
 
-def stamp(*tools: str) -> dict[str, Any]:
-    """What every report states: versions, of further packages if named, machine, compilation of C, source, date."""
-    return {"versions": versions(*tools), "machine": machine(), **build(), "date": now()}
+def stamp() -> dict[str, Any]:
+    """What every report states: versions, machine, compilation of C, source, date."""
+    toolchain = find_toolchain()
+    return {
+        "versions": versions(),
+        "machine": machine(),
+        "flags": " ".join(DEFAULT_FLAGS),
+        "compiler": toolchain.identity.partition(" ")[2] if toolchain else "none",
+        "revision": revision(),
+        "date": now(),
+    }
 
 
-def versions(*tools: str) -> dict[str, str]:
-    """Ours, Python's, and those of the packages that results depend on; of further ones if named."""
+def versions() -> dict[str, str]:
+    """Ours, Python's, and those of the packages that results depend on."""
     installed = {"symofros": sf.__version__, "python": platform.python_version()}
-    for name in (*_PACKAGES, *tools):
+    for name in _PACKAGES:
         try:
             installed[name] = metadata.version(name)
         except metadata.PackageNotFoundError:
@@ -108,9 +86,7 @@ def versions(*tools: str) -> dict[str, str]:
 def versions_now() -> dict[str, str]:
     """Versions of now, under every name that a report uses."""
     installed = versions()
-    return installed | {
-        alias: installed[name] for name, aliases in _ALIASES.items() if name in installed for alias in aliases
-    }
+    return installed | {alias: installed[name] for alias, name in _ALIASES.items() if name in installed}
 
 
 def machine() -> dict[str, str]:
@@ -131,13 +107,6 @@ def _processor() -> str:
     return platform.processor() or platform.machine()
 
 
-def build() -> dict[str, str]:
-    """Flags and compiler of the generated C, and the revision of the source that makes it."""
-    toolchain = find_toolchain()
-    compiler = toolchain.identity.partition(" ")[2] if toolchain else "none"
-    return {"flags": " ".join(DEFAULT_FLAGS), "compiler": compiler, "revision": revision()}
-
-
 def now() -> str:
     """The date (UTC)."""
     return datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")
@@ -145,11 +114,12 @@ def now() -> str:
 
 def revision(folder: Path = Path(sf.__file__).parent) -> str:
     """The source's revision, "+" where files differ from it; empty where there is no repository."""
+    git = ["git", "-C", str(folder)]
     try:
-        said = [
-            subprocess.run(["git", "-C", str(folder), *words], capture_output=True, text=True, timeout=10, check=True)
+        head, changes = (
+            subprocess.run([*git, *words], capture_output=True, text=True, timeout=10, check=True).stdout.strip()
             for words in (["rev-parse", "HEAD"], ["status", "--porcelain", "--untracked-files=no", "--", "."])
-        ]
+        )
     except (OSError, subprocess.SubprocessError):
         return ""
-    return said[0].stdout.strip() + ("+" if said[1].stdout.strip() else "")
+    return head + ("+" if changes else "")

@@ -1,28 +1,25 @@
 """A report of questions: studies are asked one by one; each answers in words, figures, and numbers with bounds."""
 
 # Annotations are values here: the options of a command name its studies.
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Annotated, Any
 
 import typer
 
 from validation.reporting.command import Quick, Run, known
-from validation.reporting.figures import Chart, Figure
 from validation.reporting.findings import Finding, Question, Study
-from validation.reporting.numbers import counted
-from validation.reporting.record import (
-    Block,
-    Compose,
-    Data,
-    Fact,
-    Report,
-    Section,
-    Text,
-    bounds_kept,
-    failure_texts,
-    findings_digest,
-    findings_fold,
-)
+from validation.reporting.numbers import counted, short
+from validation.reporting.plain import plain, restored
+from validation.reporting.record import Block, Cell, Column, Compose, Data, Fact, Fold, Report, Section, Table, Text
+
+# Numbers beside their bounds, from the fields of a finding.
+_BOUNDS: dict[str, Column] = {
+    "number": "{quantity}",
+    "#found": lambda finding: Cell(short(finding["value"]), finding["ok"]),
+    "#at least": lambda finding: short(finding["low"]),
+    "#at most": lambda finding: short(finding["high"]),
+}
 
 
 def measuring(studies: Mapping[str, Question], doc: str) -> Callable[..., Data]:
@@ -43,7 +40,7 @@ def measuring(studies: Mapping[str, Question], doc: str) -> Callable[..., Data]:
 
         done = run.each(names, asked)
         ok = all(study.ok for study in done.results.values())
-        return run.head(ok, done, quick=quick) | {"studies": {name: data_of(s) for name, s in done.results.items()}}
+        return done.head(ok, quick) | {"studies": {name: data_of(study) for name, study in done.results.items()}}
 
     measure.__doc__ = doc
     return measure
@@ -51,14 +48,7 @@ def measuring(studies: Mapping[str, Question], doc: str) -> Callable[..., Data]:
 
 def data_of(study: Study) -> dict[str, Any]:
     """A study for JSON."""
-    return {
-        "title": study.title,
-        "answer": study.answer,
-        "ok": study.ok,
-        "checks": [finding.data() for finding in study.findings],
-        "sources": study.sources,
-        "figures": [figure.data() for figure in study.figures],
-    }
+    return {**plain(study), "ok": study.ok}
 
 
 def composing(title: str, theory: str, telling: Mapping[str, tuple[int, int]]) -> Compose:
@@ -69,45 +59,81 @@ def composing(title: str, theory: str, telling: Mapping[str, tuple[int, int]]) -
         theory: Page of docs/ that it rests on.
         telling: Study -> figure and chart that the index of reports shows.
     """
+    intro = (
+        "Each section asks a question, answers it from what this run measured, shows it, and lists the numbers with "
+        f"the bounds they must keep. The theory is in `{theory}`."
+    )
 
     def compose(data: Data) -> Report:
-        studies, failures = data["studies"], data.get("failures", {})
-        findings = {key: [Finding.of(check) for check in study["checks"]] for key, study in studies.items()}
-        every = [finding for group in findings.values() for finding in group]
-        verdict = bounds_kept(every) + (f"; {counted(len(failures), 'study')} could not be done" if failures else "")
-        short_way = " (quick variant: fewer points, shorter motions)" if data.get("quick") else ""
-        missed = [study["title"] for study in studies.values() if not study["ok"]]
-        intro: tuple[Block, ...] = (
-            "Each section asks a question, answers it from what this run measured, shows it, and lists the numbers "
-            f"with the bounds they must keep. The theory is in `{theory}`.",
-            *failure_texts(failures),
-        )
-        highlights = [
-            Chart.of(studies[key]["figures"][figure]["charts"][chart])
-            for key, (figure, chart) in telling.items()
-            if key in studies and studies[key]["figures"]
-        ]
-        return Report(
+        studies = {name: restored(Study, study) for name, study in data["studies"].items()}
+        figures = {name: study.figures for name, study in studies.items()}
+        missed = (Fact("missed", study.title, False) for study in studies.values() if not study.ok)
+        draft = Report(
             title,
-            f"{counted(len(every), 'number')} on {counted(len(studies), 'question')}: {verdict}{short_way}.",
-            bool(data["ok"]),
-            intro,
-            tuple(_section(key, study, findings[key]) for key, study in studies.items()),
-            (
-                Fact(str(len(studies)), "questions answered"),
-                Fact(str(len(every)), f"numbers, {bounds_kept(every)}", bool(data["ok"])),
-                *(Fact("missed", question, False) for question in missed),
-            ),
-            tuple(highlights),
-            (findings_digest(findings, failures, "study"),),
-            tuple(data.get("unfinished", ())),
+            f"on {counted(len(studies), 'question')}",
+            None,
+            (intro,),
+            tuple(_section(name, study) for name, study in studies.items()),
+            (Fact(str(len(studies)), "questions answered"), *missed),
+            tuple(figures[name][i].charts[j] for name, (i, j) in telling.items() if figures.get(name)),
         )
+        return judged(draft, data, {name: study.findings for name, study in studies.items()}, "study", "number")
 
     return compose
 
 
-def _section(name: str, study: Data, findings: list[Finding]) -> Section:
-    sources = "; ".join(study["sources"])
-    blocks: list[Block] = [study["answer"], *map(Figure.of, study["figures"]), findings_fold(findings, "number")]
-    blocks += [Text(f"Reference numbers: {sources}.", "soft")] if sources else []
-    return Section(study["title"], tuple(blocks), name, bool(study["ok"]))
+def _section(name: str, study: Study) -> Section:
+    blocks: list[Block] = [study.answer, *study.figures, findings_fold(study.findings, "number")]
+    blocks += [Text(f"Reference numbers: {'; '.join(study.sources)}.", "soft")] if study.sources else []
+    return Section(study.title, tuple(blocks), name, study.ok)
+
+
+def judged(draft: Report, data: Data, findings: Mapping[str, Sequence[Finding]], part: str, number: str) -> Report:
+    """A draft of a report whose parts state numbers with bounds, with its verdict.
+
+    Args:
+        draft: Report whose summary says of what the numbers are.
+        data: JSON of the report, with what `Done.head` states.
+        findings: Part -> its numbers.
+        part: What a part is called.
+        number: What a number is called.
+    """
+    rows = [(name, finding) for name, group in findings.items() for finding in group]
+    failures, unfinished = data.get("failures", {}), tuple(data.get("unfinished", ()))
+    missed = sum(not finding.ok for _, finding in rows)
+    kept = f"{missed} miss their bounds" if missed else "all within their bounds"
+    failed = f"; {counted(len(failures), part)} could not be done" if failures else ""
+    quick = " (quick variant: fewer points, shorter motions)" if data.get("quick") else ""
+    cut = f" Interrupted: {', '.join(unfinished)} not done." if unfinished else ""
+    ok, reasons = bool(data["ok"]), failure_texts(failures)
+    lines = [{part: name, "ok": finding.ok, **vars(finding)} for name, finding in rows]
+    return replace(
+        draft,
+        summary=f"{counted(len(rows), number)} {draft.summary}: {kept}{failed}{quick}.{cut}",
+        ok=ok,
+        blocks=(*draft.blocks, *reasons),
+        facts=(*draft.facts, Fact(str(len(rows)), f"{number}s, {kept}", ok)),
+        digest=(Table.of(lines, {part: f"{{{part}}}", **_BOUNDS}), *reasons),
+        unfinished=unfinished,
+    )
+
+
+def findings_fold(findings: Sequence[Finding], noun: str, more: str = "", *blocks: Block) -> Fold:
+    """The numbers, and blocks that belong to them, open where one misses its bounds.
+
+    Args:
+        findings: Numbers.
+        noun: What a number is called.
+        more: What else the line says is there.
+        blocks: Blocks after the numbers.
+    """
+    missed = sum(not finding.ok for finding in findings)
+    said = f"{counted(len(findings), noun)} and their bounds" + (f": **{missed} missed**" if missed else "") + more
+    lines = [{"ok": finding.ok, **vars(finding)} for finding in findings]
+    table = Table.of(lines, {**_BOUNDS, "reason of the bound": "{reason}"})
+    return Fold(said, (table, *blocks), opened=bool(missed))
+
+
+def failure_texts(failures: Mapping[str, str]) -> tuple[Text, ...]:
+    """The parts that could not be done, with their reasons."""
+    return tuple(Text(f"{name} could not be done: {reason}", "bad") for name, reason in failures.items())

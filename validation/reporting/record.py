@@ -5,13 +5,11 @@ Texts may hold `code`, **bold** and [links](#anchor), as in Markdown, and nothin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from validation.reporting.figures import Chart, Drawing, Figure
-from validation.reporting.findings import Finding
-from validation.reporting.numbers import counted, short
 
 Tone = Literal["plain", "soft", "bad", "advice"]
 
@@ -159,7 +157,7 @@ class Report:
         sections: Parts under headings.
         facts: Key numbers, for the top of the page and for the index of reports.
         highlights: Most telling charts, for the index of reports.
-        digest: Lines that a terminal shows.
+        digest: Blocks that a terminal shows; by default the tables and lists of the summary.
         unfinished: Names of parts that an interrupt cut.
         refused: Inputs that could not be read, where nothing else is wrong.
     """
@@ -179,6 +177,12 @@ class Report:
     def verdict(self) -> str:
         """The verdict in a word."""
         return {True: "good", False: "missed", None: "measured"}[self.ok]
+
+    @property
+    def brief(self) -> tuple[Block, ...]:
+        """Blocks that a terminal shows."""
+        stated = (block for section in self.sections if not section.page_only for block in section.blocks)
+        return self.digest or tuple(block for block in stated if isinstance(block, Table | Bullets))
 
 
 # The JSON of a report, and what makes a report of it.
@@ -210,43 +214,3 @@ class Topic:
     def command(self) -> str:
         """What writes it."""
         return " ".join(("python -m validation", *((self.name,) if self.arguments is None else self.arguments)))
-
-
-def findings_table(findings: Sequence[Finding]) -> Table:
-    """Numbers beside their bounds."""
-    rows = tuple((f.quantity, Cell(short(f.value), f.ok), short(f.low), short(f.high), f.reason) for f in findings)
-    return Table(("number", "#found", "#at least", "#at most", "reason of the bound"), rows)
-
-
-def findings_fold(findings: Sequence[Finding], noun: str) -> Fold:
-    """The numbers, open where one misses its bounds."""
-    missed = sum(not f.ok for f in findings)
-    said = f"{counted(len(findings), noun)} and their bounds" + (f": **{missed} missed**" if missed else "")
-    return Fold(said, (findings_table(findings),), opened=bool(missed))
-
-
-def findings_digest(groups: Mapping[str, Sequence[Finding]], failures: Mapping[str, str], noun: str) -> Table:
-    """The numbers of several parts, for a terminal."""
-    rows: list[tuple[str | Cell, ...]] = [
-        (name, f.quantity, Cell(short(f.value), f.ok), f"{short(f.low)} … {short(f.high)}", verdict_word(f.ok))
-        for name, findings in groups.items()
-        for f in findings
-    ]
-    rows += [(name, Cell(reason, False), "", "", "failed") for name, reason in failures.items()]
-    return Table((noun, "number", "#found", "bounds", "verdict"), tuple(rows))
-
-
-def failure_texts(failures: Mapping[str, str]) -> tuple[Text, ...]:
-    """The parts that could not be done, with their reasons."""
-    return tuple(Text(f"{name} could not be done: {reason}", "bad") for name, reason in failures.items())
-
-
-def verdict_word(ok: bool) -> str:
-    """For a column of verdicts."""
-    return "ok" if ok else "missed"
-
-
-def bounds_kept(findings: Sequence[Finding]) -> str:
-    """What findings come to, in words."""
-    missed = sum(not f.ok for f in findings)
-    return f"{missed} miss their bounds" if missed else "all within their bounds"

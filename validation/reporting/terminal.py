@@ -28,7 +28,7 @@ def output() -> Console:
 def show(report: Report) -> None:
     """Print the digest and the summary."""
     console = output()
-    for block in report.digest:
+    for block in report.brief:
         _print(block, console)
     console.print(RichText(report.summary, style=_STYLE[report.ok]), soft_wrap=True)
 

@@ -9,14 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from validation.mechanics.geometry import Array
-from validation.reporting.axes import Axis, line, names, shown, svg, text
+from validation.reporting.axes import Axis, line, shown, svg, text
 from validation.reporting.figures import Drawing
 from validation.stability.study import FINISHED, Grid, Limit, Map
 
-WIDTH, HEIGHT = 620, 400
-_RIGHT, _TOP, _BOTTOM = 14, 12, 52
+WIDTH, HEIGHT = 620, 376
+_RIGHT, _TOP, _BOTTOM = 14, 12, 28
 # Width of a letter [px].
-_LETTER = 7.0
+_LETTER = 7.5
 # Decades below and above the bound at which colours are full.
 _DEEP = {"good": 8.0, "bad": 4.0}
 # Opacity from which on light letters are read more easily.
@@ -38,7 +38,7 @@ def draw(mapped: Map, x: Grid, y: Grid, quantity: str) -> Drawing:
         quantity: Quantity of the criterion, with its unit.
     """
     longest = max(len(y.label(value)) for value in mapped.y) if y.labels else 0
-    left = 46.0 + max(_LETTER * longest, 34.0)
+    left = 20.0 + max(_LETTER * longest, 34.0)
     columns, across = _borders(mapped.x, x, left, WIDTH - _RIGHT)
     rows, down = _borders(mapped.y, y, HEIGHT - _BOTTOM, _TOP)
     parts = _cells(mapped, columns, rows)
@@ -46,9 +46,8 @@ def draw(mapped: Map, x: Grid, y: Grid, quantity: str) -> Drawing:
     parts += _named(mapped.x, x, across, columns, "x", rows[0])
     parts += _named(mapped.y, y, down, rows, "y", left)
     parts += [_limit(limit, across, down, k) for k, limit in enumerate(mapped.subject.limits)]
-    parts += names((left, WIDTH - _RIGHT), (_TOP, HEIGHT - _BOTTOM), HEIGHT, x.name, y.name)
     picture = svg(WIDTH, HEIGHT, mapped.subject.name, parts, "map")
-    return Drawing(mapped.subject.name, _legend(mapped), picture, f"numbers: decade of the {quantity}")
+    return Drawing(mapped.subject.name, _legend(mapped), picture, x.name, y.name, f"numbers: decade of the {quantity}")
 
 
 def _borders(values: Array, grid: Grid, start: float, end: float) -> tuple[list[float], Axis | None]:

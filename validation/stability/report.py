@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections import Counter
-from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -15,25 +14,13 @@ from validation.reporting.command import Quick, Run, known
 from validation.reporting.figures import Chart, Curve, Figure
 from validation.reporting.findings import Finding
 from validation.reporting.numbers import counted, rounded, short
-from validation.reporting.record import (
-    Block,
-    Bullets,
-    Data,
-    Fact,
-    Report,
-    Section,
-    Text,
-    Topic,
-    bounds_kept,
-    failure_texts,
-    findings_digest,
-    findings_fold,
-)
+from validation.reporting.plain import plain, restored
+from validation.reporting.questions import findings_fold, judged
+from validation.reporting.record import Bullets, Data, Fact, Report, Section, Text, Topic
 from validation.stability import heatmap
 from validation.stability.catalogue import STUDIES
 from validation.stability.study import FINISHED, Cell, Grid, Map, ParameterStudy, survey
 
-ENGINES = ("mujoco", "exudyn", "pin")
 INTRO = (
     "Where simulations fail, and what to use instead. Each map runs one study over two parameters: a cell is a run, "
     "blue where it meets the criterion, orange where it comes to its end and misses it, red where it ended before "
@@ -67,28 +54,20 @@ def measure(
 
     done = run.each(wanted, surveyed)
     ok = all(study["ok"] for study in done.results.values())
-    return run.head(ok, done, *ENGINES, quick=quick) | {"studies": done.results}
+    return done.head(ok, quick) | {"studies": done.results}
 
 
 def study_data(study: ParameterStudy, quick: bool, run: Run) -> dict[str, Any]:
-    """Run one study and judge it."""
+    """Run one study and judge it; what is asked and how stands in the study."""
     start = time.perf_counter()
     maps = survey(study, quick, run.advance)
     verdict = study.judge(maps)
     return {
-        "question": study.question,
-        "setting": study.setting,
-        "x": study.x.name,
-        "y": study.y.name,
-        "quantity": study.quantity,
-        "bound": study.bound,
         "verdict": verdict.statement,
         "see": verdict.see,
-        "advice": study.advice,
-        "sources": study.sources,
         "ok": all(finding.ok for finding in verdict.findings),
         "seconds": round(time.perf_counter() - start, 1),
-        "checks": [finding.data() for finding in verdict.findings],
+        "findings": plain(verdict.findings),
         "maps": {name: _map_data(study, one) for name, one in maps.items()},
     }
 
@@ -108,18 +87,16 @@ def maps_of(study: ParameterStudy, data: Data) -> dict[str, Map]:
     """The maps that a report holds, with the closed forms of the study's subjects."""
     subjects = {subject.name: subject for subject in study.subjects}
     return {
-        name: Map(
-            subjects[name],
-            _values(study.x, one["x"]),
-            _values(study.y, one["y"]),
-            tuple(
-                tuple(Cell(math.nan if v is None else v, e) for v, e in zip(values, ends, strict=True))
-                for values, ends in zip(one["values"], one["ended"], strict=True)
-            ),
-            study.bound,
-        )
+        name: Map(subjects[name], _values(study.x, one["x"]), _values(study.y, one["y"]), _cells(one), study.bound)
         for name, one in data["maps"].items()
     }
+
+
+def _cells(one: Data) -> tuple[tuple[Cell, ...], ...]:
+    return tuple(
+        tuple(Cell(math.nan if value is None else value, ended) for value, ended in zip(*row, strict=True))
+        for row in zip(one["values"], one["ended"], strict=True)
+    )
 
 
 def _values(grid: Grid, stated: list[Any]) -> np.ndarray:
@@ -128,51 +105,37 @@ def _values(grid: Grid, stated: list[Any]) -> np.ndarray:
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    studies, failures = data["studies"], data["failures"]
-    findings = {name: [Finding.of(check) for check in study["checks"]] for name, study in studies.items()}
-    every = [finding for group in findings.values() for finding in group]
+    studies = data["studies"]
+    findings = {name: restored(tuple[Finding, ...], study["findings"]) for name, study in studies.items()}
     runs = sum(len(row) for study in studies.values() for one in study["maps"].values() for row in one["values"])
-    quick = " (quick variant: coarse grids)" if data["quick"] else ""
-    failed = f"; {counted(len(failures), 'study')} could not be done" if failures else ""
-    cut = f" Interrupted: {', '.join(data['unfinished'])} not done." if data["unfinished"] else ""
-    said = f"{counted(len(every), 'claim')} about {counted(len(studies), 'study')}, {counted(runs, 'run')}"
-    return Report(
+    draft = Report(
         "Stability atlas",
-        f"{said}: {bounds_kept(every)}{failed}{quick}.{cut}",
-        bool(data["ok"]),
-        (INTRO, *failure_texts(failures)),
+        f"about {counted(len(studies), 'study')}, {counted(runs, 'run')}",
+        None,
+        (INTRO,),
         tuple(_section(name, study, findings[name], data["quick"]) for name, study in studies.items()),
-        (
-            Fact(str(len(studies)), "studies"),
-            Fact(str(runs), "runs"),
-            Fact(str(len(every)), f"claims, {bounds_kept(every)}", bool(data["ok"])),
-        ),
+        (Fact(str(len(studies)), "studies"), Fact(str(runs), "runs")),
         tuple(_energies(studies["energy"])) if "energy" in studies else (),
-        (findings_digest(findings, failures, "study"),),
-        tuple(data["unfinished"]),
     )
+    return judged(draft, data, findings, "study", "claim")
 
 
-def _section(name: str, data: Data, findings: list[Finding], quick: bool) -> Section:
+def _section(name: str, data: Data, findings: tuple[Finding, ...], quick: bool) -> Section:
     study = STUDIES[name]
     maps = maps_of(study, data)
     pictures = tuple(heatmap.draw(one, study.x, study.y, study.quantity) for one in maps.values())
-    ends = tuple(f"{who}: {_ends(one, data['maps'][who]['said'])}." for who, one in maps.items())
-    claims = findings_fold(findings, "claim")
-    details = replace(
-        claims, summary=f"{claims.summary}, and how the runs ended", blocks=(*claims.blocks, Bullets(ends))
-    )
+    ends = Bullets(tuple(f"{who}: {_ends(one, data['maps'][who]['said'])}." for who, one in maps.items()))
     command = f"python -m validation stability --study {name}{' --quick' if quick else ''}"
-    sources = f" Sources: {'; '.join(data['sources'])}." if data["sources"] else ""
-    blocks: tuple[Block, ...] = (
-        f"{data['setting']} **Criterion:** {data['quantity']} at most {short(data['bound'])}.",
+    sources = f" Sources: {'; '.join(study.sources)}." if study.sources else ""
+    blocks = (
+        f"{study.setting} **Criterion:** {study.quantity} at most {short(study.bound)}.",
         data["verdict"],
         Figure(data["see"], pictures),
-        Text(f"**Instead:** {data['advice']}", "advice"),
-        details,
+        Text(f"**Instead:** {study.advice}", "advice"),
+        findings_fold(findings, "claim", ", and how the runs ended", ends),
         Text(f"`{command}`, {data['seconds']:.0f} s.{sources}", "soft"),
     )
-    return Section(data["question"], blocks, name, bool(data["ok"]))
+    return Section(study.question, blocks, name, bool(data["ok"]))
 
 
 def _ends(one: Map, notes: list[str]) -> str:
@@ -184,13 +147,14 @@ def _ends(one: Map, notes: list[str]) -> str:
     return ", ".join(said) + (f" (such as “{notes[0]}”)" if notes else "")
 
 
-def _energies(study: Data) -> list[Chart]:
+def _energies(data: Data) -> list[Chart]:
     """Who keeps energy, over the longest runs."""
-    title, one = list(study["maps"].items())[-1]
+    study = STUDIES["energy"]
+    title, one = list(data["maps"].items())[-1]
     rows = [(name, values) for name, values in zip(one["y"], one["values"], strict=True) if name in _METHODS]
-    curves = tuple(Curve(name, one["x"], values, k, "joined") for k, (name, values) in enumerate(rows))
+    drawn = tuple(Curve(name, one["x"], values, k, "joined") for k, (name, values) in enumerate(rows))
     named = f"a pendulum's energy, {title}"
-    return [Chart(named, study["x"], study["quantity"], curves, log="xy")] if curves else []
+    return [Chart(named, study.x.name, study.quantity, drawn, log="xy")] if drawn else []
 
 
 TOPIC = Topic("stability", "Stability", "Where do simulations fail?", compose)

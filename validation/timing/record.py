@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Self
 
+from validation.reporting.plain import plain, restored
 from validation.timing.race import Times
 
 SCHEMA = 2
@@ -183,25 +184,9 @@ class Record:
 
 def as_data(record: Record) -> dict[str, Any]:
     """A record as JSON holds it; ratios are written out for readers."""
-    return {
-        "schema": SCHEMA,
-        "machine": record.machine,
-        "entries": [
-            {**asdict(x), "ratio": x.ratio, "batch_ratio": x.batch_ratio, "columns_ratio": x.columns_ratio}
-            for x in record.entries
-        ],
-        "costs": [asdict(x) for x in record.costs],
-        "skipped": record.skipped,
-        "failed": record.failed,
-        "flexible": record.flexible,
-    }
-
-
-def of(data: Mapping[str, Any]) -> Record:
-    """The record that `as_data` wrote."""
-    skipped, failed = ([(a, b, c, d) for a, b, c, d in data[name]] for name in ("skipped", "failed"))
-    entries, costs = [entry(row) for row in data["entries"]], [made(row) for row in data["costs"]]
-    return Record(entries, costs, skipped, failed, data["flexible"], data["machine"])
+    ratios = ("ratio", "batch_ratio", "columns_ratio")
+    entries = [{**plain(x), **{name: getattr(x, name) for name in ratios}} for x in record.entries]
+    return {"schema": SCHEMA, **plain(record), "entries": entries}
 
 
 def read(path: Path) -> Record:
@@ -210,18 +195,4 @@ def read(path: Path) -> Record:
         data = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return Record()
-    return of(data) if isinstance(data, dict) and data.get("schema") == SCHEMA else Record()
-
-
-def entry(row: Mapping[str, Any]) -> Entry:
-    """An entry from JSON; what was measured before there were columns has none."""
-    values: dict[str, Any] = {item.name: row.get(item.name) for item in fields(Entry)}
-    for name in ("generated_time", "batch", "peer_time", "columns", "single"):
-        values[name] = None if values[name] is None else tuple(values[name])
-    return Entry(**values)
-
-
-def made(row: Mapping[str, Any]) -> Made:
-    """A cost from JSON."""
-    values: dict[str, Any] = {item.name: row[item.name] for item in fields(Made)}
-    return Made(**values)
+    return restored(Record, data) if isinstance(data, dict) and data.get("schema") == SCHEMA else Record()

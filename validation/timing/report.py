@@ -13,12 +13,13 @@ import typer
 from validation.reporting.command import Run, known
 from validation.reporting.figures import Chart, Curve, Mark
 from validation.reporting.numbers import counted, times
-from validation.reporting.record import Data, Fact, Report, Section, Table, Topic
+from validation.reporting.plain import restored
+from validation.reporting.record import Data, Fact, Report, Topic
 from validation.timing.contestants.programs import BuildError
 from validation.timing.flexible.race import LABEL, run_flexible
 from validation.timing.flexible.report import flexible_section
 from validation.timing.models import FUNCTIONS, TIMED_MODELS
-from validation.timing.record import Entry, Record, as_data, of, read
+from validation.timing.record import Entry, Record, as_data, read
 from validation.timing.run import facts, jobs, load, prepare, run_job
 from validation.timing.tables import sections, targets_table
 from validation.timing.targets import verdicts
@@ -31,18 +32,16 @@ LIMITS = (
     "One thread, pinned to one processor, whose time on it is what is measured. All sides of a function run in one "
     "process, in turns of 10 ms or more, each a loop in C over the same random states; before, each side's results "
     "are compared with ours, to 1e-12 of the largest entry (1e-9 where a system is solved), and sides that differ are "
-    "not timed. Cells hold minimum and median over the repeats, in nanoseconds a state; ratios are of medians, the "
-    "peer's to ours.",
-    "Ours is generated C, one state after the other through the public header, in the fastest of its builds by gcc "
-    "and clang (Options(tune=True)), and (batch) several at a time by vectors, likewise, in calls of 64 states, or of "
-    "as many as keep their results within 384 KiB, by rows, by columns, and by columns of floats (checked to 5e-4, "
-    "2^29 times as coarse); results replace each other as those of the engines do, and copies of the library compute "
-    "them in turn, because where its code happens to lie matters; so with CasADi's and SymPy's. Pinocchio is its own "
-    "headers, compiled in the run by gcc and by clang, in the faster of its two conventions; MuJoCo is its wheel's "
-    "own library; CasADi is the C that it makes of composite-rigid-body, Newton-Euler and articulated-body "
-    "recursions, in the best of four builds, gcc and clang with -O3 and -O3 -ffast-math; SymPy is Kane's equations "
-    "and common subexpressions, built alike. Friction and springs in joints are taken out. Machines are noisy: quote "
-    "a ratio rather than a time.",
+    "not timed. Cells hold minimum and median over the repeats, in nanoseconds a state; ratios are of medians, theirs "
+    "to ours. Machines are noisy: quote a ratio rather than a time.",
+    "Ours is generated C, one state after the other, in the fastest of its builds by gcc and clang "
+    "(Options(tune=True)), and by vectors in calls of 64 states, or of as many as keep their results within 384 KiB: "
+    "by rows, by columns, and by columns of floats (checked to 5e-4). Copies of our library, of CasADi's and of "
+    "SymPy's compute in turn, because where code happens to lie matters. Pinocchio is its own headers, compiled in the "
+    "run by gcc and by clang, in the faster of its two conventions; MuJoCo is its wheel's library; CasADi is the C of "
+    "its composite-rigid-body, Newton-Euler and articulated-body recursions, SymPy Kane's equations with common "
+    "subexpressions, both in the best of four builds (gcc and clang, -O3 with and without -ffast-math). Friction and "
+    "springs in joints are taken out.",
 )
 # What a simulation asks for at each step: shown in the index.
 _TELLING = ("dynamics", "forward_dynamics")
@@ -123,7 +122,7 @@ def _time_flexible(record: Record, repeats: int, run: Run) -> None:
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    record = of(data)
+    record = restored(Record, data)
     judged = verdicts(record)
     measured = [verdict for verdict in judged if verdict.entry is not None]
     met = sum(verdict.met for verdict in measured)
@@ -142,14 +141,13 @@ def compose(data: Data) -> Report:
         span = f"{times(min(ratios))} to {times(max(ratios))}"
         key.append(Fact(times(median(ratios)), f"{peer}'s time over ours, median of {len(ratios)}; {span}"))
     flexible = [flexible_section(record.flexible)] if record.flexible else []
-    machine = Section("What times depend on", (Table(("what", "value"), tuple(_facts(record.machine))),))
     return Report(
         "Timing: generated C against engines and symbolic peers",
         f"{said}; {counted(len(best), 'race')} over {sizes}; median of their time over ours: "
         f"{', '.join(medians)}{failed}.{cut}",
         met == len(measured) and not record.failed if measured or record.failed else None,
-        LIMITS,
-        (*sections(record), *flexible, machine),
+        (*LIMITS, _conditions(record.machine)),
+        (*sections(record), *flexible),
         tuple(key),
         tuple(_ratios(best, name) for name in _TELLING if name in functions),
         (targets_table(record),),
@@ -184,20 +182,13 @@ def _ratios(rows: Sequence[Entry], function: str) -> Chart:
     )
 
 
-def _facts(machine: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """What times depend on, in words."""
-    listed = []
-    for name, value in machine.items():
-        if isinstance(value, Mapping):
-            listed += [(f"{name}: {part}", str(what)) for part, what in value.items()]
-        elif name in ("scalar_flops", "vector_flops", "copied_bytes"):
-            unit = "GB/s copied in the first cache" if name == "copied_bytes" else f"GFlop/s, {name.partition('_')[0]}"
-            listed.append(("measured limit of a core", f"{value / 1e9:.1f} {unit}"))
-        elif isinstance(value, list):
-            listed.append((name, "; ".join(f"{x:.1f}" if isinstance(x, float) else str(x) for x in value)))
-        else:
-            listed.append((name, f"{value:g}" if isinstance(value, float) else str(value)))
-    return listed
+def _conditions(machine: Mapping[str, Any]) -> str:
+    """What times depend on beside versions and flags."""
+    load = " and ".join(f"{load:.1f}" for load in machine.get("load before and after", ()))
+    peaks = {"scalar_flops": "GFlop/s one by one", "vector_flops": "GFlop/s in vectors", "copied_bytes": "GB/s copied"}
+    limits = ", ".join(f"{machine[name] / 1e9:.1f} {unit}" for name, unit in peaks.items() if name in machine)
+    size = f"{machine.get('states', '?')} states, {machine.get('repeats', '?')} repeats"
+    return f"{size}; load before and after {load or 'unknown'}; measured limits of a core: {limits or 'unknown'}."
 
 
 TOPIC = Topic("timing", "Speed", "How fast is the C against engines and other generators?", compose)

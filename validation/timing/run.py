@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.tools import DEFAULT_FLAGS
+from validation.reporting.plain import restored
 from validation.reporting.provenance import machine
 from validation.timing.contestants.arrays import first_compiler
 from validation.timing.contestants.engines import CLOSED, PINOCCHIO_FLAGS, pinocchio_builds
@@ -22,7 +23,7 @@ from validation.timing.contestants.generated import BUILDS
 from validation.timing.contestants.programs import BuildError, Skipped, compilers, source
 from validation.timing.models import TIMED_MODELS
 from validation.timing.race import pin_to_one_cpu
-from validation.timing.record import Record, entry, made
+from validation.timing.record import Entry, Made, Record
 from validation.timing.worker import Job
 
 Done = Callable[[str, str], None]
@@ -73,9 +74,9 @@ def take(line: str, job: Job, record: Record, done: Done) -> None:
         record.forget([job.model], [value], job.peers)
         done(job.model, value)
     elif kind == "entry":
-        record.entries.append(entry(value))
+        record.entries.append(restored(Entry, value))
     elif kind == "cost":
-        record.costs.append(made(value))
+        record.costs.append(restored(Made, value))
     elif kind in ("skipped", "failed"):
         getattr(record, kind).append(tuple(value))
 

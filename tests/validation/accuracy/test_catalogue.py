@@ -15,7 +15,7 @@ from validation.__main__ import app
 from validation.accuracy import catalogue
 from validation.accuracy.catalogue import TOPIC
 from validation.accuracy.elastica import exact
-from validation.reporting.command import Done, Run, write
+from validation.reporting.command import Done, write
 from validation.reporting.findings import Finding, Study, exponent, near
 
 
@@ -24,21 +24,21 @@ def quick(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any
     folder = tmp_path_factory.mktemp("reports")
     done = CliRunner().invoke(app, ["accuracy", "--quick", "--json", "--report", str(folder)])
     data = json.loads(done.stdout)
-    assert done.exit_code == 0, [(c["what"], c["found"]) for s in data["studies"].values() for c in s["checks"]]
+    assert done.exit_code == 0, [(c["quantity"], c["value"]) for s in data["studies"].values() for c in s["findings"]]
     return folder, data
 
 
 def number(data: dict[str, Any], study: str, what: str) -> float:
     """The one number of a study whose name begins so."""
-    (found,) = (c["found"] for c in data["studies"][study]["checks"] if c["what"].startswith(what))
-    return float(found)
+    (value,) = (c["value"] for c in data["studies"][study]["findings"] if c["quantity"].startswith(what))
+    return float(value)
 
 
 def test_every_question_is_answered_within_its_bounds(quick: tuple[Path, dict[str, Any]]) -> None:
     _, data = quick
     assert data["ok"] and data["quick"] and not data["failures"]
     assert list(data["studies"]) == list(catalogue.STUDIES)
-    assert all(study["ok"] and study["checks"] and study["figures"] for study in data["studies"].values())
+    assert all(study["ok"] and study["findings"] and study["figures"] for study in data["studies"].values())
 
 
 # Closed forms and tables, written here a second time.
@@ -120,7 +120,7 @@ def test_bounds(found: float, ok: bool) -> None:
 
 
 def test_nothing_asked_is_not_a_success(tmp_path: Path) -> None:
-    data = Run(TOPIC).head(True, Done()) | {"studies": {}}
+    data = Done().head(True, False) | {"studies": {}}
     assert write(TOPIC, data, tmp_path).ok is False and (tmp_path / "accuracy.html").is_file()
 
 

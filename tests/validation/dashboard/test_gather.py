@@ -50,7 +50,7 @@ def test_a_report_says_what_it_found_and_where_it_is_from(tmp_path: Path) -> Non
     found = entry(write(tmp_path, FUZZ))
     assert found.verdict == "good" and not found.remarks and found.page == "fuzz.md"
     assert found.report is not None and found.said == "10 hostile inputs: 0 crashed or hung a reader."
-    assert found.provenance.machine == "Z80, 1 cores, CP/M" and found.provenance.flags == "-O2"
+    assert found.provenance.machine == "Z80, 1 cores, CP/M" and ("flags", "-O2") in found.provenance.rows
     assert found.topic.command == "python -m validation fuzz"
 
 
@@ -89,7 +89,7 @@ def test_a_package_that_is_not_installed_makes_nothing_stale() -> None:
     assert doubts(origin, {"numpy": "2.0"}, TODAY) == []
 
 
-@pytest.mark.parametrize("place", ["top", "machine", "facts"])
+@pytest.mark.parametrize("place", ["top", "machine"])
 def test_origins_are_found_wherever_a_report_keeps_them(place: str) -> None:
     told = {
         "date": "2026-01-01",
@@ -97,10 +97,10 @@ def test_origins_are_found_wherever_a_report_keeps_them(place: str) -> None:
         "versions": {"numpy": "2"},
         "processor": "Z80",
     }
-    data = told | {"machine": {"processor": "Z80"}} if place == "top" else {place: told}
+    data = told if place == "top" else {"machine": told}
     origin = Provenance.of(data)
     assert (origin.date, origin.machine, origin.versions) == ("2026-01-01", "Z80", {"numpy": "2"})
-    assert origin.flags == "symofros -O2; pinocchio -O3"
+    assert ("flags", "symofros -O2; pinocchio -O3") in origin.rows
 
 
 REPORTS = Path(__file__).parents[3] / "reports"

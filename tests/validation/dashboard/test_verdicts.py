@@ -48,14 +48,14 @@ def spoil_studies(data: dict[str, Any]) -> None:
     data["ok"] = False
     study = next(iter(data["studies"].values()))
     study["ok"] = False
-    study["checks"][0].update(found=None, ok=False)
+    study["findings"][0].update(value=None)
 
 
 def spoil_stability(data: dict[str, Any]) -> None:
     data["ok"] = False
     study = next(iter(data["studies"].values()))
     study["ok"] = False
-    study["checks"][0].update(found=None, ok=False)
+    study["findings"][0].update(value=None)
 
 
 def spoil_timing(data: dict[str, Any]) -> None:

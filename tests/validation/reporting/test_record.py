@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import numpy as np
@@ -12,8 +13,10 @@ from validation.reporting.charts import draw
 from validation.reporting.figures import Chart, Curve, Figure, Mark, Tag
 from validation.reporting.findings import Finding
 from validation.reporting.numbers import counted
+from validation.reporting.plain import plain, restored
 from validation.reporting.provenance import Provenance
-from validation.reporting.record import Bullets, Cell, Fold, Report, Section, Table, Text, findings_fold
+from validation.reporting.questions import findings_fold
+from validation.reporting.record import Bullets, Cell, Fold, Report, Section, Table, Text
 
 LIMIT = Mark("limit", 2.0, "x")
 CHART = Chart(
@@ -61,14 +64,14 @@ def test_texts_can_not_break_the_page(text: str) -> None:
 
 
 def test_a_chart_survives_its_json() -> None:
-    again = Chart.of(CHART.data())
+    again = restored(Chart, json.loads(json.dumps(plain(CHART), allow_nan=False)))
     assert (again.title, again.marks, again.tags) == (CHART.title, (LIMIT,), (Tag("p", 1, 1),))
     assert again.curves[0].color == 3 and np.isnan(again.curves[0].x[1])
 
 
 def test_a_finding_survives_its_json() -> None:
-    assert tuple(Finding.of(finding.data()) for finding in FINDINGS) == FINDINGS
-    lost = Finding.of(Finding("x", np.nan, 1.0).data())
+    assert restored(tuple[Finding, ...], plain(FINDINGS)) == FINDINGS
+    lost = restored(Finding, plain(Finding("x", np.nan, 1.0)))
     assert np.isnan(lost.value) and not lost.ok
 
 

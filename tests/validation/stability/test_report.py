@@ -25,7 +25,7 @@ def quick(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any
     folder = tmp_path_factory.mktemp("reports")
     done = CliRunner().invoke(app, ["stability", "--quick", "--json", "--report", str(folder)])
     data = json.loads(done.stdout)
-    missed = [(c["what"], c["found"]) for s in data["studies"].values() for c in s["checks"] if not c["ok"]]
+    missed = [(c["quantity"], c["value"]) for s in data["studies"].values() if not s["ok"] for c in s["findings"]]
     assert done.exit_code == 0, (missed, data["failures"])
     return folder, data
 
@@ -46,7 +46,7 @@ def test_every_claim_holds_on_a_coarse_grid(quick: tuple[Path, dict[str, Any]]) 
     assert data["ok"] and data["quick"] and not data["failures"] and not data["unfinished"]
     assert list(data["studies"]) == list(STUDIES)
     for name, study in data["studies"].items():
-        assert study["checks"] and re.search(r"\d", study["verdict"]), f"{name}: a verdict has figures"
+        assert study["findings"] and re.search(r"\d", study["verdict"]), f"{name}: a verdict has figures"
         for found in study["maps"].values():
             ended, values = np.array(found["ended"]), np.array(found["values"], dtype=object)
             assert values.shape == (len(found["y"]), len(found["x"]))

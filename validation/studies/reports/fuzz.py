@@ -11,12 +11,28 @@ import typer
 
 from validation.reporting.command import Run
 from validation.reporting.numbers import counted
-from validation.reporting.provenance import stamp
 from validation.reporting.record import Bullets, Cell, Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies.fuzz import COMPILED, SLOWEST, fuzz
 
 INPUTS = 120_000
 _FAULTS_SHOWN = 20
+_TEXT = (
+    "An input is one of the package's own descriptions with one to four random changes: of bytes, words, numbers, "
+    "pieces, lines, or a hostile snippet (code, bombs, document types, endless numbers) put in. A fault is any "
+    f"exception but the refusal, a warning, an input that takes longer than {SLOWEST:g} s, or an accepted input that "
+    f"is another one after it was written and read again. Of the accepted files, one in {COMPILED} is also compiled, "
+    "to the interpreter, and its mass matrix evaluated."
+)
+_COLUMNS: dict[str, Column] = {
+    "kind": "{kind}",
+    "#inputs": "{inputs}",
+    "#refused": "{refused}",
+    "#read": "{read}",
+    "#compiled": "{compiled}",
+    "#faults": lambda row: Cell(str(row["faults"]), not row["faults"]),
+    "#slowest [ms]": lambda row: f"{1e3 * row['slowest']:.0f}",
+    "#its number": "{slowest_input}",
+}
 
 
 def measure(
@@ -26,72 +42,48 @@ def measure(
 ) -> Data:
     """Feed mutated, hostile files and formulas to the readers: none may crash or hang them."""
     run.expect(count, "feeding")
-    last = 0
-
-    def done(number: int) -> None:
-        nonlocal last
-        run.advance(steps=number - last)
-        last = number
-
-    result = fuzz(count, seed, done)
-    kinds = {kind: {"inputs": 0, **asdict(answers)} for kind, answers in result.answers.items()}
-    for kind, row in kinds.items():
-        row["faults"] = sum(fault.kind == kind for fault in result.faults)
-        row["inputs"] = row["read"] + row["refused"] + row["faults"]
-        row["slowest"] = round(row["slowest"], 4)
+    result = fuzz(count, seed, run.reached)
+    kinds = {}
+    for kind, answers in result.answers.items():
+        faults = sum(fault.kind == kind for fault in result.faults)
+        inputs = answers.read + answers.refused + faults
+        kinds[kind] = {**asdict(answers), "inputs": inputs, "faults": faults, "slowest": round(answers.slowest, 4)}
     # Linux counts kilobytes, macOS bytes.
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1 << (20 if sys.platform == "darwin" else 10))
     return {
         "ok": not result.faults,
         "inputs": sum(row["inputs"] for row in kinds.values()),
         "seed": seed,
-        "seconds": run.seconds,
         "peak_memory_mib": round(peak),
         "kinds": kinds,
         "faults": [
             {"kind": f.kind, "number": f.number, "what": f.what, "input": f.data.decode("latin-1")}
             for f in result.faults
         ],
-        **stamp("pydantic", "ruamel.yaml"),
     }
 
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    kinds, faults = data["kinds"], data["faults"]
-    slowest = max(row["slowest"] for row in kinds.values())
-    read, refused = (sum(row.get(answer, 0) for row in kinds.values()) for answer in ("read", "refused"))
-    columns: dict[str, Column] = {
-        "kind": "{kind}",
-        **{f"#{answer}": f"{{{answer}}}" for answer in ("inputs", "refused", "read", "compiled")},
-        "#faults": lambda row: Cell(str(row["faults"]), not row["faults"]),
-        "#slowest [ms]": lambda row: f"{1e3 * row['slowest']:.0f}",
-        "#its number": "{slowest_input}",
-    }
-    table = Table.of(({"kind": kind, **row} for kind, row in kinds.items()), columns)
-    text = (
-        "An input is one of the package's own descriptions with one to four random changes: of bytes, words, numbers, "
-        "pieces, lines, or a hostile snippet (code, bombs, document types, endless numbers) put in. A fault is any "
-        f"exception but the refusal, a warning, an input that takes longer than {SLOWEST:g} s, or an accepted input "
-        "that is another one after it was written and read again. Of the accepted files, one in "
-        f"{COMPILED} is also compiled, to the interpreter, and its mass matrix evaluated."
-    )
+    rows, faults = [{"kind": kind, **row} for kind, row in data["kinds"].items()], data["faults"]
+    slowest = max(row["slowest"] for row in rows)
+    read, refused = (sum(row[answer] for row in rows) for answer in ("read", "refused"))
     listed = Bullets(tuple(f"{f['kind']} no. {f['number']}: `{f['what']}`" for f in faults[:_FAULTS_SHOWN]))
-    sections = [Section("By kind of input", (table,))]
-    sections += [Section("Faults", (listed,))] if faults else []
     return Report(
         "Fuzz test of the readers",
         f"{counted(data['inputs'], 'hostile input')}: {len(faults)} crashed or hung a reader.",
         bool(data["ok"]),
-        (text,),
-        tuple(sections),
+        (_TEXT,),
+        (
+            Section("By kind of input", (Table.of(rows, _COLUMNS),)),
+            *([Section("Faults", (listed,))] if faults else []),
+        ),
         (
             Fact(str(refused), "refused with a description of their faults"),
             Fact(str(read), "read"),
             Fact(f"{slowest:.1f} s", f"the slowest, of at most {SLOWEST:g} s", slowest <= SLOWEST),
             Fact(f"{data['peak_memory_mib']} MiB", f"peak memory; seed {data.get('seed', 0)}"),
         ),
-        digest=(table, *([listed] if faults else [])),
     )
 
 

@@ -12,7 +12,6 @@ import reference_models
 from validation.inputs.cases import standard_set
 from validation.reporting.command import Run
 from validation.reporting.numbers import counted
-from validation.reporting.provenance import stamp
 from validation.reporting.record import Bullets, Cell, Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies.mutation import MutationScore, mutate
 
@@ -22,6 +21,8 @@ MODELS = tuple(
 )
 PER_MODEL = 700
 _FATES = ("planted", "caught", "silent", "too_small")
+_COLUMNS: dict[str, Column] = {f"#{fate.replace('_', ' ')}": f"{{{fate}}}" for fate in _FATES}
+_SURVIVED: dict[str, Column] = {"#survived": lambda row: Cell(str(len(row["survived"])), not row["survived"])}
 
 
 def measure(
@@ -37,7 +38,7 @@ def measure(
         system = cases[name].load().system if name in cases else reference_models.MODELS[name]
         scores.append(mutate(name, system, faults, seed))
         run.advance()
-    return as_data(scores) | {"faults_per_model": faults, "seed": seed, "seconds": run.seconds, **stamp()}
+    return as_data(scores) | {"faults_per_model": faults, "seed": seed}
 
 
 def as_data(scores: Sequence[MutationScore]) -> dict[str, Any]:
@@ -46,22 +47,19 @@ def as_data(scores: Sequence[MutationScore]) -> dict[str, Any]:
         {
             "model": score.model,
             "engine": score.engine,
-            **{fate: sum(getattr(score, fate).values()) for fate in _FATES},
+            **{fate: getattr(score, fate).total() for fate in _FATES},
             "largest_too_small": score.largest_small,
             "survived": [{"kind": f.kind, "node": f.node, "error": error} for f, error in score.survivors],
         }
         for score in scores
     ]
-    kinds: dict[str, dict[str, int]] = {}
-    for fate in _FATES:
-        total: Counter[str] = sum((getattr(score, fate) for score in scores), Counter())
-        for kind, number in total.items():
-            kinds.setdefault(kind, dict.fromkeys(_FATES, 0))[fate] = number
+    totals = {fate: sum((getattr(score, fate) for score in scores), Counter[str]()) for fate in _FATES}
+    kinds = sorted({kind for total in totals.values() for kind in total})
     return {
         "ok": all(score.ok for score in scores),
-        "planted": sum(row["planted"] for row in rows),
+        "planted": totals["planted"].total(),
         "models": rows,
-        "kinds": dict(sorted(kinds.items())),
+        "kinds": {kind: {fate: total[kind] for fate, total in totals.items()} for kind in kinds},
     }
 
 
@@ -72,11 +70,9 @@ def compose(data: Data) -> Report:
     silent, small = (sum(row[fate] for row in models) for fate in ("silent", "too_small"))
     matter = data["planted"] - silent - small
     largest = max((row.get("largest_too_small", 0.0) for row in models), default=0.0)
-    fates: dict[str, Column] = {f"#{fate.replace('_', ' ')}": f"{{{fate}}}" for fate in _FATES}
-    survived: dict[str, Column] = {"#survived": lambda row: Cell(str(len(row["survived"])), not row["survived"])}
-    by_model = Table.of(models, {"model": "{model}", "reference": "{engine}"} | fates | survived)
+    by_model = Table.of(models, {"model": "{model}", "reference": "{engine}"} | _COLUMNS | _SURVIVED)
     kinds = [{"kind": kind} | numbers for kind, numbers in data["kinds"].items()]
-    by_kind = Table.of(kinds, {"kind of fault": "{kind}"} | fates)
+    by_kind = Table.of(kinds, {"kind of fault": "{kind}"} | _COLUMNS)
     text = (
         "A fault replaces one operation of the generated program. It is caught if any output then differs from the "
         "independent engine's by more than the cross-check's own tolerance over 60 random states. "
@@ -85,8 +81,6 @@ def compose(data: Data) -> Report:
         f"{largest:.1e}, which only forward dynamics tolerates)."
     )
     alive = Bullets(tuple(f"{model}: {f['kind']} at node {f['node']}: {f['error']:.1e}" for model, f in survivors[:99]))
-    sections = [Section("By model", (by_model,)), Section("By kind of fault", (by_kind,))]
-    sections += [Section("What survived", (alive,))] if survivors else []
     share = 100.0 * (matter - len(survivors)) / max(1, matter)
     return Report(
         "Mutation test of the cross-check",
@@ -94,13 +88,16 @@ def compose(data: Data) -> Report:
         f"in {counted(len(models), 'model')}.",
         bool(data["ok"]),
         (text,),
-        tuple(sections),
+        (
+            Section("By model", (by_model,)),
+            Section("By kind of fault", (by_kind,)),
+            *([Section("What survived", (alive,))] if survivors else []),
+        ),
         (
             Fact(str(data["planted"]), "single faults planted"),
             Fact(str(len(survivors)), "survived; none may", not survivors),
             Fact(str(silent + small), "change nothing, or less than a tolerance"),
         ),
-        digest=(by_model, *([alive] if survivors else [])),
     )
 
 

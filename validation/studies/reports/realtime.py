@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import asdict
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import typer
@@ -12,25 +12,40 @@ import typer
 from validation.mechanics.geometry import Array
 from validation.reporting.command import Run
 from validation.reporting.figures import Chart, Curve, Figure, Mark
-from validation.reporting.provenance import stamp
 from validation.reporting.record import Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies import realtime
 
 _LIMITS = (
     "Each diagram runs in real time in the C loop, which sleeps until an instant is due; how late an instant began is "
     "read off the clock afterwards, so it is the operating system's waking plus whatever the instant before took too "
-    "long. No core is set apart, and other programs run beside (see the load); what the machine does for a loop with "
-    "nothing in it is the first row. Ordinary: a thread as any other. First: it comes before those of ordinary "
-    "programs (SCHED_FIFO, as by `chrt -f 20 symofros simulate`), where the system permits that. An instant is missed "
-    "if it began when the next one was due already. Busy is the loop's processor time an instant, motion included."
+    "long. No core is set apart, and other programs run beside; what the machine does for a loop with nothing in it is "
+    "the first row. Ordinary: a thread as any other. First: it comes before those of ordinary programs (SCHED_FIFO, as "
+    "by `chrt -f 20 symofros simulate`), where the system permits that. An instant is missed if it began when the next "
+    "one was due already. Busy is the loop's processor time an instant, motion included."
 )
 _SEE = (
     "The further left a curve falls, the more punctual. The body of each lies at tens of microseconds; the tail to the "
-    "right is the operating system doing other things, and it is shorter for a thread that comes first. Right of a "
-    "dashed line the next instant of a loop of that rate was due already."
+    "right is the operating system doing other things. Right of a dashed line the next instant of a loop of that rate "
+    "was due already."
 )
 # Edges of bins of lateness [us], twelve a decade.
 _EDGES = np.logspace(-1, 5, 73)
+
+
+def _microseconds(name: str) -> Column:
+    return lambda row: f"{1e6 * row[name]:.1f}"
+
+
+_COLUMNS: dict[str, Column] = {
+    "diagram": "{what}",
+    "thread": lambda row: _thread(row["first"]),
+    "#least": _microseconds("minimum"),
+    "#median": _microseconds("median"),
+    "#99.9 %": _microseconds("p999"),
+    "#worst": _microseconds("maximum"),
+    "#missed": "{missed} of {instants}",
+    "#busy": _microseconds("busy"),
+}
 
 
 def measure(run: Run, seconds: Annotated[float, typer.Option(min=0.01, help="Length of each diagram.")] = 20.0) -> Data:
@@ -41,18 +56,10 @@ def measure(run: Run, seconds: Annotated[float, typer.Option(min=0.01, help="Len
     for first in ways:
         for diagram in realtime.TIMED_DIAGRAMS:
             row = realtime.run(seconds, diagram, first)
-            diagrams.append(
-                {
-                    "what": row.what,
-                    "first": row.first,
-                    "period": row.period,
-                    "busy": row.busy,
-                    **asdict(row.jitter),
-                    "late": _share_later(row.late),
-                }
-            )
+            stated = {name: getattr(row, name) for name in ("what", "first", "period", "busy")}
+            diagrams.append({**stated, **asdict(row.jitter), "late": _share_later(row.late)})
             run.advance()
-    return {"diagrams": diagrams, "seconds": seconds, "cores": os.cpu_count(), "load": os.getloadavg()[0], **stamp()}
+    return {"diagrams": diagrams, "seconds": seconds, "cores": os.cpu_count(), "load": os.getloadavg()[0]}
 
 
 def _share_later(late: Array) -> dict[str, list[float]]:
@@ -66,55 +73,36 @@ def compose(data: Data) -> Report:
     """The report of its JSON."""
     diagrams = data["diagrams"]
     best = [row for row in diagrams if row["first"]] or diagrams
-    least, most = (pick(1e6 * row["median"] for row in best) for pick in (min, max))
-    table = Table.of(
-        diagrams,
-        {
-            "diagram": "{what}",
-            "thread": lambda row: _thread(row["first"]),
-            "#least": _microseconds("minimum"),
-            "#median": _microseconds("median"),
-            "#99.9 %": _microseconds("p999"),
-            "#worst": _microseconds("maximum"),
-            "#missed": "{missed} of {instants}",
-            "#busy": _microseconds("busy"),
-        },
-    )
-    charts = [
-        _chart([row for row in diagrams if row["first"] is first and "late" in row], first) for first in (False, True)
-    ]
-    shown = tuple(chart for chart in charts if chart.curves)
-    said = f"{data['seconds']:g} s each, at load {data['load']:.1f} on {data['cores']} cores; late by, in microseconds:"
+    medians = [1e6 * row["median"] for row in best]
+    machine = f"at load {data['load']:.1f} on {data['cores']} cores"
+    charts = [_chart([row for row in diagrams if row["first"] is first], first) for first in (False, True)]
+    figure = Figure(_SEE, tuple(chart for chart in charts if chart.curves))
+    said = f"{data['seconds']:g} s each, {machine}; late by, in microseconds:"
     return Report(
         "Diagrams in real time",
-        f"Instants of diagrams begin {least:.0f} to {most:.0f} µs late (medians), at load {data['load']:.1f} on "
-        f"{data['cores']} cores.",
+        f"Instants of diagrams begin {min(medians):.0f} to {max(medians):.0f} µs late (medians), {machine}.",
         None,
         (_LIMITS,),
-        (Section("How late instants begin", (said, table, *([Figure(_SEE, shown)] if shown else []))),),
+        (Section("How late instants begin", (said, Table.of(diagrams, _COLUMNS), figure)),),
         tuple(
             Fact(f"{1e6 * row['median']:.0f} µs", f"median: {row['what']}; {row['missed']} of {row['instants']} missed")
             for row in best
         ),
-        shown[-1:],
-        (table,),
+        figure.charts[-1:],
     )
-
-
-def _microseconds(name: str) -> Column:
-    return lambda row: f"{1e6 * row[name]:.1f}"
 
 
 def _thread(first: bool) -> str:
     return "first" if first else "ordinary"
 
 
-def _chart(rows: list[dict[str, Any]], first: bool) -> Chart:
-    curves = tuple(Curve(row["what"], row["late"]["us"], row["late"]["share"], k) for k, row in enumerate(rows))
-    periods = dict.fromkeys(1e6 * row["period"] for row in rows)
+def _chart(rows: list[Data], first: bool) -> Chart:
+    timed = [row for row in rows if "late" in row]
+    drawn = tuple(Curve(row["what"], row["late"]["us"], row["late"]["share"], k) for k, row in enumerate(timed))
+    periods = dict.fromkeys(1e6 * row["period"] for row in timed)
     marks = tuple(Mark(f"next instant due at {1e3 / period:g} kHz [us]", period, "x") for period in periods)
     title = f"{_thread(first)} thread: share of instants that began later"
-    return Chart(title, "late by  [us]", "share of the instants  [1]", curves, marks, log="xy")
+    return Chart(title, "late by  [us]", "share of the instants  [1]", drawn, marks, log="xy")
 
 
 TOPIC = Topic("realtime", "Speed", "How late do instants of diagrams begin?", compose)

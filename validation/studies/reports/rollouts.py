@@ -10,7 +10,6 @@ import typer
 
 from validation.reporting.command import Run
 from validation.reporting.numbers import counted, times
-from validation.reporting.provenance import stamp
 from validation.reporting.record import Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies import rollouts
 
@@ -22,6 +21,18 @@ _LIMITS = (
     "over interleaved repeats of the whole times, so that of an adaptive method is one of time to the end, at the "
     "errors shown."
 )
+
+_COLUMNS: dict[str, Column] = {
+    "motion": "{motion}",
+    "who": "{who}",
+    "how": "{how}",
+    "#threads": "{threads}",
+    "#error [rad]": "{error:.1e}",
+    "#steps": "{steps}",
+    "#ns a step (min, median)": "{nanoseconds[0]:.0f}, {nanoseconds[1]:.0f}",
+    "#million steps a second and core": lambda row: f"{1e3 / row['nanoseconds'][0]:.2f}",
+    "#MuJoCo's time over it": "**{ratio:.1f}**",
+}
 
 
 def measure(
@@ -38,8 +49,6 @@ def measure(
         "trajectories": trajectories,
         "repeats": repeats,
         "load": os.getloadavg()[0],
-        "seconds": run.seconds,
-        **stamp(),
     }
 
 
@@ -49,23 +58,12 @@ def compose(data: Data) -> Report:
     ours = [row for row in rows if "MuJoCo" not in row["who"]]
     fastest = min(ours, key=lambda row: row["nanoseconds"][0])
     best = max(ours, key=lambda row: row["ratio"])
-    motions = counted(data["trajectories"], "motion")
+    title = f"{counted(data['trajectories'], 'motion')} of a 7-joint arm at once"
     rate = 1e3 / fastest["nanoseconds"][0]
-    columns: dict[str, Column] = {
-        "motion": "{motion}",
-        "who": "{who}",
-        "how": "{how}",
-        "#threads": "{threads}",
-        "#error [rad]": "{error:.1e}",
-        "#steps": "{steps}",
-        "#ns a step (min, median)": "{nanoseconds[0]:.0f}, {nanoseconds[1]:.0f}",
-        "#million steps a second and core": lambda row: f"{1e3 / row['nanoseconds'][0]:.2f}",
-        "#MuJoCo's time over it": "**{ratio:.1f}**",
-    }
-    table = Table.of(rows, columns)
+    table = Table.of(rows, _COLUMNS)
     return Report(
-        f"{motions} of a 7-joint arm at once",
-        f"{motions} of a 7-joint arm at once: {rate:.2g} million steps a second and core.",
+        title,
+        f"{title}: {rate:.2g} million steps a second and core.",
         None,
         (_LIMITS,),
         (Section("Time of a step", (table, f"{data['repeats']} repeats; load {data['load']:.1f}.")),),
@@ -73,7 +71,6 @@ def compose(data: Data) -> Report:
             Fact(f"{fastest['nanoseconds'][0]:.0f} ns", f"a step: {fastest['motion']}, {fastest['how']}"),
             Fact(times(best["ratio"]), f"mujoco.rollout's time over ours: {best['motion']}, {best['how']}"),
         ),
-        digest=(table,),
     )
 
 

@@ -10,7 +10,6 @@ import typer
 
 from validation.reporting.command import Run, known
 from validation.reporting.numbers import counted, times
-from validation.reporting.provenance import stamp
 from validation.reporting.record import Cell, Column, Data, Fact, Report, Section, Table, Topic
 from validation.studies import simulation
 
@@ -48,7 +47,7 @@ def measure(
         races.append(asdict(row) | {"real_time": row.real_time})
         run.advance()
     benchmarks = [] if chosen else [asdict(row) for row in simulation.iftomm(repeats)]
-    return {"races": races, "iftomm": benchmarks, "repeats": repeats, "seconds": run.seconds, **stamp()}
+    return {"races": races, "iftomm": benchmarks, "repeats": repeats}
 
 
 def compose(data: Data) -> Report:
@@ -74,7 +73,6 @@ def compose(data: Data) -> Report:
         (f"{data['repeats']} repeats.",) if "repeats" in data else (),
         tuple(sections),
         tuple(facts),
-        digest=tuple(table for section in sections for table in section.blocks if isinstance(table, Table)),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from validation.reporting.record import Section, Table
+from validation.reporting.record import Column, Section, Table
 from validation.timing.flexible.race import CALLS
 
 _LIMITS = (
@@ -26,30 +26,27 @@ _LIMITS = (
     "with it that system's own small work, so the truth lies between the two. Both are medians over the repeats; "
     "minima are what a calm machine gives.",
 )
-_HEAD = (
-    "ours: functions (nv)",
-    "Exudyn: elements (coordinates + equations)",
-    "error: ours, Exudyn's",
-    "quantity",
-    "#ours [ns]",
-    "#Exudyn [ns]",
-    "#calls [ns]",
-    "#ratio",
-    "#net ratio",
-)
+
+
+def _listed(name: str, form: str = ".0f") -> Column:
+    """Several numbers of a row."""
+    return lambda row: ", ".join(format(x, form) for x in row[name])
+
+
+_COLUMNS: dict[str, Column] = {
+    "ours: functions (nv)": "{functions} ({sizes[0]})",
+    "Exudyn: elements (coordinates + equations)": "{elements} ({sizes[1]} + {sizes[2]})",
+    "error: ours, Exudyn's": _listed("error", ".1e"),
+    "quantity": "{quantity}",
+    "#ours [ns]": _listed("generated_time"),
+    "#Exudyn [ns]": _listed("engine_time"),
+    "#calls [ns]": _listed("calls"),
+    "#ratio": "{ratio:.1f}",
+    "#net ratio": "{corrected:.1f}",
+}
 
 
 def flexible_section(rows: Iterable[Mapping[str, Any]]) -> Section:
     """The section of the report."""
-    cells = []
-    for row in rows:
-        nv, coordinates, equations = row["sizes"]
-        generated_time, engine_time, calls = (
-            ", ".join(f"{x:.0f}" for x in row[side]) for side in ("generated_time", "engine_time", "calls")
-        )
-        errors = ", ".join(f"{x:.1e}" for x in row["error"])
-        sizes = f"{row['functions']} ({nv})", f"{row['elements']} ({coordinates} + {equations})"
-        ratios = f"{row['ratio']:.1f}", f"{row['corrected']:.1f}"
-        cells.append((*sizes, errors, row["quantity"], generated_time, engine_time, calls, *ratios))
     title = "A flexible robot against Exudyn, at equal accuracy"
-    return Section(title, (*_LIMITS, Table(_HEAD, tuple(cells))), "flexible")
+    return Section(title, (*_LIMITS, Table.of(rows, _COLUMNS)), "flexible")
