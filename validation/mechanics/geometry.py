@@ -36,6 +36,10 @@ class Placement:
         """A to B, then B to C."""
         return Placement(self.R @ other.R, self.p + self.R @ other.p)
 
+    def inverse(self) -> Placement:
+        """A placed in B."""
+        return Placement(self.R.T, -self.R.T @ self.p)
+
 
 def skew(p: Array) -> Array:
     """[p]x, the matrix of the cross product with p (..., 3, 3)."""

@@ -204,17 +204,15 @@ def build(subject: Subject) -> TreeEngine | Unsupported:
     spec.compiler.degree = False
     spec.option.gravity = assembly.gravity
     bodies = [spec.worldbody]
-    for i, mover in enumerate(assembly.movers):
+    for parts in _composite_joints(assembly):
         # Parts of one joint are several joints of one MuJoCo body, whose inertia the last part has.
-        if not mover.continues:
-            last = next(
-                k
-                for k in range(i, len(assembly.movers))
-                if k + 1 == len(assembly.movers) or not assembly.movers[k + 1].continues
-            )
-            body = _add_body(bodies[mover.parent + 1], mover, assembly.movers[last])
-        bodies.append(body)
-        _add_joints(body, mover, armature(subject.system, mover))
+        X_PB = _placements_of_body(parts)
+        if parts[0].has_quaternion and len(parts) > 1:
+            return Unsupported(f"joint '{parts[0].joint.name}': a quaternion among the coordinates of a series")
+        body = _add_body(bodies[parts[0].parent + 1], parts[0].X_AP @ X_PB[0], parts[-1])
+        for mover, X in zip(parts, X_PB, strict=True):
+            bodies.append(body)
+            _add_joints(body, mover, X, armature(subject.system, mover))
     for frame in subject.frames:
         site = assembly.frames[frame]
         bodies[site.mover + 1].add_site(name=frame, **_pose(site.X_BF))
@@ -256,8 +254,27 @@ def _pose(X: Placement) -> dict[str, Array]:
     return {"pos": X.p, "quat": xyzw_to_wxyz(matrix_quaternion(X.R))}
 
 
-def _add_body(parent: Any, mover: Mover, last: Mover) -> Any:
-    body = parent.add_body(name=mover.body, **_pose(mover.X_AP))
+def _composite_joints(assembly: Assembly) -> list[list[Mover]]:
+    """Movers, those of one joint together, from the parent outwards."""
+    joints: list[list[Mover]] = []
+    for mover in assembly.movers:
+        if mover.continues:
+            joints[-1].append(mover)
+        else:
+            joints.append([mover])
+    return joints
+
+
+def _placements_of_body(parts: list[Mover]) -> list[Placement]:
+    """The body in the proximal frame P of each part of a joint, all parts after it in their neutral positions."""
+    placements = [Placement.identity()]
+    for mover in reversed(parts[1:]):
+        placements.append(mover.X_AP @ placements[-1])
+    return placements[::-1]
+
+
+def _add_body(parent: Any, X_AB: Placement, last: Mover) -> Any:
+    body = parent.add_body(name=last.body, **_pose(X_AB))
     merged = last.merged()
     # MuJoCo's own diagonalisation stops at 1e-12, which shows in the light bodies of a hand; LAPACK's does not.
     moments, axes = np.linalg.eigh(merged.J_BC)
@@ -267,8 +284,9 @@ def _add_body(parent: Any, mover: Mover, last: Mover) -> Any:
     return body
 
 
-def _add_joints(body: Any, mover: Mover, armature: float) -> None:
-    name = mover.name
+def _add_joints(body: Any, mover: Mover, X_PB: Placement, armature: float) -> None:
+    """Joints of one part, stated in the body's frame: MuJoCo's anchors and axes are fixed on the body."""
+    name, X_BP = mover.name, X_PB.inverse()
     if mover.kind == "free" and mover.parent == BASE:
         body.add_joint(name=name, type=_FREE, armature=armature)
     elif mover.kind == "free":
@@ -276,10 +294,10 @@ def _add_joints(body: Any, mover: Mover, armature: float) -> None:
             body.add_joint(name=f"{name}.{'xyz'[int(axis.argmax())]}", type=_SLIDE, axis=axis, armature=armature)
         body.add_joint(name=name, type=_BALL, armature=armature)
     elif mover.kind == "ball":
-        body.add_joint(name=name, type=_BALL, armature=armature)
+        body.add_joint(name=name, type=_BALL, pos=X_BP.p, armature=armature)
     else:
         kind = _SLIDE if mover.kind == "prismatic" else _HINGE
-        body.add_joint(name=name, type=kind, axis=mover.axis, armature=armature)
+        body.add_joint(name=name, type=kind, pos=X_BP.p, axis=X_BP.R @ mover.axis, armature=armature)
 
 
 def chart_of(model: Any, assembly: Assembly, names: Mapping[str, str] | None = None) -> Chart:
