@@ -57,8 +57,8 @@ ALLOWED = table("""
     simulation: base errors native runtime generator.codegen
     # A diagram is one more program over the graph: its blocks are written beside the models' equations.
     diagrams: base errors native expr description mechanics.topology mechanics.kinematics
-        mechanics.dynamics generator.passes runtime generator.codegen generator.record generator.programs
-        compiler simulation
+        mechanics.dynamics generator.passes runtime generator.codegen generator.record generator.beams
+        generator.programs compiler simulation
     # Formulas of blocks go through the parser of model files; one of them shows its model.
     blocks: errors expr description runtime simulation diagrams studio.viewer
     diagrams.files: base errors description loading simulation diagrams blocks

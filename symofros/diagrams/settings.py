@@ -31,6 +31,7 @@ class RunSettings:
         record: Interval of recording [s].
         rtol: Relative bound of the local error of adaptive methods.
         atol: Absolute bound of the local error of adaptive methods.
+        beam_limit: Estimated error of the beams' theory beyond which a run ends.
         realtime: Seconds of motion a second, to keep pace with the clock.
         threads: Number of threads that share the parts.
         plots: Plots to show afterwards.
@@ -43,6 +44,7 @@ class RunSettings:
     record: float | None = None
     rtol: float | None = None
     atol: float | None = None
+    beam_limit: float | None = None
     realtime: float | None = None
     threads: int | None = None
     plots: tuple[Plot, ...] = ()

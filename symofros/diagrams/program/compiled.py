@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -19,14 +20,16 @@ from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem
 from symofros.expr.evaluate import needed_nodes
 from symofros.expr.program import Program
+from symofros.generator.beams import beams_at
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.names import identifier
 from symofros.generator.passes import run_passes
 from symofros.native import native_text
+from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
-from symofros.runtime.calls.kernel import Kernel, Unit
+from symofros.runtime.calls.kernel import Array, Kernel, Unit
 from symofros.runtime.calls.library import CompiledUnit
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
@@ -185,7 +188,20 @@ def _model(resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, o
         """What the stepper looks for zeros of."""
         return unit
 
-    return Model(record, None, (unit,), np.array(record.par_default), formulas), text
+    beams = partial(_beams_at, resolved, part)
+    return Model(record, None, (unit,), np.array(record.par_default), formulas, beams), text
+
+
+def _beams_at(resolved: Resolved, part: Part, par: Array) -> tuple[ElasticBeam, ...]:
+    """The elastic beams of a part's mechanisms at the diagram's parameters, each named after its block."""
+    layout, models, beams = resolved.layout, resolved.wired.models, list[ElasticBeam]()
+    for name in part.blocks:
+        if name in layout.q:
+            model = resolved.pieces[name].block.mechanism()
+            q, v = layout.q[name].start - part.q.start, layout.v[name].start - part.v.start
+            for beam in beams_at(models.tree(model))(par[layout.parameters["", model].slice]):
+                beams.append(replace(beam, name=f"{name}.{beam.name}", q=beam.q + q, v=beam.v + v))
+    return tuple(beams)
 
 
 def unit_of(

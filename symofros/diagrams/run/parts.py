@@ -13,9 +13,11 @@ from symofros.diagrams.program.lowered_block import watched
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
+from symofros.simulation.analysis.beam_theory import refuse_beyond
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import CLOSED, Settings
+from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
 
@@ -79,13 +81,17 @@ def start(parts: list[Placed], name: str) -> None:
 
     Raises:
         SymofrosError: They are not finite.
+        BeamTheoryError: A beam is bent beyond its theory from the start.
     """
     for part in parts:
-        if part.stepper.start(part.q, part.v, 1) < 0:
+        status, stepper = part.stepper.start(part.q, part.v, 1), part.stepper
+        if status == Status.BEYOND_THEORY:
+            refuse_beyond(stepper.model, stepper.bendings, float(stepper.run.beam_limit), "the first state")
+        if status < 0:
             raise SymofrosError(
                 Problem(
                     f"diagram '{name}': the first accelerations are not finite",
-                    ", ".join(part.stepper.model.names.v[:6]),
+                    ", ".join(stepper.model.names.v[:6]),
                     "the start is one that moves",
                     "look for a mass of zero or a first state that is not a number",
                 )

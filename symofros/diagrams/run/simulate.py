@@ -19,6 +19,7 @@ from symofros.diagrams.run.parts import place_parts, start
 from symofros.diagrams.run.python_blocks import ExternalCalls, begun
 from symofros.diagrams.run.recording import Cost, Crossed
 from symofros.diagrams.run.values import parameter_values, record_interval
+from symofros.runtime.beams import BEAM_LIMIT, BETTER_MODELS, BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.model import Model
@@ -43,6 +44,7 @@ def run_compiled(
     parameters: Mapping[str, Any] | None = None,
     stabilisation: Stabilisation = "projection",
     gains: Any = None,
+    beam_limit: float = BEAM_LIMIT,
     realtime: float | bool = False,
     threads: int = 1,
     progress: bool = False,
@@ -61,6 +63,7 @@ def run_compiled(
         parameters: Run-time parameters by name, such as {"pd.kp": [100, 80, 50], "plant.m_load": 0.8}.
         stabilisation: Method of keeping constraints, as in `sf.simulate`.
         gains: Baumgarte's.
+        beam_limit: Estimated error of the beams' theory beyond which the run ends, as in `sf.simulate`.
         realtime: Keep pace with the clock: True, or seconds of motion a second.
         threads: Number of threads that share the parts that meet at samples only; results do not depend on it.
         progress: Show a progress bar.
@@ -75,7 +78,9 @@ def run_compiled(
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
 
     def settings_of(model: Model) -> Settings:
-        options = SimulationOptions(method, dt, t0, rtol, atol, stabilisation=stabilisation, gains=gains)
+        options = SimulationOptions(
+            method, dt, t0, rtol, atol, stabilisation=stabilisation, gains=gains, beam_limit=beam_limit
+        )
         return Settings.of(model, options, t_end)
 
     parts = place_parts(compiled, settings_of, par)
@@ -156,7 +161,8 @@ def _drive(
     if isinstance(loop.failure, KeyboardInterrupt):
         interrupted = True
     t, q, v, u = (np.concatenate(columns) for columns in zip(*portions, strict=True))
-    outcome = _outcome(loop, status, interrupted, t_end)
+    bendings = tuple(bending for part in loop.parts for bending in part.bendings)
+    outcome = _outcome(loop, status, interrupted, t_end, bendings)
     looked_for = watched(compiled.resolved.pieces)
     crossings = tuple(Crossed(*looked_for[which], when) for when, which in met)
     d = loop.diagram
@@ -172,14 +178,20 @@ def _drive(
     return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost)
 
 
-def _outcome(loop: Loop, status: int, interrupted: bool, t_end: float) -> Outcome:
-    t = float(loop.diagram.t[0])
+def _outcome(
+    loop: Loop, status: int, interrupted: bool, t_end: float, bendings: tuple[BeamBending, ...]
+) -> Outcome:
+    t, notes = float(loop.diagram.t[0]), bending_notes(bendings)
     if interrupted:
-        return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept")
+        return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes)
+    if status == Status.BEYOND_THEORY:
+        worst = largest_bending(bendings)
+        assert worst is not None
+        return Outcome("beyond theory", worst.t, str(worst), f"{BETTER_MODELS}; or move the limit, beam_limit=...")
     if status == Status.FINISHED:
-        return Outcome("finished", t_end, f"{int(loop.diagram.steps)} steps")
+        return Outcome("finished", t_end, f"{int(loop.diagram.steps)} steps", notes=notes)
     if status == Status.CALLBACK_FAILED:
-        return Outcome("input failed", t, f"a block of Python's raised {loop.failure!r}", "call it by itself")
+        return Outcome("input failed", t, f"a block of Python's raised {loop.failure!r}", "call it by itself", notes)
     kinds = {
         Status.DIVERGED: ("diverged", "a state is no longer finite", "a smaller dt; look for gains that are too high"),
         Status.SINGULAR: ("singular", "no accelerations exist", "give every speed an inertia or a constraint"),
@@ -191,4 +203,4 @@ def _outcome(loop: Loop, status: int, interrupted: bool, t_end: float) -> Outcom
         ),
     }
     kind, reason, advice = kinds[Status(status)]
-    return Outcome(kind, t, reason, advice)  # type: ignore[arg-type]
+    return Outcome(kind, t, reason, advice, notes)  # type: ignore[arg-type]

@@ -164,7 +164,7 @@ def _bendings(
         return bendings_at(model, q, par), ()
     K, _, _ = model.residual_derivatives(q, v, np.zeros(model.nv), u, lam, par=par, t=t)
     notes = tuple(
-        f"beam '{name}' is loaded past its critical load: this rest is unstable, and second-order theory has no bent one"
+        f"beam '{name}' is loaded past its critical load: this rest is unstable"
         for name in beyond_critical_load(beams, q, K)
     )
     return bendings_at_rest(model, q, K, par), notes

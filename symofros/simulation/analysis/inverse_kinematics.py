@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from symofros.errors import AssemblyError, Problem, SymofrosError
+from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import RANK
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.assembly import LARGEST_STEP, Indices, free_speeds
+from symofros.simulation.analysis.beam_theory import bendings_at
 from symofros.simulation.analysis.nearest_posture import OPTIMALITY, NearestPosture, coordinate_limits
 from symofros.simulation.analysis.targets import Target as Target
 from symofros.simulation.analysis.targets import Task, finite_array, rotations_checked
@@ -30,11 +32,14 @@ class Reached:
         q: Configuration (nq), within its limits.
         error: Largest remaining error of position [m], rotation [rad] and constraints.
         converged: Whether the error is below the tolerance and, with a posture of rest, the distance from it is least
-            among the solutions nearby, to first order; otherwise the target is out of reach from here.
+            among the solutions nearby, to first order, and no beam is bent beyond its theory; otherwise the target is
+            out of reach from here.
         iterations: Steps taken.
         distance: Distance from rest: norm of differences of coordinates and of rotation vectors; 0 without rest.
         gradient: Norm of the distance's gradient along the solutions, times the distance: of what remains of q - rest
             in the null space of the targets' Jacobian, less what joint limits hold; 0 without rest.
+        bendings: Bending of each beam, with the error of its theory.
+        notes: Remarks: beams whose theory errs by more than a per cent.
     """
 
     q: Array
@@ -43,6 +48,8 @@ class Reached:
     iterations: int
     distance: float = 0.0
     gradient: float = 0.0
+    bendings: tuple[BeamBending, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def inverse_kinematics(
@@ -56,6 +63,7 @@ def inverse_kinematics(
     par: ArrayLike | None = None,
     tolerance: float = 1e-10,
     iterations: int = 200,
+    beam_limit: float = BEAM_LIMIT,
 ) -> Reached:
     """Damped least squares on the targets and, for mechanisms with loops, on their constraints.
 
@@ -73,6 +81,8 @@ def inverse_kinematics(
         par: Run-time parameters.
         tolerance: Bound of the largest error.
         iterations: Most steps from one start.
+        beam_limit: Estimated error of the beams' second-order theory, relative to the deflection, beyond which a
+            configuration does not count as reached (docs/theory/beams.md, section 6).
 
     Raises:
         UnknownNameError: No such frame or speed.
@@ -88,12 +98,22 @@ def inverse_kinematics(
     else:
         starts = [np.array(model.neutral() if resting is None else resting)]
     if resting is None:
-        return _reach(task, starts[0], free, tolerance, iterations)
+        return _judged(model, _reach(task, starts[0], free, tolerance, iterations), par, beam_limit)
     if q is not None and not held:
         starts.append(resting)
-    return min(
+    nearest = min(
         (_reach_near(task, start, resting, free, tolerance, iterations) for start in starts),
         key=lambda reached: (not reached.converged, reached.distance if reached.converged else reached.error),
+    )
+    return _judged(model, nearest, par, beam_limit)
+
+
+def _judged(model: Model, reached: Reached, par: ArrayLike | None, beam_limit: float) -> Reached:
+    """The same with what is to be said of the beams; not converged where one is bent beyond the limit."""
+    bendings = bendings_at(model, reached.q, par)
+    within = all(bending.error <= beam_limit for bending in bendings)
+    return replace(
+        reached, converged=reached.converged and within, bendings=bendings, notes=bending_notes(bendings)
     )
 
 
@@ -207,7 +227,7 @@ def joint_motion(
             raise AssemblyError(
                 Problem(
                     f"model '{model.record.name}': frame '{frame}' can't follow",
-                    f"an error of {at.error:.3g} at sample {i}",
+                    "; ".join([f"an error of {at.error:.3g} at sample {i}", *at.notes]),
                     "every sample is within reach",
                     "move the path, or start from another configuration",
                 )

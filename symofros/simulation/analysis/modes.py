@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.beam_theory import bendings_at, refuse_beyond
 from symofros.simulation.analysis.state_space import state_space
 
 Complex = npt.NDArray[np.complex128]
@@ -23,12 +25,16 @@ class Modes:
         frequencies: |s| [rad/s] (k).
         damping: -Re(s)/|s|: positive decays, negative grows; a rigid motion (s = 0) counts 0 (k).
         shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k).
+        bendings: Bending of each beam in the state, with the error of its theory.
+        notes: Remarks: beams whose theory errs by more than a per cent.
     """
 
     eigenvalues: Complex
     frequencies: Array
     damping: Array
     shapes: Complex
+    bendings: tuple[BeamBending, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def modes(
@@ -39,6 +45,7 @@ def modes(
     *,
     par: ArrayLike | None = None,
     t: float = 0.0,
+    beam_limit: float = BEAM_LIMIT,
 ) -> Modes:
     """Modes of small motions about a state, which should be an equilibrium or a steady motion (`equilibrium`).
 
@@ -49,7 +56,14 @@ def modes(
         u: Inputs (nu); the defaults if not given.
         par: Run-time parameters.
         t: Time.
+        beam_limit: Estimated error of the beams' second-order theory in the state beyond which there is no result
+            (docs/theory/beams.md, section 6); `math.inf` for no limit.
+
+    Raises:
+        BeamTheoryError: A beam is bent beyond the limit.
     """
+    bendings = bendings_at(model, np.asarray(q, dtype=np.float64), par)
+    refuse_beyond(model, bendings, beam_limit, "the state of the modes")
     linear_model = state_space(model, q, v, u, par=par, t=t)
     s, X = np.linalg.eig(linear_model.A)
     kept = s.imag >= 0.0
@@ -60,4 +74,4 @@ def modes(
     damping = np.where(size > 0.0, -s.real / np.where(size > 0.0, size, 1.0), 0.0)
     largest = np.take_along_axis(X, np.abs(X).argmax(axis=0)[None], axis=0)
     shapes = X / np.where(largest == 0.0, 1.0, largest)
-    return Modes(s, size, damping, shapes)
+    return Modes(s, size, damping, shapes, bendings, bending_notes(bendings))

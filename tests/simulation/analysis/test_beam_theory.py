@@ -1,4 +1,4 @@
-"""Equilibria say how far second-order theory of beams holds, and end where it ends (docs/theory/beams.md, section 6)."""
+"""Equilibria say how far second-order theory of beams holds (docs/theory/beams.md, section 6)."""
 
 from __future__ import annotations
 
@@ -90,3 +90,43 @@ def test_a_column_past_its_critical_load_has_no_bent_equilibrium() -> None:
     (note,) = sf.equilibrium(cantilever().with_parameters(P=past)).notes
     assert "unstable" in note
     assert not sf.equilibrium(cantilever().with_parameters(P=0.95 * critical_load())).notes
+
+
+def test_modes_of_a_state_beyond_the_limit_are_refused() -> None:
+    straight, bent = cantilever().neutral(), np.array([0.1, 0.0, 0.0])
+    assert not sf.modes(cantilever(), straight).notes
+    assert "'blade'" in sf.modes(cantilever(), bent).notes[0]
+    with pytest.raises(sf.BeamTheoryError, match="the state of the modes"):
+        sf.modes(cantilever(), 10.0 * bent)
+
+
+def test_a_place_that_needs_a_beam_bent_beyond_its_theory_is_out_of_reach() -> None:
+    """Free elastic coordinates stay within small slopes; those that are held may be anything."""
+
+    def reached(height: float, **limit: float) -> sf.Reached:
+        q = np.array([height, 0.0, 0.0])
+        target = sf.Target(cantilever().frame_pose("tip", q)[0])
+        return sf.inverse_kinematics(cantilever(), {"tip": target}, q, held=cantilever().names.v, **limit)
+
+    near, bent, far = reached(0.01), reached(0.2), reached(0.9)
+    assert near.converged and not near.notes
+    assert bent.converged and "second-order theory errs" in bent.notes[0]
+    assert far.error < 1e-9 and not far.converged and far.notes
+    assert reached(0.9, beam_limit=math.inf).converged
+
+
+def test_a_beam_cut_into_several_errs_less_by_the_square_of_their_number() -> None:
+    errors = []
+    for count in (1, 2, 4):
+        beams: list[sf.Beam] = []
+        for k in range(count):
+            joint = sf.Joint(f"j{k}", "fixed") if not k else sf.Joint(f"j{k}", "fixed", f"b{k - 1}", "tip")
+            loads = (sf.BeamLoad((0.0, 1.5, 0.0), at=1.0, axes="world"),) if k == count - 1 else ()
+            beams.append(
+                sf.Beam(f"b{k}", joint, 1.0 / count, 1.0, EI_z=1.0, bend_y=2, family="hermite", loads=loads, retain="all")
+            )
+        model = sf.compile(sf.System("chain", tuple(beams), gravity=(0, 0, 0)), sf.Options(backend="interpreter"))
+        p, _ = model.frame_pose(f"b{count - 1}.tip", sf.equilibrium(model, beam_limit=math.inf).q)
+        exact = np.array([1.0 - elastica(1.5)[1], elastica(1.5)[0]])
+        errors.append(float(np.linalg.norm(p[:2] - exact)))
+    assert errors[0] / errors[1] > 3.0 and errors[1] / errors[2] > 3.0

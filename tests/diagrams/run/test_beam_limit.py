@@ -1,0 +1,36 @@
+"""Runs of diagrams say how far they bend their beams (docs/theory/beams.md, section 6)."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import symofros as sf
+from symofros import blocks
+
+
+def simulation(g: float) -> sf.Simulation:
+    """Two cantilevers under their weight."""
+    beam = sf.Beam("blade", sf.Joint("root", "fixed"), "L", 1.0, EI_z=1.0, bend_y=2)
+    system = sf.System("cantilever", (beam,), gravity=(0, -g, 0), parameters=(sf.Parameter("L", 1.0),))
+    diagram = sf.Diagram("bench")
+    diagram.add_model("plant", system)
+    diagram.add(blocks.ForwardDynamics(name="first", model="plant"))
+    diagram.add(blocks.ForwardDynamics(name="second", model="plant"))
+    return sf.Simulation(diagram)
+
+
+def test_a_diagram_ends_where_a_beam_bends_beyond_its_theory() -> None:
+    limp = simulation(60.0)
+    outcome = limp.run(1.0).outcome
+    assert outcome.kind == "beyond theory" and not outcome.ok
+    assert "'first.blade' bends by" in outcome.reason and outcome.t == pytest.approx(0.14, abs=0.01)
+    assert limp.run(0.2, beam_limit=math.inf).outcome.kind == "finished"
+
+
+def test_a_diagram_notes_the_largest_bending_at_its_parameters() -> None:
+    stiff = simulation(0.5)
+    first, second = stiff.run(2.0).outcome.notes
+    assert "'first.blade'" in first and "'second.blade'" in second and "x = 0.875 m" in first
+    assert not stiff.run(1.0, parameters={"plant.L": 0.5}).outcome.notes
