@@ -10,6 +10,7 @@ notice. Each name has its reason:
 | count_program | operations of a program |
 | ABLATIONS, Ablation | programs generated without one pass |
 | DEFAULT_FLAGS, find_toolchain, cpu_identity | provenance of a measurement, builds of peers by the same compiler |
+| CODE_IDENTITY, source_digest | results that only the same code may continue: campaigns |
 | METHODS | the table of integrators: which adapt their steps, which are implicit |
 | fixed_step_loop | the C loop of an integrator, called without the recording around it: timing |
 | Numbers, Precision, Strided, columns | batches as the C functions by vectors take them: timing |
@@ -37,6 +38,8 @@ from symofros.expr.program import Program as Program
 from symofros.generator.ablation import ABLATIONS as ABLATIONS
 from symofros.generator.ablation import Ablation as Ablation
 from symofros.generator.passes.count import count_program as count_program
+from symofros.runtime.build.identity import CODE_IDENTITY as CODE_IDENTITY
+from symofros.runtime.build.identity import source_digest as source_digest
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS as DEFAULT_FLAGS
 from symofros.runtime.build.toolchain import cpu_identity as cpu_identity
 from symofros.runtime.build.toolchain import find_toolchain as find_toolchain

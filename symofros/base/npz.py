@@ -1,4 +1,4 @@
-"""NumPy's .npz archives from files that nobody vouches for: what they state of their sizes is judged before unpacking."""
+"""NumPy's .npz archives from untrusted files: what they state of their sizes is judged before unpacking."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _array(name: str, stream: IO[bytes], file_size: int, most_numbers: int) -> A
         raise TooLargeError(f"array '{name}' has {size} elements of {dtype}")
     length = size * dtype.itemsize
     if file_size != stream.tell() + length:
-        raise ValueError(f"array '{name}' states the shape {shape}, which takes {length} bytes, not those that are there")
+        raise ValueError(f"array '{name}' states the shape {shape}, which takes {length} bytes; there are others")
     content = stream.read(length + 1)  # To the end, where the checksum is compared.
     if len(content) != length:
         raise ValueError(f"array '{name}' ends after {len(content)} of {length} bytes")

@@ -13,15 +13,18 @@ import re
 import signal
 import socket
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
 from itertools import islice
 from pathlib import Path
 
 import dask
 import distributed
 
+import validation
+from symofros.tools import CODE_IDENTITY, source_digest
 from validation.campaigns.errors import ClusterError
 from validation.campaigns.store import Store
 from validation.campaigns.tasks import Task
@@ -169,7 +172,7 @@ def _outcomes(
 
     def submit(task: Task) -> distributed.Future:
         key = f"{store.hash}-{task.number}"
-        return client.submit(execute, task, store.folder.resolve(), store.hash, key=key)
+        return client.submit(execute, task, store.folder.resolve(), store.hash, sources(), key=key)
 
     active = distributed.as_completed([submit(task) for task in islice(waiting, width)])
     for future in active:
@@ -187,12 +190,32 @@ def _outcomes(
             active.add(submit(following))
 
 
-def execute(task: Task, folder: Path, hash: str) -> bytes:
+@cache
+def sources() -> dict[str, str]:
+    """Digests of the code that makes rows, generator and harness, as this process has it."""
+    return {
+        "source of symofros": CODE_IDENTITY[:16],
+        "source of validation": source_digest(Path(validation.__file__).parent)[:16],
+    }
+
+
+def execute(task: Task, folder: Path, hash: str, code: Mapping[str, str]) -> bytes:
     """On a worker: do a batch, unless its part is there already.
+
+    Args:
+        task: Batch to do.
+        folder: Folder of the campaign.
+        hash: Hash of the plan.
+        code: Digests of the client's code.
 
     Returns:
         The part.
+
+    Raises:
+        RuntimeError: The worker's code is not the client's.
     """
+    if code != sources():
+        raise RuntimeError("the worker runs other code than the client, whose rows would not belong to the others")
     store = Store(folder, hash)
     shared = store.parts.is_dir()
     known = store.part(task.number) if shared else None

@@ -8,14 +8,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import pyarrow.parquet as parquet
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 import symofros as sf
 from validation.campaigns.errors import PlanError, StoreError, Unfinished
 from validation.campaigns.plan import Plan, SweepPlan, as_text, cases, identities, make, plan_hash
-from validation.campaigns.runner import Pool, run
+from validation.campaigns.runner import Pool, run, sources
 from validation.campaigns.store import RESULTS, Store, manifest_of, provenance_of
 from validation.campaigns.summary import effort, summarised
 from validation.campaigns.sweep import Sweeper
@@ -60,7 +59,7 @@ def standing(folder: Path) -> dict[str, Any]:
     if store.results.is_file():
         return _summary(store)
     plan = make(manifest["plan"], str(folder / "plan.json"))
-    wanted, parts = tasks(plan), store.finished()
+    wanted, (parts, _) = tasks(plan), store.finished()
     finished = sum(task.size for task in wanted if task.number in parts)
     return {"finished": finished, "size": plan.size, "batches": len(parts), "of": len(wanted)}
 
@@ -71,7 +70,7 @@ def _manifest(plan: Plan) -> dict[str, Any]:
         "hash": plan_hash(plan, models),
         "plan": json.loads(as_text(plan)),
         "models": models,
-        "versions": provenance.versions(),
+        "versions": provenance.versions() | sources(),
         "begun": provenance.now(),
     }
 
@@ -87,7 +86,9 @@ def _carry_out(store: Store, plan: Plan, pool: Pool) -> dict[str, Any]:
 
 def _complete(store: Store, plan: Plan, pool: Pool) -> None:
     """Every part, and the one file."""
-    wanted, finished = tasks(plan), store.finished()
+    wanted, (finished, damaged) = tasks(plan), store.finished()
+    for part, why in damaged.items():
+        Console(stderr=True).print(f"{part} is damaged, its batch is done again: {why}", markup=False, soft_wrap=True)
     left = [task for task in wanted if task.number not in finished]
     store.note(event="session", left=len(left))
     try:
@@ -102,7 +103,8 @@ def _complete(store: Store, plan: Plan, pool: Pool) -> None:
         **{name: manifest[name] for name in ("hash", "plan", "begun")},
         "identities": manifest["models"],
         "effort": effort(store.journal()),
-        **provenance.stamp(),
+        "sources": sources(),
+        **provenance.stamp("distributed", "pyarrow"),
     }
     store.merge(len(wanted), told)
 
@@ -139,4 +141,4 @@ def _summary(store: Store) -> dict[str, Any]:
     if facts["hash"] != store.hash:
         rule = "plan and results belong together"
         raise StoreError(store.folder, f"{RESULTS} is of another plan", rule, "begin anew in a new folder")
-    return summarised(parquet.read_table(store.results), facts)
+    return summarised(store.rows(), facts)

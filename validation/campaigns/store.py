@@ -27,6 +27,7 @@ from validation.campaigns.errors import StoreError
 
 RESULTS = "results.parquet"
 KEY = b"symofros.campaign"
+_UNREADABLE = (pa.ArrowException, OSError)
 
 
 class Store:
@@ -98,20 +99,37 @@ class Store:
         """The file of all rows."""
         return self.folder / RESULTS
 
-    def finished(self) -> set[int]:
-        """Numbers of the batches whose parts are whole; what is broken is removed, to be done again."""
-        parts = set()
-        for path in self.parts.glob("*.parquet"):
-            if self._sound(path):
-                parts.add(int(path.stem))
+    def finished(self) -> tuple[set[int], dict[str, str]]:
+        """Numbers of the batches whose parts are whole; and why other files are none, by their names.
+
+        A batch whose part is damaged counts as not done; the new part replaces it.
+        """
+        parts, damaged = set(), {}
+        for path in sorted(self.parts.glob("*.parquet")):
+            fault = self._fault(path)
+            if fault:
+                damaged[path.name] = fault
             else:
-                path.unlink()
-        return parts
+                parts.add(int(path.stem))
+        return parts, damaged
 
     def part(self, number: int) -> bytes | None:
         """The part of a batch, if it is there and whole."""
         path = self._path(number)
-        return path.read_bytes() if path.is_file() and self._sound(path) else None
+        return path.read_bytes() if path.is_file() and not self._fault(path) else None
+
+    def rows(self) -> pa.Table:
+        """All rows of a campaign that is done.
+
+        Raises:
+            StoreError: Their file is damaged.
+        """
+        try:
+            return _read(self.results)
+        except _UNREADABLE as error:
+            rule = "results are as the campaign wrote them, checksums included"
+            remedy = f"restore {RESULTS} from a copy, or begin anew in a new folder"
+            raise StoreError(self.folder, f"{RESULTS} is damaged: {_in_a_line(error)}", rule, remedy) from None
 
     def write(self, number: int, part: bytes) -> None:
         """Keep a part."""
@@ -137,7 +155,7 @@ class Store:
         Raises:
             FileNotFoundError: A part is missing.
         """
-        tables = [parquet.read_table(self._path(number)) for number in range(count)]
+        tables = [_read(self._path(number)) for number in range(count)]
         rows = pa.concat_tables([table.replace_schema_metadata(None) for table in tables])
         write_atomically(self.results, _encoded(rows, provenance))
         self.tidy()
@@ -152,12 +170,16 @@ class Store:
     def _path(self, number: int) -> Path:
         return self.parts / f"{number:06d}.parquet"
 
-    def _sound(self, path: Path) -> bool:
+    def _fault(self, path: Path) -> str:
+        """Why a file is no part of this campaign; "" if it is. Its rows are read, since merging will need them."""
         try:
             facts = provenance_of(path)
-            return bool(facts["hash"] == self.hash and f"{facts['batch']:06d}" == path.stem)
-        except (pa.ArrowException, OSError, KeyError, ValueError, TypeError):
-            return False
+            if facts["hash"] != self.hash or f"{facts['batch']:06d}" != path.stem:
+                return f"it is batch {facts['batch']} of plan {facts['hash']}"
+            _read(path)
+            return ""
+        except (*_UNREADABLE, KeyError, ValueError, TypeError) as error:
+            return _in_a_line(error)
 
 
 def manifest_of(folder: Path) -> dict[str, Any]:
@@ -189,9 +211,17 @@ def provenance_of(path: Path) -> dict[str, Any]:
     return provenance
 
 
+def _read(path: Path) -> pa.Table:
+    return parquet.read_table(path, page_checksum_verification=True)
+
+
+def _in_a_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:200] or type(error).__name__
+
+
 def _encoded(rows: pa.Table, facts: dict[str, Any]) -> bytes:
     sink = io.BytesIO()
-    parquet.write_table(rows.replace_schema_metadata({KEY: json.dumps(facts)}), sink, compression="zstd")
+    parquet.write_table(rows.replace_schema_metadata({KEY: json.dumps(facts)}), sink, compression="zstd", write_page_checksum=True)
     return sink.getvalue()
 
 

@@ -2,8 +2,8 @@
 
 The key covers the C text, the header, flags, compiler and processor, or the processor's family where the library is for
 any of it. A library is compiled in a private folder and renamed into place, so that concurrent processes and killed
-compilations never leave a broken one behind; a damaged one is compiled anew. A second key spares the C text: what was asked for, of which state of this
-package; its file names the library.
+compilations never leave a broken one behind; a damaged one is compiled anew. A second key spares the C text: what was
+asked for, of which state of this package; its file names the library.
 """
 
 from __future__ import annotations

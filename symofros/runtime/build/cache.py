@@ -29,7 +29,7 @@ def cache_folder() -> Path:
     """Where compiled models live: $SYMOFROS_CACHE, or symofros in the user's cache folder. It need not exist.
 
     Raises:
-        CompileError: Another user owns it, or a symbolic link to it; or others can write to it and that can't be changed.
+        CompileError: Another user owns it, or a symbolic link to it; or others can write to it, for good.
     """
     stated = os.environ.get("SYMOFROS_CACHE")
     if stated:

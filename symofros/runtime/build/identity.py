@@ -5,17 +5,17 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-_PACKAGE = Path(__file__).parents[2]
 _SUFFIXES = {".py", ".in", ".h", ".c"}
 
 
-def _digest() -> str:
+def source_digest(package: Path) -> str:
+    """Digest of all source files of a package, Python and C, and of their places in its folder."""
     digest = hashlib.sha256()
-    for path in sorted(path for path in _PACKAGE.rglob("*") if path.suffix in _SUFFIXES):
-        digest.update(f"{path.relative_to(_PACKAGE)}\0".encode())
+    for path in sorted(path for path in package.rglob("*") if path.suffix in _SUFFIXES):
+        digest.update(f"{path.relative_to(package)}\0".encode())
         digest.update(hashlib.sha256(path.read_bytes()).digest())
     return digest.hexdigest()
 
 
 # Taken at import (5 ms): later, a file might have been edited whose older text this process runs.
-CODE_IDENTITY = _digest()
+CODE_IDENTITY = source_digest(Path(__file__).parents[2])

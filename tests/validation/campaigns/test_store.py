@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 
+from tests.validation.campaigns.scripted import with_a_damaged_page
 from validation.campaigns.errors import StoreError
 from validation.campaigns.store import Store, manifest_of, provenance_of
 
@@ -32,19 +33,22 @@ def part(store: Store, number: int) -> bytes:
     return store.encode(number, pa.table({"batch": [number], "x": [0.1 * number]}), {"seconds": 0.5})
 
 
-def test_a_part_that_is_half_there_is_removed_and_counts_as_not_done(store: Store) -> None:
+def test_a_part_that_is_damaged_counts_as_not_done(store: Store) -> None:
     store.write(0, part(store, 0))
     whole = part(store, 1)
     (store.parts / "000001.parquet").write_bytes(whole[: len(whole) // 2])
     (store.parts / "000002.parquet").write_bytes(b"")
-    assert store.part(1) is None and store.finished() == {0}
-    assert sorted(path.name for path in store.parts.iterdir()) == ["000000.parquet"]
+    (store.parts / "000003.parquet").write_bytes(with_a_damaged_page(part(store, 3)))
+    finished, damaged = store.finished()
+    assert finished == {0} and list(damaged) == ["000001.parquet", "000002.parquet", "000003.parquet"]
+    assert all(damaged.values())
+    assert store.part(1) is None and store.part(3) is None
 
 
 def test_parts_of_another_plan_or_place_are_none_of_ours(store: Store) -> None:
     store.write(3, part(Store(store.folder, "other"), 3))
     store.write(4, part(store, 5))
-    assert store.finished() == set()
+    assert store.finished()[0] == set()
 
 
 def test_a_kill_in_the_middle_of_writing_leaves_no_part(store: Store) -> None:
@@ -57,7 +61,7 @@ def test_a_kill_in_the_middle_of_writing_leaves_no_part(store: Store) -> None:
     )
     ended = subprocess.run([sys.executable, "-c", code, str(store.folder)], check=False)
     assert ended.returncode == -signal.SIGKILL
-    assert store.finished() == set() and store.part(0) is None
+    assert store.finished()[0] == set() and store.part(0) is None
 
 
 def test_parts_become_one_file_in_their_order(store: Store) -> None:
@@ -73,12 +77,12 @@ def test_a_missing_part_is_not_passed_over(store: Store) -> None:
     store.write(0, part(store, 0))
     with pytest.raises(FileNotFoundError):
         store.merge(2, {})
-    assert not store.results.exists() and store.finished() == {0}
+    assert not store.results.exists() and store.finished()[0] == {0}
 
 
 def test_the_same_campaign_goes_on(store: Store) -> None:
     store.write(0, part(store, 0))
-    assert Store.create(store.folder, MANIFEST | {"begun": "later"}).finished() == {0}
+    assert Store.create(store.folder, MANIFEST | {"begun": "later"}).finished()[0] == {0}
 
 
 @pytest.mark.parametrize(
