@@ -104,7 +104,7 @@ def _complete(store: Store, plan: Plan, pool: Pool) -> None:
         "identities": manifest["models"],
         "effort": effort(store.journal()),
         "sources": sources(),
-        **provenance.stamp("distributed", "pyarrow"),
+        **provenance.stamp(),
     }
     store.merge(len(wanted), told)
 

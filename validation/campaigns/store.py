@@ -221,7 +221,8 @@ def _in_a_line(error: Exception) -> str:
 
 def _encoded(rows: pa.Table, facts: dict[str, Any]) -> bytes:
     sink = io.BytesIO()
-    parquet.write_table(rows.replace_schema_metadata({KEY: json.dumps(facts)}), sink, compression="zstd", write_page_checksum=True)
+    stamped = rows.replace_schema_metadata({KEY: json.dumps(facts)})
+    parquet.write_table(stamped, sink, compression="zstd", write_page_checksum=True)
     return sink.getvalue()
 
 
