@@ -11,9 +11,7 @@ import typer
 from typer.core import TyperGroup
 
 from validation.cross_check import report as cross_check
-from validation.cross_check.report import WORKERS, Engines, Junit, Seed, States, Workers
-from validation.inputs.sampling import DEFAULT_STATES
-from validation.reporting.command import REPORTS, AsJson, Output, add_command, execute
+from validation.reporting.command import add_command
 
 
 @cache
@@ -25,6 +23,11 @@ def studies() -> Mapping[str, Any]:
 class Commands(TyperGroup):
     """`check` at hand, the other commands when they are asked for. Typer's own copy of Click has no public types."""
 
+    def parse_args(self, ctx: Any, args: list[str]) -> Any:
+        """Options without a command are those of `check`."""
+        is_check = not args or (args[0].startswith("-") and "--help" not in args)
+        return super().parse_args(ctx, ["check", *args] if is_check else args)
+
     def list_commands(self, ctx: Any) -> list[str]:
         """Names of all commands."""
         return [*super().list_commands(ctx), *studies()]
@@ -35,26 +38,13 @@ class Commands(TyperGroup):
 
 
 app = typer.Typer(cls=Commands, add_completion=False, no_args_is_help=False, pretty_exceptions_enable=False)
-
-
-@app.callback(invoke_without_command=True)
-def standard(
-    context: typer.Context,
-    states: States = DEFAULT_STATES,
-    seed: Seed = 0,
-    engine: Engines = None,
-    junit: Junit = None,
-    workers: Workers = WORKERS,
-    output: Output = REPORTS,
-    as_json: AsJson = False,
-) -> None:
-    """Cross-check the generated code. Without a command: the standard set of robots and reference models."""
-    if context.invoked_subcommand is None:
-        options = {"states": states, "seed": seed, "engine": engine, "junit": junit, "workers": workers}
-        execute(cross_check.TOPIC, cross_check.measure, output, as_json, cross_check.PRINTED, **options)
-
-
 add_command(app, cross_check.TOPIC, cross_check.measure, cross_check.PRINTED)
+
+
+@app.callback()
+def main() -> None:
+    """Cross-check the generated code. Without a command: the standard set of robots and reference models."""
+
 
 if __name__ == "__main__":
     app()

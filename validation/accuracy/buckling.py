@@ -11,7 +11,7 @@ import symofros as sf
 from validation.accuracy.beams import cantilever, interpreted, squares, stiffness_and_mass
 from validation.accuracy.reference import data, source
 from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.figures import Chart, Curve, Figure, Mark, curves
 from validation.reporting.findings import Finding, Study, exponent, near
 
 FAMILIES = ("legendre", "polynomial", "spline", "clamped_free")
@@ -150,47 +150,34 @@ def study(quick: bool) -> Study:
 
 def axial(counts: Array, loads: dict[str, Array], quick: bool, reference: dict[str, Any]) -> Figure:
     """Loads and weight along the axis."""
-    convergence = Chart(
-        "Euler's load",
-        "number of functions  [1]",
-        "relative error  [1]",
-        tuple(
-            Curve(family, counts, np.maximum(load / EULER - 1.0, 1e-15), COLORS[family], "joined")
-            for family, load in loads.items()
-        ),
-        (Mark("0.1 %", 1e-3),),
-        log="y",
-    )
+    errors = {family: np.maximum(load / EULER - 1.0, 1e-15) for family, load in loads.items()}
+    convergence = curves(counts, errors, "joined", COLORS)
     m, weights = heavy(8), np.linspace(-10.0, 10.0, 20 if quick else 201)
     squared = np.array([squares(*stiffness_and_mass(m, g=float(g)))[0] for g in weights])
     rows = [row for row in reference["gravity_frequencies_hanging_positive"] if row["gamma"] <= 10.0]
-    exact = Curve("exact", [row["gamma"] for row in rows], [row["omega"][0] for row in rows], 0, "points")
-    weight = Chart(
-        "first frequency under its weight",
-        "weight ρA g L³/EI, positive if it hangs  [1]",
-        "first frequency ω₁ √(ρA L⁴/EI)  [1]",
-        (Curve("our beam", weights, np.sqrt(np.where(squared >= 0.0, squared, np.nan)), 0), exact),
-        (Mark("Greenhill: −7.8373", -7.8373, "x"),),
+    frequencies = (
+        Curve("our beam", weights, np.sqrt(np.where(squared >= 0.0, squared, np.nan)), 0),
+        Curve("exact", [row["gamma"] for row in rows], [row["omega"][0] for row in rows], 0, "points"),
     )
+    weight, frequency = "weight ρA g L³/EI, positive if it hangs  [1]", "first frequency ω₁ √(ρA L⁴/EI)  [1]"
+    greenhill, tenth = (Mark("Greenhill: −7.8373", -7.8373, "x"),), (Mark("0.1 %", 1e-3),)
     return Figure(
         "Left: every family comes from above and reaches 0.1 % with five functions; cantilever modes are the slowest. "
         "Right: what hangs is stiffened by its weight, what stands is softened, and falls over where the curve "
         "reaches zero.",
-        (convergence, weight),
+        (
+            Chart("Euler's load", "number of functions  [1]", "relative error  [1]", convergence, tenth, log="y"),
+            Chart("first frequency under its weight", weight, frequency, frequencies, greenhill),
+        ),
     )
 
 
 def strip(functions: Array, loads: Array) -> Figure:
     """Sideways."""
-    chart = Chart(
-        "lateral buckling of a strip on edge",
-        "number of functions a field  [1]",
-        "critical load P L²/√(EI GJ)  [1]",
-        (Curve("retain: all", functions, loads, 0, "joined"),),
-        (Mark("4.0126 (Prandtl)", LATERAL),),
-    )
+    x, y = "number of functions a field  [1]", "critical load P L²/√(EI GJ)  [1]"
+    marks, drawn = (Mark("4.0126 (Prandtl)", LATERAL),), curves(functions, {"retain: all": loads})
     return Figure(
         "The cubic part of the strain energy couples bending and twist: the load falls to Prandtl's within four "
         "functions a field.",
-        (chart,),
+        (Chart("lateral buckling of a strip on edge", x, y, drawn, marks),),
     )

@@ -8,7 +8,7 @@ import symofros as sf
 from validation.accuracy.beams import FIRST, cantilever, interpreted, squares, stiffness_and_mass
 from validation.accuracy.reference import data, source
 from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.figures import Chart, Figure, Mark, curves
 from validation.reporting.findings import Finding, Study, near
 
 COLORS = {"polynomial": 2, "spline": 1, "legendre": 0, "clamped_free": 5}
@@ -85,24 +85,17 @@ def study(quick: bool) -> Study:
 
 def figure(counts: Array, numbers: dict[str, Array], errors: dict[str, Array]) -> Figure:
     """Condition and what it does to the first frequency."""
-    condition = Chart(
-        "condition number of M",
-        "number of functions  [1]",
-        "condition number  [1]",
-        tuple(Curve(f, counts, y, COLORS[f], "joined") for f, y in numbers.items()),
-        (Mark("refused", 1e12),),
-        log="y",
-    )
-    first = Chart(
-        "first frequency at rest",
-        "number of functions  [1]",
-        "relative error  [1]",
-        tuple(Curve(f, counts, np.maximum(y, 1e-17), COLORS[f], "joined") for f, y in errors.items()),
-        log="y",
+    x, refused = "number of functions  [1]", (Mark("refused", 1e12),)
+    condition, first = (
+        curves(counts, {family: np.maximum(y, 1e-17) for family, y in drawn.items()}, "joined", COLORS)
+        for drawn in (numbers, errors)
     )
     return Figure(
         "Left: only monomials climb, and stop short of the red line, where they are refused; the other families can "
         "have any number of functions. Right: the first frequency falls to rounding with polynomials and stays there; "
         "cantilever modes are exact at rest, splines converge with the fourth power.",
-        (condition, first),
+        (
+            Chart("condition number of M", x, "condition number  [1]", condition, refused, log="y"),
+            Chart("first frequency at rest", x, "relative error  [1]", first, log="y"),
+        ),
     )

@@ -7,7 +7,7 @@ import numpy as np
 from validation.accuracy.beams import spinning, spinning_squares
 from validation.accuracy.reference import data, source
 from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure
+from validation.reporting.figures import Chart, Curve, Figure, Kind
 from validation.reporting.findings import Finding, Study, exponent
 
 ETA, DELTA = 12, 1
@@ -16,6 +16,7 @@ COUNTS = {"legendre": 14, "polynomial": 7, "spline": 20, "clamped_free": 20, "he
 # Below this, rounding and the table's own digits are all that is seen.
 FLOOR = 1e-11
 COLORS = {"legendre": 0, "polynomial": 2, "spline": 1, "clamped_free": 5, "hermite": 4}
+KINDS: dict[str, Kind] = {"hermite": "points"}
 
 
 def study(quick: bool) -> Study:
@@ -93,28 +94,17 @@ def relative(family: str, tried: list[int], exact: Array) -> tuple[Array, Array]
 
 def figure(errors: dict[str, tuple[Array, Array]]) -> Figure:
     """Two frequencies."""
-    charts = tuple(
-        Chart(
-            f"flap frequency {mode}, η = {ETA}, r/L = {DELTA}",
-            "number of functions  [1]",
-            "relative error  [1]",
-            tuple(
-                Curve(
-                    family,
-                    n,
-                    np.maximum(error[:, column], 1e-15),
-                    COLORS[family],
-                    "points" if family == "hermite" else "joined",
-                )
-                for family, (n, error) in errors.items()
-                if np.isfinite(error[:, column]).any()
-            ),
-            log="y",
+    charts = []
+    for column, mode in enumerate((1, 3)):
+        drawn = tuple(
+            Curve(family, n, np.maximum(error[:, column], 1e-15), COLORS[family], KINDS.get(family, "joined"))
+            for family, (n, error) in errors.items()
+            if np.isfinite(error[:, column]).any()
         )
-        for column, mode in enumerate((1, 3))
-    )
+        title = f"flap frequency {mode}, η = {ETA}, r/L = {DELTA}"
+        charts.append(Chart(title, "number of functions  [1]", "relative error  [1]", drawn, log="y"))
     return Figure(
         "The polynomials fall ever faster, which is exponential convergence; splines and cantilever modes bend over "
         "to a power law. The families legendre, polynomial and hermite span the same space and lie on the same curve.",
-        charts,
+        tuple(charts),
     )

@@ -73,30 +73,22 @@ def study(quick: bool) -> Study:
 def figure(curve: Curve, zeta: float, omegas: Array, ratios: Array) -> Figure:
     """Decay, and ratios against frequency."""
     envelope = np.exp(-zeta * FIRST * np.asarray(curve.x))
-    decay = Chart(
-        "decay of the first mode",
-        "time  [√(ρA L⁴/EI)]",
-        "over the start  [1]",
-        (
-            curve,
-            Curve("exp(−ζ ω₁ t)", curve.x, envelope, 1, "dashed"),
-            Curve("−exp(−ζ ω₁ t)", curve.x, -envelope, 1, "dashed"),
-        ),
+    decay = (
+        curve,
+        Curve("exp(−ζ ω₁ t)", curve.x, envelope, 1, "dashed"),
+        Curve("−exp(−ζ ω₁ t)", curve.x, -envelope, 1, "dashed"),
     )
     line = np.geomspace(omegas[0] / 1.2, omegas[-1] * 1.2, 50)
-    growth = Chart(
-        "damping ratio against frequency",
-        "frequency ω √(ρA L⁴/EI)  [1]",
-        "damping ratio  [1]",
-        (
-            Curve("τ ω/2", line, TAU * line / 2, 1, "dashed"),
-            Curve("modes that oscillate", omegas[: len(ratios)], ratios, 0, "points"),
-        ),
-        (Mark("critical", 1.0),),
-        log="xy",
+    growth = (
+        Curve("τ ω/2", line, TAU * line / 2, 1, "dashed"),
+        Curve("modes that oscillate", omegas[: len(ratios)], ratios, 0, "points"),
     )
+    frequency, critical = "frequency ω √(ρA L⁴/EI)  [1]", (Mark("critical", 1.0),)
     return Figure(
         "The motion touches its exponential envelope at every extreme. At the right, the damping ratios of the modes "
         "lie on the line τ ω/2; what is above the red line does not oscillate.",
-        (decay, growth),
+        (
+            Chart("decay of the first mode", "time  [√(ρA L⁴/EI)]", "over the start  [1]", decay),
+            Chart("damping ratio against frequency", frequency, "damping ratio  [1]", growth, critical, log="xy"),
+        ),
     )

@@ -11,7 +11,7 @@ from validation.accuracy.beams import cantilever, interpreted
 from validation.accuracy.reference import data, source
 from validation.adapters.exudyn.ancf import static_tip
 from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.figures import Chart, Curve, Figure, Mark, curves
 from validation.reporting.findings import Finding, Study, near
 
 # Relative error of the tip's deflection, in per cent, whose beginning is looked for.
@@ -88,52 +88,34 @@ def study(quick: bool) -> Study:
 
 def shapes(alphas: Array, beam: Array, rod: Array, cable: Array) -> Figure:
     """Deflection and shortening against load."""
-    x = "load P L²/EI  [1]"
-    deflection = Chart(
-        "deflection of the tip",
-        x,
-        "deflection over L  [1]",
+    x, names = "load P L²/EI  [1]", ("our beam (as linear theory)", "our beam")
+    deflection, shortening = (
         (
-            Curve("elastica", alphas, rod[:, 0], 0),
-            Curve("Exudyn", alphas[::4], cable[::4, 0], 5, "points"),
-            Curve("our beam (as linear theory)", alphas, beam[:, 0], 1, "dashed"),
-        ),
-        (Mark("1 %", 0.098), Mark("5 %", 0.214)),
+            Curve("elastica", alphas, rod[:, k], 0),
+            Curve("Exudyn", alphas[::4], cable[::4, k], 5, "points"),
+            Curve(name, alphas, beam[:, k], 1, "dashed"),
+        )
+        for k, name in enumerate(names)
     )
-    shortening = Chart(
-        "shortening of the tip",
-        x,
-        "shortening over L  [1]",
-        (
-            Curve("elastica", alphas, rod[:, 1], 0),
-            Curve("Exudyn", alphas[::4], cable[::4, 1], 5, "points"),
-            Curve("our beam", alphas, beam[:, 1], 1, "dashed"),
-            Curve("linear theory", alphas, 0 * alphas, 4, "dotted"),
-        ),
-    )
+    linear = Curve("linear theory", alphas, 0 * alphas, 4, "dotted")
+    marks = Mark("1 %", 0.098), Mark("5 %", 0.214)
     return Figure(
         "The beam follows the elastica through its first tenth of a length, then bends too far, because load and axis "
         "stay as they were; its shortening, which linear theory does not have, follows as far.",
-        (deflection, shortening),
+        (
+            Chart("deflection of the tip", x, "deflection over L  [1]", deflection, marks),
+            Chart("shortening of the tip", x, "shortening over L  [1]", (*shortening, linear)),
+        ),
     )
 
 
 def growth(beam: Array, rod: Array) -> Figure:
     """Errors against deflection."""
-    error = np.abs(beam / rod - 1.0)
-    chart = Chart(
-        "error against deflection",
-        "deflection of the tip over L  [1]",
-        "relative error  [1]",
-        (
-            Curve("deflection", rod[:, 0], error[:, 0], 0, "joined"),
-            Curve("shortening", rod[:, 0], error[:, 1], 1, "joined"),
-        ),
-        (Mark("1 %", 0.01), Mark("5 %", 0.05)),
-        log="xy",
-    )
+    errors = dict(zip(("deflection", "shortening"), np.abs(beam / rod - 1.0).T, strict=True))
+    x, marks = "deflection of the tip over L  [1]", (Mark("1 %", 0.01), Mark("5 %", 0.05))
+    drawn = curves(rod[:, 0], errors)
     return Figure(
         "Both errors are straight lines of slope two: half the deflection, a quarter of the error. Read off where the "
         "red lines are crossed: 1 % at 0.10 L, 5 % at 0.21 L.",
-        (chart,),
+        (Chart("error against deflection", x, "relative error  [1]", drawn, marks, log="xy"),),
     )

@@ -7,7 +7,7 @@ import numpy as np
 from validation.accuracy.beams import spinning, spinning_squares
 from validation.accuracy.reference import data, source
 from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Kind
+from validation.reporting.figures import Chart, Curve, Figure, Kind, curves
 from validation.reporting.findings import Finding, Study
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
@@ -85,31 +85,20 @@ def at_least(count: float, most: int) -> str:
 
 def figure(etas: Array, needed: dict[tuple[str, float], Array], errors: dict[str, Array]) -> Figure:
     """Errors, and what they mean for the choice."""
-    x = "speed η = Ω √(ρA L⁴/EI)  [1]"
-    modes = Chart(
-        "cantilever modes, first flap frequency, r/L = 0",
-        x,
-        "relative error  [1]",
-        tuple(
-            Curve(f"{n} mode{'s' * (n > 1)}", etas, errors["clamped_free"][n - 1], k, "joined")
-            for k, n in enumerate((1, 2, 3, 5))
-            if n <= len(errors["clamped_free"])
-        ),
-        log="y",
-    )
-    choice = Chart(
-        "functions needed",
-        x,
-        "number of functions  [1]",
-        tuple(
-            Curve(f"{family}, {100 * tolerance:g} %", etas, needed[family, tolerance], color, kind)
-            for family, kind in KINDS.items()
-            for color, tolerance in enumerate(TOLERANCES)
-        ),
+    x, title = "speed η = Ω √(ρA L⁴/EI)  [1]", "cantilever modes, first flap frequency, r/L = 0"
+    modes = [n for n in (1, 2, 3, 5) if n <= len(errors["clamped_free"])]
+    worth = curves(etas, {f"{n} mode{'s' * (n > 1)}": errors["clamped_free"][n - 1] for n in modes})
+    choice = tuple(
+        Curve(f"{family}, {100 * tolerance:g} %", etas, needed[family, tolerance], color, kind)
+        for family, kind in KINDS.items()
+        for color, tolerance in enumerate(TOLERANCES)
     )
     return Figure(
         "Left, what a number of cantilever modes is worth: the error climbs with the speed, and each mode lowers it by "
         "less than the one before. Right, the number needed for a tolerance; dashed are polynomials, which need "
         "fewer as soon as the tolerance is fine. A curve ends where none of those tried is enough.",
-        (modes, choice),
+        (
+            Chart(title, x, "relative error  [1]", worth, log="y"),
+            Chart("functions needed", x, "number of functions  [1]", choice),
+        ),
     )

@@ -10,7 +10,7 @@ import symofros as sf
 from validation.accuracy.beams import motion
 from validation.accuracy.reference import data, source
 from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.figures import Chart, Curve, Figure, Kind, Mark, curves
 from validation.reporting.findings import Finding, Study, near
 
 GRAVITY, END = 9.81, 2.0
@@ -20,7 +20,7 @@ MODELS: dict[str, dict[str, Any]] = {
     "no_foreshortening": {"retain": "all", "foreshortening": False},
 }
 WORDS = {"all": "retain: all", "first_order": "first order", "no_foreshortening": "without foreshortening"}
-COLORS = {"all": 0, "first_order": 1, "no_foreshortening": 4}
+SHADES = dict(zip(WORDS.values(), (0, 1, 4), strict=True))
 
 
 def pendulum(modes: int, **changed: Any) -> sf.Model:
@@ -149,48 +149,33 @@ def path(
     floor: float,
 ) -> Figure:
     """The stiff pendulum."""
-    tip = runs["all"][0]
-    position = Chart(
-        "stiff pendulum: its tip",
-        "time  [s]",
-        "position  [m]",
-        (
-            Curve("x", times, tip[:, 0], 0),
-            Curve("y", times, tip[:, 1], 1),
-            Curve("exact rod, x", known, exact[:, 0], 0, "points"),
-            Curve("exact rod, y", known, exact[:, 1], 1, "points"),
-        ),
+    sides: tuple[tuple[str, Array, Array, Kind], ...] = (
+        ("", times, runs["all"][0], "line"),
+        ("exact rod, ", known, exact, "points"),
     )
-    distance = Chart(
-        "stiff pendulum: distance from the exact rod",
-        "time  [s]",
-        "distance  [m]",
-        tuple(Curve(WORDS[name], known[1:], error[1:], COLORS[name], "joined") for name, error in errors.items()),
-        (Mark("uncertainty of the rod", floor),),
-        log="y",
+    position = tuple(
+        Curve(f"{label}{axis}", t, tip[:, k], k, kind) for label, t, tip, kind in sides for k, axis in enumerate("xy")
     )
+    distance = curves(known[1:], {WORDS[name]: error[1:] for name, error in errors.items()}, "joined", SHADES)
+    rod = (Mark("uncertainty of the rod", floor),)
     return Figure(
         "Left, the tip passes through the points of the exact rod. Right, the consistent models stay below 0.1 mm; "
         "dropping foreshortening costs a decade and a half.",
-        (position, distance),
+        (
+            Chart("stiff pendulum: its tip", "time  [s]", "position  [m]", position),
+            Chart("stiff pendulum: distance from the exact rod", "time  [s]", "distance  [m]", distance, rod, log="y"),
+        ),
     )
 
 
 def softness(gammas: Array, ends: dict[str, Array], rows: list[dict[str, float]]) -> Figure:
     """Error against flexibility."""
-    chart = Chart(
-        "distance from the exact rod after 2 s, 3 functions",
-        "flexibility ρA g L³/EI  [1]",
-        "distance  [m]",
-        (
-            *(Curve(WORDS[name], gammas, gains, COLORS[name], "joined") for name, gains in ends.items()),
-            Curve("uncertainty of the rod", gammas, [row["uncertainty"] for row in rows], 5, "dotted"),
-        ),
-        log="xy",
-    )
+    rod = Curve("uncertainty of the rod", gammas, [row["uncertainty"] for row in rows], 5, "dotted")
+    drawn = curves(gammas, {WORDS[name]: distances for name, distances in ends.items()}, "joined", SHADES)
+    title, x = "distance from the exact rod after 2 s, 3 functions", "flexibility ρA g L³/EI  [1]"
     return Figure(
         "The softer, the worse: from 2 on the model's own error stands clear of the uncertainty of the exact rod and "
         "rises fast; first order is as good as everything kept. Without foreshortening the model breaks "
         "down from 5 on, where its curve ends.",
-        (chart,),
+        (Chart(title, x, "distance  [m]", (*drawn, rod), log="xy"),),
     )

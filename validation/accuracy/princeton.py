@@ -7,7 +7,7 @@ import numpy as np
 import symofros as sf
 from validation.adapters.exudyn.ancf import Strip, princeton
 from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.figures import Chart, Curve, Figure, Kind, Mark, curves
 from validation.reporting.findings import Finding, Study, exponent
 
 # Dowell & Traybar 1975: loads of one, two and three pounds.
@@ -163,16 +163,12 @@ Tips = dict[float, tuple[Array, Array]]
 def around(angles: Array, loads: tuple[float, ...], reference: Tips, tips: Tips) -> Figure:
     """Displacement and twist against the load's direction."""
     x, degrees = "angle of the load, from the stiff way to the soft  [°]", np.degrees(angles)
+    sides: tuple[tuple[str, Tips, Kind], ...] = (("retain: all", tips, "line"), ("Exudyn", reference, "points"))
     soft, turned = [], []
     for k, load in enumerate(loads):
-        soft += [
-            Curve(f"retain: all, {load:g} N", degrees, tips[load][0][:, 2], k),
-            Curve(f"Exudyn, {load:g} N", degrees, reference[load][0][:, 2], k, "points"),
-        ]
-        turned += [
-            Curve(f"retain: all, {load:g} N", degrees, np.degrees(tips[load][1]), k),
-            Curve(f"Exudyn, {load:g} N", degrees, np.degrees(reference[load][1]), k, "points"),
-        ]
+        for name, (places, twists), kind in ((name, side[load], kind) for name, side, kind in sides):
+            soft.append(Curve(f"{name}, {load:g} N", degrees, places[:, 2], k, kind))
+            turned.append(Curve(f"{name}, {load:g} N", degrees, np.degrees(twists), k, kind))
     turned.append(Curve("first order, any load", degrees, 0.0 * degrees, 4, "dashed"))
     return Figure(
         "Left, curves and points part as the load grows and turns to the soft way; a curve has a gap where our strip "
@@ -187,18 +183,12 @@ def around(angles: Array, loads: tuple[float, ...], reference: Tips, tips: Tips)
 
 def growth(deflection: Array, errors: dict[str, Array]) -> Figure:
     """Error against deflection."""
-    labels = {"all": "retain: all", "first_order": "first order"}
-    chart = Chart(
-        "load at 60°: error of the tip's place",
-        "deflection of the tip over L  [1]",
-        "error over the displacement  [1]",
-        tuple(Curve(labels[name], deflection, error, k, "joined") for k, (name, error) in enumerate(errors.items())),
-        (Mark("1 %", 0.01), Mark("5 %", 0.05)),
-        log="xy",
-    )
+    x, y = "deflection of the tip over L  [1]", "error over the displacement  [1]"
+    drawn = curves(deflection, {"retain: all": errors["all"], "first order": errors["first_order"]})
+    marks = Mark("1 %", 0.01), Mark("5 %", 0.05)
     return Figure(
         "The error rises with the square of the deflection and crosses 1 % near a tenth of the length, as under a load "
         "in one plane. First order, which lacks the twist, puts the tip somewhat better: keeping everything that a "
         "second-order theory has is no step towards the exact beam when the deflection is large.",
-        (chart,),
+        (Chart("load at 60°: error of the tip's place", x, y, drawn, marks, log="xy"),),
     )

@@ -11,7 +11,7 @@ from validation.accuracy.beams import motion
 from validation.accuracy.reference import data, source
 from validation.adapters.exudyn.ancf import spin_up
 from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.figures import Chart, Curve, Figure, Mark, curves
 from validation.reporting.findings import Finding, Study, near
 
 LENGTH, EI, RHO_A, END, RATE = 8.0, 566.7095928, 0.20187837656, 15.0, 6.0
@@ -133,69 +133,45 @@ def movement(
     cable: tuple[Array, Array],
 ) -> Figure:
     """The tip through time."""
-    across = Chart(
-        "tip across the beam",
-        TIME,
-        "displacement  [m]",
+    along, across = (
         (
-            Curve("foreshortened, 3 functions", times, tip_path[:, 1], 0),
-            Curve("exact rod", known, exact[:, 1], 0, "points"),
-            Curve("Exudyn", cable[0], cable[1][:, 1], 5, "dashed"),
-            Curve("without foreshortening", short, without[:, 1], 1, "dashed"),
-            Curve("zeroth order", times, zeroth[:, 1], 4, "dotted"),
-        ),
-        range_y=(-2.0, 0.2),
+            Curve("foreshortened, 3 functions", times, tip_path[:, k], 0),
+            Curve("exact rod", known, exact[:, k], 0, "points"),
+            Curve("Exudyn", cable[0], cable[1][:, k], 5, "dashed"),
+        )
+        for k in range(2)
     )
-    along = Chart(
-        "tip along the beam",
-        TIME,
-        "displacement  [m]",
-        (
-            Curve("foreshortened, 3 functions", times, tip_path[:, 0], 0),
-            Curve("exact rod", known, exact[:, 0], 0, "points"),
-            Curve("Exudyn", cable[0], cable[1][:, 0], 5, "dashed"),
-        ),
+    others = (
+        Curve("without foreshortening", short, without[:, 1], 1, "dashed"),
+        Curve("zeroth order", times, zeroth[:, 1], 4, "dotted"),
     )
+    y = "displacement  [m]"
     return Figure(
         "The foreshortened beam passes through the points of the exact rod, lags while the hub accelerates and comes "
         "back straight; without foreshortening it leaves the chart at 7 s and never returns. At the right, the axis "
         "is pulled back by bending, as it is in the rod.",
-        (across, along),
+        (
+            Chart("tip across the beam", TIME, y, (*across, *others), range_y=(-2.0, 0.2)),
+            Chart("tip along the beam", TIME, y, along),
+        ),
     )
 
 
 def distance(known: Array, errors: dict[int, Array], apart: Array) -> Figure:
     """How far from the rod."""
-    floor = Mark("floor of the theory, 2.1 mm", FLOOR)
-    engine = Curve("Exudyn", known, apart[:, 1], 5, "dashed")
-    through = Chart(
-        "distance from the exact rod, across",
-        TIME,
-        "error  [m]",
-        tuple(
-            Curve(f"{n} function{'s' * (n > 1)}", known, error[:, 1], k, "joined")
-            for k, (n, error) in enumerate(errors.items())
-        )
-        + (engine,),
-        (floor,),
-        log="y",
-    )
-    counts = np.array(list(errors), dtype=float)
-    largest = Chart(
-        "largest distance against number of functions",
-        "number of functions  [1]",
-        "error  [m]",
-        (
-            Curve("across", counts, [error[:, 1].max() for error in errors.values()], 0, "joined"),
-            Curve("along", counts, [error[:, 0].max() for error in errors.values()], 1, "joined"),
-        ),
-        (floor,),
-        log="y",
-    )
+    floor, y = (Mark("floor of the theory, 2.1 mm", FLOOR),), "error  [m]"
+    through = curves(known, {f"{n} function{'s' * (n > 1)}": error[:, 1] for n, error in errors.items()})
+    worst = np.array([error.max(axis=0) for error in errors.values()])
+    largest = curves(np.array(list(errors), dtype=float), {"across": worst[:, 1], "along": worst[:, 0]})
+    cable = Curve("Exudyn", known, apart[:, 1], 5, "dashed")
+    count = "number of functions  [1]"
     return Figure(
         "While the beam is bent most, around 6 s, three functions or eight make no difference: the error rests at the "
         "floor of second-order theory, drawn red, and what a finer basis or integrator gains lies below it. Once the "
         "beam is straight again, small vibrations remain, and there more functions count. Exudyn, "
         "geometrically exact, has no such floor.",
-        (through, largest),
+        (
+            Chart("distance from the exact rod, across", TIME, y, (*through, cable), floor, log="y"),
+            Chart("largest distance against number of functions", count, y, largest, floor, log="y"),
+        ),
     )

@@ -63,6 +63,9 @@ _ENERGY = (
     "along the way are compared in the table above (“motion”). Our own energy, less the work done, drifts by "
     "what the integrator loses: half the step should leave a sixteenth of it, until rounding rules."
 )
+_NO_SAY = "These engines have no say on these models; nobody else's comparison is weakened."
+_FAILED: dict[str, Column] = {"model": "{0}", "against": "{1}", "what": lambda row: Cell(row[2], False)}
+_UNSUPPORTED: dict[str, Column] = {"engine": "{1}", "models": "{0}", "reason": "{2}"}
 _DRIFT: dict[str, Column] = {
     "model": "{model}",
     "#drift at the full step": lambda row: digits(row.extra["drift_coarse"]),
@@ -71,31 +74,26 @@ _DRIFT: dict[str, Column] = {
     "#allowed": lambda row: Cell(digits(row.tolerance), row.ok),
 }
 
-Models = Annotated[
-    list[str] | None,
-    typer.Argument(help="URDF, MJCF or YAML files, or names of the standard set; none: all of it."),
-]
-FloatingBase = Annotated[bool, typer.Option("--floating-base", help="Put a free joint under the root of URDF files.")]
-States = Annotated[int, typer.Option(min=1, help="Random states a model.")]
-Seed = Annotated[int, typer.Option(min=0, help="Seed of the random states.")]
-Engines = Annotated[
-    list[str] | None, typer.Option("--engine", help=f"Compare with this engine only; repeatable. {', '.join(ROUTES)}.")
-]
-Junit = Annotated[Path | None, typer.Option(help="Also write a JUnit file.")]
-Workers = Annotated[int, typer.Option(min=1, help="Models checked at the same time.")]
-
+# Models checked at the same time.
 WORKERS = min(os.cpu_count() or 1, 4)
 
 
 def measure(
     run: Run,
-    models: Models = None,
-    floating_base: FloatingBase = False,
-    states: States = DEFAULT_STATES,
-    seed: Seed = 0,
-    engine: Engines = None,
-    junit: Junit = None,
-    workers: Workers = WORKERS,
+    models: Annotated[
+        list[str] | None,
+        typer.Argument(help="URDF, MJCF or YAML files, or names of the standard set; none: all of it."),
+    ] = None,
+    floating_base: Annotated[
+        bool, typer.Option("--floating-base", help="Put a free joint under the root of URDF files.")
+    ] = False,
+    states: Annotated[int, typer.Option(min=1, help="Random states a model.")] = DEFAULT_STATES,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the random states.")] = 0,
+    engine: Annotated[
+        list[str] | None, typer.Option("--engine", help=f"Only this engine; repeatable. {', '.join(ROUTES)}.")
+    ] = None,
+    junit: Annotated[Path | None, typer.Option(help="Also write a JUnit file.")] = None,
+    workers: Annotated[int, typer.Option(min=1, help="Models checked at the same time.")] = WORKERS,
 ) -> Data:
     """Compare our C of each MODEL with every engine that can represent it."""
     known(engine, ROUTES, "--engine", "engine")
@@ -125,25 +123,17 @@ def compose(data: Data) -> Report:
     """The report of its JSON."""
     record = Record.of(data)
     engines = [name for name in ROUTES if any(row.engine == name for row in record.compared)]
-    disagreeing = tuple((model, engine, Cell(text, False)) for model, engine, text in failures(record))
-    not_represented = tuple((engine, models, reason) for models, engine, reason in unsupported(record))
     drawings = tuple(filter(None, (error_distributions(record.distributions),)))
     conditions = tuple(filter(None, (error_against_condition(record),)))
     drifts = Table.of((row for row in record.compared if row.quantity == "energy_drift"), _DRIFT)
     alone = (Fold(f"Against {name} alone", (by_engine(record, engines=(name,)),), page_only=True) for name in engines)
     sections = [
-        Section("What disagrees or failed", (Table(("model", "against", "what"), disagreeing),)),
+        Section("What disagrees or failed", (Table.of(failures(record), _FAILED),)),
         Section("How close", (Figure(_CLOSE, drawings),), page_only=True),
         Section("Model by model", (_BY_MODEL, by_model(record), *alone)),
         Section("Forward dynamics and the condition of M", (Figure(_CONDITION, conditions),), page_only=True),
         Section("Energy along a free motion", (_ENERGY, drifts), page_only=True),
-        Section(
-            "What an engine could not represent",
-            (
-                "These engines have no say on these models; nobody else's comparison is weakened.",
-                Table(("engine", "models", "reason"), not_represented),
-            ),
-        ),
+        Section("What an engine could not represent", (_NO_SAY, Table.of(unsupported(record), _UNSUPPORTED))),
         _method(),
         Section("Models", tuple(map(_model, record.models)), page_only=True),
     ]
@@ -162,18 +152,16 @@ def compose(data: Data) -> Report:
 
 
 def _facts(record: Record, engines: list[str]) -> list[Fact]:
-    independent = [name for name in engines if ROUTES[name].independent]
+    independent = sum(ROUTES[name].independent for name in engines)
     speeds = [model.sizes["nv"] for model in record.models if "nv" in model.sizes]
     span = f", {min(speeds)} to {max(speeds)} speeds" if speeds else ""
     facts = [
         Fact(str(len(record.models)), f"models{span}, {record.states} states each"),
-        Fact(str(len(independent)), f"independent opinions, and {len(engines) - len(independent)} of our own"),
+        Fact(str(independent), f"independent opinions, and {len(engines) - independent} of our own"),
     ]
-    rounded = {q.name for q in (*QUANTITIES.values(), MOTION_ENERGY) if q.tolerance == ROUNDING}
-    for label, names, tolerance in (
-        ("largest relative error", rounded, ROUNDING),
-        ("in forward dynamics", {"forward_dynamics"}, SOLVE),
-    ):
+    rounded = {q.name for q in _ALL if q.tolerance == ROUNDING}
+    asked = ("largest relative error", rounded, ROUNDING), ("in forward dynamics", {"forward_dynamics"}, SOLVE)
+    for label, names, tolerance in asked:
         row = worst(row for row in record.compared if row.quantity in names)
         if row is not None:
             place = f"{row.quantity.replace('_', ' ')} of {row.model}, {row.engine}"
@@ -187,39 +175,32 @@ def _ratio(coarse: float, fine: float) -> str:
     return f"{coarse / fine:.1f}" if fine else ""
 
 
+_ALL = (*QUANTITIES.values(), MOTION_ENERGY)
+_METHOD = (
+    "The error of a state is the largest difference of any entry, divided by the largest entry of the other engine's "
+    f"result in that state. Where that result happens to be small, it is divided by {SMALL} of what the quantity "
+    "typically is on this model, because rounding errors are those of the terms that are summed. Random states cover "
+    "the whole manifold of q, whatever the joint limits; the first few are special: neutral, at rest, many turns, half "
+    "turns, negated quaternions, fast. pinocchio and mujoco are built from our description, body by body, by code that "
+    "shares nothing with the generator; pinocchio-urdf and mujoco-urdf read the robot's file themselves, every digit "
+    "as it stands; interpreted is our NumPy evaluation of the same equations; description is the stated formulas of "
+    "the joint efforts."
+)
+_REASONS = {SOLVE: "rounding amplified by cond(M)"}
+_QUANTITIES: dict[str, Column] = {
+    "quantity": "{name}",
+    "symbol": "{symbol}",
+    "unit": "{unit}",
+    "#tolerance": lambda q: digits(q.tolerance),
+    "reason": lambda q: _REASONS.get(q.tolerance, "rounding of sums of some hundred products, and a margin"),
+}
+_CONVENTIONS: dict[str, Column] = {"engine": "{0}", "what": "{1}", "SYMOFROS": "{2}", "the engine": "{3}"}
+
+
 def _method() -> Section:
-    quantities = tuple(
-        (
-            q.name,
-            q.symbol,
-            q.unit,
-            digits(q.tolerance),
-            "rounding amplified by cond(M)"
-            if q.tolerance == SOLVE
-            else "rounding of sums of some hundred products, and a margin",
-        )
-        for q in (*QUANTITIES.values(), MOTION_ENERGY)
-    )
-    conventions = tuple((d.engine, d.what, d.symofros_convention, d.engine_convention) for d in differences())
-    text = (
-        "The error of a state is the largest difference of any entry, divided by the largest entry of the other "
-        f"engine's result in that state. Where that result happens to be small, it is divided by {SMALL} of what the "
-        f"quantity typically is on this model, because rounding errors are those of the terms that are summed. "
-        f"Random states cover the whole manifold of q, whatever the joint limits; the first few are special: "
-        f"neutral, at rest, many turns, half turns, negated quaternions, fast. pinocchio and mujoco are built from "
-        f"our description, body by body, by code that shares nothing with the generator; pinocchio-urdf and "
-        f"mujoco-urdf read the robot's file themselves, every digit as it stands; interpreted is our NumPy "
-        f"evaluation of the same equations; description is the stated formulas of the joint efforts."
-    )
-    blocks = (
-        text,
-        Table(("quantity", "symbol", "unit", "#tolerance", "reason"), quantities),
-        Fold(
-            "Conventions that differ between engines, and are converted",
-            (Table(("engine", "what", "SYMOFROS", "the engine"), conventions),),
-        ),
-    )
-    return Section("How it is measured", blocks, page_only=True)
+    conventions = Table.of(differences(), _CONVENTIONS)
+    folded = Fold("Conventions that differ between engines, and are converted", (conventions,))
+    return Section("How it is measured", (_METHOD, Table.of(_ALL, _QUANTITIES), folded), page_only=True)
 
 
 def _model(model: ModelResult) -> Fold:

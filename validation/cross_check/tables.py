@@ -11,7 +11,7 @@ from validation.comparison.errors import Comparison
 from validation.contract.quantities import MOTION_ENERGY, QUANTITIES
 from validation.cross_check.record import Record
 from validation.reporting.numbers import counted, digits
-from validation.reporting.record import Cell, Table
+from validation.reporting.record import Cell, Column, Table
 
 # Title of a column -> quantities that share it.
 Columns = dict[str, tuple[str, ...]]
@@ -44,63 +44,55 @@ BRIEF = _columns(
 
 # Engines of rows that no other engine is behind: our own drift, and what was asked of any of them.
 _OURS = ("symofros", "any")
+# Statuses with a verdict on numbers.
+_JUDGED = ("agree", "disagree")
 # Depth of the background of a cell whose error is at the tolerance.
 _DEEPEST = 0.55
 
 
 def by_model(record: Record, columns: Columns = COLUMNS) -> Table:
     """One line a model, the worst over all engines in each cell."""
-    lines = [(model, model.comparisons) for model in record.models]
-    head = ("model", "#nv", "#engines")
-    rows = [
-        (_name(m, rows), _speeds(m), str(_engines(rows)), *_cells(rows, columns), _status(rows)) for m, rows in lines
-    ]
-    return Table((*head, *(f"#{title}" for title in columns), "verdict"), tuple(rows)).without_empty()
+    compared = ({row.engine for row in m.comparisons if row.status in _JUDGED} - {"symofros"} for m in record.models)
+    lines = [(m, str(len(names)), m.comparisons) for m, names in zip(record.models, compared, strict=True)]
+    return _table(lines, "#engines", columns)
 
 
 def by_engine(record: Record, columns: Columns = COLUMNS, engines: Sequence[str] = (*ROUTES, *_OURS)) -> Table:
     """One line for each engine of each model that it has something to say of."""
-    lines = [
-        (model, engine, [row for row in model.comparisons if row.engine == engine])
-        for model in record.models
-        for engine in engines
-    ]
-    rows = [(_name(m, rows), _speeds(m), e, *_cells(rows, columns), _status(rows)) for m, e, rows in lines if rows]
-    return Table(
-        ("model", "#nv", "engine", *(f"#{title}" for title in columns), "verdict"), tuple(rows)
-    ).without_empty()
+    lines = [(m, name, [row for row in m.comparisons if row.engine == name]) for m in record.models for name in engines]
+    return _table([line for line in lines if line[2]], "engine", columns)
 
 
-def _name(model: ModelResult, rows: Sequence[Comparison]) -> Cell:
-    return Cell(model.label, None if _status(rows).text in ("agree", "unsupported") else False)
+Line = tuple[ModelResult, str, Sequence[Comparison]]
 
 
-def _speeds(model: ModelResult) -> str:
-    return str(model.sizes.get("nv", ""))
+def _table(lines: Sequence[Line], middle: str, columns: Columns) -> Table:
+    """A line each: the model, whom it is compared with, the worst comparison in each column, the verdict."""
+
+    def cell(quantities: tuple[str, ...]) -> Column:
+        return lambda line: _cell(worst(row for row in line[2] if row.quantity in quantities), columns is BRIEF)
+
+    shown: dict[str, Column] = {
+        "model": lambda line: Cell(line[0].label, None if _status(line[2]) in ("agree", "unsupported") else False),
+        "#nv": lambda line: str(line[0].sizes.get("nv", "")),
+        middle: lambda line: line[1],
+        **{f"#{title}": cell(quantities) for title, quantities in columns.items()},
+        "verdict": lambda line: Cell(_status(line[2]), False if _status(line[2]) in ("failed", "disagree") else None),
+    }
+    return Table.of(lines, shown).without_empty()
 
 
-def _engines(rows: Sequence[Comparison]) -> int:
-    return len({row.engine for row in rows if row.status in ("agree", "disagree")} - {"symofros"})
-
-
-def _status(rows: Sequence[Comparison]) -> Cell:
+def _status(rows: Sequence[Comparison]) -> str:
+    """The worst status of some comparisons."""
     statuses = {row.status for row in rows}
-    status = next((status for status in ("failed", "disagree", "agree") if status in statuses), "unsupported")
-    return Cell(status, False if status in ("failed", "disagree") else None)
+    return next((status for status in ("failed", "disagree", "agree") if status in statuses), "unsupported")
 
 
-def _cells(rows: Sequence[Comparison], columns: Columns) -> list[str | Cell]:
-    """The worst comparison of those that fall into each column."""
-    cells: list[str | Cell] = []
-    for quantities in columns.values():
-        row = worst(row for row in rows if row.quantity in quantities)
-        if row is None:
-            cells.append("")
-        else:
-            hint = f"{row.quantity}, {row.engine}; median {digits(row.median)}"
-            text = digits(row.error, 1 if columns is BRIEF else 2)
-            cells.append(Cell(text, row.ok, _DEEPEST * margin_used(row) if row.ok else 0.0, hint))
-    return cells
+def _cell(row: Comparison | None, brief: bool) -> str | Cell:
+    if row is None:
+        return ""
+    hint = f"{row.quantity}, {row.engine}; median {digits(row.median)}"
+    return Cell(digits(row.error, 1 if brief else 2), row.ok, _DEEPEST * margin_used(row) if row.ok else 0.0, hint)
 
 
 def margin_used(row: Comparison) -> float:
@@ -119,7 +111,7 @@ def worst(rows: Iterable[Comparison]) -> Comparison | None:
     def badness(row: Comparison) -> float:
         return float("inf") if row.error is None else row.error / row.tolerance
 
-    return max((row for row in rows if row.status in ("agree", "disagree")), key=badness, default=None)
+    return max((row for row in rows if row.status in _JUDGED), key=badness, default=None)
 
 
 def failures(record: Record) -> list[tuple[str, str, str]]:

@@ -12,7 +12,7 @@ from rich.console import Console
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import Entry, gather
 from validation.dashboard.index import QuoteError, headline, quote, write_index
-from validation.dashboard.regenerate import Outcome, commands, regenerate
+from validation.dashboard.regenerate import regenerate
 from validation.reporting import provenance
 from validation.reporting.command import REPORTS, Exit, Output, known, progress_bar
 from validation.reporting.command import render as render_report
@@ -75,20 +75,14 @@ def _existing(folder: Path) -> None:
 
 def _all_anew(folder: Path) -> bool:
     """Every report; whether none was left out by Ctrl-C. Those finished before are kept."""
-    console = Console(stderr=True)
+    console, wanted = Console(stderr=True), [topic for topic in TOPICS.values() if topic.everyday]
     with progress_bar(console) as bar:
-        task = bar.add_task("", total=len(commands()))
-
-        def done(outcome: Outcome) -> None:
-            ends = {0: "written", 1: "written; something in it is missed"}
-            end = ends.get(outcome.code, f"failed ({outcome.code})")
-            console.print(f"{outcome.name}: {end}, {outcome.seconds:.0f} s", markup=False)
-            if outcome.said:
-                console.print(outcome.said, markup=False)
-            bar.update(task, advance=1)
-
+        task = bar.add_task("", total=len(wanted))
         try:
-            regenerate(folder, lambda name: bar.update(task, description=name), done)
+            for topic in wanted:
+                bar.update(task, description=topic.name)
+                console.print(regenerate(topic, folder), markup=False)
+                bar.advance(task)
         except KeyboardInterrupt:
             console.print("interrupted; the reports that were finished are kept", markup=False)
             return False

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -10,9 +9,12 @@ from symofros.tools import write_atomically
 from validation.dashboard.gather import Entry
 from validation.reporting import html, markdown
 from validation.reporting.figures import Figure
-from validation.reporting.record import Block, Bullets, Cell, Report, Section, Table, Text
+from validation.reporting.record import Block, Bullets, Cell, Column, Report, Section, Table, Text
 
 BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends -->"
+
+# Verdict of an entry -> whether what was asked for is met.
+_VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
 
 
 class QuoteError(ValueError):
@@ -46,28 +48,24 @@ def index(entries: Mapping[str, Entry]) -> Report:
 
 def headline(entries: Mapping[str, Entry]) -> str:
     """How the reports stand."""
-    stands = Counter(entry.verdict for entry in entries.values())
-    said = [f"{stands['good']} of {stands['good'] + stands['missed']} reports with a verdict are good"]
-    missed = [name for name, entry in entries.items() if entry.verdict == "missed"]
-    said += [f"missed: {', '.join(missed)}"] if missed else []
-    said += [f"{stands['measured']} measure without one"] if stands["measured"] else []
-    absent = [name for name, entry in entries.items() if entry.verdict == "absent"]
-    said += [f"absent: {', '.join(absent)}"] if absent else []
+    named = {verdict: [n for n, e in entries.items() if e.verdict == verdict] for verdict in _VERDICTS}
+    judged = len(named["good"]) + len(named["missed"])
+    said = [f"{len(named['good'])} of {judged} reports with a verdict are good"]
+    said += [f"missed: {', '.join(named['missed'])}"] if named["missed"] else []
+    said += [f"{len(named['measured'])} measure without one"] if named["measured"] else []
+    said += [f"absent: {', '.join(named['absent'])}"] if named["absent"] else []
     return "; ".join(said) + "."
 
 
 def summary_table(entries: Mapping[str, Entry], linked: bool = False) -> Table:
     """A line a report."""
-    rows = tuple(
-        (
-            f"[{name}](#{name})" if linked else name,
-            entry.said,
-            Cell(entry.verdict, False if linked and entry.verdict == "missed" else None),
-            entry.provenance.date.removesuffix(" UTC") or "-",
-        )
-        for name, entry in entries.items()
-    )
-    return Table(("report", "what it found", "verdict", "made (UTC)"), rows)
+    columns: dict[str, Column] = {
+        "report": "[{0}](#{0})" if linked else "{0}",
+        "what it found": lambda row: row[1].said,
+        "verdict": lambda row: Cell(row[1].verdict, not (linked and row[1].verdict == "missed")),
+        "made (UTC)": lambda row: row[1].provenance.date.removesuffix(" UTC") or "-",
+    }
+    return Table.of(entries.items(), columns)
 
 
 def origins(entries: Mapping[str, Entry]) -> str:
@@ -82,19 +80,17 @@ def origins(entries: Mapping[str, Entry]) -> str:
 def _section(name: str, entry: Entry) -> Section:
     blocks: list[Block] = []
     if entry.report is not None:
-        blocks.append(f"**{entry.report.summary}**")
-        blocks += [Bullets(tuple(f"**{fact.value}** {fact.label}" for fact in entry.report.facts))]
+        facts = tuple(f"**{fact.value}** {fact.label}" for fact in entry.report.facts)
+        blocks += [f"**{entry.report.summary}**", Bullets(facts)]
         blocks += [Figure("", entry.report.highlights)] if entry.report.highlights else []
-    doubtful = ("stale", "can't", "layout")
-    blocks += [
-        Text(f"This report {remark}.", "bad" if any(word in remark for word in doubtful) else "soft")
-        for remark in entry.remarks
-    ]
+    for remark in entry.remarks:
+        doubtful = any(word in remark for word in ("stale", "can't", "layout"))
+        blocks.append(Text(f"This report {remark}.", "bad" if doubtful else "soft"))
     whole = f"[The whole report]({entry.page}). " if entry.page else ""
     origin = "; ".join(f"{what} {value}" for what, value in entry.provenance.rows)
     blocks.append(Text(f"{whole}Written by `{entry.topic.command}`{': ' if origin else ''}{origin}.", "soft"))
-    ok = {"good": True, "missed": False}.get(entry.verdict)
-    return Section(f"{entry.topic.group}: {entry.topic.question}", tuple(blocks), name, ok, badge=entry.verdict)
+    title = f"{entry.topic.group}: {entry.topic.question}"
+    return Section(title, tuple(blocks), name, _VERDICTS[entry.verdict], badge=entry.verdict)
 
 
 def quote(readme: Path, summary: str) -> bool:

@@ -57,11 +57,13 @@ class Table:
 
     @classmethod
     def of(cls, rows: Iterable[Any], columns: Mapping[str, Column]) -> Table:
-        """A line for each row, a mapping or a record; a column formats its fields, or is a function of it."""
+        """A line for each row: a mapping, a record or a tuple; a column formats its fields, or is a function of it."""
 
         def cell(row: Any, column: Column) -> str | Cell:
             if callable(column):
                 return column(row)
+            if isinstance(row, tuple):
+                return column.format(*row)
             return column.format_map(row if isinstance(row, Mapping) else vars(row))
 
         lines = tuple(tuple(cell(row, column) for column in columns.values()) for row in rows)
@@ -211,6 +213,11 @@ class Topic:
     everyday: bool = True
 
     @property
+    def words(self) -> tuple[str, ...]:
+        """What writes it, after `python -m`."""
+        return ("validation", *((self.name,) if self.arguments is None else self.arguments))
+
+    @property
     def command(self) -> str:
         """What writes it."""
-        return " ".join(("python -m validation", *((self.name,) if self.arguments is None else self.arguments)))
+        return " ".join(("python -m", *self.words))

@@ -7,8 +7,8 @@ import os
 import statistics
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from time import thread_time_ns
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,8 +30,7 @@ class DisagreementError(Exception):
     """Two sides compute different things, so their times mean nothing."""
 
 
-@dataclass(frozen=True)
-class Times:
+class Times(NamedTuple):
     """Nanoseconds a state.
 
     Attributes:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from validation.reporting.plain import plain, restored
-from validation.timing.race import Times
 
 SCHEMA = 2
 
@@ -50,35 +49,6 @@ class Entry:
     date: str = field(default_factory=_now)
     columns: tuple[float, float] | None = None
     single: tuple[float, float] | None = None
-
-    @classmethod
-    def of(
-        cls,
-        model: str,
-        nv: int,
-        function: str,
-        peer: str,
-        variant: str,
-        generated_time: Times,
-        vectors: Sequence[Times | None],
-        peer_time: Times,
-        error: float,
-    ) -> Self:
-        """From the times of one race; vectors: by rows, by columns, and by columns of floats."""
-        batch, columns, single = (None if times is None else (times.minimum, times.median) for times in vectors)
-        return cls(
-            model,
-            nv,
-            function,
-            peer,
-            variant,
-            (generated_time.minimum, generated_time.median),
-            batch,
-            (peer_time.minimum, peer_time.median),
-            error,
-            columns=columns,
-            single=single,
-        )
 
     @property
     def ratio(self) -> float:

@@ -79,16 +79,18 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
             sides[name], peers[name] = loop, peer
     times = race(sides, job.states, job.repeats)
     for name, peer in peers.items():
-        made = Entry.of(
+        made = Entry(
             job.model,
             given.assembly.nv,
             function,
             peer,
             sides[name].variant,
-            times[NAME],
-            [times.get(way) for way in (BATCH, COLUMNS, SINGLE)],
-            times[name],
-            errors[name],
+            generated_time=times[NAME],
+            batch=times.get(BATCH),
+            peer_time=times[name],
+            error=errors[name],
+            columns=times.get(COLUMNS),
+            single=times.get(SINGLE),
         )
         say("entry", asdict(made))
     for name, loop in sides.items():
