@@ -1,7 +1,9 @@
 """The joint kinds: one row a kind with every fact about it that is not mechanics.
 
 Sizes and names of coordinates and speeds, the part of the configuration manifold, entries of the description, what the
-exchange formats call it, how the editor and the viewer draw it. The motion across a joint is `mechanics.kinematics`'.
+exchange formats call it, how the editor and the viewer draw it. To add a kind: its name in `JointKindName`, a row of
+`_ROWS`, its displacement in `symofros/mechanics/kinematics/joint.py`, a row of the harness's own table
+(`validation/mechanics/joint_kinds.py`); then regenerate schema and page. docs/architecture.md, "To add", has the steps.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """What a block is: ports, states and memory, and formulas for them written once, over edges.
 
-From the same formulas come the compiled program and the interpreted run. Which input an output depends on at once is
-read off the formulas; nobody declares it.
+From the same formulas come the compiled program and the interpreted run. Which input feeds through to an output is read
+off the formulas; nobody declares it. To add a block: a class in the folder of its category in `symofros/blocks/`, its name
+in the `__init__` there and of `symofros/blocks/`, a section of docs/blocks.md (docs/architecture.md, "To add").
 """
 
 from __future__ import annotations
@@ -100,7 +101,7 @@ class Terms:
     """How a mechanism moves.
 
     Attributes:
-        a: V' (nv), of a mechanism without constraints.
+        a: Accelerations v' (nv) of a mechanism without constraints.
         M: Else M a = r + G^T lam, G a = c: (nv, nv).
         r: (nv).
         G: (nc, nv).
@@ -151,8 +152,8 @@ class EvaluationContext:
         gains: Baumgarte's (2 nc).
         call: (model, function, frame, groups) -> outputs of a model's function.
         solved: (M, r) -> M^-1 r for a mass matrix.
-        a: V' of its mechanism; under constraints known at samples and afterwards only.
-        lam: Multipliers of its mechanism's constraints (nc), likewise.
+        a: Accelerations v' of the block's mechanism; under constraints known at samples and afterwards only.
+        lam: Multipliers of the constraints of the block's mechanism (nc), known as `a` is.
         environment: Models and their first states.
     """
 

@@ -1,7 +1,8 @@
 """The engines: one folder each, the only one that imports the engine's package; here, what needs none.
 
 A new engine is one folder and one row of ROUTES. The folder's `__init__` imports without the engine's package, and its
-DIFFERENCES state where the engine's conventions are not ours; its adapter has `build(subject) -> Engine | Unsupported`.
+DIFFERENCES state where the engine's conventions are not ours; its adapter has `build(subject) -> Engine | Unsupported`,
+with methods named as the quantities it offers (`contract/quantities.py`). docs/architecture.md, "To add", has the steps.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """The harness's own table of joint kinds: what each is a series of, and what the simple ones are.
 
-Written apart from the generator's table on purpose: names, sizes and series are checked by their agreement.
+Written apart from the generator's table on purpose: names, sizes and series are checked by their agreement. To add a
+kind: a row of `STATED_JOINTS`; engines get the series (docs/architecture.md, "To add").
 """
 
 from __future__ import annotations

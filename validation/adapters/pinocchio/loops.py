@@ -75,7 +75,7 @@ class LoopEngine:
         return lines
 
     def forward_dynamics(self, states: States) -> Array:
-        """V' by `constraintDynamics`."""
+        """Accelerations v' by `constraintDynamics`."""
         a = self._each(states, lambda solved: solved.a)
         return self.tree.chart.our_accelerations(states.q, states.v, a)
 
