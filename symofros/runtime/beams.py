@@ -22,10 +22,8 @@ BEAM_LIMIT = 0.5
 _STRAIGHT = 1e-9
 # Tangent stiffness over elastic stiffness below which an axial load counts as critical.
 _CRITICAL = 1e-9
-BETTER_MODELS = (
-    "divide the beam into several beams joined end to end, whose slopes relative to their own roots are small, or use"
-    " a geometrically exact beam, such as Exudyn's"
-)
+# Largest slope [rad] from which the number of beams that would do is no longer stated: true slopes stay below it.
+_LARGEST_SLOPE = math.pi
 
 
 @dataclass(frozen=True)
@@ -60,6 +58,15 @@ class BeamBending:
         return (
             f"beam '{self.beam}' bends by {self.slope:.2g} rad at x = {self.station:.3g} m{twisted}{instant}:"
             f" second-order theory errs by about {percent:.{0 if percent >= 10 else 1}f} % of the deflection"
+        )
+
+    @property
+    def remedy(self) -> str:
+        """A model that would do: the error falls with the square of the number of beams that share the slope."""
+        countable = self.slope < _LARGEST_SLOPE and math.isfinite(self.error)
+        count = f"{max(2, math.ceil(math.sqrt(self.error / NOTED_ERROR)))}" if countable else "many"
+        return (
+            f"divide it into {count} beams joined end to end, or use a geometrically exact beam, such as Exudyn's"
         )
 
 
@@ -184,4 +191,4 @@ def largest_bending(bendings: Sequence[BeamBending]) -> BeamBending | None:
 
 def bending_notes(bendings: Sequence[BeamBending]) -> tuple[str, ...]:
     """Sentences on the beams whose error is worth a note."""
-    return tuple(f"{bending}; {BETTER_MODELS}" for bending in bendings if bending.error > NOTED_ERROR)
+    return tuple(f"{bending}; {bending.remedy}" for bending in bendings if bending.error > NOTED_ERROR)

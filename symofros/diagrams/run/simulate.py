@@ -19,7 +19,7 @@ from symofros.diagrams.run.parts import place_parts, start
 from symofros.diagrams.run.python_blocks import ExternalCalls, begun
 from symofros.diagrams.run.recording import Cost, Crossed
 from symofros.diagrams.run.values import parameter_values, record_interval
-from symofros.runtime.beams import BEAM_LIMIT, BETTER_MODELS, BeamBending, bending_notes, largest_bending
+from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.model import Model
@@ -187,7 +187,7 @@ def _outcome(
     if status == Status.BEYOND_THEORY:
         worst = largest_bending(bendings)
         assert worst is not None
-        return Outcome("beyond theory", worst.t, str(worst), f"{BETTER_MODELS}; or move the limit, beam_limit=...")
+        return Outcome("beyond theory", worst.t, str(worst), f"{worst.remedy}; or move the limit, beam_limit=...")
     if status == Status.FINISHED:
         return Outcome("finished", t_end, f"{int(loop.diagram.steps)} steps", notes=notes)
     if status == Status.CALLBACK_FAILED:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from symofros.errors import BeamTheoryError, Problem
-from symofros.runtime.beams import BETTER_MODELS, BeamBending, ElasticBeam, largest_bending
+from symofros.runtime.beams import BeamBending, ElasticBeam, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 
@@ -51,6 +51,6 @@ def refuse_beyond(model: Model, bendings: Sequence[BeamBending], limit: float, r
                 f"model '{model.record.name}': {result} lies beyond the theory of its beams",
                 str(worst),
                 f"the estimated error is at most beam_limit = {100.0 * limit:g} %",
-                f"{BETTER_MODELS}; or raise beam_limit to see what second-order theory says",
+                f"{worst.remedy}; or raise beam_limit to see what second-order theory says",
             )
         )

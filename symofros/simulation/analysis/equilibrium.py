@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.errors import BeamTheoryError, EquilibriumError, Problem
-from symofros.runtime.beams import BEAM_LIMIT, BETTER_MODELS, BeamBending, bending_notes, largest_bending
+from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.assembly import free_speeds
@@ -174,7 +174,7 @@ def _refuse_without_rest(model: Model, bendings: tuple[BeamBending, ...], count:
     """Name the theory of the beams where the search has come to its end.
 
     Raises:
-        BeamTheoryError: A beam is bent so far, or has so little stiffness left, that its theory may have no equilibrium.
+        BeamTheoryError: A beam is so bent, or has so little stiffness left, that its theory may have none.
     """
     worst = largest_bending(bendings)
     if worst is not None and worst.error > _BLAMED:
@@ -183,6 +183,6 @@ def _refuse_without_rest(model: Model, bendings: tuple[BeamBending, ...], count:
                 f"model '{model.record.name}': no equilibrium was found, and the theory of its beams may have none",
                 f"after {count} steps, where the search has come to: {worst}",
                 "strain energy to second order bounds small deflections only; large loads have no equilibrium in it",
-                f"smaller loads have one; {BETTER_MODELS}",
+                f"smaller loads have one; {worst.remedy}",
             )
         )

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from symofros.errors import SymofrosError
-from symofros.runtime.beams import BETTER_MODELS, bending_notes, largest_bending
+from symofros.runtime.beams import bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.postures import nearest_to_singular
 from symofros.simulation.results.outcome import Kind, Outcome
@@ -78,8 +78,9 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
         )
     if status == Status.BEYOND_THEORY:
         beyond = largest_bending(stepper.bendings)
+        assert beyond is not None
         limit = f"the limit is {100.0 * settings.beam_limit:g} %"
-        return outcome("beyond theory", f"{beyond}; {limit}", f"{BETTER_MODELS}; or move the limit, beam_limit=...")
+        return outcome("beyond theory", f"{beyond}; {limit}", f"{beyond.remedy}; or move the limit, beam_limit=...")
     if status == Status.RUNNING and t < float(run.t_end):
         return outcome("interrupted", f"max_steps: {int(run.steps)} steps are done")
     return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")

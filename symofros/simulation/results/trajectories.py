@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from symofros.runtime.beams import BETTER_MODELS, BeamBending, bending_notes, largest_bending, worst_bendings
+from symofros.runtime.beams import BeamBending, bending_notes, largest_bending, worst_bendings
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.results.outcome import Kind, Outcome
@@ -41,7 +41,7 @@ _ENDS: dict[int, tuple[Kind, str, str]] = {
         "the state is off the constraints and projection does not mend it",
         "start from sf.assemble; a smaller step; the loop may be stretched to its end",
     ),
-    Status.BEYOND_THEORY: ("beyond theory", "a beam is bent beyond second-order theory", BETTER_MODELS),
+    Status.BEYOND_THEORY: ("beyond theory", "a beam is bent beyond second-order theory", ""),
 }
 
 
@@ -109,7 +109,9 @@ class Trajectories:
         kind, reason, advice = _ENDS[int(self.status[index])]
         bendings = self.bendings(index)
         if self.status[index] == Status.BEYOND_THEORY:
-            return Outcome(kind, float(self.t_last[index]), str(largest_bending(bendings)), advice)
+            worst = largest_bending(bendings)
+            assert worst is not None
+            return Outcome(kind, float(self.t_last[index]), str(worst), worst.remedy)
         return Outcome(kind, float(self.t_last[index]), reason, advice, bending_notes(bendings))
 
     def bendings(self, index: Index) -> tuple[BeamBending, ...]:

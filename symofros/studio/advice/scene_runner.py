@@ -13,9 +13,17 @@ import numpy as np
 from symofros.base.options import Options
 from symofros.compiler import compile_system, program_of
 from symofros.description.system import System
-from symofros.errors import AssemblyError, InconsistentModelWarning, Problem, SymofrosError, UnknownNameError
+from symofros.errors import (
+    AssemblyError,
+    BeamTheoryError,
+    InconsistentModelWarning,
+    Problem,
+    SymofrosError,
+    UnknownNameError,
+)
 from symofros.errors import did_you_mean as near
 from symofros.generator.passes.count import count_program
+from symofros.runtime.beams import BeamBending, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.assembly import assemble
@@ -83,11 +91,13 @@ class Trial:
         run: The trajectory at the scene's times; None where there is none.
         failure: Why there is none; "" otherwise.
         values: Output's name -> it over time (n, k).
+        beyond: Bending of the beam that ended the run beyond its theory.
     """
 
     run: Trajectory | None
     failure: str
     values: Mapping[str, Array]
+    beyond: BeamBending | None = None
 
 
 class SceneRunner:
@@ -171,7 +181,8 @@ class SceneRunner:
                 **stepping.settings,  # type: ignore[arg-type]
             )
             if not run.outcome.ok:
-                return Trial(None, f"{run.outcome.kind} at t = {run.outcome.t:.3g} s", {})
+                beyond = largest_bending(run.bendings) if run.outcome.kind == "beyond theory" else None
+                return Trial(None, f"{run.outcome.kind} at t = {run.outcome.t:.3g} s", {}, beyond)
             return Trial(run, "", {output.name: output.values(run) for output in self.scene.outputs})
         except AssemblyError as error:
             return Trial(None, str(error).splitlines()[0], {})
@@ -181,6 +192,7 @@ class SceneRunner:
 
         Raises:
             SymofrosError: No method gets there.
+        BeamTheoryError: A beam bends beyond second-order theory.
         """
         key = repr(system)
         if key not in self._exact:
@@ -194,6 +206,8 @@ class SceneRunner:
             for rtol in _LADDER:
                 stepping = Stepping(method, rtol=rtol)
                 trial = self.trial(system, stepping)
+                if trial.beyond is not None:
+                    raise _beyond_theory(system, trial.beyond)
                 if trial.run is None:
                     failure = failure or trial.failure
                     break
@@ -259,6 +273,17 @@ class SceneRunner:
         runs = [self.trial(system, stepping) for _ in range(repeats)]
         seconds = [one.run.statistics.seconds for one in runs if one.run is not None]
         return replace(self.cost(system, runs[0], stepping.method), seconds=min(seconds))
+
+
+def _beyond_theory(system: System, bending: BeamBending) -> BeamTheoryError:
+    return BeamTheoryError(
+        Problem(
+            f"advise: '{system.name}' leaves the theory of its beams in this scene",
+            str(bending),
+            "advice compares models of second-order theory, all of which err there alike",
+            bending.remedy,
+        )
+    )
 
 
 @dataclass(frozen=True)

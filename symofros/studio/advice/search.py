@@ -9,6 +9,7 @@ from symofros.base.options import Options
 from symofros.description.beam import Beam
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem, SymofrosError, did_you_mean
+from symofros.runtime.beams import bending_notes
 from symofros.studio.advice.advice import Advice, Choice, Verdict
 from symofros.studio.advice.candidates import Reduction, candidates, constants, fewer_functions
 from symofros.studio.advice.loads import BeamLoads, Observed
@@ -24,8 +25,6 @@ REFINE = 0.4
 _ROUNDS = 3
 # Estimates err by less than this factor; what is expected to be worse is not simulated, foreshortening excepted.
 HOPELESS = 30.0
-# Slopes from which on second-order theory itself is off by a percent.
-_LARGE = 0.1
 
 
 def advise(system: System, scene: Scene, tolerance: float | Mapping[str, float] | None = None) -> Advice:
@@ -44,6 +43,7 @@ def advise(system: System, scene: Scene, tolerance: float | Mapping[str, float] 
 
     Raises:
         DescriptionError: The scene does not fit the system.
+        BeamTheoryError: A beam bends beyond second-order theory; names a model that would do.
         UnknownNameError: An input or a first coordinate does not exist.
         SymofrosError: The motion can't be computed to the tolerance.
     """
@@ -71,7 +71,7 @@ class _Search:
         full_trial, _ = self.runner.exact(self.full)
         full_stepping, _, _, _ = cheapest(self.runner, self.full, full_trial, STEPPING)
         stepped = self.runner.trial(self.current, stepping)
-        self._remark()
+        self.notes += bending_notes(self.reference.run.bendings)
         return Advice(
             self.scene,
             self.full,
@@ -213,14 +213,6 @@ class _Search:
             Choice(one.subject, one.change, one.kind, verdict, one.estimate, error, one.reason, one.numbers)
         )
 
-    def _remark(self) -> None:
-        for name, loads in self.loads.items():
-            slope = loads.tip / loads.length
-            if slope > _LARGE:
-                self.notes.append(
-                    f"beam '{name}' bends by {slope:.2g} of its length: second-order theory itself errs"
-                    f" by {'a percent' if slope < 0.2 else 'several percent'} there"
-                )
 
 
 # What saves most comes first.

@@ -122,9 +122,8 @@ def test_a_beam_cut_into_several_errs_less_by_the_square_of_their_number() -> No
         for k in range(count):
             joint = sf.Joint(f"j{k}", "fixed") if not k else sf.Joint(f"j{k}", "fixed", f"b{k - 1}", "tip")
             loads = (sf.BeamLoad((0.0, 1.5, 0.0), at=1.0, axes="world"),) if k == count - 1 else ()
-            beams.append(
-                sf.Beam(f"b{k}", joint, 1.0 / count, 1.0, EI_z=1.0, bend_y=2, family="hermite", loads=loads, retain="all")
-            )
+            given = {"EI_z": 1.0, "bend_y": 2, "family": "hermite", "loads": loads, "retain": "all"}
+            beams.append(sf.Beam(f"b{k}", joint, 1.0 / count, 1.0, **given))
         model = sf.compile(sf.System("chain", tuple(beams), gravity=(0, 0, 0)), sf.Options(backend="interpreter"))
         p, _ = model.frame_pose(f"b{count - 1}.tip", sf.equilibrium(model, beam_limit=math.inf).q)
         exact = np.array([1.0 - elastica(1.5)[1], elastica(1.5)[0]])

@@ -48,6 +48,7 @@ def test_every_question_is_answered_within_its_bounds(quick: tuple[Path, dict[st
         ("spinning", "speed of divergence without foreshortening, hub ratio 1", 3.5160152685, 1e-6),
         ("spinup", "3 functions: peak against the exact rod", -0.7505230852, 4e-3),
         ("elastica", "deflection over L at which the error reaches 5 %", 0.2144882, 1e-2),
+        ("estimate", "force at the tip: largest factor", 1.01138, 1e-2),
         ("buckling", "Euler's load, legendre, 5 functions", np.pi**2 / 4, 1e-8),
         ("buckling", "buckling under its weight", 7.837347, 1e-6),
         ("buckling", "lateral buckling, 4 functions", 4.016, 2e-4),
