@@ -6,6 +6,7 @@ Films and pictures are drawn by `raster`, so nothing opens a browser.
 from __future__ import annotations
 
 import io
+import secrets
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
@@ -158,7 +159,7 @@ def _asked(
 
 
 def _page(frames: _Recording) -> bytes:
-    server = start_server(LOOPBACK, 0)
+    server = start_server(LOOPBACK, 0, secrets.token_urlsafe(16))
     try:
         scene = ViserScene(server, frames.drawing, frames.postures[0], frames.layers)
         serializer = server.get_scene_serializer()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 import threading
 import time
 from collections.abc import Sequence
@@ -35,8 +36,8 @@ class Viewer(ViewerPage):
 
     Args:
         system: System to show.
-        host: Address that it is served at; the default is seen from this machine only. Nothing asks for a password:
-            whoever reaches the address sees the model, and may move its controls.
+        host: Address that it is served at; the default is seen from this machine only. Whoever has `url`, which has a
+            token, sees the model, and may move its controls; other addresses, hosts and pages are refused.
         port: Port of the page; 0 for any free one.
         exaggeration: Factor of the elastic coordinates in the picture.
         rate: Pictures a second at most.
@@ -68,7 +69,8 @@ class Viewer(ViewerPage):
         self._period = 1.0 / positive("rate", rate)
         exaggeration = finite("exaggeration", exaggeration)
         mechanism = Mechanism(system, tracks_of(paths))
-        server = start_server(host, port)
+        self._token = secrets.token_urlsafe(16)
+        server = start_server(host, port, self._token)
         self._wake = threading.Condition()  # Guards what is wanted; held for moments only, never while painting.
         self._wanted: _Wanted | None = None
         self._closing = False
@@ -95,8 +97,8 @@ class Viewer(ViewerPage):
 
     @property
     def url(self) -> str:
-        """What to open in a browser, or in an iframe."""
-        return f"http://{f'[{self.host}]' if ':' in self.host else self.host}:{self.port}"
+        """What to open in a browser, or in an iframe; whoever has it may look and move controls, nobody else."""
+        return f"http://{f'[{self.host}]' if ':' in self.host else self.host}:{self.port}/{self._token}/"
 
     @property
     def clients(self) -> int:

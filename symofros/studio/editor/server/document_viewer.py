@@ -46,10 +46,10 @@ class DocumentViewer:
         self._fault: Json | None = None
 
     @property
-    def port(self) -> int | None:
-        """Where viser itself listens; None while nothing is shown."""
+    def socket(self) -> str | None:
+        """Address of viser's own web socket; None while nothing is shown."""
         viewer = self._viewer
-        return None if viewer is None else viewer.port
+        return None if viewer is None else viewer.url.replace("http://", "ws://", 1)
 
     def follow(self, system: System | None) -> Json:
         """Show a system; the one before stays where this one can't be shown.

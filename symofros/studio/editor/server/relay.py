@@ -1,6 +1,6 @@
 """The viewer under the editor's own address: viser's page and its web socket, behind the same guard.
 
-viser has no token of its own, so pages are not sent to its port. Its page finds its socket beside its own address.
+Its page, framed by ours, finds its socket beside its own address; viser's own port and token stay on this side.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from symofros.studio.editor.server.document_viewer import DocumentViewer
-from symofros.studio.viewer.page.viser_server import LOOPBACK
 
 MAX_SOCKETS = 20
 GOING_AWAY, TRY_LATER = 1001, 1013
@@ -48,18 +47,18 @@ class Relay:
 
     async def socket(self, browser: WebSocket) -> None:
         """One browser's connection, until either side ends it."""
-        port = self.view.port
-        if port is None or self._open >= MAX_SOCKETS:
+        address = self.view.socket
+        if address is None or self._open >= MAX_SOCKETS:
             await browser.close(TRY_LATER)
             return
         self._open += 1
         try:
-            await _joined(browser, port)
+            await _joined(browser, address)
         finally:
             self._open -= 1
 
 
-async def _joined(browser: WebSocket, port: int) -> None:
+async def _joined(browser: WebSocket, address: str) -> None:
     # Only here: the package comes with viser, and the editor starts without either.
     from websockets.asyncio.client import connect
     from websockets.exceptions import WebSocketException
@@ -68,7 +67,7 @@ async def _joined(browser: WebSocket, port: int) -> None:
     offered = [Subprotocol(name) for name in browser.scope["subprotocols"]]
     try:
         async with connect(
-            f"ws://{LOOPBACK}:{port}", subprotocols=offered or None, compression=None, max_size=None, proxy=None
+            address, subprotocols=offered or None, compression=None, max_size=None, proxy=None
         ) as viewer:
             await browser.accept(viewer.subprotocol)
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import logging
 import socket
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
 from symofros.errors import Problem, SymofrosError
+from symofros.studio.viewer.page.viewer_guard import ViewerGuard
 
+_STARTING = threading.Lock()
 LOOPBACK = "127.0.0.1"
 PORT = 8080
 
@@ -30,12 +33,13 @@ def load_viser() -> Any:
         raise SymofrosError(missing) from None
 
 
-def start_server(host: str, port: int) -> Any:
-    """A viser server that serves.
+def start_server(host: str, port: int, token: str) -> Any:
+    """A viser server that serves, to whoever knows the token.
 
     Args:
         host: Address to bind to; LOOPBACK is seen from this machine only.
         port: 0 for any free one. One that is taken is an error: browsers would be sent to what else is there.
+        token: First part of the path of its page and of its socket.
 
     Raises:
         SymofrosError: viser is not installed, or the address can't be bound to.
@@ -51,8 +55,14 @@ def start_server(host: str, port: int) -> Any:
             _refuse(host, port, error.strerror or str(error), "the address is one of this machine's, the port is free")
     # It logs every connection that ends before its handshake, such as a browser's spare ones.
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
-    with _quiet():
-        return viser.ViserServer(host=host, port=port, verbose=False)
+    guard = ViewerGuard(host, token)
+    with _quiet(), _guarded(guard):
+        server = viser.ViserServer(host=host, port=port, verbose=False)
+    if not guard.is_asked:
+        stop_server(server)
+        what, rule = "view: viser can't be guarded", "its server asks before it answers, by `websockets`"
+        raise SymofrosError(Problem(what, f"viser {viser.__version__}", rule, "pip install 'symofros[view]'"))
+    return server
 
 
 def stop_server(server: Any) -> None:
@@ -65,6 +75,23 @@ def _refuse(host: str, port: int, found: str, rule: str) -> None:
     raise SymofrosError(
         Problem(f"view: can't serve at {host}:{port}", found, rule, "choose another port, or 0 for any that is free")
     )
+
+
+@contextmanager
+def _guarded(guard: ViewerGuard) -> Iterator[None]:
+    """Have the server that viser starts meanwhile ask a guard first: viser leaves no other place for one."""
+    serving: Any = import_module("websockets.asyncio.server")
+    with _STARTING:
+        serve = serving.serve
+
+        def serve_guarded(*given: Any, process_request: Any = None, **named: Any) -> Any:
+            return serve(*given, process_request=guard.before(process_request), **named)
+
+        serving.serve = serve_guarded
+        try:
+            yield
+        finally:
+            serving.serve = serve
 
 
 @contextmanager

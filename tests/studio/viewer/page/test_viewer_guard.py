@@ -1,0 +1,111 @@
+"""The viewer's server answers its own page only: other hosts, pages and tokens are refused, on sockets as well."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from http.client import HTTPConnection
+from importlib import import_module
+from urllib.parse import urlsplit
+
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.errors import SymofrosError
+from symofros.studio.viewer.page import viser_server
+from symofros.studio.viewer.page.viewer_guard import ViewerGuard
+
+
+@pytest.fixture(scope="module")
+def viewer() -> Iterator[sf.Viewer]:
+    with sf.Viewer(MODELS["pendulum"], port=0) as made:
+        yield made
+
+
+def status(viewer: sf.Viewer, path: str, **headers: str) -> tuple[int, bytes]:
+    connection = HTTPConnection(viewer.host, viewer.port, timeout=10)
+    connection.request("GET", path, headers=headers)
+    answer = connection.getresponse()
+    assert answer.headers["Referrer-Policy"] == "no-referrer"
+    return answer.status, answer.read()
+
+
+def test_its_page_is_at_the_address_with_the_token(viewer: sf.Viewer) -> None:
+    path = urlsplit(viewer.url).path
+    assert len(path) > 20
+    for host in (f"127.0.0.1:{viewer.port}", f"localhost:{viewer.port}", "localhost:9000"):  # The last: by a tunnel.
+        code, page = status(viewer, path, Host=host)
+        assert code == 200 and b"<title>Viser</title>" in page
+
+
+@pytest.mark.parametrize("cut", ["/", "", "/index.html", "/wrong/", "/../"])
+def test_without_the_token_there_is_no_page(viewer: sf.Viewer, cut: str) -> None:
+    code, page = status(viewer, cut or urlsplit(viewer.url).path[:-2] + "/")
+    assert code == 401 and b"Viser" not in page
+    assert all(part in page for part in (b"token", b"found:", b"rule:", b"remedy:"))
+
+
+@pytest.mark.parametrize("headers", [{"Host": "evil.example"}, {"Origin": "https://evil.example"}, {"Origin": "null"}])
+def test_other_hosts_and_pages_are_refused(viewer: sf.Viewer, headers: dict[str, str]) -> None:
+    code, page = status(viewer, urlsplit(viewer.url).path, **headers)
+    assert code == 403 and b"Viser" not in page
+
+
+@pytest.mark.parametrize(
+    ("path", "origin"),
+    [("/", None), ("/wrong", None), ("token", "https://evil.example"), ("token", "http://127.0.0.1:1")],
+)
+def test_its_socket_is_for_its_own_page(viewer: sf.Viewer, path: str, origin: str | None) -> None:
+    """The reproduction: a page of another origin read the scene, and moved it."""
+    connect, version = import_module("websockets.sync.client").connect, import_module("viser").__version__
+    end = urlsplit(viewer.url).path if path == "token" else path
+    address = f"ws://127.0.0.1:{viewer.port}{end}"
+    with pytest.raises(import_module("websockets.exceptions").InvalidStatus) as caught:
+        connect(address, origin=origin, subprotocols=[f"viser-v{version}"])
+    assert caught.value.response.status_code == (403 if origin else 401)
+
+
+@pytest.mark.parametrize("origin", [None, "own"])
+def test_its_own_page_is_served(viewer: sf.Viewer, origin: str | None) -> None:
+    connect, version = import_module("websockets.sync.client").connect, import_module("viser").__version__
+    own = f"http://127.0.0.1:{viewer.port}" if origin else None
+    with connect(viewer.url.replace("http", "ws", 1), origin=own, subprotocols=[f"viser-v{version}"]) as socket:
+        assert len(socket.recv(timeout=10)) > 100
+
+
+@pytest.mark.parametrize(
+    ("bound", "host", "allowed"),
+    [
+        ("127.0.0.1", "127.0.0.1:8080", True),
+        ("127.0.0.1", "LOCALHOST", True),
+        ("127.0.0.1", "[::1]:8080", True),
+        ("127.0.0.1", "127.0.0.1.evil.example:8080", False),
+        ("127.0.0.1", "[bad", False),
+        ("127.0.0.1", "", False),
+        ("::1", "[::1]:8080", True),
+        ("127.0.0.2", "127.0.0.2:8080", True),
+        ("0.0.0.0", "robot.lab:8080", True),
+    ],
+)
+def test_names_of_this_machine(bound: str, host: str, allowed: bool) -> None:
+    guard = ViewerGuard(bound, "secret")
+    assert (guard.refusal("/secret/", [host], []) is None) is allowed
+    assert guard.refusal("/secret/", [host, host], []) is not None
+    assert guard.refusal("/secrets/", [host], []) is not None
+
+
+def test_a_server_that_does_not_ask_is_not_left_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As after a change of viser's inside."""
+    viser, stopped = import_module("viser"), []
+
+    class Unguarded:
+        def __init__(self, **_: object) -> None:
+            pass
+
+        def stop(self) -> None:
+            stopped.append(self)
+
+    monkeypatch.setattr(viser, "ViserServer", Unguarded)
+    with pytest.raises(SymofrosError, match="can't be guarded"):
+        viser_server.start_server("127.0.0.1", 0, "secret")
+    assert stopped
