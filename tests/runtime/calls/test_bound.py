@@ -29,7 +29,7 @@ def m(request: pytest.FixtureRequest) -> sf.Model:
 def test_the_same_as_the_method(m: sf.Model, name: str, rng: np.random.Generator) -> None:
     bound = m.bind(name)
     (result,) = bound.outputs.values()
-    gc.collect()  # What C has the addresses of must be held by the Bound.
+    gc.collect(1)  # What C has the addresses of must be held by the Bound.
     for _ in range(3):
         given = dict(zip("qv", m.random_state(rng), strict=True)) | {"a": rng.normal(size=m.nv), "u": np.ones(m.nu)}
         for group in FUNCTIONS[name]:

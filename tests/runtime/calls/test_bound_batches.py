@@ -44,7 +44,7 @@ def check(bound: sf.runtime.bound.Bound, plain: object, reference: object) -> No
 def test_the_bits_of_the_plain_call(name: str, n: int, layout: Layout, batch: str, rng: np.random.Generator) -> None:
     m = sf.compile(MODELS["double_pendulum"], sf.Options(batch=batch))
     bound = m.bind(name, n=n, layout=layout)
-    gc.collect()  # What C has the addresses of must be held by the Bound.
+    gc.collect(1)  # What C has the addresses of must be held by the Bound.
     for _ in range(2):
         given = written(bound, states(m, n, rng))
         bound()

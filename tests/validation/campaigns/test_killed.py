@@ -30,6 +30,7 @@ SMALL = {
     "seed": 3,
     "engines": ("pinocchio",),
 }
+FEW = SMALL | {"states": 80, "batch": 10}
 PATIENCE = 600.0  # [s], for a campaign that hangs.
 
 
@@ -98,8 +99,8 @@ def result(folder: Path) -> pa.Table:
     return parquet.read_table(folder / "results.parquet").replace_schema_metadata(None)
 
 
-def uninterrupted() -> pa.Table:
-    return pa.concat_tables([task.run() for task in tasks(make(SMALL, "test"))])
+def uninterrupted(plan: dict[str, object] = SMALL) -> pa.Table:
+    return pa.concat_tables([task.run() for task in tasks(make(plan, "test"))])
 
 
 @pytest.mark.slow  # In every run: tests/validation/campaigns/test_session.py, a worker that kills itself.
@@ -130,7 +131,7 @@ def test_a_killed_client_costs_what_its_workers_were_at(tmp_path: Path) -> None:
 
 
 def test_an_interrupt_ends_in_words_and_is_resumed(tmp_path: Path) -> None:
-    client = start(tmp_path / "c")
+    client = start(tmp_path / "c", FEW)
     wait_for(client, lambda: sum(events(tmp_path / "c", "done").values()) >= 3)
     os.killpg(client.pid, signal.SIGINT)  # As Ctrl-C: client and workers get it.
     _, complained = client.communicate(timeout=PATIENCE)
@@ -139,7 +140,7 @@ def test_an_interrupt_ends_in_words_and_is_resumed(tmp_path: Path) -> None:
     finished = set(events(tmp_path / "c", "done"))
     ended_well(resume(tmp_path / "c"))
     assert all(events(tmp_path / "c", "begun")[batch] == 1 for batch in finished)
-    assert result(tmp_path / "c").equals(uninterrupted())
+    assert result(tmp_path / "c").equals(uninterrupted(FEW))
 
 
 @pytest.mark.slow(minutes=20)

@@ -17,11 +17,11 @@ from validation.studies.fuzz_inputs import CORPUS, KINDS, corpus, mutated
 
 
 def test_no_input_crashes_or_hangs_the_readers() -> None:
-    result = fuzz.fuzz(1200, seed=7)
+    result = fuzz.fuzz(400, seed=7)
     assert not result.faults, result.faults[0]
     # Both answers occur for each reader: the inputs are neither all sound nor all rubbish.
     for kind, answers in result.answers.items():
-        assert answers.read > 5 and answers.refused > 100 and answers.read + answers.refused == 300, kind
+        assert answers.read > 1 and answers.refused > 30 and answers.read + answers.refused == 100, kind
     assert result.answers["yaml"].compiled and result.answers["urdf"].compiled
 
 

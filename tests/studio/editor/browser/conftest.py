@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 import signal
@@ -106,8 +107,10 @@ def node_modules() -> Path:
     if version < NODE:
         pytest.skip(f"needs Node {'.'.join(map(str, NODE))} or newer, found {version or 'none'}")
     folder = Path(symofros.studio.editor.__file__).parent / "page"
-    if not (folder / "node_modules").is_dir():
-        subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=folder, check=True)
+    with (folder / "package-lock.json").open() as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # Workers of one run share the folder.
+        if not (folder / "node_modules" / ".package-lock.json").is_file():  # npm writes it last.
+            subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=folder, check=True)
     return folder / "node_modules"
 
 
