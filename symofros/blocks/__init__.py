@@ -38,9 +38,11 @@ from symofros.blocks.generic import TransferFunction as TransferFunction
 from symofros.blocks.generic import Transform as Transform
 from symofros.blocks.generic import UnitDelay as UnitDelay
 from symofros.blocks.graphics import ExtremityPlot as ExtremityPlot
+from symofros.blocks.graphics import LivePlot as LivePlot
 from symofros.blocks.graphics import Scope as Scope
 from symofros.blocks.graphics import StatePlot as StatePlot
 from symofros.blocks.graphics import Store as Store
+from symofros.blocks.graphics import View3D as View3D
 from symofros.blocks.inputs import CartesianTrajectory as CartesianTrajectory
 from symofros.blocks.inputs import Chirp as Chirp
 from symofros.blocks.inputs import JointTrajectory as JointTrajectory
@@ -54,12 +56,10 @@ from symofros.blocks.kinematics import Extremities as Extremities
 from symofros.blocks.kinematics import ForwardKinematics as ForwardKinematics
 from symofros.blocks.kinematics import InverseKinematics as InverseKinematics
 from symofros.blocks.kinematics import Jacobian as Jacobian
-from symofros.blocks.live_plot import LivePlot as LivePlot
-from symofros.blocks.middleware import ZenohPublisher as ZenohPublisher
-from symofros.blocks.middleware import ZenohSubscriber as ZenohSubscriber
 from symofros.blocks.network import UdpReceiver as UdpReceiver
 from symofros.blocks.network import UdpTransmitter as UdpTransmitter
-from symofros.blocks.view import View3D as View3D
+from symofros.blocks.network import ZenohPublisher as ZenohPublisher
+from symofros.blocks.network import ZenohSubscriber as ZenohSubscriber
 from symofros.diagrams.block import Block as Block
 from symofros.diagrams.block import Environment as Environment
 from symofros.diagrams.block import EvaluationContext as EvaluationContext

@@ -6,7 +6,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from symofros.blocks.view import View3D, with_view
+from symofros.blocks.graphics.view import View3D, with_view
 from symofros.description.system import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.result import DiagramRun

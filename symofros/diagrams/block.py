@@ -1,8 +1,8 @@
 """What a block is: ports, states and memory, and formulas for them written once, over edges.
 
 From the same formulas come the compiled program and the interpreted run. Which input feeds through to an output is read
-off the formulas; nobody declares it. To add a block: a class in the folder of its category in `symofros/blocks/`, its name
-in the `__init__` there and of `symofros/blocks/`, a section of docs/blocks.md (docs/architecture.md, "To add").
+off the formulas; nobody declares it. To add a block: a class in the folder of its category in `symofros/blocks/`, its
+name in the `__init__` there and of `symofros/blocks/`, a section of docs/blocks.md (docs/architecture.md, "To add").
 """
 
 from __future__ import annotations

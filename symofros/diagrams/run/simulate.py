@@ -178,9 +178,7 @@ def _drive(
     return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost)
 
 
-def _outcome(
-    loop: Loop, status: int, interrupted: bool, t_end: float, bendings: tuple[BeamBending, ...]
-) -> Outcome:
+def _outcome(loop: Loop, status: int, interrupted: bool, t_end: float, bendings: tuple[BeamBending, ...]) -> Outcome:
     t, notes = float(loop.diagram.t[0]), bending_notes(bendings)
     if interrupted:
         return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes)

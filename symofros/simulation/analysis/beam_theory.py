@@ -33,9 +33,7 @@ def bendings_at_rest(model: Model, q: Array, K: Array, par: ArrayLike | None) ->
 
 def beyond_critical_load(beams: Sequence[ElasticBeam], q: Array, K: Array) -> tuple[str, ...]:
     """Names of the beams that loads have left without stiffness in some direction."""
-    return tuple(
-        beam.name for beam in beams if beam.amplification(q[beam.in_q], K[beam.in_v, beam.in_v]) <= 0.0
-    )
+    return tuple(beam.name for beam in beams if beam.amplification(q[beam.in_q], K[beam.in_v, beam.in_v]) <= 0.0)
 
 
 def refuse_beyond(model: Model, bendings: Sequence[BeamBending], limit: float, result: str) -> None:

@@ -112,9 +112,7 @@ def _judged(model: Model, reached: Reached, par: ArrayLike | None, beam_limit: f
     """The same with what is to be said of the beams; not converged where one is bent beyond the limit."""
     bendings = bendings_at(model, reached.q, par)
     within = all(bending.error <= beam_limit for bending in bendings)
-    return replace(
-        reached, converged=reached.converged and within, bendings=bendings, notes=bending_notes(bendings)
-    )
+    return replace(reached, converged=reached.converged and within, bendings=bendings, notes=bending_notes(bendings))
 
 
 def _reach(task: Task, q: Array, free: Indices, tolerance: float, iterations: int) -> Reached:

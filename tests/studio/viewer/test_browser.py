@@ -19,7 +19,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import ForwardDynamics
-from symofros.blocks.view import with_view
+from symofros.blocks.graphics.view import with_view
 
 pytestmark = pytest.mark.browser
 

@@ -14,7 +14,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import ForwardDynamics, Sequence, View3D
-from symofros.blocks.view import with_view
+from symofros.blocks.graphics.view import with_view
 from symofros.diagrams.files.registry import kind_of
 
 PATIENCE = 10.0

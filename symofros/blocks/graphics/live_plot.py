@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from symofros.blocks.exchange import LOCALHOST, check_size
-from symofros.blocks.graphics import open_ports
-from symofros.blocks.packets import pack
+from symofros.blocks.graphics.recorders import open_ports
+from symofros.blocks.network.exchange import LOCALHOST, check_size
+from symofros.blocks.network.packets import pack
 from symofros.blocks.turns import Turn
 from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.external_block import ExternalBlock, Running
@@ -118,7 +118,7 @@ class _Page:
         if self.process is not None and self.process.poll() is None:
             return
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "symofros.blocks.live_page"],
+            [sys.executable, "-m", "symofros.blocks.graphics.live_page"],
             text=True,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -130,7 +130,7 @@ class _Page:
                 Problem(
                     f"block '{name}': the page does not start",
                     "its program ended",
-                    "python -m symofros.blocks.live_page serves it",
+                    "python -m symofros.blocks.graphics.live_page serves it",
                     "see what it wrote to standard error",
                 )
             )

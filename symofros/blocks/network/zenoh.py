@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from symofros.blocks.exchange import MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
-from symofros.blocks.packets import pack
+from symofros.blocks.network.exchange import MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
+from symofros.blocks.network.packets import pack
 from symofros.diagrams.block import Environment
 from symofros.diagrams.external_block import Running
 from symofros.errors import DescriptionError, Problem, SymofrosError

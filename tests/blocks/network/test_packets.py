@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 
-from symofros.blocks.packets import Reception, pack, unpack
+from symofros.blocks.network.packets import Reception, pack, unpack
 
 VALUES = np.array([1.5, -2.0])
 

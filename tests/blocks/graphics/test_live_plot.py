@@ -14,8 +14,8 @@ import pytest
 
 import symofros as sf
 from symofros.blocks import LivePlot
-from symofros.blocks.live_page import AT_ONCE, ROWS, Feed
-from symofros.blocks.packets import pack
+from symofros.blocks.graphics.live_page import AT_ONCE, ROWS, Feed
+from symofros.blocks.network.packets import pack
 from tests.blocks.sources import Ramp
 
 

@@ -18,7 +18,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from typing import Any
 
-from symofros.blocks.packets import unpack
+from symofros.blocks.network.packets import unpack
 
 # Rows that a page which is opened late still sees.
 ROWS = 20_000
@@ -68,7 +68,7 @@ class Page(BaseHTTPRequestHandler):
         if self.headers.get("Host") not in hosts or not hmac.compare_digest(first.encode(), self.token.encode()):
             self.send_error(403)
         elif rest == "":
-            self._send("text/html; charset=utf-8", (files("symofros.blocks") / "live_page.html").read_bytes())
+            self._send("text/html; charset=utf-8", (files("symofros.blocks.graphics") / "live_page.html").read_bytes())
         elif rest == "rows":
             self._stream()
         else:

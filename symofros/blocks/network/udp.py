@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from symofros.blocks.exchange import LOCALHOST, MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
-from symofros.blocks.packets import pack
+from symofros.blocks.network.exchange import LOCALHOST, MAX_TAKEN, Exchange, Receiver, Receiving, Transmitter
+from symofros.blocks.network.packets import pack
 from symofros.diagrams.block import Environment
 from symofros.diagrams.external_block import Running
 from symofros.errors import Problem, SymofrosError
@@ -40,7 +40,7 @@ class _ByUdp(Exchange):
 
 @dataclass(frozen=True, kw_only=True)
 class UdpTransmitter(_ByUdp, Transmitter):
-    """Sends its input at each sample, as one packet (`symofros.blocks.packets`).
+    """Sends its input at each sample, as one packet (`symofros.blocks.network.packets`).
 
     What it keeps of a run: "sent" and "dropped", how many packets.
 
@@ -86,7 +86,7 @@ class UdpReceiver(_ByUdp, Receiver):
     """Takes the newest packet that has arrived at each sample, and counts the others.
 
     What it keeps of a run: "received", "lost", "late", "duplicate", "malformed" and "foreign", how many packets
-    (`symofros.blocks.packets.Reception`).
+    (`symofros.blocks.network.packets.Reception`).
 
     Attributes:
         port: Port to listen at.

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from symofros.blocks.packets import MAX_VALUES, Reception, Silence, receiver_ports
+from symofros.blocks.network.packets import MAX_VALUES, Reception, Silence, receiver_ports
 from symofros.diagrams.block import Environment, Port, Ports
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.errors import DescriptionError, Problem
@@ -67,7 +67,7 @@ class Exchange(ExternalBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class Transmitter(Exchange):
-    """Sends its input at each sample, as one packet (`symofros.blocks.packets`)."""
+    """Sends its input at each sample, as one packet (`symofros.blocks.network.packets`)."""
 
     def ports(self, environment: Environment) -> Ports:
         """A signal of any shape; entries go row by row."""
