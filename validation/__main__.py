@@ -38,7 +38,7 @@ class Commands(TyperGroup):
 
 
 app = typer.Typer(cls=Commands, add_completion=False, no_args_is_help=False, pretty_exceptions_enable=False)
-add_command(app, cross_check.TOPIC, cross_check.measure, cross_check.PRINTED)
+add_command(app, cross_check.TOPIC)
 
 
 @app.callback()

@@ -6,12 +6,12 @@ import typer
 
 from validation.campaigns import command as campaign
 from validation.dashboard import command as dashboard
-from validation.dashboard.catalogue import MEASURES, TOPICS
+from validation.dashboard.catalogue import TOPICS
 from validation.reporting.command import add_command
 
 app = typer.Typer()
-for name, measure in MEASURES.items():
-    if name != "check":
-        add_command(app, TOPICS[name], measure, ())
+for topic in TOPICS.values():
+    if topic.name != "check":
+        add_command(app, topic)
 campaign.register(app)
 dashboard.register(app)

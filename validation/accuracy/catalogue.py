@@ -37,10 +37,10 @@ STUDIES: dict[str, Question] = {
     "conditioning": conditioning.study,
 }
 
-measure = measuring(STUDIES, "Measure beams against closed forms, tables and exact rods.")
 TOPIC = Topic(
     "accuracy",
     "Accuracy",
     "How accurate are beams?",
     composing("Accuracy of beams", "docs/theory/beams.md", {"spinning": (0, 0), "convergence": (0, 0)}),
+    measuring(STUDIES, "Measure beams against closed forms, tables and exact rods."),
 )

@@ -2,12 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import Any
 
 from validation.reporting.numbers import counted, short
-from validation.reporting.record import Block, Bullets, Cell, Data, Fact, Report, Section, Table, Text, Topic
+from validation.reporting.record import Block, Bullets, Cell, Column, Data, Fact, Report, Section, Table, Topic
 
 _SHOWN = 20
+_WORST: dict[str, Column] = {
+    "quantity": "{quantity}",
+    "#comparisons": "{comparisons}",
+    "#largest error": lambda row: Cell(_error(row), row["all agree"]),
+    "#tolerance": "{tolerance:.1e}",
+    "of": "{model}",
+    "against": "{engine}",
+    "#batch, state": lambda row: _place(row),
+}
+_UNSUPPORTED: dict[str, Column] = {
+    "engine": "{engine}",
+    "model": "{model}",
+    "quantity": "{quantity}",
+    "reason": "{note}",
+}
+_RANGES: dict[str, Column] = {
+    "result": "{0}",
+    "#smallest": lambda row: _end(row[1]["min"]),
+    "#largest": lambda row: _end(row[1]["max"]),
+}
 
 
 def compose(data: Data) -> Report:
@@ -16,49 +36,49 @@ def compose(data: Data) -> Report:
 
 
 def _checked(data: Data) -> Report:
-    groups, spent = data["groups"], data["effort"]
+    groups, spent, failed = data["groups"], data["effort"], data["failed"]
     wrong = [row for row in groups if not row["agree"]]
-    failed = data["failed"]
     cut = f"; {counted(len(failed), 'comparison')} could not be made" if failed else ""
     verdict = f"{len(wrong)} do not agree" if wrong else "all agree" if data["ok"] else "not all agree"
-    table = Table(
-        ("quantity", "#comparisons", "#largest error", "#tolerance", "of", "against", "#batch, state"),
-        tuple(_worst_row(quantity, groups) for quantity in dict.fromkeys(row["quantity"] for row in groups)),
-    )
     bad = [
         f"disagrees: {row['model']}, {row['engine']}, {row['quantity']}: {_error(row)} in batch {_place(row)}"
         for row in wrong[:_SHOWN]
     ]
-    bad += [f"failed: batch {row['batch']}, {row['model']}: {' '.join(row['note'].split())}" for row in failed[:_SHOWN]]
+    bad += [f"failed: batch {row['batch']}, {row['model']}: {row['note']}" for row in failed[:_SHOWN]]
     share = max(map(_share, groups), default=0.0)
+    worst = [_worst(data, quantity) for quantity in dict.fromkeys(row["quantity"] for row in groups)]
     blocks: tuple[Block, ...] = (
         "The largest error of each quantity over all models, engines and states, relative to its scale.",
-        table,
+        Table.of(worst, _WORST),
         Bullets(tuple(bad)) if bad else "Nothing disagrees.",
     )
+    unsupported = (Table.of(data.get("unsupported", ()), _UNSUPPORTED),)
     return Report(
         "Campaign",
         f"{counted(data['states'], 'state')} of {counted(data['models'], 'model')}, "
         f"{counted(len(groups), 'comparison')}: {verdict}{cut}.",
         bool(data["ok"]),
         (),
-        (Section("How close", blocks), _unsupported(data), _effort(data)),
+        (
+            Section("How close", blocks),
+            Section("What an engine could not represent", unsupported, page_only=True),
+            _effort(data),
+        ),
         (
             Fact(_rate(data, "states"), f"states, {counted(spent['sessions'], 'session')}"),
             Fact(str(len(spent["repeated"])), f"of {counted(spent['executions'], 'execution')} of batches repeated"),
             Fact(f"{short(float(f'{100 * share:.2g}'))} %", "of its tolerance, the largest error", not wrong),
         ),
-        digest=(table, Text("\n".join(bad) or "Nothing disagrees.", "bad" if bad else "plain")),
+        digest=blocks[1:],
     )
 
 
-def _worst_row(quantity: str, groups: Sequence[Data]) -> tuple[str | Cell, ...]:
-    rows = [row for row in groups if row["quantity"] == quantity]
-    worst = max(rows, key=_share)
+def _worst(data: Data, quantity: str) -> dict[str, Any]:
+    """The comparison of a quantity that takes most of its tolerance; how many there are, and whether all agree."""
+    rows = [row for row in data["groups"] if row["quantity"] == quantity]
     agree = all(row["agree"] for row in rows)
-    error = Cell(_error(worst), agree)
-    of = (worst.get("model", ""), worst.get("engine", ""))
-    return quantity, str(len(rows)), error, f"{worst['tolerance']:.1e}", *of, _place(worst)
+    worst = max(rows, key=_share)
+    return {"model": "", "engine": "", **worst, "comparisons": len(rows), "all agree": agree}
 
 
 def _place(row: Data) -> str:
@@ -74,31 +94,21 @@ def _error(row: Data) -> str:
     return "NaN" if row["error"] is None else f"{row['error']:.1e}"
 
 
-def _unsupported(data: Data) -> Section:
-    rows = tuple((row["engine"], row["model"], row["quantity"], row["note"]) for row in data.get("unsupported", ()))
-    return Section(
-        "What an engine could not represent", (Table(("engine", "model", "quantity", "reason"), rows),), page_only=True
-    )
+def _end(value: float | None) -> str:
+    return "-" if value is None else f"{value:.6g}"
 
 
 def _swept(data: Data) -> Report:
-    plan = data["plan"]
+    plan, failed = data["plan"], data["failed"].items()
     rest = "" if data["ok"] else f"; {data['points'] - data['done']} could not be evaluated"
-    rows = [
-        (name, *("-" if ends[end] is None else f"{ends[end]:.6g}" for end in ("min", "max")))
-        for name, ends in data["ranges"].items()
-    ]
-    table = Table(("result", "#smallest", "#largest"), tuple(rows))
-    failed = Bullets(tuple(f"{number} points: {why}" for why, number in data["failed"].items()))
-    blocks: tuple[Block, ...] = (table, failed) if data["failed"] else (table,)
+    reasons = [Bullets(tuple(f"{number} points: {why}" for why, number in failed))] if failed else []
     return Report(
         "Campaign",
         f"{plan['model']}, {plan['quantity'].replace('_', ' ')}: {data['done']} of {data['points']} points{rest}.",
         bool(data["ok"]),
         (),
-        (Section("Range of each result", blocks), _effort(data)),
+        (Section("Range of each result", (Table.of(data["ranges"].items(), _RANGES), *reasons)), _effort(data)),
         (Fact(_rate(data, "points"), f"points, {counted(data['effort']['sessions'], 'session')}"),),
-        digest=blocks,
     )
 
 
@@ -123,6 +133,5 @@ TOPIC = Topic(
     "Correctness",
     "And over a hundred thousand states?",
     compose,
-    ("campaign", "run", "--models", "all", "--report", "reports", "-o", "campaign"),
-    everyday=False,
+    arguments=("campaign", "run", "--models", "all", "--report", "reports", "-o", "campaign"),
 )

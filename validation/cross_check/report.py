@@ -38,8 +38,6 @@ from validation.reporting.record import (
 )
 from validation.worker_pool import run as run_cases
 
-# What `--json` prints.
-PRINTED = ("ok", "comparisons", "unsupported")
 # Up to so many models, each engine has a line of its own on a terminal.
 _DETAILED = 2
 
@@ -223,4 +221,5 @@ def _digest(record: Record) -> list[Block]:
     return blocks
 
 
-TOPIC = Topic("check", "Correctness", "Do our C and independent engines agree?", compose, ())
+QUESTION = "Do our C and independent engines agree?"
+TOPIC = Topic("check", "Correctness", QUESTION, compose, measure, (), ("ok", "comparisons", "unsupported"))

@@ -1,4 +1,4 @@
-"""The reports, in the order of the index and of `--regenerate`, and the function that measures each."""
+"""The reports, in the order of the index and of `--regenerate`."""
 
 from __future__ import annotations
 
@@ -8,29 +8,11 @@ from validation.cross_check import report as check
 from validation.diagrams import catalogue as diagrams
 from validation.pareto import report as pareto
 from validation.passes import report as passes
-from validation.reporting.command import Measure
 from validation.reporting.record import Topic
 from validation.stability import report as stability
 from validation.studies.reports import exports, fuzz, mutation, oracle, realtime, rollouts, simulation
 from validation.timing import report as timing
 
-_ORDER = (
-    check,
-    oracle,
-    mutation,
-    fuzz,
-    campaign,
-    accuracy,
-    diagrams,
-    stability,
-    timing,
-    simulation,
-    rollouts,
-    realtime,
-    passes,
-    exports,
-    pareto,
-)
-TOPICS: dict[str, Topic] = {module.TOPIC.name: module.TOPIC for module in _ORDER}
-# A campaign has commands of its own: it is begun, gone on with, and shown.
-MEASURES: dict[str, Measure] = {module.TOPIC.name: module.measure for module in _ORDER if hasattr(module, "measure")}
+_CORRECTNESS = (check, oracle, mutation, fuzz, campaign, accuracy, diagrams, stability)
+_SPEED = (timing, simulation, rollouts, realtime, passes, exports, pareto)
+TOPICS: dict[str, Topic] = {module.TOPIC.name: module.TOPIC for module in (*_CORRECTNESS, *_SPEED)}

@@ -75,7 +75,7 @@ def _existing(folder: Path) -> None:
 
 def _all_anew(folder: Path) -> bool:
     """Every report; whether none was left out by Ctrl-C. Those finished before are kept."""
-    console, wanted = Console(stderr=True), [topic for topic in TOPICS.values() if topic.everyday]
+    console, wanted = Console(stderr=True), [topic for topic in TOPICS.values() if topic.measure]
     with progress_bar(console) as bar:
         task = bar.add_task("", total=len(wanted))
         try:

@@ -9,7 +9,6 @@ from validation.reporting.record import Topic
 
 STUDIES: dict[str, Question] = {"square": square.study, "two_arms": two_arms.study, "threads": threads.study}
 
-measure = measuring(STUDIES, "Run the paper's simulations from their block diagrams.")
 TOPIC = Topic(
     "diagrams",
     "Diagrams",
@@ -17,4 +16,5 @@ TOPIC = Topic(
     composing(
         "Diagrams: a controlled flexible robot", "docs/theory/diagrams.md", {"square": (0, 0), "two_arms": (0, 1)}
     ),
+    measuring(STUDIES, "Run the paper's simulations from their block diagrams."),
 )

@@ -84,18 +84,17 @@ def problem_data(problem: BenchmarkProblem, result: Result, date: str) -> dict[s
             {**vars(v.target), "found": "only ours" if math.isinf(v.ratio) else plain(v.ratio), "ok": v.ok}
             for v in judged
         ],
-        "words": [*verdicts.compared(problem, result.points), *verdicts.advice(problem, result)],
-        "front": [point.name for point in front(charted(problem, result.points))],
     }
 
 
+# Of a target: its problem, by name and as stated, and the verdict on it.
 _TARGETS: dict[str, Column] = {
     "problem": lambda row: f"[{row[1].title}](#{row[0]})",
     "#at error": lambda row: row[1].shown(row[2].target.error),
     "against": lambda row: row[2].target.engine,
     "#ours": lambda row: duration(row[2].seconds),
     "#its best": lambda row: duration(row[2].engine_seconds),
-    "#ratio": lambda row: Cell("only ours" if math.isinf(row[2].ratio) else f"{row[2].ratio:.3g}", row[2].ok),
+    "winner": lambda row: Cell(row[2].winner, row[2].ok),
     "#asked": lambda row: short(row[2].target.ratio),
     "verdict": lambda row: "ok" if row[2].ok else "missed",
 }
@@ -115,21 +114,15 @@ def compose(data: Data) -> Report:
     said += f"; {counted(len(failures), 'problem')} could not be done" if failures else ""
     said += f"; interrupted before {', '.join(unfinished)}" if unfinished else ""
     most = max((t["found"] for t in targets if isinstance(t["found"], float)), default=0.0)
-    verdict_rows = [
-        (n, problem, v) for n, (problem, result) in results.items() for v in verdicts.verdicts(problem, result.points)
-    ]
-    table = Table.of(verdict_rows, _TARGETS)
-    advice = tuple(
-        f"**{problem.title}.** {verdicts.which(problem, result)} {verdicts.methods(problem, result)}"
-        for problem, result in results.values()
-    )
+    judged = ((name, problem, verdicts.verdicts(problem, result.points)) for name, (problem, result) in results.items())
+    table = Table.of(((name, problem, v) for name, problem, group in judged for v in group), _TARGETS)
     return Report(
         "Speed against accuracy",
         f"{said}.",
         bool(data["ok"]),
         (*INTRO, *failures),
         (
-            Section("Which to use when", (verdicts.overall(results), table, Bullets(advice)), "which"),
+            Section("Which to use when", (verdicts.overall(results), table), "which"),
             *(_section(name, *results[name], problem, data["quick"]) for name, problem in data["problems"].items()),
         ),
         (
@@ -156,10 +149,14 @@ def _section(name: str, problem: BenchmarkProblem, result: Result, data: Data, q
     agree = f"They agree to {problem.shown(result.agreement)}; asked for is {problem.shown(problem.trust)}."
     command = f"python -m validation pareto --problem {name}{' --quick' if quick else ''}"
     ended = Bullets(tuple(verdicts.refused(result)))
+    advice = f"{verdicts.below_the_floor(problem, result)} {verdicts.methods(problem, result)}".strip()
+    of_verdict = {title: column for title, column in _TARGETS.items() if title != "problem"}
+    judged = Table.of(((name, problem, v) for v in verdicts.verdicts(problem, result.points)), of_verdict)
     blocks = (
         f"{problem.setting} **Error:** {problem.measure}.",
         figure(problem, result, verdicts.see(problem, result)),
-        Text(f"**Which when.** {verdicts.which(problem, result)}", "advice"),
+        judged,
+        Text(f"**Which when.** {advice}", "advice"),
         Table.of(rows, runs),
         f"**Tuned:** {problem.tuned}",
         Text(f"**References:** {result.references}. {agree}", "plain" if result.agreement <= problem.trust else "bad"),
@@ -174,4 +171,4 @@ def _field(name: str) -> Column:
     return lambda row: str(getattr(row[1], name))
 
 
-TOPIC = Topic("pareto", "Accuracy against time", "Which model is the cheapest that is good enough?", compose)
+TOPIC = Topic("pareto", "Accuracy against time", "Which model is the cheapest that is good enough?", compose, measure)

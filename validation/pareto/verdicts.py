@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import groupby
 
 from validation.pareto.front import charted, front, ratio, seconds_at, usable
 from validation.pareto.problem import OURS, BenchmarkProblem, Point, Target
@@ -33,6 +32,15 @@ class Verdict:
         """Whether it is met; NaN is not."""
         return bool(self.ratio >= self.target.ratio)
 
+    @property
+    def winner(self) -> str:
+        """Who is first at the error, and by which factor; "alone" where the other side does not keep it."""
+        if math.isnan(self.ratio):
+            return "nobody"
+        who = OURS if self.ratio >= 1.0 else self.target.engine
+        factor = self.ratio if self.ratio >= 1.0 or not self.ratio else 1.0 / self.ratio
+        return f"{who} by {factor:.3g}" if 0.0 < self.ratio < math.inf else f"{who} alone"
+
 
 def verdicts(problem: BenchmarkProblem, points: tuple[Point, ...]) -> list[Verdict]:
     """The verdict on each target."""
@@ -41,40 +49,6 @@ def verdicts(problem: BenchmarkProblem, points: tuple[Point, ...]) -> list[Verdi
         sides = [seconds_at((p for p in points if p.who == who), target.error) for who in (OURS, target.engine)]
         judged.append(Verdict(target, sides[0], sides[1], ratio(points, OURS, target.engine, target.error)))
     return judged
-
-
-def compared(problem: BenchmarkProblem, points: tuple[Point, ...]) -> list[str]:
-    """A sentence on each target."""
-    return [_sentence(problem, verdict) for verdict in verdicts(problem, points)]
-
-
-def _sentence(problem: BenchmarkProblem, verdict: Verdict) -> str:
-    at, engine = problem.shown(verdict.target.error), verdict.target.engine
-    if math.isnan(verdict.ratio):
-        return f"At {at} neither symofros nor {engine} has a run."
-    if verdict.ratio == 0.0:
-        return (
-            f"At {at} {engine} wins: no model of ours keeps it, and {engine} takes {duration(verdict.engine_seconds)}."
-        )
-    if math.isinf(verdict.ratio):
-        return f"At {at} symofros wins with {duration(verdict.seconds)}: no run of {engine} keeps it."
-    times = f"{duration(verdict.seconds)} against {duration(verdict.engine_seconds)}"
-    if verdict.ratio >= 1.0:
-        return f"At {at} symofros wins by {verdict.ratio:.3g}: {times} of {engine}'s best."
-    return f"At {at} {engine} wins by {1.0 / verdict.ratio:.3g}: symofros takes {times} of {engine}'s best."
-
-
-def advice(problem: BenchmarkProblem, result: Result) -> list[str]:
-    """Which to use when: the front from the fastest to the most accurate, a line for each side, model and method."""
-    best = front(charted(problem, result.points))
-    lines = []
-    for (who, model, method), group in groupby(best, key=lambda p: p.series):
-        run = list(group)
-        times = duration(run[-1].seconds)
-        lines.append(
-            f"down to an error of {problem.shown(run[-1].error)}: {who}, {model}, {method}, {run[-1].setting} ({times})"
-        )
-    return lines
 
 
 def below_the_floor(problem: BenchmarkProblem, result: Result) -> str:
@@ -92,11 +66,6 @@ def below_the_floor(problem: BenchmarkProblem, result: Result) -> str:
         f"{said}; below {problem.shown(least)} {first.who} is the tool: {first.model}, {first.method}, "
         f"{first.setting} reach {problem.shown(first.error)} in {duration(first.seconds)}."
     )
-
-
-def which(problem: BenchmarkProblem, result: Result) -> str:
-    """Who wins at the errors that are asked for, and below the floor of our beams."""
-    return " ".join([*compared(problem, result.points), below_the_floor(problem, result)]).strip()
 
 
 def methods(problem: BenchmarkProblem, result: Result) -> str:

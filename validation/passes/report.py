@@ -87,4 +87,4 @@ def _section(label: str, rows: Sequence[Data]) -> Section:
     return Section(f"{label}, {base['nv']} degrees of freedom", (Table.of(rows, columns),))
 
 
-TOPIC = Topic("passes", "Speed", "What does each pass of the generator gain?", compose)
+TOPIC = Topic("passes", "Speed", "What does each pass of the generator gain?", compose, measure)

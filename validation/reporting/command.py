@@ -135,9 +135,6 @@ class Run:
         write(self.topic, self.stamped(data), self.folder)
 
 
-Measure = Callable[..., Data]
-
-
 def write(topic: Topic, data: Data, folder: Path) -> Report:
     """Write NAME.json (everything), NAME.md (texts and tables), NAME.html (one self-contained page).
 
@@ -168,52 +165,49 @@ def code(report: Report) -> Exit:
     return Exit.MISSED if report.ok is False else Exit.GOOD
 
 
-def execute(
-    topic: Topic, measure: Measure, folder: Path, as_json: bool, printed: Sequence[str] = (), **options: Any
-) -> None:
+def execute(topic: Topic, folder: Path, as_json: bool, **options: Any) -> None:
     """Measure, write, print, exit.
 
     Args:
         topic: The report.
-        measure: Run and options -> data.
         folder: Folder of the files.
         as_json: Whether data is printed, and nothing else.
-        printed: Names in the data that are printed; none: all.
-        options: Options of `measure`.
+        options: Options of what measures.
     """
     run = Run(topic, folder)
     try:
         with run.bar:
-            data = measure(run, **options)
+            data = run.stamped(topic.measure(run, **options) if topic.measure else {})
     except KeyboardInterrupt:
         run.say(f"{topic.name}: interrupted, nothing is written", bad=True)
         raise typer.Exit(Exit.INTERRUPTED) from None
-    data = run.stamped(data)
     report = write(topic, data, run.folder)
     if as_json:
-        typer.echo(json.dumps({name: data[name] for name in printed or data}, allow_nan=False))
+        typer.echo(json.dumps({name: data[name] for name in topic.printed or data}, allow_nan=False))
     else:
         terminal.show(report)
         typer.echo(f"Report: {run.folder / topic.name}.html")
     raise typer.Exit(code(report))
 
 
-def add_command(app: typer.Typer, topic: Topic, measure: Measure, printed: Sequence[str] = ()) -> None:
-    """Add a report's command: the options of `measure` after its first argument, the folder, and --json."""
-    signature = inspect.signature(measure, eval_str=True)
+def add_command(app: typer.Typer, topic: Topic) -> None:
+    """Add a report's command, if it has one: the options of what measures, the folder, and --json."""
+    if topic.measure is None:
+        return
     keyword = inspect.Parameter.KEYWORD_ONLY
-    own = [parameter.replace(kind=keyword) for parameter in list(signature.parameters.values())[1:]]
-    shared = [
-        inspect.Parameter("output", keyword, default=REPORTS, annotation=Output),
+    own = list(inspect.signature(topic.measure, eval_str=True).parameters.values())[1:]
+    options = [
+        *(parameter.replace(kind=keyword) for parameter in own),
+        inspect.Parameter("folder", keyword, default=REPORTS, annotation=Output),
         inspect.Parameter("as_json", keyword, default=False, annotation=AsJson),
     ]
 
-    def command(**options: Any) -> None:
-        execute(topic, measure, options.pop("output"), options.pop("as_json"), printed, **options)
+    def command(**given: Any) -> None:
+        execute(topic, **given)
 
-    command.__signature__ = inspect.Signature([*own, *shared])  # type: ignore[attr-defined]
-    command.__annotations__ = {parameter.name: parameter.annotation for parameter in (*own, *shared)}
-    said = (inspect.getdoc(measure) or "").partition("\n\nArgs:")[0]
+    command.__signature__ = inspect.Signature(options)  # type: ignore[attr-defined]
+    command.__annotations__ = {parameter.name: parameter.annotation for parameter in options}
+    said = (inspect.getdoc(topic.measure) or "").partition("\n\nArgs:")[0]
     app.command(topic.name, help=f"{said}\n\n{_CODES}")(command)
 
 

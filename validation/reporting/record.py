@@ -201,16 +201,19 @@ class Topic:
         group: Heading that it stands under in the index.
         question: Question that it answers.
         compose: JSON of the report -> report.
+        measure: Run, and the options of the command -> JSON; None for a report whose commands are its own, which
+            `dashboard --regenerate` leaves to hand.
         arguments: Arguments after `python -m validation` that write it; the name if None.
-        everyday: Whether `dashboard --regenerate` writes it; one that takes a plan of one's own is left to hand.
+        printed: Names in the JSON that --json prints; none: all.
     """
 
     name: str
     group: str
     question: str
     compose: Compose
+    measure: Callable[..., Data] | None = None
     arguments: tuple[str, ...] | None = None
-    everyday: bool = True
+    printed: tuple[str, ...] = ()
 
     @property
     def words(self) -> tuple[str, ...]:

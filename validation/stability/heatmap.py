@@ -128,21 +128,13 @@ def _limit(limit: Limit, across: Axis | None, down: Axis | None, k: int) -> str:
     """The part of a closed form that lies on the map; its name stands in the legend."""
     if across is None or down is None:
         return ""
-    xs, ys = np.asarray(limit.x, float), np.asarray(limit.y, float)
-    fine = np.linspace(0.0, len(xs) - 1.0, 40 * len(xs))
-    known = np.arange(len(xs))
-
-    def along(values: Array, axis: Axis) -> Array:
-        return np.asarray(np.interp(fine, known, np.log10(values) if axis.log else values))
-
-    a, b = along(xs, across), along(ys, down)
-    inside = (a >= across.low) & (a <= across.high) & (b >= down.low) & (b <= down.high)
-    if not inside.any():
-        return ""
-    px = across.start + (a - across.low) / (across.high - across.low) * (across.end - across.start)
-    py = down.start + (b - down.low) / (down.high - down.low) * (down.end - down.start)
+    known = np.arange(len(limit.x))
+    fine = np.linspace(0.0, len(known) - 1.0, 40 * len(known))
+    # Straight between the points of the map, which are logarithms where an axis is logarithmic.
+    px, py = (np.interp(fine, known, [axis.at(v) for v in of]) for axis, of in ((across, limit.x), (down, limit.y)))
+    inside = (across.start <= px) & (px <= across.end) & (down.end <= py) & (py <= down.start)
     points = " ".join(f"{u:.1f},{w:.1f}" for u, w in zip(px[inside], py[inside], strict=True))
-    return f'<polyline class="form f{k}" points="{points}"/>'
+    return f'<polyline class="form f{k}" points="{points}"/>' if points else ""
 
 
 def _legend(mapped: Map) -> tuple[tuple[str, str], ...]:

@@ -157,4 +157,4 @@ def _energies(data: Data) -> list[Chart]:
     return [Chart(named, study.x.name, study.quantity, drawn, log="xy")] if drawn else []
 
 
-TOPIC = Topic("stability", "Stability", "Where do simulations fail?", compose)
+TOPIC = Topic("stability", "Stability", "Where do simulations fail?", compose, measure)

@@ -191,4 +191,4 @@ def _conditions(machine: Mapping[str, Any]) -> str:
     return f"{size}; load before and after {load or 'unknown'}; measured limits of a core: {limits or 'unknown'}."
 
 
-TOPIC = Topic("timing", "Speed", "How fast is the C against engines and other generators?", compose)
+TOPIC = Topic("timing", "Speed", "How fast is the C against engines and other generators?", compose, measure)

@@ -10,7 +10,7 @@ from validation.check import ModelResult, Settings, check, failed
 from validation.comparison.errors import Comparison
 from validation.contract.interface import Subject
 from validation.cross_check.record import Record, as_data
-from validation.cross_check.report import PRINTED, TOPIC, compose
+from validation.cross_check.report import TOPIC, compose
 from validation.reporting import html, markdown
 from validation.reporting.command import code, write
 from validation.reporting.provenance import Provenance
@@ -99,7 +99,7 @@ def test_nothing_at_all() -> None:
 
 def test_json_is_strict_and_complete(mixed: Data) -> None:
     content = json.loads(json.dumps(mixed), parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
-    assert content["ok"] is False and set(PRINTED) < set(content)
+    assert content["ok"] is False and set(TOPIC.printed) < set(content)
     assert {model["model"] for model in content["models"]} == {"pendulum", NASTY, "gone"}
     assert content["settings"]["states"] == 20 and "numpy" in content["versions"] and content["machine"]["processor"]
     first = content["models"][0]

@@ -17,7 +17,7 @@ def test_report_end_to_end(tmp_path: Path) -> None:
     assert first.exit_code in (0, 1) and not data["failures"] and list(data["problems"]) == ["andrews"]
     folder = tmp_path / "pareto_quick"
     page, summary = ((folder / f"pareto.{kind}").read_text() for kind in ("html", "md"))
-    assert page.count('role="img"') == 2 and "symofros wins" in page and "symofros wins" in summary
+    assert page.count('role="img"') == 2 and "symofros by" in page and "symofros by" in summary
     assert "single precision" in page and not re.search(r'(src|href)="(?!#)', page)
     # Another problem goes on from what is there; a problem that is there is left out if asked.
     then = CliRunner().invoke(

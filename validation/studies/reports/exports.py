@@ -79,4 +79,4 @@ def _cost(name: str) -> Column:
     return lambda row: "-" if row[1][name] is None else f"{row[1][name] / 1e3:.2f}"
 
 
-TOPIC = Topic("exports", "Speed", "What does a call cost, from where?", compose)
+TOPIC = Topic("exports", "Speed", "What does a call cost, from where?", compose, measure)

@@ -87,4 +87,4 @@ def compose(data: Data) -> Report:
     )
 
 
-TOPIC = Topic("fuzz", "Correctness", "Is every hostile file read, or refused in words?", compose)
+TOPIC = Topic("fuzz", "Correctness", "Is every hostile file read, or refused in words?", compose, measure)

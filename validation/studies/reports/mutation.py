@@ -101,4 +101,4 @@ def compose(data: Data) -> Report:
     )
 
 
-TOPIC = Topic("mutation", "Correctness", "Would the cross-check see a fault?", compose)
+TOPIC = Topic("mutation", "Correctness", "Would the cross-check see a fault?", compose, measure)

@@ -75,4 +75,4 @@ def _agreeing(function: str) -> Column:
     return lambda row: Cell(f"{row['digits'][function]:.0f}", row["digits"][function] >= row["required"])
 
 
-TOPIC = Topic("oracle", "Correctness", "Do SymPy's derivations give the same digits?", compose)
+TOPIC = Topic("oracle", "Correctness", "Do SymPy's derivations give the same digits?", compose, measure)

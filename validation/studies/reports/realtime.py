@@ -105,4 +105,4 @@ def _chart(rows: list[Data], first: bool) -> Chart:
     return Chart(title, "late by  [us]", "share of the instants  [1]", drawn, marks, log="xy")
 
 
-TOPIC = Topic("realtime", "Speed", "How late do instants of diagrams begin?", compose)
+TOPIC = Topic("realtime", "Speed", "How late do instants of diagrams begin?", compose, measure)

@@ -74,4 +74,4 @@ def compose(data: Data) -> Report:
     )
 
 
-TOPIC = Topic("rollouts", "Speed", "How fast are thousands of motions at once?", compose)
+TOPIC = Topic("rollouts", "Speed", "How fast are thousands of motions at once?", compose, measure)

@@ -107,4 +107,4 @@ _BENCHMARKS: dict[str, Column] = {
     "#threshold": "{threshold:.0e}",
     "#ms": lambda row: f"{1e3 * row['seconds']:.3g}",
 }
-TOPIC = Topic("simulation", "Speed", "How fast are motions at equal accuracy?", compose)
+TOPIC = Topic("simulation", "Speed", "How fast are motions at equal accuracy?", compose, measure)
