@@ -26,13 +26,13 @@ from symofros.base.atomic import write_atomically as write_atomically
 from symofros.diagrams.run.jitter import Jitter as Jitter
 from symofros.diagrams.run.jitter import jitter_of as jitter_of
 from symofros.expr.edges import Edge as Edge
-from symofros.expr.evaluate import evaluate_edges as evaluate_edges
-from symofros.expr.evaluate import needed_nodes as needed_nodes
 from symofros.expr.graph import Graph as Graph
+from symofros.expr.numerics.evaluate import evaluate_edges as evaluate_edges
+from symofros.expr.numerics.evaluate import needed_nodes as needed_nodes
+from symofros.expr.numerics.precise import evaluate_precisely as evaluate_precisely
 from symofros.expr.ops import ADD as ADD
 from symofros.expr.ops import MUL as MUL
 from symofros.expr.ops import OPS as OPS
-from symofros.expr.precise import evaluate_precisely as evaluate_precisely
 from symofros.expr.program import Function as Function
 from symofros.expr.program import Program as Program
 from symofros.generator.ablation import ABLATIONS as ABLATIONS

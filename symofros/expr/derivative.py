@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import OPS
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import EMPTY, WIDTH, Pack, SignedPack

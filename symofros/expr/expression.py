@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from symofros.expr.edges import Edge
-from symofros.expr.extended import CONTEXT, Extended, extended_rule
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.extended import CONTEXT, Extended, extended_rule
 from symofros.expr.ops import FUNCTIONS
 
 CONSTANTS: dict[str, float] = {"pi": 3.141592653589793}

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.extended import nearest
+from symofros.expr.numerics.extended import nearest
 from symofros.expr.ops import ADD, DIV, MUL, OPS
 from symofros.expr.packs.pack import Pack
 

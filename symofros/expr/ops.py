@@ -16,7 +16,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from symofros.expr import trigonometry
+from symofros.expr.numerics import trigonometry
 
 Array = npt.NDArray[np.float64]
 Parity = Literal["odd", "even", ""]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.packs.carry import carry_packs, mapped_edge
 
 

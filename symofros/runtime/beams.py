@@ -65,9 +65,7 @@ class BeamBending:
         """A model that would do: the error falls with the square of the number of beams that share the slope."""
         countable = self.slope < _LARGEST_SLOPE and math.isfinite(self.error)
         count = f"{max(2, math.ceil(math.sqrt(self.error / NOTED_ERROR)))}" if countable else "many"
-        return (
-            f"divide it into {count} beams joined end to end, or use a geometrically exact beam, such as Exudyn's"
-        )
+        return f"divide it into {count} beams joined end to end, or use a geometrically exact beam, such as Exudyn's"
 
 
 @dataclass(frozen=True)

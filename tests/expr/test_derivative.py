@@ -5,9 +5,9 @@ import pytest
 
 from symofros.description.parser import parse
 from symofros.expr.derivative import directional, partials
-from symofros.expr.evaluate import evaluate_edges
 from symofros.expr.expression import lower
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import evaluate_edges
 from symofros.expr.program import Program
 
 # Every row of the op table, at points inside its domain and away from kinks.

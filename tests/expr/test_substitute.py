@@ -7,8 +7,8 @@ import pytest
 
 from reference_models import MODELS
 from symofros.compiler import program_of
-from symofros.expr.evaluate import interpret, needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import interpret, needed_nodes
 from symofros.expr.packs.check import check_packs
 from symofros.expr.program import Function, Output, Program
 from symofros.expr.substitute import copy_into

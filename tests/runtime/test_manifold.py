@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from symofros.base.rotations import Array, axis_rotation, normalized, quaternion_matrix
 from symofros.expr.derivative import directional
 from symofros.expr.edges import Edge
-from symofros.expr.evaluate import evaluate_edges
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import evaluate_edges
 from symofros.expr.program import Program
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Vec3

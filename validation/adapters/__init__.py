@@ -2,7 +2,7 @@
 
 A new engine is one folder and one row of ROUTES. The folder's `__init__` imports without the engine's package, and its
 DIFFERENCES state where the engine's conventions are not ours; its adapter has `build(subject) -> Engine | Unsupported`,
-with methods named as the quantities it offers (`contract/quantities.py`). docs/architecture.md, "To add", has the steps.
+with methods named as the quantities it offers (`contract/quantities.py`). The steps: docs/architecture.md, "To add".
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.base.rotations import Array, axis_rotation, quaternion_matrix
 from symofros.description.values import IDENTITY, Rotation, Vector
-from symofros.expr.extended import nearest
+from symofros.expr.numerics.extended import nearest
 
 
 def rotation_of(quaternion: Any) -> Array:

@@ -18,7 +18,7 @@ from symofros.diagrams.program.lowered_block import Piece, piece_of
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem
-from symofros.expr.evaluate import needed_nodes
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
 from symofros.generator.codegen.interpreted import InterpretedUnit

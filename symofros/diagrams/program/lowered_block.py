@@ -13,8 +13,8 @@ from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import DescriptionError, Problem
 from symofros.expr.edges import Edge
-from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.runtime.calls.kernel import Array
 
 # Groups of inputs of a piece that belong to one port, state, memory or parameter begin with these.

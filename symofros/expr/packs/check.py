@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 
 from symofros.expr.edges import Edge
-from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.packs.combine import is_sum
 from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.expr.program import Program

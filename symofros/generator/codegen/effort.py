@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from symofros.expr.evaluate import needed_nodes
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Program
 from symofros.generator.codegen.packs import PackPlan
 

@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from symofros.expr.evaluate import needed_nodes
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Output, Program
 from symofros.generator.codegen.packs import Store, runs_of_lanes, vector_lines, vector_name

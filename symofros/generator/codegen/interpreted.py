@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from symofros.expr.evaluate import evaluate_edges, interpret
+from symofros.expr.numerics.evaluate import evaluate_edges, interpret
 from symofros.expr.program import Function, Program, Solver
 from symofros.runtime.calls.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
 from symofros.runtime.constrained import constrained, differentiate, null_space, project

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.packs.pack import WIDTH, Pack
 
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from heapq import merge
 
 from symofros.expr.edges import Edge
-from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph, Slot
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import ADD, DIV, MUL, OPS, STOP_GRADIENT
 from symofros.generator.codegen.names import local_name
 from symofros.generator.codegen.packs import PackPlan, Store, Vector, vector_name

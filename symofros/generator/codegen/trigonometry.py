@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from string import Template
 
-from symofros.expr.trigonometry import (
+from symofros.expr.numerics.trigonometry import (
     COSINE,
     COSINE_SINGLE,
     FAR,

@@ -14,8 +14,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import ADD, MUL
 from symofros.expr.packs.carry import carry_packs, mapped_edge
 from symofros.expr.program import Function, Program

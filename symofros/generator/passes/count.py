@@ -7,8 +7,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from symofros.expr.edges import Edge
-from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.ops import OPS
 from symofros.expr.program import Program
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from symofros.expr.edges import Edge
-from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph, Slot
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Program
 
 

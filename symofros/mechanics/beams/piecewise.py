@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from itertools import pairwise, zip_longest
 
-from symofros.expr.extended import CONTEXT, Extended
+from symofros.expr.numerics.extended import CONTEXT, Extended
 
 Number = Fraction | float | int
 Coefficients = tuple[Number, ...]

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 from symofros.description.beam import Direction, UserShape
 from symofros.expr.expression import Expression, evaluate_extended
-from symofros.expr.extended import CONTEXT, Extended
+from symofros.expr.numerics.extended import CONTEXT, Extended
 from symofros.mechanics.beams.piecewise import XI, Number, Piecewise, fitted, polynomial
 
 MAX_MODES = 40

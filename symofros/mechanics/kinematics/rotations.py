@@ -14,8 +14,8 @@ from itertools import permutations, product
 from symofros.description.values import Rotation
 from symofros.expr.edges import ONE, Edge
 from symofros.expr.expression import Expression, lower
-from symofros.expr.extended import nearest
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.extended import nearest
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Sym3, Vec3
 

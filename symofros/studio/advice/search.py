@@ -214,7 +214,6 @@ class _Search:
         )
 
 
-
 # What saves most comes first.
 _PRIORITY = ("rigid", "elastic joint", "direction", "rotor", "rotary inertia", "order", "foreshortening")
 

@@ -13,8 +13,8 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation
 from symofros.expr.edges import ONE, ZERO
-from symofros.expr.evaluate import needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.generator.codegen.model import model_source

@@ -15,7 +15,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation, compile_library, program_of
-from symofros.expr.trigonometry import FAR
+from symofros.expr.numerics.trigonometry import FAR
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, cpu_identity
 from symofros.runtime.calls.kernel import LaneOptions
 from symofros.runtime.calls.library import CompiledUnit

@@ -9,8 +9,8 @@ from reference_models import MODELS
 from reference_models.rigid.chain import chain
 from symofros.compiler import plan
 from symofros.expr.edges import Edge
-from symofros.expr.evaluate import evaluate_edges, interpret, needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import evaluate_edges, interpret, needed_nodes
 from symofros.expr.ops import ADD, MUL
 from symofros.expr.packs.check import check_packs
 from symofros.expr.program import Function, Output, Program

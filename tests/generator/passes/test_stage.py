@@ -4,7 +4,7 @@ import numpy as np
 
 import symofros as sf
 from symofros.compiler import plan
-from symofros.expr.evaluate import needed_nodes
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.generator.passes import run_passes
 from symofros.generator.passes.count import count_operations, count_program
 from symofros.generator.passes.stage import hoist_parameters

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.interpolate
 
-from symofros.expr.extended import CONTEXT
+from symofros.expr.numerics.extended import CONTEXT
 from symofros.mechanics.beams.piecewise import XI, Piecewise, fitted, gauss, polynomial, stations
 
 THIRDS = tuple(Fraction(k, 3) for k in range(4))

@@ -11,8 +11,8 @@ import numpy as np
 import symofros as sf
 from reference_models.rigid.random_tree import MORE_KINDS, random_tree
 from symofros.expr.edges import Edge
-from symofros.expr.evaluate import evaluate_edges, needed_nodes
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import evaluate_edges, needed_nodes
 from symofros.expr.program import Program
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates
 from symofros.mechanics.kinematics.frames import FrameKinematics

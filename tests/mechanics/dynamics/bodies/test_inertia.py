@@ -8,8 +8,8 @@ import pytest
 import symofros as sf
 from symofros.compiler import plan
 from symofros.expr.edges import ZERO
-from symofros.expr.evaluate import interpret
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.evaluate import interpret
 from symofros.expr.program import Function, Output, Program
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, _stated, link_inertias, no_inertia
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy

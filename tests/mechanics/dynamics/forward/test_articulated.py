@@ -18,7 +18,7 @@ from reference_models.rigid.chain import INERTIAL, chain
 from reference_models.rigid.random_tree import MORE_KINDS, SERIES_KINDS, random_tree
 from symofros.compiler import plan
 from symofros.description.forces import Rotor
-from symofros.expr.precise import evaluate_precisely
+from symofros.expr.numerics.precise import evaluate_precisely
 from symofros.expr.program import Program
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.passes import run_passes

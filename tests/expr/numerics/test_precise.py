@@ -6,7 +6,7 @@ import pytest
 from symofros.description.parser import parse
 from symofros.expr.expression import lower
 from symofros.expr.graph import Graph
-from symofros.expr.precise import evaluate_precisely
+from symofros.expr.numerics.precise import evaluate_precisely
 from symofros.expr.program import Function, Output, Program
 from tests.expr.test_derivative import FORMULAS
 

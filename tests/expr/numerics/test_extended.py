@@ -10,8 +10,8 @@ import pytest
 
 from symofros.description.parser import parse
 from symofros.expr.expression import evaluate_extended
-from symofros.expr.extended import CONTEXT, nearest
 from symofros.expr.graph import Graph
+from symofros.expr.numerics.extended import CONTEXT, nearest
 from symofros.expr.ops import FUNCTIONS
 
 # Where sines, exponentials and powers of glibc 2.36 differ between processors with and without fused multiply-adds.

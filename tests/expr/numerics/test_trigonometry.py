@@ -6,8 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 
+from symofros.expr.numerics.trigonometry import FAR, cosine, sine
 from symofros.expr.ops import OPS
-from symofros.expr.trigonometry import FAR, cosine, sine
 
 # Measured: 0.767 over 250,000 angles of all kinds below.
 ULPS = 0.8

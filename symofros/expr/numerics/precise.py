@@ -8,8 +8,8 @@ from typing import Any
 import mpmath
 
 from symofros.expr.edges import Edge
-from symofros.expr.evaluate import needed_nodes
-from symofros.expr.extended import extended_rule
+from symofros.expr.numerics.evaluate import needed_nodes
+from symofros.expr.numerics.extended import extended_rule
 from symofros.expr.program import Function, Program
 
 
