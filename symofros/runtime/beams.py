@@ -113,6 +113,19 @@ class ElasticBeam:
         """Place of their rates in v."""
         return slice(self.v, self.v + self.size)
 
+    @property
+    def contrast(self) -> float:
+        """Difference of the stiffnesses over the smaller: how twist acts on bending; zero where a plane is rigid."""
+        if not (self.counts[0] and self.counts[1]) or min(self.EI_z, self.EI_y) <= 0.0:
+            return 0.0
+        return abs(self.EI_z - self.EI_y) / min(self.EI_z, self.EI_y)
+
+    @property
+    def reach(self) -> Array:
+        """Largest yaw, pitch or twist at the stations by each coordinate (n)."""
+        largest: Array = np.abs(self.angles).max(axis=0) * self.scale
+        return largest
+
     def bending(self, elastic: Array, t: float = math.nan, amplification: float = 1.0) -> BeamBending:
         """Judge a deformation.
 
@@ -143,7 +156,7 @@ class ElasticBeam:
         """Estimated error from squares of the largest angles (24), (25)."""
         error = SLOPE_ERROR * slope / math.sqrt(1.0 + LARGE_SLOPE * slope)
         stiffness = self.EI_y * pitch + self.EI_z * yaw
-        if twist > 0.0 and self.counts[0] and self.counts[1] and stiffness > 0.0:
+        if twist > 0.0 and self.contrast > 0.0 and stiffness > 0.0:
             contrast = abs(self.EI_z - self.EI_y) * abs(pitch - yaw) / stiffness
             error += contrast * twist * slope / (slope + twist)
         return error

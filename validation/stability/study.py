@@ -98,8 +98,11 @@ def cell(run: sf.Trajectory, value: Callable[[sf.Trajectory], float]) -> Cell:
 
 
 def simulate(model: sf.Model, *given: Any, **settings: Any) -> sf.Trajectory:
-    """`sf.simulate`, which makes an outcome of Ctrl-C: here it ends the atlas, not the run alone."""
-    run = sf.simulate(model, *given, **settings)
+    """`sf.simulate`, which makes an outcome of Ctrl-C: here it ends the atlas, not the run alone.
+
+    Beams may bend as they like: the atlas judges by itself where motions fail.
+    """
+    run = sf.simulate(model, *given, **({"beam_limit": math.inf} | settings))
     if run.outcome.kind == "interrupted" and run.outcome.reason.startswith("Ctrl-C"):
         raise KeyboardInterrupt
     return run

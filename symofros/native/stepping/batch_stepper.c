@@ -171,6 +171,7 @@ static void sym_batch_activate_next(sym_batch *b) {
     r->record_v = b->record_v + trajectory * r->capacity * s->nv;
     r->record_u = b->record_u + trajectory * r->capacity * s->nu;
     r->beam_scale = b->beam_scale.at + trajectory * b->beam_scale.stride;
+    r->beam_reach = b->beam_reach.at + trajectory * b->beam_reach.stride;
     r->beam_error = b->beam_error + trajectory * s->n_beams, r->beam_t = b->beam_t + trajectory * s->n_beams;
     r->beam_q = b->beam_q + trajectory * b->n_beam_coordinates;
     if (status == 0 && !(sym_all_finite(s->nq, r->q) && sym_all_finite(s->nv, r->v))) status = SYM_DIVERGED;

@@ -57,9 +57,10 @@ typedef struct sym_signal { /* one input, sampled over time */
 typedef struct sym_beam { /* one elastic body: angles of its sections are linear in its elastic coordinates */
     int32_t q, first;            /* first index in q; first index in beam_scale and beam_q */
     int32_t n_y, n_z, n_twist;   /* number of coordinates by direction */
-    int32_t stations;
-    const double *angles;        /* (stations, n_y + n_z + n_twist): yaw, pitch and twist per scaled coordinate [rad] */
+    int32_t blocks;              /* number of blocks of four stations */
+    const double *angles;        /* (blocks, n_y + n_z + n_twist, 4): yaw, pitch and twist per scaled coordinate [rad] */
     double EI_z, EI_y;           /* stiffness against n_y and n_z at mid-length */
+    double contrast;             /* |EI_z - EI_y| over the smaller; 0 where bending is rigid in a plane */
 } sym_beam;
 
 typedef struct sym_call { /* a model function with the arrays it reads and writes */
@@ -138,6 +139,7 @@ typedef struct sym_run {
      * and the elastic coordinates. The caller clears beam_error. */
     double beam_limit;         /* error beyond which the run ends */
     const double *beam_scale;  /* 1/L of coordinates that are displacements, else 1 */
+    const double *beam_reach;  /* largest angle per coordinate */
     double *beam_error, *beam_t, *beam_q;
     /* Records, row after row; full at capacity, which is n_grid at least. */
     int64_t capacity, n_records;

@@ -172,8 +172,10 @@ class BatchStepper:
 
     def _fill_beams(self, par: Array, results: BatchResults) -> None:
         batch, memory, model = self._batch, self._memory, self.single.model
-        scales = [np.concatenate([np.zeros(0), *(beam.scale for beam in model.beams(values))]) for values in par]
-        self._fill_shared_rows(batch.beam_scale, np.array(scales))
+        beams = [model.beams(values) for values in par]
+        for name in ("scale", "reach"):
+            rows = [np.concatenate([np.zeros(0), *(getattr(beam, name) for beam in some)]) for some in beams]
+            self._fill_shared_rows(getattr(batch, f"beam_{name}"), np.array(rows))
         batch.n_beam_coordinates = results.beam_coordinates.shape[1]
         batch.beam_error, batch.beam_t, batch.beam_q = (
             memory.shared(array if array.size else np.zeros(1))
