@@ -31,11 +31,13 @@ class Solver:
         routine: Name of the routine: native/model/ROUTINE.c.in, and the same in Python in runtime/.
         returns: (name, shape) of each result.
         parts: Further functions that the routine calls.
+        tables: Constant tables of integers that the routine takes: what rows and columns of matrices measure.
     """
 
     routine: str
     returns: tuple[tuple[str, tuple[int, ...]], ...]
     parts: tuple[Function, ...] = ()
+    tables: tuple[tuple[int, ...], ...] = ()
 
 
 @dataclass(frozen=True)

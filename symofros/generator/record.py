@@ -9,6 +9,7 @@ from symofros.description.constraints import AXES, Closure
 from symofros.description.system import System
 from symofros.expr.expression import evaluate
 from symofros.mechanics.beams.deformation import small_coordinates
+from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
@@ -64,6 +65,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         wrench_names=tuple(acts_on_bodies(tree.system.constraints)),
         closures=tuple(_closure(tree, item) for item in tree.system.constraints if isinstance(item, Closure)),
         driven=len(driven),
+        measures=measures_of(tree),
     )
 
 

@@ -3,77 +3,179 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
+from symofros.base.measures import ANGLE, FORMULA, LENGTH, ROTATION, SPEED_KINDS, TRANSLATION, Measures
 from symofros.runtime.calls.kernel import Array
 
-# Singular values of G in the metric of M, below this share of the largest, belong to conditions that repeat others. A
-# redundant condition that has drifted by d [m or rad] shows one of about d, and would ask for accelerations that
-# contradict the others: so the share is above what integration drifts by, and below what a posture needs to be told
-# from a singular one. The C solver's SYM_RANK is the same.
+# What is left of a row of G that repeats others, as a share of its natural size. A redundant condition that has drifted
+# by d [m or rad] differs by about d, and would ask for accelerations that contradict the others: so the share is above
+# what integration drifts by, and below what a posture needs to be told from a singular one. SYM_RANK in C.
 RANK = 1e-6
-# What is left of a diagonal entry beyond rounding; SYM_PIVOT in C. Below POOR (SYM_POOR) G helps out M, which alone
-# would lose digits.
-PIVOT, POOR = 1e-13, 1e-4
+# An entry of a row with a unit: a smaller one is rounding; SYM_LEAST_SIZE in C.
+LEAST_SIZE = 1e-9
+# Rows of G of larger ratios are brought to one size before a least-squares problem is solved: an SVD would lose digits.
+UNLIKE = 1e3
+# What is left of a diagonal entry beyond rounding; SYM_PIVOT in C.
+PIVOT = 1e-13
+# Reach [m] below which residuals count in proportion; SYM_SMALL_REACH in C.
+SMALL_REACH = 1e-3
 # Of the projection, as in C: |phi| that no step improves on, most steps, halvings of one, its largest entry.
-CLOSED, NEWTON, HALVINGS, REACH = 1e-13, 30, 30, 0.5
-
-Solution = Callable[[Array, Array, Array, Array], tuple[Array, Array, int]]
+CLOSED, NEWTON, HALVINGS, LARGEST_STEP = 1e-13, 30, 30, 0.5
 
 
-def solve(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
-    """The solution for one state, of one or several right-hand sides.
+def natural_sizes(G: Array, measures: Measures) -> Array:
+    """Natural size of each entry of G (nc, nv), by which rank decisions judge it (docs/theory/constraints.md, (20))."""
+    nc, nv = G.shape
+    sizes = np.zeros((nc, SPEED_KINDS))
+    group, unit, speed = (np.array(table, dtype=np.intp) for table in measures)
+    for i in range(nc):
+        of = sizes[group[i]]
+        if unit[i] != FORMULA:
+            np.maximum(of, LEAST_SIZE, out=of)
+        if unit[i] == LENGTH:
+            of[TRANSLATION] = max(of[TRANSLATION], 1.0)
+        if unit[i] == ANGLE:
+            of[ROTATION] = max(of[ROTATION], 1.0)
+        np.maximum.at(of, speed, np.where(np.isnan(G[i]), 0.0, np.abs(G[i])))
+    return np.asarray(sizes[group][:, speed], dtype=np.float64).reshape(nc, nv)
+
+
+def residual_weights(G: Array, measures: Measures) -> Array:
+    """Weights of phi (nc): 1, and more for mechanisms smaller than SMALL_REACH (docs/theory/constraints.md, (22))."""
+    sizes = np.where(np.array(measures.speed, dtype=np.intp) == TRANSLATION, 0.0, natural_sizes(G, measures))
+    reach = sizes.max(axis=1, initial=0.0)
+    small = (np.array(measures.unit, dtype=np.intp) == LENGTH) & (reach > LEAST_SIZE) & (reach < SMALL_REACH)
+    return np.where(small, SMALL_REACH / np.where(small, reach, 1.0), 1.0)
+
+
+def step_factor(G: Array, measures: Measures, step: Array, most: float) -> float:
+    """Factor of a step (nv) that keeps rotations below most, and other changes below most of the largest reach."""
+    lengths = np.array(measures.unit, dtype=np.intp) == LENGTH
+    turns = np.array(measures.speed, dtype=np.intp) == ROTATION
+    reach = float(natural_sizes(G, measures)[np.ix_(lengths, turns)].max(initial=1.0))
+    largest = float(np.abs(step / np.where(turns, 1.0, reach)).max(initial=0.0))
+    return min(1.0, most / max(largest, 1e-300))
+
+
+class Eliminated(NamedTuple):
+    """G = L U, the lightest speeds first (docs/theory/constraints.md, section 8).
+
+    Attributes:
+        L: (nc, rank).
+        U: (rank, nv).
+        rows: Rows of the pivots.
+        columns: Columns of the pivots.
+    """
+
+    L: Array
+    U: Array
+    rows: npt.NDArray[np.intp]
+    columns: npt.NDArray[np.intp]
+
+    @property
+    def rank(self) -> int:
+        """Number of rows that do not repeat others."""
+        return len(self.rows)
+
+
+def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
+    """Eliminate G by complete pivoting.
+
+    Args:
+        G: (nc, nv).
+        measures: Measures of its rows and columns.
+        inertia: Diagonal of M (nv), or ones.
+    """
+    left, size = G.copy(), natural_sizes(G, measures)
+    moved = inertia[inertia > 0.0]
+    worth = 1.0 / np.sqrt(np.where(inertia > 0.0, inertia, 1e-12 * moved.min() if len(moved) else 1.0))
+    own = np.abs(G * worth).max(axis=1, initial=0.0)
+    open_rows, L, rows, columns = own > 0.0, np.zeros((len(G), 0)), [], []
+    U = np.zeros((0, G.shape[1]))
+    while len(rows) < G.shape[1]:
+        significant = (np.abs(left) > RANK * size) & open_rows[:, None]
+        open_rows &= significant.any(axis=1)
+        if not open_rows.any():
+            break
+        values = np.where(significant, np.abs(left) * worth / np.where(own > 0.0, own, 1.0)[:, None], 0.0)
+        p, d = np.unravel_index(int(np.argmax(values)), values.shape)
+        open_rows[p] = False
+        factor = np.where(open_rows, left[:, d] / left[p, d], 0.0)
+        size = np.maximum(size, np.abs(factor)[:, None] * size[p])
+        U, rows, columns = np.vstack([U, left[p]]), [*rows, p], [*columns, d]
+        left = left - np.outer(factor, left[p])
+        left[open_rows, d] = 0.0
+        factor[p] = 1.0
+        L = np.column_stack([L, factor])
+    return Eliminated(L, U, np.array(rows, dtype=np.intp), np.array(columns, dtype=np.intp))
+
+
+def pseudo_inverse(G: Array, measures: Measures) -> Array:
+    """The pseudo-inverse of G, its rank judged by natural sizes; rows of unlike sizes are brought to one."""
+    if not G.size:
+        return np.zeros(G.T.shape)
+    largest = np.abs(G).max(axis=1, initial=0.0)
+    positive = largest[largest > 0.0]
+    unlike = len(positive) > 0 and float(positive.max()) > UNLIKE * float(positive.min())
+    scale = 1.0 / np.where(largest > 0.0, largest, 1.0) if unlike else np.ones(len(G))
+    rank = eliminate(G, measures, np.ones(G.shape[1])).rank
+    U, s, Vt = np.linalg.svd(scale[:, None] * G, full_matrices=False)
+    return np.asarray((Vt[:rank].T / s[:rank]) @ U[:, :rank].T * scale, dtype=np.float64)
+
+
+def solve(M: Array, r: Array, G: Array, c: Array, measures: Measures) -> tuple[Array, Array, int]:
+    """The solution for one state, of one or several right-hand sides, by a = a_p + Z w.
 
     Args:
         M: (nv, nv).
         r: (nv,) or (nv, k).
         G: (nc, nv).
         c: (nc,) or (nc, k).
+        measures: Measures of the rows and columns of G.
 
     Returns:
-        a and lam, shaped like r and c, and the rank of G; NaN and -1 where no acceleration exists.
+        a and lam, shaped like r and c, and the rank of G; NaN where no acceleration exists, with rank -1 if M and G are
+        finite.
     """
-    L = _factor(M, POOR)
-    if L is None:
-        # G^T G adds nothing along motions that the constraints allow.
-        rho = np.diag(M).max() / max((G * G).sum(axis=1).max(initial=0.0), 1e-300)
-        L, r = _factor(M + rho * G.T @ G, PIVOT), r + rho * G.T @ c
-    if L is None:
-        return np.full_like(r, np.nan), np.full_like(c, np.nan), -1
-    Y, y = np.linalg.solve(L, G.T), np.linalg.solve(L, r)
-    if not len(G):
-        return np.linalg.solve(L.T, y), c, 0
-    _, s, Vt = np.linalg.svd(Y, full_matrices=False)
-    rank = int(np.sum(s > RANK * s.max(initial=0.0)))
-    kept = Vt[:rank]
-    sizes = s[:rank] if c.ndim == 1 else s[:rank, None]
-    lam = kept.T @ ((kept @ (c - Y.T @ y)) / sizes**2)
-    return np.linalg.solve(L.T, y + Y @ lam), lam, rank
+    nv = len(M)
+    unsolved = np.full_like(r, np.nan), np.full_like(c, np.nan)
+    if not (np.all(np.isfinite(M)) and np.all(np.isfinite(G))):
+        return *unsolved, 0
+    L, U, rows, columns = eliminated = eliminate(G, measures, np.diag(M))
+    free = np.setdiff1d(np.arange(nv), columns)
+    Z = np.zeros((nv, len(free)))
+    Z[free, np.arange(len(free))] = 1.0
+    Z[columns] = -np.linalg.solve(U[:, columns], U[:, free])
+    B = _factor(Z.T @ M @ Z, np.diag(np.abs(Z.T) @ np.abs(M) @ np.abs(Z)))
+    if B is None:
+        return *unsolved, -1
+    a = np.zeros_like(r)
+    y = np.linalg.solve(L[rows], c[rows])
+    y = y + np.linalg.pinv(L) @ (c - L @ y)  # Least squares, where conditions contradict each other.
+    a[columns] = np.linalg.solve(U[:, columns], y)
+    a = a + Z @ np.linalg.solve(B.T, np.linalg.solve(B, Z.T @ (r - M @ a)))
+    forces = np.linalg.solve(U[:, columns].T, (M @ a - r)[columns])
+    if np.count_nonzero(L.any(axis=1)) > len(rows):
+        return a, np.linalg.pinv(L.T) @ forces, eliminated.rank
+    lam = np.zeros_like(c)
+    lam[rows] = np.linalg.solve(L[rows].T, forces)
+    return a, lam, eliminated.rank
 
 
-def _factor(M: Array, least: float) -> Array | None:
+def _factor(B: Array, sizes: Array) -> Array | None:
+    """Lower factor of B; None where a pivot is rounding of the terms that its diagonal entry was made of."""
     try:
-        L = np.asarray(np.linalg.cholesky(M), dtype=np.float64)
+        L = np.asarray(np.linalg.cholesky(B), dtype=np.float64)
     except np.linalg.LinAlgError:
         return None
-    return L if bool(np.all(np.diag(L) ** 2 > least * np.diag(M))) else None
+    return L if bool(np.all(np.diag(L) ** 2 > PIVOT * sizes)) else None
 
 
-def null_space(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array, int]:
-    """The solution for one state by a = a_p + Z w, without M^-1; arguments and result as of `solve`."""
-    U, s, Vt = np.linalg.svd(G)
-    rank = int(np.sum(s > RANK * s.max(initial=0.0)))
-    Q, Z = Vt[:rank].T, Vt[rank:].T
-    a = Q @ ((U[:, :rank].T @ c) / s[:rank])
-    B = _factor(Z.T @ M @ Z, PIVOT)
-    if B is None:
-        return np.full_like(r, np.nan), np.full_like(c, np.nan), -1
-    a = a + Z @ np.linalg.solve(B.T, np.linalg.solve(B, Z.T @ (r - M @ a)))
-    return a, U[:, :rank] @ ((Q.T @ (M @ a - r)) / s[:rank]), rank
-
-
-def constrained(M: Array, r: Array, G: Array, c: Array, *, solve: Solution = solve) -> list[Array]:
+def constrained(M: Array, r: Array, G: Array, c: Array, measures: Measures) -> list[Array]:
     """The solution for each state: a, lam and the rank of G.
 
     Args:
@@ -81,27 +183,32 @@ def constrained(M: Array, r: Array, G: Array, c: Array, *, solve: Solution = sol
         r: (n, nv).
         G: (n, nc, nv).
         c: (n, nc).
-        solve: Solver for one state.
+        measures: Measures of the rows and columns of G.
     """
-    solutions = [solve(*state) for state in zip(M, r, G, c, strict=True)]
+    solutions = [solve(*state, measures) for state in zip(M, r, G, c, strict=True)]
     a, lam, rank = zip(*solutions, strict=True)
     return [np.array(a), np.array(lam), np.array(rank, dtype=np.float64)]
 
 
-def differentiate(M: Array, G: Array, slopes: list[Array]) -> list[Array]:
+def differentiate(M: Array, G: Array, slopes: list[Array], measures: Measures) -> list[Array]:
     """The derivatives of a and lam, from those of the residual by the same arguments: -K^-1 dR/dx of each.
 
     Args:
         M: (nv, nv).
         G: (nc, nv).
         slopes: dR/dx (nv + nc, k) each.
+        measures: Measures of the rows and columns of G.
     """
     nv = len(M)
-    return [np.concatenate(solve(M, -slope[:nv], G, -slope[nv:])[:2]) for slope in slopes]
+    return [np.concatenate(solve(M, -slope[:nv], G, -slope[nv:], measures)[:2]) for slope in slopes]
 
 
 def project(
-    terms: Callable[[Array, Array], list[Array]], move: Callable[[Array, Array], Array], q: Array, v: Array
+    terms: Callable[[Array, Array], list[Array]],
+    move: Callable[[Array, Array], Array],
+    q: Array,
+    v: Array,
+    measures: Measures,
 ) -> tuple[Array, Array, float, int]:
     """The nearest state on the constraints, in the metric of M.
 
@@ -110,26 +217,28 @@ def project(
         move: (q, step) -> q.
         q: (nq,).
         v: (nv,).
+        measures: Measures of the rows and columns of G.
 
     Returns:
-        q, v, |phi| and the rank of G.
+        q, v, |phi| by weight and the rank of G.
     """
     M, G, binds, phi, rate = terms(q, v)
-    left, closer = float(np.linalg.norm(phi)), True
+    weights, closer = residual_weights(G, measures), True
+    left = float(np.linalg.norm(weights * phi))
     for _ in range(NEWTON):
         if not (closer and left > CLOSED):
             break
-        step, _, _ = solve(M, np.zeros_like(v), G * binds[:, None], -phi)
-        step *= min(1.0, REACH / max(float(np.abs(step).max()), 1e-300))
+        step, _, _ = solve(M, np.zeros_like(v), G * binds[:, None], -phi, measures)
+        step *= step_factor(G, measures, step, LARGEST_STEP)
         closer = False
         for half in range(HALVINGS):
             tried = move(q, step * 0.5**half)
             at_trial = terms(tried, v)
-            if np.linalg.norm(at_trial[3]) < left:
+            if np.linalg.norm(weights * at_trial[3]) < left:
                 q, (M, G, binds, phi, rate), closer = tried, at_trial, True
-                left = float(np.linalg.norm(phi))
+                left = float(np.linalg.norm(weights * phi))
                 break
     if not len(G):
         return q, v, left, 0
-    change, _, rank = solve(M, np.zeros_like(v), G, -rate)
+    change, _, rank = solve(M, np.zeros_like(v), G, -rate, measures)
     return q, v + change, left, rank

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from symofros.base.manifold import ManifoldKind
+from symofros.base.measures import Measures
 
 
 class Segment(NamedTuple):
@@ -77,6 +78,7 @@ class ModelRecord:
         wrench_names: Constraints that act on bodies by a wrench: all but conditions by formula.
         closures: Closures of frames, for checks of their rotations.
         driven: Inputs that prescribe motion, the last of u.
+        measures: Measures of the rows and columns of the constraint Jacobian.
     """
 
     name: str
@@ -99,6 +101,7 @@ class ModelRecord:
     wrench_names: tuple[str, ...] = ()
     closures: tuple[ClosureRecord, ...] = ()
     driven: int = 0
+    measures: Measures = Measures()
 
     @property
     def nc(self) -> int:

@@ -19,6 +19,8 @@ static void copy(double *to, const double *from, size_t n) { memcpy(to, from, n 
 /* A mass matrix that is singular alone: no inertia along the third speed, which the second condition binds. */
 static const double MASS[N * N] = {2, 0.5, 0, 0.5, 1, 0, 0, 0, 0};
 static const double G[M_ * N] = {1, 1, 0, 0, 1, 2};
+static const short group[M_] = {0, 1}, unit[M_] = {SYM_ROW_FORMULA, SYM_ROW_FORMULA}, speed[N] = {0, 0, 0};
+static const sym_measures MEASURES = {group, unit, speed};
 static const double FORCE[N] = {1, -2, 3}, RIGHT[M_] = {0.7, -0.4};
 
 static void dynamics_terms(const double *const *in, double *const *out, double *work) {
@@ -58,18 +60,18 @@ int main(void) {
     double A[N * N], B[M_ * N], r[N], c[M_], q[NQ], v[N], residual, derivative[(N + M_) * N], *out[1], *work;
     copy(A, MASS, N * N), copy(B, G, M_ * N), copy(r, FORCE, N), copy(c, RIGHT, M_);
     work = scratch(SYM_CONSTRAINED_WORK(N, M_));
-    printf("rank %d\n", sym_constrained(N, M_, A, r, B, c, work));
+    printf("rank %d\n", sym_constrained(N, M_, &MEASURES, A, r, B, c, work));
     print("a", N, r), print("lam", M_, c), free(work);
     copy(B, G, M_ * N), copy(r, FORCE, N), copy(c, RIGHT, M_);
     work = scratch(SYM_NULL_SPACE_WORK(N, M_));
-    printf("null_rank %d\n", sym_null_space(N, M_, MASS, r, B, c, work));
+    printf("null_rank %d\n", sym_null_space(N, M_, &MEASURES, MASS, r, B, c, work));
     print("null_a", N, r), print("null_lam", M_, c), free(work);
     work = scratch(SYM_PROJECT_WORK(NQ, N, M_) + SYM_CONSTRAINED_WORK(N, M_));
-    printf("project_rank %d\n", sym_project(NQ, N, M_, projection_terms, move, in, q, v, &residual, work));
+    printf("project_rank %d\n", sym_project(NQ, N, M_, &MEASURES, projection_terms, move, in, q, v, &residual, work));
     print("q", NQ, q), print("v", N, v), print("residual", 1, &residual), free(work);
-    work = scratch(SYM_DIFFERENTIATE_WORK(N, M_) + M_ * N);
+    work = scratch(SYM_DIFFERENTIATE_WORK(N, M_) + SYM_KKT_SOLVE_WORK(N, M_, N));
     out[0] = derivative;
-    sym_differentiate(N, M_, 1, columns, dynamics_terms, slopes, in, out, work);
+    sym_differentiate(N, M_, &MEASURES, 1, columns, dynamics_terms, slopes, in, out, work);
     print("derivative", (N + M_) * N, derivative), free(work);
     return 0;
 }

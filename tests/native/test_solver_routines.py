@@ -46,7 +46,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
 def test_a_singular_mass_matrix_gives_the_accelerations_and_multipliers_of_the_kkt_system(
     results: dict[str, np.ndarray], form: str
 ) -> None:
-    """M is singular alone, so that M + rho G^T G is factored: the right side must become r + rho G^T c."""
+    """M is singular alone: by multipliers, too, the speeds that the conditions leave free are solved for."""
     expected = np.linalg.solve(KKT, np.concatenate([FORCE, RIGHT]))
     assert results[f"{form}rank"] == 2
     np.testing.assert_allclose(results[f"{form}a"], expected[:3], rtol=0, atol=1e-13)

@@ -233,16 +233,17 @@ class Fuser:
                 for k, edge in enumerate(value.flat, layout.states[name, key].start - part.v.start):
                     M[k][k], r[k] = ONE, edge
         binds = [ZERO if edge == ZERO else ONE for edge in phi]
+        measures = layout.measures_of(part)
         terms_of = (_matrix("M", M, nv), _vector("r", r), _matrix("G", G, nv), _vector("c", c))
         solved = (("a", (nv,)), ("lam", (nc,)), ("rank", ()))
         forward = Function(
-            "forward_dynamics", "", ("q", "v", "u", "gains", "t"), terms_of, Solver("constrained", solved)
+            "forward_dynamics", "", ("q", "v", "u", "gains", "t"), terms_of, Solver("constrained", solved, (), measures)
         )
         q_moved = self._moved(at, part)
         move = Function("move", "", ("q", "step"), (_vector("q_moved", q_moved),))
         projected = (("q_on", (part.nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()))
         outputs = (terms_of[0], terms_of[2], _vector("binds", binds), _vector("phi", phi), _vector("rate", rate))
-        return [forward, Function("project", "", AT, outputs, Solver("project", projected, (move,)))]
+        return [forward, Function("project", "", AT, outputs, Solver("project", projected, (move,), measures))]
 
     def _moved(self, at: Point, part: Part) -> list[Edge]:
         """The configuration that a step along the manifold leads to."""

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symofros.base.measures import Measures
 from symofros.diagrams.block import Shape
 from symofros.diagrams.program.lowered_block import Piece
 from symofros.diagrams.wiring import Source, Wired
@@ -98,6 +99,7 @@ class Layout:
         lock_inputs: Entries of u that engage constraints: a change projects the state onto them.
         condition_names: Names of the conditions of constraints.
         speed_conditions: Names of the conditions on speeds only.
+        measures: Block -> measures of its mechanism's constraint Jacobian.
     """
 
     parts: list[Part] = field(default_factory=list)
@@ -122,6 +124,16 @@ class Layout:
     lock_inputs: list[int] = field(default_factory=list)
     condition_names: list[str] = field(default_factory=list)
     speed_conditions: list[str] = field(default_factory=list)
+    measures: dict[str, Measures] = field(default_factory=dict)
+
+    def measures_of(self, part: Part) -> Measures:
+        """Measures of the constraint Jacobian of a part."""
+        blocks = (
+            (self.lam[name].start - part.conditions.start, self.v[name].start - part.v.start, self.measures[name])
+            for name in part.blocks
+            if name in self.measures
+        )
+        return Measures.joined(blocks, part.nc, part.nv)
 
     @property
     def whole(self) -> Part:
@@ -174,6 +186,7 @@ def _mechanism(layout: Layout, wired: Wired, piece: Piece) -> None:
     q, v = len(layout.q0), len(layout.v0)
     layout.q[name], layout.v[name] = Place(q, (len(piece.q),)), Place(v, (len(piece.v),))
     layout.lam[name] = Place(len(layout.condition_names), (piece.nc,))
+    layout.measures[name] = record.measures
     layout.segments += [Segment(s.kind, s.q + q, s.v + v, s.size) for s in record.segments]
     layout.q0 += piece.q.tolist()
     layout.v0 += piece.v.tolist()

@@ -166,7 +166,8 @@ class Blocks:
             if "t_a" in outputs:
                 self.a[layout.v[name].slice] = outputs["t_a"]
             else:
-                a, lam, _ = constrained(*(outputs[f"t_{key}"][np.newaxis] for key in ("M", "r", "G", "c")))
+                terms = (outputs[f"t_{key}"][np.newaxis] for key in ("M", "r", "G", "c"))
+                a, lam, _ = constrained(*terms, layout.measures[name])
                 self.a[layout.v[name].slice], self.lam[layout.lam[name].slice] = a[0], lam[0]
         for (name, key), place in layout.states.items():
             if place.size:
@@ -259,7 +260,8 @@ def _project(blocks: Blocks, part: Part) -> None:
         whole[part.q], along[part.v] = q, theta
         return retract(layout.segments, whole, along)[part.q]
 
-    q_on, v_on, *_ = project(terms, move, blocks.q[part.q].copy(), blocks.v[part.v].copy())
+    start = blocks.q[part.q].copy(), blocks.v[part.v].copy()
+    q_on, v_on, *_ = project(terms, move, *start, layout.measures_of(part))
     blocks.q[part.q], blocks.v[part.v] = q_on, v_on
 
 

@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from symofros.base.measures import Measures
 from symofros.expr.numerics.evaluate import evaluate_edges, interpret
 from symofros.expr.program import Function, Program, Solver
 from symofros.runtime.calls.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
-from symofros.runtime.constrained import constrained, differentiate, null_space, project
+from symofros.runtime.constrained import constrained, differentiate, project
 
 
 class InterpretedUnit:
@@ -62,18 +63,19 @@ class InterpretedKernel:
         """The outputs of this function, or of a part of it, for one state."""
         return [output[0] for output in interpret(self._program, function, named, 1)]
 
-    def _constrained(self, _: Solver, __: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
-        return constrained(*outputs)
-
-    def _null_space(self, _: Solver, __: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
-        return constrained(*outputs, solve=null_space)
+    def _constrained(self, solver: Solver, _: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
+        """Both forms: they have one solution."""
+        M, r, G, c = outputs
+        return constrained(M, r, G, c, Measures(*solver.tables))
 
     def _differentiate(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """At the motion that the terms determine."""
-        a, lam, _ = constrained(*outputs)
+        M, r, G, c = outputs
+        measures = Measures(*solver.tables)
+        a, lam, _ = constrained(M, r, G, c, measures)
         slopes = interpret(self._program, solver.parts[0], {**named, "a": a, "lam": lam}, len(a))
-        states = zip(outputs[0], outputs[2], zip(*slopes, strict=True), strict=True)
-        derivatives = zip(*(differentiate(M, G, list(of)) for M, G, of in states), strict=True)
+        states = zip(M, G, zip(*slopes, strict=True), strict=True)
+        derivatives = zip(*(differentiate(*at, list(of), measures) for *at, of in states), strict=True)
         return [np.array(values) for values in derivatives]
 
     def _project(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
@@ -88,13 +90,13 @@ class InterpretedKernel:
             def move(q: Array, step: Array, state: dict[str, Array] = state) -> Array:
                 return self.evaluate(solver.parts[0], state | {"q": q[None], "step": step[None]})[0]
 
-            projected.append(project(terms, move, state["q"][0], state["v"][0]))
+            projected.append(project(terms, move, state["q"][0], state["v"][0], Measures(*solver.tables)))
         return [np.array(values) for values in zip(*projected, strict=True)]
 
 
 _TWINS: dict[str, Callable[[InterpretedKernel, Solver, Mapping[str, Array], list[Array]], list[Array]]] = {
     "constrained": InterpretedKernel._constrained,
-    "null_space": InterpretedKernel._null_space,
+    "null_space": InterpretedKernel._constrained,
     "project": InterpretedKernel._project,
     "differentiate": InterpretedKernel._differentiate,
 }

@@ -14,11 +14,12 @@ _WORK_MACRO = re.compile(r"^#define (SYM_\w+_WORK)\(([\w, ]+)\) (.+)$", re.MULTI
 # Routine -> the template files it needs, in the order in which C must see them; the keys are in that order, too.
 ROUTINES: dict[str, tuple[str, ...]] = {
     "dense": ("dense",),
-    "kkt": ("dense", "kkt"),
-    "constrained": ("dense", "kkt", "constrained"),
-    "null_space": ("dense", "null_space"),
-    "project": ("dense", "kkt", "constrained", "project"),
-    "differentiate": ("dense", "kkt", "differentiate"),
+    "row_sizes": ("dense", "row_sizes"),
+    "null_space": ("dense", "row_sizes", "null_space"),
+    "kkt": ("dense", "row_sizes", "null_space", "kkt"),
+    "constrained": ("dense", "row_sizes", "null_space", "kkt", "constrained"),
+    "project": ("dense", "row_sizes", "null_space", "kkt", "constrained", "project"),
+    "differentiate": ("dense", "row_sizes", "null_space", "kkt", "differentiate"),
 }
 
 
@@ -40,7 +41,20 @@ def with_solver(program: Program, c_name: str, function: Function, solver: Solve
     needs = max(text.work for text in (terms, *parts))
     head = f"static void {c_name}(const double *const *in, double *const *out, double *restrict work) {{"
     body, work = _CALLS[solver.routine](c_name, function, needs)
+    body = [*_tables(solver), *body]
     return FunctionText("\n".join([terms.code, *(part.code for part in parts), head, *body, "}"]), work)
+
+
+def _tables(solver: Solver) -> list[str]:
+    """The tables of a routine as the constant `measures`; C has no empty arrays."""
+    names = ("group", "unit", "speed")
+    return [
+        *(
+            f"    static const short {name}[] = {{{', '.join(map(str, table or (0,)))}}};"
+            for name, table in zip(names, solver.tables, strict=True)
+        ),
+        f"    static const sym_measures measures = {{{', '.join(names)}}};",
+    ]
 
 
 def _constrained(c_name: str, function: Function, needs: int) -> tuple[list[str], int]:
@@ -62,7 +76,7 @@ def _on_terms(routine: str, c_name: str, m: int, n: int, scratch: int) -> tuple[
         "    double *terms[4];",
         f"    terms[0] = work, terms[1] = out[0], terms[2] = work + {n * n}, terms[3] = out[1];",
         f"    {c_name}_terms(in, terms, work + {start});",
-        f"    *out[2] = {routine}({n}, {m}, terms[0], out[0], terms[2], out[1], work + {start});",
+        f"    *out[2] = {routine}({n}, {m}, &measures, terms[0], out[0], terms[2], out[1], work + {start});",
     ]
     return lines, start + scratch
 
@@ -72,7 +86,8 @@ def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], in
     m, n = function.outputs[1].shape
     nq = function.returns[0][1][0]
     lines = [
-        f"    *out[3] = sym_project({nq}, {n}, {m}, {c_name}_terms, {c_name}_move, in, out[0], out[1], out[2], work);"
+        f"    *out[3] = sym_project({nq}, {n}, {m}, &measures, {c_name}_terms, {c_name}_move,",
+        "                          in, out[0], out[1], out[2], work);",
     ]
     return lines, work_size("SYM_PROJECT_WORK", nq, n, m) + max(needs, work_size("SYM_CONSTRAINED_WORK", n, m))
 
@@ -83,9 +98,11 @@ def _differentiate(c_name: str, function: Function, needs: int) -> tuple[list[st
     columns = [shape[1] for _, shape in function.returns]
     lines = [
         f"    static const int columns[{len(columns)}] = {{{', '.join(map(str, columns))}}};",
-        f"    sym_differentiate({n}, {m}, {len(columns)}, columns, {c_name}_terms, {c_name}_slopes, in, out, work);",
+        f"    sym_differentiate({n}, {m}, &measures, {len(columns)}, columns, {c_name}_terms, {c_name}_slopes,",
+        "                      in, out, work);",
     ]
-    return lines, work_size("SYM_DIFFERENTIATE_WORK", n, m) + m * max(1, *columns) + needs
+    solving = work_size("SYM_KKT_SOLVE_WORK", n, m, max(1, *columns))
+    return lines, work_size("SYM_DIFFERENTIATE_WORK", n, m) + solving + needs
 
 
 def work_size(macro: str, *sizes: int) -> int:

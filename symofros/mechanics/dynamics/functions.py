@@ -11,6 +11,7 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.ops import STOP_GRADIENT
 from symofros.expr.packs.pack import WIDTH
 from symofros.expr.program import Function, Output, Program, Solver
+from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.equations import Equations
@@ -128,7 +129,7 @@ def _forward_dynamics(e: Equations, row: ModelFunction, methods: Methods, known:
         return Function(row.name, "", tuple(group for group in row.inputs if group != "gains"), (_vector("a", a),))
     routine = {"multipliers": "constrained", "null_space": "null_space"}[methods.constraints]
     terms = _constrained_terms(e, e.gamma_baumgarte)
-    return Function(row.name, "", row.inputs, terms, Solver(routine, _returns(row, known)))
+    return Function(row.name, "", row.inputs, terms, Solver(routine, _returns(row, known), (), measures_of(e.tree)))
 
 
 def _constrained_terms(e: Equations, right: Sequence[Edge]) -> tuple[Output, ...]:
@@ -169,7 +170,7 @@ def _forward_slopes_by_routine(e: Equations, row: ModelFunction, known: Mapping[
     slopes = tuple(_output(array, getattr(e, array.source), known) for array in row.outputs)
     # The routine calls this part with the inputs of the residual, in that order.
     part = Function("slopes", "", FUNCTIONS["residual_derivatives"].inputs, slopes)
-    solver = Solver("differentiate", _returns(row, known), (part,))
+    solver = Solver("differentiate", _returns(row, known), (part,), measures_of(e.tree))
     return Function(row.name, "", row.inputs, _constrained_terms(e, e.gamma), solver)
 
 
@@ -184,7 +185,9 @@ def _project(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[
         _vector("rate", e.constraint_rate),
     )
     move = Function("move", "", ("q", "step"), (_vector("q_moved", retracted(e.kinematics)),))
-    return Function(row.name, "", row.inputs, outputs, Solver("project", _returns(row, known), (move,)))
+    return Function(
+        row.name, "", row.inputs, outputs, Solver("project", _returns(row, known), (move,), measures_of(e.tree))
+    )
 
 
 _Builder = Callable[[Equations, ModelFunction, Methods, Mapping[str, int]], Function]

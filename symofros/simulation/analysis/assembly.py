@@ -10,12 +10,10 @@ import numpy.typing as npt
 
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import RANK
+from symofros.runtime.constrained import LARGEST_STEP, eliminate, pseudo_inverse, residual_weights, step_factor
 from symofros.runtime.model import ArrayLike, Model
 
 Indices = npt.NDArray[np.intp]
-# No step turns or slides further than this at once: beyond it the linearisation says nothing.
-LARGEST_STEP = 0.5
 
 
 @dataclass(frozen=True)
@@ -75,11 +73,14 @@ def assemble(
         return model.constraint(at, u=u, par=par, t=t)
 
     phi, count = residual(q), 0
+    if model.nc:  # A small mechanism closes to its own measure.
+        G = model.constraint_jacobian(q, u=u, par=par, t=t)
+        tolerance /= float(residual_weights(G, model.record.measures).max())
     while np.abs(phi).max(initial=0.0) > tolerance and count < iterations:
-        G = model.constraint_jacobian(q, u=u, par=par, t=t)[:, free]
+        G = model.constraint_jacobian(q, u=u, par=par, t=t)
         step = np.zeros(model.nv)
-        step[free] = -_inverse(model, G) @ phi
-        step *= min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
+        step[free] = -_inverse(model, G[:, free], free) @ phi
+        step *= step_factor(G, model.record.measures, step, LARGEST_STEP)
         for _ in range(30):
             tried = model.integrate(q, step)
             phi_tried = residual(tried)
@@ -94,7 +95,7 @@ def assemble(
     G = model.constraint_jacobian(q, u=u, par=par, t=t)
     rate = model.constraint_rate(q, wished, u=u, par=par, t=t)
     change = np.zeros(model.nv)
-    change[free] = -_inverse(model, G[:, free]) @ rate
+    change[free] = -_inverse(model, G[:, free], free) @ rate
     speeds = wished + change
     left = model.constraint_rate(q, speeds, u=u, par=par, t=t)
     scale = 1.0 + float(np.abs(wished).max(initial=0.0))
@@ -108,12 +109,12 @@ def assemble(
                 "hold fewer speeds",
             )
         )
-    rank = int(np.linalg.matrix_rank(G, tol=RANK * max(float(np.linalg.norm(G, 2)), 1e-300))) if G.size else 0
+    rank = eliminate(G, model.record.measures, np.ones(model.nv)).rank
     return Assembled(q, speeds, float(np.abs(phi).max(initial=0.0)), count, rank)
 
 
-def _inverse(model: Model, G: Array) -> Array:
-    """The pseudo-inverse of the constraints' Jacobian."""
+def _inverse(model: Model, G: Array, free: Indices) -> Array:
+    """The pseudo-inverse of the constraints' Jacobian by the free speeds."""
     if not np.all(np.isfinite(G)):
         worst = model.names.constraints[int(np.argmin(np.isfinite(G).all(axis=1)))]
         raise AssemblyError(
@@ -124,7 +125,8 @@ def _inverse(model: Model, G: Array) -> Array:
                 "start from another guess",
             )
         )
-    return np.asarray(np.linalg.pinv(G, rcond=RANK), dtype=np.float64)
+    measures = model.record.measures
+    return pseudo_inverse(G, measures._replace(speed=tuple(measures.speed[k] for k in free)))
 
 
 def free_speeds(model: Model, held: Collection[str]) -> Indices:
