@@ -94,7 +94,9 @@ def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
     moved = inertia[inertia > 0.0]
     worth = 1.0 / np.sqrt(np.where(inertia > 0.0, inertia, 1e-12 * moved.min() if len(moved) else 1.0))
     own = np.abs(G * worth).max(axis=1, initial=0.0)
-    open_rows, L, rows, columns = own > 0.0, np.zeros((len(G), 0)), [], []
+    open_rows, L = own > 0.0, np.zeros((len(G), 0))
+    rows: list[int] = []
+    columns: list[int] = []
     U = np.zeros((0, G.shape[1]))
     while len(rows) < G.shape[1]:
         significant = (np.abs(left) > RANK * size) & open_rows[:, None]
@@ -106,7 +108,7 @@ def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
         open_rows[p] = False
         factor = np.where(open_rows, left[:, d] / left[p, d], 0.0)
         size = np.maximum(size, np.abs(factor)[:, None] * size[p])
-        U, rows, columns = np.vstack([U, left[p]]), [*rows, p], [*columns, d]
+        U, rows, columns = np.vstack([U, left[p]]), [*rows, int(p)], [*columns, int(d)]
         left = left - np.outer(factor, left[p])
         left[open_rows, d] = 0.0
         factor[p] = 1.0

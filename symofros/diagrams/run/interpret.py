@@ -166,8 +166,8 @@ class Blocks:
             if "t_a" in outputs:
                 self.a[layout.v[name].slice] = outputs["t_a"]
             else:
-                terms = (outputs[f"t_{key}"][np.newaxis] for key in ("M", "r", "G", "c"))
-                a, lam, _ = constrained(*terms, layout.measures[name])
+                M, r, G, c = (outputs[f"t_{key}"][np.newaxis] for key in ("M", "r", "G", "c"))
+                a, lam, _ = constrained(M, r, G, c, layout.measures[name])
                 self.a[layout.v[name].slice], self.lam[layout.lam[name].slice] = a[0], lam[0]
         for (name, key), place in layout.states.items():
             if place.size:

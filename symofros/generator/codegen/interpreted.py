@@ -75,7 +75,7 @@ class InterpretedKernel:
         a, lam, _ = constrained(M, r, G, c, measures)
         slopes = interpret(self._program, solver.parts[0], {**named, "a": a, "lam": lam}, len(a))
         states = zip(M, G, zip(*slopes, strict=True), strict=True)
-        derivatives = zip(*(differentiate(*at, list(of), measures) for *at, of in states), strict=True)
+        derivatives = zip(*(differentiate(m, g, list(of), measures) for m, g, of in states), strict=True)
         return [np.array(values) for values in derivatives]
 
     def _project(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:

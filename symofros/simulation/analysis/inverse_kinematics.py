@@ -10,9 +10,9 @@ import numpy as np
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import RANK
+from symofros.runtime.constrained import LARGEST_STEP, RANK
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.analysis.assembly import LARGEST_STEP, Indices, free_speeds
+from symofros.simulation.analysis.assembly import Indices, free_speeds
 from symofros.simulation.analysis.beam_theory import bendings_at
 from symofros.simulation.analysis.nearest_posture import OPTIMALITY, NearestPosture, coordinate_limits
 from symofros.simulation.analysis.targets import Target as Target

@@ -12,9 +12,9 @@ import numpy as np
 
 from symofros.base.rotations import screw_displacement
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import RANK
+from symofros.runtime.constrained import LARGEST_STEP, RANK
 from symofros.runtime.model import Model
-from symofros.simulation.analysis.assembly import LARGEST_STEP, Indices
+from symofros.simulation.analysis.assembly import Indices
 from symofros.simulation.analysis.targets import Task
 
 # Restores e = 0 near a configuration with some speeds, in so many steps at most: (q, largest error, steps).
