@@ -50,7 +50,8 @@ class Simulation:
 
         Args:
             t_end: End time [s]; the diagram's own where it states one.
-            settings: Settings of `run_compiled`, in place of the diagram's own.
+            settings: Fields of `symofros.diagrams.run.options.DiagramOptions` in place of the diagram's own; `parameters` and
+                `progress` as of `run_compiled`.
 
         Raises:
             SymofrosError: As `run_compiled`; or nobody says where to end.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal, Protocol, TypeVar
 
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BEAM_LIMIT
@@ -64,15 +64,31 @@ class SimulationOptions:
         Raises:
             UnknownNameError: A name is not that of a field.
         """
-        names = [item.name for item in fields(self)]
-        for name in changes:
-            if name not in names:
-                raise UnknownNameError(
-                    Problem(
-                        f"simulation: no option '{name}'",
-                        name,
-                        "options are the fields of SimulationOptions",
-                        did_you_mean(name, names),
-                    )
+        return with_changes(self, changes)
+
+
+class _Dataclass(Protocol):
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+
+_Options = TypeVar("_Options", bound=_Dataclass)
+
+
+def with_changes(options: _Options, changes: Mapping[str, Any]) -> _Options:
+    """Options with some fields replaced.
+
+    Raises:
+        UnknownNameError: A name is not that of a field.
+    """
+    names = [item.name for item in fields(options)]
+    for name in changes:
+        if name not in names:
+            raise UnknownNameError(
+                Problem(
+                    f"simulation: no option '{name}'",
+                    name,
+                    f"options are the fields of {type(options).__name__}",
+                    did_you_mean(name, names),
                 )
-        return replace(self, **changes)
+            )
+    return replace(options, **changes)

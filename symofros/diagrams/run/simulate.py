@@ -15,18 +15,16 @@ from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.loop import RECORD, Loop, Task
+from symofros.diagrams.run.options import DiagramOptions
 from symofros.diagrams.run.parts import place_parts, start
 from symofros.diagrams.run.python_blocks import ExternalCalls, begun
 from symofros.diagrams.run.recording import Cost, Crossed
 from symofros.diagrams.run.values import parameter_values, record_interval
-from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes, largest_bending
+from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.library import CompiledKernel
-from symofros.runtime.model import Model
-from symofros.simulation.options import SimulationOptions, Stabilisation
 from symofros.simulation.progress import bar
 from symofros.simulation.results.outcome import Outcome
-from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.time_slice import TimeSlice
 
@@ -34,56 +32,33 @@ from symofros.simulation.stepping.time_slice import TimeSlice
 def run_compiled(
     compiled: CompiledDiagram,
     t_end: float,
+    options: DiagramOptions | None = None,
     *,
-    t0: float = 0.0,
-    method: str = "rk4",
-    dt: float | None = None,
-    record: float | None = None,
-    rtol: float = 1e-6,
-    atol: float = 1e-9,
     parameters: Mapping[str, Any] | None = None,
-    stabilisation: Stabilisation = "projection",
-    gains: Any = None,
-    beam_limit: float = BEAM_LIMIT,
-    realtime: float | bool = False,
-    threads: int = 1,
     progress: bool = False,
+    **changes: Any,
 ) -> DiagramRun:
     """Run a compiled diagram from its first state.
 
     Args:
         compiled: Diagram as `compile_diagram` returns it.
         t_end: End time [s].
-        t0: Start time [s]; instants are counted from it.
-        method: An explicit method of `sf.simulate`: rk4, euler, semi_implicit_euler, dopri5, dop853.
-        dt: Step [s]; steps also end at instants.
-        record: Interval of recording [s]; by default about 2000 times in all. Steps end at recorded times, too.
-        rtol: Relative bound of the local error of adaptive methods.
-        atol: Absolute bound of the local error of adaptive methods.
+        options: Options of stepping, constraints, recording and pace; those of `DiagramOptions()` by default.
         parameters: Run-time parameters by name, such as {"pd.kp": [100, 80, 50], "plant.m_load": 0.8}.
-        stabilisation: Method of keeping constraints, as in `sf.simulate`.
-        gains: Baumgarte's.
-        beam_limit: Estimated error of the beams' theory beyond which the run ends, as in `sf.simulate`.
-        realtime: Keep pace with the clock: True, or seconds of motion a second.
-        threads: Number of threads that share the parts that meet at samples only; results do not depend on it.
         progress: Show a progress bar.
+        changes: Fields of DiagramOptions by name, which replace those of `options`: method="dopri5", dt=1e-4, ...
 
     Raises:
-        SymofrosError: The settings contradict each other, or name what the diagram lacks.
+        SymofrosError: The options contradict each other, or name what the diagram lacks.
+        UnknownNameError: A field is not one of DiagramOptions.
         AssemblyError: The first state does not meet the constraints.
     """
     resolved, name = compiled.resolved, compiled.resolved.wired.name
+    options = (options or DiagramOptions()).changed(changes)
     par = parameter_values(resolved, parameters or {})
-    interval = record_interval(record, t0, t_end, dt)
+    interval = record_interval(options.record, options.t0, t_end, options.dt)
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
-
-    def settings_of(model: Model) -> Settings:
-        options = SimulationOptions(
-            method, dt, t0, rtol, atol, stabilisation=stabilisation, gains=gains, beam_limit=beam_limit
-        )
-        return Settings.of(model, options, t_end)
-
-    parts = place_parts(compiled, settings_of, par)
+    parts = place_parts(compiled, lambda model: options.settings(model, t_end), par)
     with begun(resolved.wired) as called:
         external = ExternalCalls(resolved, called)
         loop = Loop(
@@ -99,7 +74,7 @@ def run_compiled(
         )
         with closing(loop):
             start(parts, name)
-            run = _drive(compiled, loop, plan, t0, t_end, par, float(realtime), threads, progress)
+            run = _drive(compiled, loop, plan, options, t_end, par, progress)
             return replace(run, kept=called.kept())
 
 
@@ -131,16 +106,15 @@ def _drive(
     compiled: CompiledDiagram,
     loop: Loop,
     plan: Schedule,
-    t0: float,
+    options: DiagramOptions,
     t_end: float,
     par: Array,
-    realtime: float,
-    threads: int,
     progress: bool,
 ) -> DiagramRun:
+    t0, realtime = options.t0, float(options.realtime)
     span = float(plan.base) * plan.cycle
     instants = int((t_end - t0) / span + 2) * len(plan.instants)
-    loop.start(t0, t_end, realtime, threads, instants)
+    loop.start(t0, t_end, realtime, options.threads, instants)
     portions: list[list[Array]] = []
     met: list[tuple[float, int]] = []
     status, interrupted = int(Status.RUNNING), False

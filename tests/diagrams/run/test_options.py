@@ -1,0 +1,28 @@
+"""Options of diagrams' runs: each is known by name, and reaches the stepping."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.diagrams.parts import Ball
+
+
+def bouncing() -> sf.Simulation:
+    diagram = sf.Diagram("bounce")
+    diagram.add(Ball(name="ball", restitution=0.8))
+    return sf.Simulation(diagram)
+
+
+def test_an_unknown_option_is_refused_with_the_nearest_known_one() -> None:
+    with pytest.raises(sf.UnknownNameError, match="metod") as refusal:
+        bouncing().run(1.0, metod="rk4")
+    assert "'method'" in refusal.value.problems[0].remedy
+    assert "DiagramOptions" in refusal.value.problems[0].rule
+
+
+def test_start_and_interval_of_recording_are_those_of_the_options() -> None:
+    run = bouncing().run(1.5, t0=1.0, dt=1e-2, record=0.1)
+    np.testing.assert_allclose(run.t[[0, -1]], [1.0, 1.5])
+    np.testing.assert_allclose(np.diff(run.t[np.searchsorted(run.t, [1.1, 1.2])]), 0.1)
