@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,8 @@ MAX_BYTES = 4 << 20
 MAX_INCLUDE_DEPTH = 10
 MAX_FILES = 100
 SUFFIXES = (".yaml", ".yml")
+# The entry that diagrams' files begin with (symofros/diagrams/files).
+DIAGRAM = "symofros_diagram"
 
 _SECTIONS = {
     "parameters": "parameter",
@@ -39,12 +41,15 @@ _SECTIONS = {
 _SUFFIXES = ("px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 
 
-def read_yaml(path: str | os.PathLike[str], text: str | None = None) -> Reading:
+def read_yaml(
+    path: str | os.PathLike[str], text: str | None = None, composed: tuple[Node, list[Problem]] | None = None
+) -> Reading:
     """Read a native description and what it includes.
 
     Args:
         path: The main file. Files that it includes lie in its folder or below.
         text: Content of the main file, where that is not written yet; then only its name and folder are used.
+        composed: Root of that text and its duplicate keys, as `compose_text(text, "")` gives them, where they are known.
 
     Returns:
         The system without the entries that could not be read, and every problem. No system where names are missing
@@ -54,6 +59,7 @@ def read_yaml(path: str | os.PathLike[str], text: str | None = None) -> Reading:
     merger = _Merger(main.parent.resolve())
     if text is not None:
         merger.unwritten[main.resolve()] = text.encode("utf-8")
+    merger.composed = composed
     merger.add(main, str(main), ())
     return merger.reading(main.stem)
 
@@ -78,6 +84,7 @@ class _Merger:
     seen: set[Path] = field(default_factory=set)
     bytes_left: int = field(default_factory=lambda: MAX_BYTES)
     unwritten: dict[Path, bytes] = field(default_factory=dict)
+    composed: tuple[Node, list[Problem]] | None = None
 
     def reading(self, default_name: str) -> Reading:
         problems, broken = tuple(self.problems), frozenset(self.broken)
@@ -102,7 +109,8 @@ class _Merger:
         """Read one file, after the files it includes."""
         self.seen.add(path.resolve())
         try:
-            root, problems = compose(self.bytes_of(path), shown)
+            root, problems = self.document(path, shown)
+            _refuse_diagram(root, shown)
             file, faults, broken = _validate(root, shown)
         except (YamlFault, DescriptionError) as error:
             self.problems += error.problems
@@ -118,6 +126,14 @@ class _Merger:
             where = f"{shown}:{root.at(('include', i)).line}"
             self.include(text, path, shown, here, where)
         self.merge(file, root, shown, bool(including))
+
+    def document(self, path: Path, shown: str) -> tuple[Node, list[Problem]]:
+        """Root of a file, and its duplicate keys."""
+        data = self.bytes_of(path)
+        if self.composed is None:
+            return compose(data, shown)
+        (root, problems), self.composed = self.composed, None  # Of the main file only.
+        return root, [replace(problem, where=f"{shown}{problem.where}") for problem in problems]
 
     def bytes_of(self, path: Path) -> bytes:
         """A file's content; the limit is on the main file and all it includes together."""
@@ -244,6 +260,24 @@ class _Merger:
             )
         )
         return False
+
+
+def _refuse_diagram(root: Node, shown: str) -> None:
+    """Tell a diagram from a mechanism, instead of what each of its entries is not.
+
+    Raises:
+        DescriptionError: It is one.
+    """
+    if isinstance(root.value, dict) and DIAGRAM in root.value and "symofros" not in root.value:
+        raise DescriptionError(
+            Problem(
+                "the file is a diagram of blocks, not a mechanism",
+                f"it begins with {DIAGRAM}",
+                "a description of a mechanism begins with symofros: 1",
+                "open the model that the diagram names under 'models'; `symofros simulate` runs diagrams",
+                f"{shown}:{root.value[DIAGRAM].key_line}",
+            )
+        )
 
 
 def _validate(root: Node, shown: str) -> tuple[NativeFile | None, list[Problem], set[str]]:

@@ -11,6 +11,7 @@ from typing import Any
 
 from symofros.description.reading import in_order, read_bytes
 from symofros.description.system import System
+from symofros.description.yaml.files import DIAGRAM
 from symofros.description.yaml.yaml_nodes import Node, YamlFault, compose
 from symofros.diagrams.block import Block, ModelFile
 from symofros.diagrams.diagram import Diagram
@@ -28,7 +29,7 @@ MAX_FILES = 100
 MAX_LEVELS = 10
 MAX_BLOCKS = 10_000
 
-HEAD = "symofros_diagram"
+HEAD = DIAGRAM
 SECTIONS = (HEAD, "name", "models", "simulation", "blocks", "parts", "inlets", "outlets", "wires")
 MODEL = ("file", "functions", "floating_base", "start", "parameters")
 PART = ("file", "diagram", "models", "inputs")

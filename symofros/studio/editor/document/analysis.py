@@ -15,7 +15,7 @@ from symofros.errors import DescriptionError, Problem
 from symofros.mechanics.topology.graph import find_problems
 from symofros.studio.editor.document.diagram import diagram
 from symofros.studio.editor.document.problems import placed, schema_problems
-from symofros.studio.editor.editing.yaml_spans import yaml_text_of
+from symofros.studio.editor.editing.yaml_spans import YamlText, yaml_text_of
 
 Json = dict[str, Any]
 
@@ -29,7 +29,7 @@ class Analysis:
         data: The YAML as JSON holds it.
         graph: Diagram of the document.
         problems: Problems as the page shows them.
-        parameters: Parameters that could be read.
+        parameters: Parameters; those that could not be read have no number.
         inputs: Inputs that could be read.
         system: System that was read; None where nothing could be.
     """
@@ -54,7 +54,7 @@ def analyse(file: Path, text: str) -> Analysis:
         source = yaml_text_of(text)
     except YamlFault as error:
         return Analysis(False, problems=[placed(error.problem, None, "", {})])
-    problems, system = _checked(file, text)
+    problems, system = _checked(file, source)
     exact = schema_problems(source, str(file))
     shown_problems = [placed(problem, source, str(file), exact) for problem in problems]
     data = as_json(source.root.plain())
@@ -68,19 +68,37 @@ def analyse(file: Path, text: str) -> Analysis:
             blocks[entry["node"]]["problems"] += 1
         else:
             entry["node"] = ""
-    stated = system.parameters if system else ()
-    parameters = [
-        {"name": item.name, "value": item.value, "unit": item.unit, "constant": item.constant, "number": item.value}
-        for item in stated
-    ]
+    parameters = _parameters(data, system)
     inputs = [{"name": item.name, "unit": item.unit} for item in (system.inputs if system else ())]
     return Analysis(True, data, graph, shown_problems, parameters, inputs, system)
 
 
-def _checked(file: Path, text: str) -> tuple[list[Problem], System | None]:
+def _parameters(data: Any, system: System | None) -> list[Json]:
+    """Parameters as the page's table has them; those that can't be read keep their text, and have no number."""
+    read = {
+        item.name: {"name": item.name, "value": item.value, "unit": item.unit, "constant": item.constant}
+        | {"number": item.value}
+        for item in (system.parameters if system else ())
+    }
+    written = data.get("parameters") if isinstance(data, dict) else None
+    listed: dict[str, Json] = {}
+    for name, entry in written.items() if isinstance(written, dict) else ():
+        stated = entry if isinstance(entry, dict) else {"value": entry}
+        unit = stated.get("unit")
+        listed[name] = read.get(name) or {
+            "name": name,
+            "value": stated.get("value"),
+            "unit": unit if isinstance(unit, str) else "",
+            "constant": stated.get("constant") is True,
+            "number": None,
+        }
+    return list((listed | read).values())
+
+
+def _checked(file: Path, source: YamlText) -> tuple[list[Problem], System | None]:
     """Every problem of the file and of its mechanism."""
     try:
-        reading = read_yaml(file, text)
+        reading = read_yaml(file, source.text, (source.root, source.duplicates))
         problems = find_problems(reading.system, reading.broken) if reading.system is not None else []
     except DescriptionError as error:
         return list(error.problems), None

@@ -12,7 +12,7 @@ from symofros.errors import Problem
 from symofros.expr.expression import Expression, evaluate
 from symofros.studio.editor.document.analysis import Analysis, analyse
 from symofros.studio.editor.document.document import refuse_text
-from symofros.studio.editor.editing.data_edits import Edit, EditError, Path
+from symofros.studio.editor.editing.data_edits import Edit, EditError, Path, same
 from symofros.studio.editor.editing.yaml_edits import apply
 
 Json = dict[str, Any]
@@ -40,12 +40,12 @@ def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any) ->
     value = as_value(formula)
     names = sorted(symbols(value))
     answer: Json = {"ok": True, "names": names}
-    refused = _in_place(file, text, path, typed) if path else None
+    refused = _in_place(file, text, now, path, typed) if path else None
     if refused is not None:
         at = next((typed.find(name) + 1 for name in names if f"'{name}'" in refused["object"]), 0)
         shown = {"found": refused["object"], "rule": refused["rule"], "remedy": refused["remedy"], "column": at}
         return {"ok": False, "names": names, "error": shown}
-    known = {item["name"]: item["number"] for item in now.parameters}
+    known = {item["name"]: item["number"] for item in now.parameters if item["number"] is not None}
     if known.keys() >= set(names):
         try:
             answer["value"] = evaluate(value if isinstance(value, Expression) else float(value), known)
@@ -60,14 +60,28 @@ def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any) ->
     return answer
 
 
-def _in_place(file: File, text: str, path: Path, typed: str) -> Json | None:
+def _in_place(file: File, text: str, now: Analysis, path: Path, typed: str) -> Json | None:
     """The first problem of the field in the document that has the text there."""
-    try:
-        tried = apply(text, Edit("set", path, scalar_of(typed.strip())))
-    except (EditError, YamlFault):
-        return None  # The field is not in this document: its formula alone can be judged.
+    wanted = scalar_of(typed.strip())
+    if now.readable and same(_present(now.data, path), wanted):
+        tried = now  # A window asks for each of its fields when it opens; reading takes half a second.
+    else:
+        try:
+            tried = analyse(file, apply(text, Edit("set", path, wanted)))
+        except (EditError, YamlFault):
+            return None  # The field is not in this document: its formula alone can be judged.
     here = list(path)
-    return next((problem for problem in analyse(file, tried).problems if problem["path"] == here), None)
+    return next((problem for problem in tried.problems if problem["path"] == here), None)
+
+
+def _present(data: Any, path: Path) -> Any:
+    """The value at a path; None if there is none."""
+    for step in path:
+        inside = isinstance(data, dict) or (isinstance(data, list) and isinstance(step, int) and 0 <= step < len(data))
+        if not inside or (isinstance(data, dict) and step not in data):
+            return None
+        data = data[step]
+    return data
 
 
 def _error(problem: Problem, column: int) -> Json:

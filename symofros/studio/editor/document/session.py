@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -150,12 +151,11 @@ class Session:
 
     # Asking.
 
-    def check_field(self, body: Json) -> Json:
-        """What is to say about one field's text."""
+    def check_of_field(self, body: Json) -> Callable[[], Json]:
+        """What says what is to say about one field's text, of the document as it is now, whatever becomes of it."""
         document = self.document
-        return check_field(
-            document.file, document.text, document.analysis, path_of(body.get("path", [])), body.get("text")
-        )
+        path, typed = path_of(body.get("path", [])), body.get("text")
+        return partial(check_field, document.file, document.text, document.analysis, path, typed)
 
     def job_request(self, body: Json) -> tuple[str, Json]:
         """The kind of a job, and what its worker needs.

@@ -35,13 +35,14 @@ class YamlText:
     Attributes:
         text: The text, without a byte order mark.
         root: Root of the document's tree.
+        duplicates: Problems of keys that appear twice; their `where` is ":line".
         newline: Line ending of the document.
     """
 
     def __init__(self, text: str) -> None:
         """Read the text; see `yaml_text_of`."""
         self.text = text
-        self.root, _ = compose_text(text, "")
+        self.root, self.duplicates = compose_text(text, "")
         first = _BREAK.search(text)
         self.newline = first.group() if first else "\n"
         self._settle(self.root)

@@ -307,3 +307,52 @@ def test_work_that_cannot_be_kept_is_told(serve: Callable[..., Server], page: Pa
     page.route("**/api/document", lambda route: route.fulfill(json={**route.fetch().json(), "unkept": fault}))
     steps.open_editor(page, server.url)
     expect(page.get_by_role("alert")).to_contain_text("the disk is full. make room")
+
+
+def test_results_of_an_earlier_model_say_so_and_what_can_not_be_read_stays_visible(
+    serve: Callable[..., Server], page: Page
+) -> None:
+    server = serve("arm.yaml", source=PENDULUM)
+    steps.open_editor(page, server.url)
+    steps.run(page, "Compile")
+    expect(steps.results(page)).to_contain_text("Operations of a call", timeout=60_000)
+    expect(steps.results(page)).not_to_contain_text("The model has changed since")
+    value = page.get_by_label("Value of m2", exact=True)
+    value.fill("0,5")
+    value.press("Enter")
+    steps.problems(page, 1)
+    expect(value).to_have_value("0,5")
+    expect(steps.results(page)).to_contain_text("The model has changed since")
+    value.fill("0.5")
+    value.press("Enter")
+    steps.problems(page, 0)
+    steps.run(page, "Compile")
+    expect(steps.results(page)).not_to_contain_text("The model has changed since", timeout=60_000)
+
+
+def test_a_problem_opens_the_page_of_its_field_and_a_page_has_no_hint_of_another(
+    serve: Callable[..., Server], page: Page, tmp_path: Path
+) -> None:
+    source = tmp_path / "wrong.txt"
+    source.write_text(PENDULUM.read_text().replace("mass: m2,", "mass: m3,"))
+    server = serve("arm.yaml", source=source)
+    steps.open_editor(page, server.url)
+    page.get_by_role("banner").get_by_role("button", name="1 problem").click()
+    steps.results(page).get_by_role("button", name="m3").click()
+    alert = steps.window(page).get_by_role("alert")
+    expect(alert).to_contain_text("unknown symbol 'm3'")
+    expect(alert.get_by_role("button", name="Add input m3")).to_be_visible()
+    steps.window(page).get_by_label("Mass", exact=True).focus()
+    hint = steps.window(page).locator(".hint")
+    expect(hint).not_to_be_empty()
+    steps.tab(page, "Joint")
+    expect(hint).to_be_empty()
+
+
+def test_a_new_file_is_no_fault_and_fits_a_narrow_page(serve: Callable[..., Server], page: Page) -> None:
+    page.set_viewport_size({"width": 640, "height": 760})
+    server = serve("new.yaml")
+    page.goto(server.url)
+    button = page.get_by_role("banner").get_by_role("button", name="1 problem")
+    expect(button).to_have_class("check")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 640

@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from symofros.description.yaml import yaml_nodes
 from symofros.studio.editor.document.analysis import analyse
 from symofros.studio.editor.document.diagram import diagram
+from symofros.studio.editor.document.expressions import check_field
+from symofros.studio.editor.editing import yaml_spans
 from tests.studio.editor.texts import DATA, FILES, ODD, TEXTS
 
 # A change of the four-bar, the path of the problem that follows, its block.
@@ -121,3 +124,49 @@ def test_the_body_without_a_joint_is_the_ground() -> None:
 def test_numbers_that_json_lacks_become_texts() -> None:
     found = analyse(FILES["four_bar"], ODD.replace("value: 1,", "value: .inf,"))
     assert found.data["parameters"]["L1"]["value"] == ".inf"
+
+
+def test_a_diagram_is_told_from_a_mechanism() -> None:
+    """Once an empty world with seven problems, none of which said so."""
+    file = Path(__file__).parents[4] / "reference_models" / "square.yaml"
+    found = analyse(file, file.read_text())
+    assert [problem["object"] for problem in found.problems] == ["the file is a diagram of blocks, not a mechanism"]
+    assert found.problems[0]["line"] > 0 and "models" in found.problems[0]["remedy"]
+
+
+@pytest.mark.parametrize("value", ["0,5", "1e999", "[1]"])
+def test_a_parameter_that_can_not_be_read_stays_in_the_table(value: str) -> None:
+    text = TEXTS["four_bar"].replace("L: {value: 1.0", f"L: {{value: {value!r}", 1)
+    before, found = analyse(FILES["four_bar"], TEXTS["four_bar"]), analyse(FILES["four_bar"], text)
+    assert [item["name"] for item in found.parameters] == [item["name"] for item in before.parameters]
+    kept = next(item for item in found.parameters if item["name"] == "L")
+    assert kept["value"] == value and kept["number"] is None and kept["unit"] == "m"
+    assert found.problems[0]["path"] == ["parameters", "L", "value"]
+
+
+def test_a_text_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reading is what takes long: a text that was edited is not read again to be checked."""
+    texts = []
+    compose_text = yaml_nodes.compose_text
+
+    def counted(text: str, file: str) -> object:
+        texts.append(text)
+        return compose_text(text, file)
+
+    monkeypatch.setattr(yaml_nodes, "compose_text", counted)
+    monkeypatch.setattr(yaml_spans, "compose_text", counted)
+    text = TEXTS["four_bar"] + "# once\n"
+    now = analyse(FILES["four_bar"], text)
+    assert texts == [text] and not now.problems
+    for path in (["bodies", "crank", "inertia", "mass"], ["parameters", "L", "value"]):
+        typed = now.data[path[0]][path[1]]
+        for step in path[2:]:
+            typed = typed[step]
+        assert check_field(FILES["four_bar"], text, now, tuple(path), str(typed))["ok"]
+    assert texts == [text]
+
+
+def test_keys_that_appear_twice_name_their_file() -> None:
+    text = TEXTS["four_bar"] + "bodies: {}\n"
+    (problem,) = analyse(FILES["four_bar"], text).problems
+    assert problem["object"] == "'bodies' appears twice" and problem["path"] == ["bodies"] and problem["line"] > 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from starlette.testclient import TestClient
 
 import symofros as sf
 from symofros.simulation.stepping.methods import METHODS
+from symofros.studio.editor.document import session as session_module
 from symofros.studio.editor.document.analysis import analyse
 from symofros.studio.editor.document.palette import PALETTE
 from symofros.studio.editor.document.session import Session
@@ -175,6 +177,27 @@ def test_a_bad_formula_says_where(client: TestClient, path: list, text: str, col
     found = client.post("/api/expression", json={"path": path, "text": text}).json()
     assert not found["ok"] and says in found["error"]["found"] and found["error"]["column"] == column
     assert client.get("/api/document").json() == before
+
+
+def test_the_document_can_be_changed_while_a_field_is_checked(
+    client: TestClient, session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Thirteen fields of a large model were checked one by one, and OK waited for them all."""
+    checking, changed = threading.Event(), threading.Event()
+
+    def slow(*_: object) -> dict:
+        checking.set()
+        assert changed.wait(20)
+        return {"ok": True, "names": []}
+
+    monkeypatch.setattr(session_module, "check_field", slow)
+    asked = threading.Thread(target=lambda: client.post("/api/expression", json={"path": [], "text": "1+1"}))
+    asked.start()
+    assert checking.wait(20)
+    edit = {"op": "set", "path": ["parameters", "m", "value"], "value": 3}
+    assert client.post("/api/edit", json={"revision": 1, "label": "mass", "edits": [edit]}).status_code == 200
+    changed.set()
+    asked.join()
 
 
 def test_shape_functions(client: TestClient) -> None:

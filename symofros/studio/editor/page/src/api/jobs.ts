@@ -65,6 +65,8 @@ export interface Exported {
 export interface Job {
   id: string;
   kind: JobKind;
+  /** Revision of the document that it is of. */
+  revision: number;
   state: JobState;
   progress: { done: number; total: number; text: string };
   result: unknown;

@@ -1,7 +1,7 @@
 import { useId, useState } from "react";
 
 import type { Checked, Json } from "../api/types";
-import { same } from "../model/paths";
+import { mapAt, same } from "../model/paths";
 import { setValue } from "../store/edits";
 import { useStore } from "../store/store";
 import { type ControlProps, useForm } from "./context";
@@ -27,13 +27,18 @@ function Complaint({ id, checked }: { id: string; checked: Checked }) {
       <span>{checked.error?.found}</span>
       {checked.error?.remedy ? <span className="remedy">{checked.error.remedy}</span> : null}
       {name === null ? null : (
-        <button
-          type="button"
-          className="small"
-          onClick={() => void setValue(`add ${name}`, ["parameters", name], { value: 1 })}
-        >
-          Add parameter {name}
-        </button>
+        <>
+          <button
+            type="button"
+            className="small"
+            onClick={() => void setValue(`add ${name}`, ["parameters", name], { value: 1 })}
+          >
+            Add parameter {name}
+          </button>
+          <button type="button" className="small" onClick={() => void setValue(`add ${name}`, ["inputs", name], {})}>
+            Add input {name}
+          </button>
+        </>
       )}
     </div>
   );
@@ -46,7 +51,10 @@ export function Expression({ value, onChange, path, label, help, fallback, requi
   const [text, setText] = useState(shown(value));
   const current = same(typed(text), value) ? text : shown(value);
   // A name that was just added makes a formula right: what is known is part of the question.
-  const known = useStore((state) => state.document?.parameters.length ?? 0);
+  const known = useStore(
+    (state) =>
+      (state.document?.parameters.length ?? 0) + Object.keys(mapAt(state.document?.data ?? {}, ["inputs"])).length,
+  );
   const checked = useChecked([...path], current + " ".repeat(known % 2));
   const wrong = checked?.ok === false;
   const number = checked?.ok === true && typeof checked.value === "number" ? checked.value : null;

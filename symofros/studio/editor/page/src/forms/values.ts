@@ -4,7 +4,8 @@ import type { Json } from "../api/types";
 
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$/;
 
-export const isNumber = (text: string): boolean => NUMBER.test(text.trim());
+/** Whether a text is a number that can be held: 1e999 is left to the server, which says what is wrong with it. */
+export const isNumber = (text: string): boolean => NUMBER.test(text.trim()) && Number.isFinite(Number(text));
 
 /** A number if it is one, else the formula; undefined if nothing is there. */
 export function typed(text: string): Json | undefined {

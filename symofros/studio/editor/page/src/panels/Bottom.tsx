@@ -13,7 +13,7 @@ import { IconButton } from "../shell/IconButton";
 import { Splitter } from "../shell/Splitter";
 import { type Tab, Tabs } from "../shell/Tabs";
 import { cancel } from "../store/jobs";
-import { type BottomPane, update, useDocument, useStore } from "../store/store";
+import { type BottomPane, update, useBegun, useDocument, useStore } from "../store/store";
 import { Compiled } from "./Compiled";
 import { Crosschecked } from "./Crosschecked";
 import { Problems } from "./Problems";
@@ -61,10 +61,26 @@ function Result({ job }: { job: Job }) {
   }
 }
 
+/** Results of a model that has changed since say so, and are shown as what they are: past. */
+function Past({ job }: { job: Job }) {
+  return (
+    <>
+      <p className="pane past" role="status">
+        <Glyph name="warning" size={14} /> The model has changed since: {TITLES[job.kind].toLowerCase()} of an earlier
+        state. Run it again.
+      </p>
+      <div className="past-result">
+        <Result job={job} />
+      </div>
+    </>
+  );
+}
+
 function Outcome({ job }: { job: Job }) {
+  const { revision } = useDocument();
   if (job.state === "running") return <Running job={job} />;
   if (job.state === "cancelled") return <p className="pane quiet">Cancelled.</p>;
-  if (job.state === "done") return <Result job={job} />;
+  if (job.state === "done") return job.revision === revision ? <Result job={job} /> : <Past job={job} />;
   return (
     <div className="pane fault" role="alert">
       <p>
@@ -86,11 +102,17 @@ function Outcome({ job }: { job: Job }) {
 export function Bottom({ current }: { current: BottomPane }) {
   const jobs = useStore((state) => state.jobs);
   const { problems } = useDocument();
+  const begun = useBegun();
   const [height, setHeight] = useState(() => Math.round(window.innerHeight * 0.42));
   const tabs: Tab<BottomPane>[] = [
     {
       key: "problems",
-      title: <>Problems{problems.length > 0 ? <span className="count">{problems.length}</span> : null}</>,
+      title: (
+        <>
+          Problems
+          {problems.length > 0 ? <span className={begun ? "count" : "count calm"}>{problems.length}</span> : null}
+        </>
+      ),
     },
     ...(Object.keys(TITLES) as JobKind[])
       .filter((kind) => jobs[kind] !== undefined)

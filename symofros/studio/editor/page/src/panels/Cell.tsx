@@ -21,6 +21,7 @@ export function Cell({ value, label, commit, numeric = false, list }: CellProps)
       className={numeric ? "cell number" : "cell"}
       value={text ?? value}
       aria-label={label}
+      title={text ?? value}
       list={list}
       spellCheck={false}
       data-settled={text === null}

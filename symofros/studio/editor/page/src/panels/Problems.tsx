@@ -8,7 +8,7 @@ function go({ node, path }: Problem): void {
   const [section, name] = path;
   if (section === "parameters" || section === "inputs") update({ right: "parameters" });
   else if (path.length >= 2 && section !== undefined && name !== undefined && section !== "system")
-    show({ kind: "properties", path: [section, name] });
+    show({ kind: "properties", path: [section, name], entry: path.slice(2) });
   else if (section === "system") show({ kind: "properties", path: ["system"] });
   else update({ right: "text" });
 }

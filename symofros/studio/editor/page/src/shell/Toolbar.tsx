@@ -9,7 +9,7 @@ import { copy, paste } from "../store/clipboard";
 import { place, redo, undo } from "../store/edits";
 import { browse, save } from "../store/files";
 import { run } from "../store/jobs";
-import { now, show, update, useDocument, useStore } from "../store/store";
+import { now, show, update, useBegun, useDocument, useStore } from "../store/store";
 import { toggleTheme } from "../store/theme";
 import { IconButton } from "./IconButton";
 import { Menu } from "./Menu";
@@ -71,13 +71,14 @@ const WORK: readonly { kind: JobKind; title: string; help: string; start(): void
 
 function Work() {
   const { problems } = useDocument();
+  const begun = useBegun();
   const jobs = useStore((state) => state.jobs);
   const count = problems.length;
   return (
     <div className="cluster" role="group" aria-label="Model">
       <button
         type="button"
-        className={count > 0 ? "check bad" : "check good"}
+        className={count === 0 ? "check good" : begun ? "check bad" : "check"}
         onClick={() => update({ bottom: now().bottom === "problems" ? null : "problems" })}
       >
         {count === 0 ? "No problems" : `${count} problem${count > 1 ? "s" : ""}`}

@@ -40,6 +40,7 @@ export async function run(kind: JobKind, options: object = {}): Promise<void> {
   take({
     id: started.id,
     kind,
+    revision: now().document?.revision ?? 0,
     state: "running",
     progress: { done: 0, total: 0, text: "" },
     result: null,

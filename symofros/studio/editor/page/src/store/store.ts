@@ -3,7 +3,8 @@
 import { create } from "zustand";
 
 import type { Job, JobKind } from "../api/jobs";
-import type { Catalogue, Document, Fault, FileEntry, LibraryPart, Path, Point, View } from "../api/types";
+import type { Catalogue, Document, Fault, FileEntry, Json, LibraryPart, Path, Point, View } from "../api/types";
+import { isMap } from "../model/paths";
 
 export type Link = "ok" | "lost" | "expired";
 export type RightPane = "parameters" | "text" | "view";
@@ -15,7 +16,7 @@ export interface Anchor {
 }
 
 export type Dialog =
-  | { kind: "properties"; path: Path }
+  | { kind: "properties"; path: Path; entry?: Path }
   | { kind: "open"; files: FileEntry[] }
   | { kind: "new" }
   | { kind: "save as" }
@@ -79,6 +80,18 @@ export function useDocument(): Document {
   if (document === null) throw new Error("no document is open");
   return document;
 }
+
+/** Whether there is anything yet that could be wrong: a new file is no fault. */
+export function useBegun(): boolean {
+  const { data } = useDocument();
+  return (
+    Object.keys(data).some((key) => key !== "bodies" && key !== "system" && key !== "symofros" && filled(data[key])) ||
+    filled(data["bodies"])
+  );
+}
+
+const filled = (section: Json | undefined): boolean =>
+  isMap(section) ? Object.keys(section).length > 0 : section !== undefined && section !== null;
 
 export const show = (dialog: Dialog): void => update({ dialog });
 export const dismiss = (): void => update({ dialog: null });

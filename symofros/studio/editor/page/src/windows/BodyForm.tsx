@@ -89,11 +89,23 @@ function FramesPage({ value, onChange, path }: Props) {
   );
 }
 
+/** The page that shows an entry of a body; none for the body as a whole. */
+function pageOf([key, inner]: Path): Page | null {
+  if (key === "joint") return forceEntries.includes(String(inner)) ? "forces" : "joint";
+  if (key === "inertia" || key === "beam" || key === "waive") return "matter";
+  return key === "frames" ? "frames" : key === "loads" ? "forces" : null;
+}
+
 /** A body: its joint, its inertia or beam, its frames, the forces. */
-export function BodyForm({ value, onChange, path }: Props) {
+export function BodyForm({ value, onChange, path, entry }: Props & { entry: Path }) {
   const isBeam = isMap(value) && isMap(value["beam"]);
   const body = useRecord("BodyEntry");
-  const [page, setPage] = useState<Page>(isBeam ? "matter" : "joint");
+  const { hint } = useForm();
+  const [page, setPage] = useState<Page>(pageOf(entry) ?? (isBeam ? "matter" : "joint"));
+  const turn = (to: Page): void => {
+    hint(""); // It was of a field of the page that is left.
+    setPage(to);
+  };
   const tabs: Tab<Page>[] = [
     { key: "joint", title: "Joint" },
     { key: "matter", title: isBeam ? "Beam" : "Inertia" },
@@ -102,7 +114,7 @@ export function BodyForm({ value, onChange, path }: Props) {
   ];
   const props = { value, onChange, path };
   return (
-    <Tabs<Page> tabs={tabs} current={page} onChange={setPage} label="Properties of the body">
+    <Tabs<Page> tabs={tabs} current={page} onChange={turn} label="Properties of the body">
       {page === "joint" ? <JointPage {...props} /> : null}
       {page === "matter" && isBeam ? (
         <BeamForm

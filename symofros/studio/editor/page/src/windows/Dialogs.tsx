@@ -15,7 +15,7 @@ export function Dialogs() {
     case undefined:
       return null;
     case "properties":
-      return <Properties key={dialog.path.join("/")} path={dialog.path} />;
+      return <Properties key={dialog.path.join("/")} path={dialog.path} entry={dialog.entry ?? []} />;
     case "open":
       return <OpenFile files={dialog.files} />;
     case "new":

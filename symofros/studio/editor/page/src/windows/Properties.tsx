@@ -24,7 +24,7 @@ const NOUNS: Record<string, string> = {
 const SYSTEM = ["system", "virtual_power", "potentials"] as const;
 
 /** The window of a block, a link or the whole system. Nothing is changed until it is accepted, as one step of undo. */
-export function Properties({ path }: { path: Path }) {
+export function Properties({ path, entry }: { path: Path; entry: Path }) {
   const document = useDocument();
   const schema = useStore((state) => state.catalogue?.schema);
   const isSystem = path[0] === "system";
@@ -88,7 +88,7 @@ export function Properties({ path }: { path: Path }) {
           />
         )}
         {isSystem ? <SystemForm value={draft} onChange={setDraft} /> : null}
-        {section === "bodies" ? <BodyForm value={draft} onChange={setDraft} path={path} /> : null}
+        {section === "bodies" ? <BodyForm value={draft} onChange={setDraft} path={path} entry={entry} /> : null}
         {isSystem || section === "bodies" ? null : (
           <EntryForm section={section} value={draft} onChange={setDraft} path={path} />
         )}
