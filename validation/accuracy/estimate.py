@@ -108,9 +108,7 @@ def strip_judged(m: sf.Model, load: float, degrees: float) -> Judged | None:
 
 def _compared(rest: sf.Equilibrium, moved: Array, exact: Array) -> Judged:
     (bending,) = rest.bendings
-    return Judged(
-        bending.slope, bending.error, float(np.linalg.norm(moved - exact) / np.linalg.norm(exact))
-    )
+    return Judged(bending.slope, bending.error, float(np.linalg.norm(moved - exact) / np.linalg.norm(exact)))
 
 
 def refused(m: sf.Model, loads: Loads) -> bool:
@@ -162,9 +160,7 @@ def study(quick: bool) -> Study:
         points[f"Princeton strip, load at {degrees:g}°"] = [one for one in tried if one is not None]
     bound = "(24) to (26) of docs/theory/beams.md: the leading term and a calibrated end"
     name = f"largest factor between estimate and error, errors from {SMALLEST:.0%} to {LARGEST:.0%}"
-    findings = [
-        Finding(f"{kind}: {name}", worst_factor(some), FACTOR, reason=bound) for kind, some in points.items()
-    ]
+    findings = [Finding(f"{kind}: {name}", worst_factor(some), FACTOR, reason=bound) for kind, some in points.items()]
     past = [refused(m, Loads(P=share * CRITICAL, F=F)) for share in PAST for F in (1e-3, 1e-2, 0.1)]
     findings.append(
         Finding("columns past their critical load that are not refused", float(past.count(False)), 0.0, 0.0)
@@ -174,7 +170,9 @@ def study(quick: bool) -> Study:
         float(np.linalg.norm(static_tip(1.0, 1.0, STRETCH, (-some.P, some.F)) - elastica_tip(some))) for some in mixed
     )
     findings.append(
-        Finding("Exudyn, 16 ANCF cables: largest distance from the elastica over L", cable, 1e-3, reason="two exact rods")
+        Finding(
+            "Exudyn, 16 ANCF cables: largest distance from the elastica over L", cable, 1e-3, reason="two exact rods"
+        )
     )
     plain = max(worst_factor(points[kind]) for kind in ("force at the tip", "weight"))
     answer = (

@@ -107,6 +107,8 @@ def block(item: Block, figure_name: str = "") -> str:
             return table(item)
         case Bullets(items):
             return f"<ul>{''.join(f'<li>{prose(one)}</li>' for one in items)}</ul>"
+        case Figure(_, ()):
+            return ""
         case Figure(caption, charts):
             name = f"<b>{figure_name}</b> " if figure_name else ""
             said = f"<figcaption>{name}{prose(caption)}</figcaption>" if caption else ""

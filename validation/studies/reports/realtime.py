@@ -59,7 +59,7 @@ def measure(run: Run, seconds: Annotated[float, typer.Option(min=0.01, help="Len
             stated = {name: getattr(row, name) for name in ("what", "first", "period", "busy")}
             diagrams.append({**stated, **asdict(row.jitter), "late": _share_later(row.late)})
             run.advance()
-    return {"diagrams": diagrams, "seconds": seconds, "cores": os.cpu_count(), "load": os.getloadavg()[0]}
+    return {"diagrams": diagrams, "length": seconds, "cores": os.cpu_count(), "load": os.getloadavg()[0]}
 
 
 def _share_later(late: Array) -> dict[str, list[float]]:
@@ -77,7 +77,7 @@ def compose(data: Data) -> Report:
     machine = f"at load {data['load']:.1f} on {data['cores']} cores"
     charts = [_chart([row for row in diagrams if row["first"] is first], first) for first in (False, True)]
     figure = Figure(_SEE, tuple(chart for chart in charts if chart.curves))
-    said = f"{data['seconds']:g} s each, {machine}; late by, in microseconds:"
+    said = f"{data['length']:g} s each, {machine}; late by, in microseconds:"
     return Report(
         "Diagrams in real time",
         f"Instants of diagrams begin {min(medians):.0f} to {max(medians):.0f} µs late (medians), {machine}.",
