@@ -26,6 +26,14 @@ def test_the_readme_quotes_the_summary() -> None:
     assert quoted(ROOT / "README.md") == (ROOT / "reports" / "summary.md").read_text(encoding="utf-8")
 
 
+def test_the_list_of_reports_has_each_with_its_command() -> None:
+    listed = (ROOT / "reports" / "README.md").read_text(encoding="utf-8")
+    for topic in TOPICS.values():
+        assert f"| [{topic.name}]({topic.name}.md) | `{' '.join(topic.command.split()[:4])}" in listed, topic.name
+    for link in re.findall(r"\]\(([^)]+)\)", listed):
+        assert (ROOT / "reports" / link).is_file(), link
+
+
 @pytest.fixture
 def page(tmp_path: Path) -> str:
     write(tmp_path, FUZZ | {"versions": {"numpy": "<b>1"}})
