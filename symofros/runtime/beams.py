@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 
 from symofros.runtime.calls.kernel import Array
 
@@ -174,10 +173,10 @@ class ElasticBeam:
         """
         stiffness, symmetric = self.elastic_stiffness(), 0.5 * (tangent + tangent.T)
         try:
-            left = float(scipy.linalg.eigh(symmetric, stiffness, eigvals_only=True)[0])
-        except (np.linalg.LinAlgError, ValueError):  # A direction without elastic stiffness.
+            inverse = np.linalg.inv(np.linalg.cholesky(stiffness))
+        except np.linalg.LinAlgError:  # A direction without elastic stiffness.
             return 1.0
-        if left <= _CRITICAL:
+        if np.linalg.eigvalsh(inverse @ symmetric @ inverse.T)[0] <= _CRITICAL:
             return 0.0
         energy = float(elastic @ stiffness @ elastic)
         return energy / float(elastic @ symmetric @ elastic) if energy > 0.0 else 1.0
