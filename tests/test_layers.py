@@ -62,7 +62,7 @@ ALLOWED = table("""
         mechanics.dynamics generator.passes runtime generator.codegen generator.record generator.beams
         generator.programs compiler simulation
     # Formulas of blocks go through the parser of model files; one of them shows its model.
-    blocks: errors expr description runtime simulation diagrams studio.viewer
+    blocks: base errors expr description runtime simulation diagrams studio.viewer
     diagrams.files: base errors description loading simulation diagrams blocks
     # Packages carry the stepping loop and its methods; the front door, exporting.py, compiles the model.
     # URDF and MJCF hold numbers, which topology's Numbers makes of formulas.

@@ -23,7 +23,6 @@ from pathlib import Path
 import dask
 import distributed
 
-import validation
 from symofros.tools import CODE_IDENTITY, source_digest
 from validation.campaigns.errors import ClusterError
 from validation.campaigns.store import Store
@@ -195,7 +194,7 @@ def sources() -> dict[str, str]:
     """Digests of the code that makes rows, generator and harness, as this process has it."""
     return {
         "source of symofros": CODE_IDENTITY[:16],
-        "source of validation": source_digest(Path(validation.__file__).parent)[:16],
+        "source of validation": source_digest(Path(__file__).parents[1])[:16],
     }
 
 
