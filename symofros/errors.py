@@ -125,9 +125,9 @@ class InconsistentModelWarning(UserWarning):
 
 def near_name(name: str, known: Iterable[str]) -> str:
     """The question whether the nearest known name, capitals apart, was meant; "" where none is near."""
-    alike = {other.lower(): other for other in islice(known, _CANDIDATES)}
-    near = difflib.get_close_matches(name.lower(), alike, n=1, cutoff=0.5)
-    return f"did you mean '{alike[near[0]]}'?" if near else ""
+    candidates = {other.lower(): other for other in islice(known, _CANDIDATES)}
+    near = difflib.get_close_matches(name.lower(), candidates, n=1, cutoff=0.5)
+    return f"did you mean '{candidates[near[0]]}'?" if near else ""
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

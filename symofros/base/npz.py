@@ -67,7 +67,7 @@ def read_npz(path: Path, most_numbers: int, wanted: Container[str] | None = None
 def _array(name: str, stream: IO[bytes], file_size: int, most_numbers: int) -> Array:
     """One array, whose header and length fit together."""
     version = np.lib.format.read_magic(stream)
-    if version != (1, 0):  # Later ones have room for records of many fields, in headers of gigabytes.
+    if version != (1, 0):  # Later versions allow records of many fields, in headers of gigabytes.
         raise ValueError(f"array '{name}': its header is of version {version}, numbers have (1, 0)")
     shape, by_columns, dtype = np.lib.format.read_array_header_1_0(stream)
     if dtype.hasobject or dtype.fields or not dtype.itemsize:

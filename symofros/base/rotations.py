@@ -22,7 +22,7 @@ def skew(w: Array) -> Array:
 
 
 def matrix_product(R: Array, x: Array) -> Array:
-    """The product of a matrix (3, 3) with a vector (3,) or a matrix (3, 3), rounded alike on every machine."""
+    """The product of a matrix (3, 3) with a vector (3,) or a matrix (3, 3), with the same rounding on every machine."""
     columns = R[:, :, np.newaxis] if x.ndim == 2 else R
     return np.asarray(columns[:, 0] * x[0] + columns[:, 1] * x[1] + columns[:, 2] * x[2])
 

@@ -23,7 +23,7 @@ BAD_INPUT = 2
 
 
 def load(path: Path, floating_base: bool) -> System:
-    """Read a model; every problem of a bad one is told, and ends the command."""
+    """Read a model; problems are reported, all at once, and end the command."""
     try:
         return sf.load(path, floating_base=floating_base)
     except sf.DescriptionError as error:
@@ -52,7 +52,7 @@ def assignments(given: list[str], what: str) -> dict[str, str]:
 
 
 def number(name: str, text: str) -> float:
-    """A number; what is none is told, and ends the command."""
+    """A number; anything else is reported, and ends the command."""
     try:
         return float(text)
     except ValueError:

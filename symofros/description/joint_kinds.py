@@ -72,7 +72,7 @@ class JointKind:
         entries: Entries of the description that say how this kind moves.
         turns_about: The only axis that the joint turns about, constant in P and in D; None if there are more or none.
         urdf: Type in URDF of a single joint of this kind; None where URDF has none.
-        mjcf: Type in MJCF, alike.
+        mjcf: Type in MJCF of a single joint of this kind; None where MJCF has none.
         symbol: Solid that the viewer marks it by; None: no mark.
         slides: Whether the viewer draws a line from Po to Do.
     """

@@ -52,7 +52,7 @@ class Ports:
 
 
 class Environment(Protocol):
-    """What is known of a block's surroundings while its ports are found."""
+    """Known surroundings of a block while its ports are determined."""
 
     @property
     def inputs(self) -> Mapping[str, Shape]:

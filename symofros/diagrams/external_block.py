@@ -24,7 +24,7 @@ class Running(ABC):
         """
 
     def kept(self) -> Mapping[str, Array]:
-        """What it kept of the run that comes to its end, by name; the run hands it on."""
+        """What it kept of the run that comes to its end, by name; `DiagramRun.kept` of the run holds it."""
         return {}
 
     def end(self) -> None:  # noqa: B027 - most have nothing to close.

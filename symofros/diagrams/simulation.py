@@ -50,7 +50,7 @@ class Simulation:
 
         Args:
             t_end: End time [s]; the diagram's own where it states one.
-            settings: Fields of `symofros.diagrams.run.options.DiagramOptions` in place of the diagram's own; `parameters` and
+            settings: Fields of `DiagramOptions` in place of the diagram's own; `parameters` and
                 `progress` as of `run_compiled`.
 
         Raises:

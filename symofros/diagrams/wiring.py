@@ -78,7 +78,7 @@ class Wired:
 
 
 class _Surroundings:
-    """What a block is told while its ports are found."""
+    """Surroundings of a block while its ports are determined."""
 
     def __init__(self, models: Models, inputs: Mapping[str, Shape]) -> None:
         self._models, self._inputs = models, inputs

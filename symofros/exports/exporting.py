@@ -81,7 +81,7 @@ def export(
         method: Stepping method of Co-Simulation, as in `simulate`; not those of SUNDIALS.
         dt: Step of that method [s]; of an adaptive one the first.
         rtol: Relative error of an adaptive method's step.
-        atol: Absolute error, alike.
+        atol: Absolute bound of the local error of adaptive methods.
 
     Returns:
         What was written, and notes on what the format lacks.
@@ -127,14 +127,14 @@ def _export_diagram(
         )
     check_folder(folder)
     resolved = resolve(diagram)
-    told = outputs or [
+    outputs_stated = outputs or [
         f"{name}.{port.name}"
         for name, block in resolved.wired.blocks.items()
         if block.mechanism()
         for port in resolved.wired.ports[name].outputs
         if port.name in ("q", "v")
     ]
-    return write_diagram(resolved, folder, told, method, dt, GENERATOR)
+    return write_diagram(resolved, folder, outputs_stated, method, dt, GENERATOR)
 
 
 def _stepping(method: str, dt: float, rtol: float, atol: float) -> Stepping:

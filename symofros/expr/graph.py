@@ -36,7 +36,7 @@ class Graph:
         value: The number of a constant node, keyed by node.
         slot: The input slot of an input node, keyed by node.
         label: A readable name of a node, where it has one.
-        packs: Nodes that are computed alike (symofros/expr/packs), in the order of their creation.
+        packs: Vectors of nodes formed by the same operations (symofros/expr/packs), in the order of their creation.
     """
 
     def __init__(self) -> None:

@@ -141,7 +141,9 @@ ABLATIONS = (
         "Sines and cosines of up to eight angles by polynomials in one vector; without: libm's.",
         lambda: _replaced(StatementWriter, "_blocks", lambda self: {}),
     ),
-    Ablation("packs", "Columns that are computed alike share vectors.", options=lambda o: replace(o, packs=False)),
+    Ablation(
+        "packs", "Columns formed by the same operations share vectors.", options=lambda o: replace(o, packs=False)
+    ),
     Ablation(
         "no search for vectors",
         "The compiler's own search for statements that could share vectors is off.",

@@ -13,7 +13,7 @@ from symofros.runtime.calls.kernel import Array
 
 # What is left of a row of G that repeats others, as a share of its natural size. A redundant condition that has drifted
 # by d [m or rad] differs by about d, and would ask for accelerations that contradict the others: so the share is above
-# what integration drifts by, and below what a posture needs to be told from a singular one. SYM_RANK in C.
+# what integration drifts by, and below what distinguishes a posture from a singular one. SYM_RANK in C.
 RANK = 1e-6
 # An entry of a row with a unit: a smaller one is rounding; SYM_LEAST_SIZE in C.
 LEAST_SIZE = 1e-9

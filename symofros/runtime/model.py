@@ -72,8 +72,8 @@ class Model(ConstraintFunctions, FrameFunctions):
             name: Name of the function, as of the method.
             frame: The frame that it is about, for frame functions.
             n: States of a batch; None: one state, without a batch dimension.
-            layout: Layout of a batch's arrays that are allocated: "rows", a state's numbers side by side; or "columns",
-                the states side by side, which is faster by vectors.
+            layout: Layout of allocated arrays of a batch: "rows", the numbers of a state contiguous; or "columns",
+                the states contiguous, which is faster by vectors.
             par: Run-time parameters (npar), or (n, npar); the model's by default. They are read here, and not again.
             arrays: Memory of the caller's for inputs and outputs, by name; what is left out is allocated. Inputs of a
                 batch may be (size), for all states.

@@ -69,8 +69,8 @@ class ModelRecord:
         u_default: Inputs where none are given: zeros, and prescribed quaternions of no rotation.
         par_default: Values of the run-time parameters.
         q_neutral: A configuration on the manifold.
-        q_lower: Bounds to sample within (nq); infinite where there are none.
-        q_upper: Upper bounds, alike.
+        q_lower: Lower bounds to sample within (nq); infinite where there are none.
+        q_upper: Upper bounds to sample within (nq); infinite where there are none.
         segments: The configuration manifold, in order.
         periodic: Coordinates that are angles, so that unbounded ones are sampled in one turn.
         constraint_names: One a condition: the constraint's name, and which of its conditions.

@@ -46,7 +46,7 @@ def simulate(
         par: Run-time parameters (npar); the model's own by default.
         events: Name -> formula or Event.
         options: Options of stepping, stabilisation and recording; those of `SimulationOptions()` by default.
-        progress: Show a progress bar; or a function that is told the time reached [s], now and then.
+        progress: Show a progress bar; or a function that is called with the time reached [s], now and then.
         changes: Fields of SimulationOptions by name, which replace those of `options`: method="dopri5", dt=1e-4, ...
 
     Returns:

@@ -31,7 +31,7 @@ class JointPD(Block):
         _gains(self)
 
     def ports(self, environment: Environment) -> Ports:
-        """Desired and actual motion of one size; the effort alike."""
+        """Desired motion, actual motion and effort, all of one size."""
         return _joint_ports(self, environment)
 
     def compute(self, context: EvaluationContext) -> Values:
@@ -73,7 +73,7 @@ class JointPID(Block):
             )
 
     def ports(self, environment: Environment) -> Ports:
-        """Desired and actual motion of one size; the effort alike."""
+        """Desired motion, actual motion and effort, all of one size."""
         return _joint_ports(self, environment)
 
     def _first(self, environment: Environment) -> dict[str, Any]:

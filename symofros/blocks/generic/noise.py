@@ -1,4 +1,4 @@
-"""Random numbers that come out alike compiled and interpreted.
+"""Random numbers that are the same compiled and interpreted.
 
 The generator is MRG32k3a: P. L'Ecuyer, Good parameters and implementations for combined multiple recursive random
 number generators, Operations Research 47 (1999). Its integers stay below 2^53, so that double arithmetic is exact.

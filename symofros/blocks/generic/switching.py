@@ -34,7 +34,7 @@ class Relay(Block):
     tunable: ClassVar[tuple[str, ...]] = ("lower", "upper", "on", "off")
 
     def __post_init__(self) -> None:
-        """Numbers, with room between the thresholds."""
+        """Numbers, with the thresholds apart."""
         for field in self.tunable:
             number(self.name, field, getattr(self, field))
         if not self.lower < self.upper:

@@ -22,7 +22,7 @@ from symofros.blocks.network.packets import unpack
 
 # Rows that a page which is opened late still sees.
 ROWS = 20_000
-# Pages are told of new rows at this interval [s].
+# Interval at which new rows are sent to pages [s].
 PAUSE = 0.05
 # Rows in one message at most; of more, some are left out, evenly.
 AT_ONCE = 500
@@ -92,12 +92,12 @@ class Page(BaseHTTPRequestHandler):
         """Events without end: what is shown, whenever that changes, and new rows."""
         self._begin("text/event-stream")
         self.end_headers()
-        seen, told = 0, None
+        seen, sent_head = 0, None
         try:
             while True:
                 message: dict[str, Any] = {}
-                if told != self.feed.head:
-                    message["head"] = told = dict(self.feed.head)
+                if sent_head != self.feed.head:
+                    message["head"] = sent_head = dict(self.feed.head)
                 seen, rows = self.feed.since(seen)
                 if rows or message:
                     message["rows"] = rows

@@ -30,7 +30,7 @@ from symofros.runtime.calls.kernel import Array
 class LivePlot(ExternalBlock):
     """Shows its inputs as curves in a browser while the run goes on.
 
-    Another process draws; the loop only hands it a packet at each sample, and drops it where that would take time. The
+    Another process draws; the loop only sends it a packet at each sample, and drops it where that would take time. The
     page stays until the program that ran the diagram ends.
 
     What it keeps of a run: "sent" and "dropped", how many samples.
@@ -134,8 +134,8 @@ class _Page:
                     "see what it wrote to standard error",
                 )
             )
-        told = json.loads(line)
-        self.port, self.url = told["udp"], told["url"]
+        addresses = json.loads(line)
+        self.port, self.url = addresses["udp"], addresses["url"]
         print(f"{name}: {self.url}", file=sys.stderr)
         if open_browser:
             webbrowser.open(self.url)

@@ -21,7 +21,7 @@ VERSION = 1
 _HEADER = struct.Struct("<4sHHIId")
 # So that a packet stays within what UDP carries.
 MAX_VALUES = 8000
-# Packets this far behind the newest can still be told from duplicates.
+# Packets this far behind the newest are still distinguished from duplicates.
 _WINDOW = 1024
 _ROUND = 1 << 32
 

@@ -184,7 +184,7 @@ def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
                 f"block '{name}': can't open {address}",
                 f"{error}".split(" at /")[0][:200],
                 "one program listens at an address of this machine",
-                "choose another port, or let one side listen and the other connect",
+                "choose another port, or let one program listen and the other connect",
             )
         ) from None
     try:

@@ -85,7 +85,7 @@ class NounEntry(PartEntry):
     def __init_subclass__(
         cls, noun: type | None = None, without: tuple[str, ...] = (), checked: bool = False, **options: Any
     ) -> None:
-        """Add the entries of a noun's fields, before pydantic reads the class; `checked`: faults are told here."""
+        """Add the entries of a noun's fields, before pydantic reads the class; `checked`: report faults here."""
         super().__init_subclass__(**options)
         if noun is None:
             return

@@ -1,4 +1,4 @@
-"""Diagram -> C: a model for each part, functions for instants, both in the hands of one loop."""
+"""Diagram -> C: a model for each part, functions for instants, both called by one loop."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class CompiledDiagram:
         instants: Functions "due_i", "crossed_i", "inputs_i_j".
         reads_accelerations: Whether functions of instants read accelerations and multipliers of that time.
         toolchain: Compiler and its identity.
-        options: Options as of `compile_diagram`; functions that are asked for later are compiled alike.
+        options: Options as of `compile_diagram`; functions that are asked for later are compiled by the same options.
         sources: C texts, for people.
     """
 

@@ -285,7 +285,7 @@ def run_interpreted(
         dt: Step [s]; steps also end at instants.
         tableau: Tableau of the method.
         projects: Whether constraints are met again after each step.
-        show: Told the time.
+        show: Called with the time [s].
     """
     times: list[float] = []
     kept: dict[Source, list[Array]] = {source: [] for source in blocks.out}

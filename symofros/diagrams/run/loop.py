@@ -150,7 +150,7 @@ class Loop:
         return 0
 
     def start(self, t0: float, t_end: float, realtime: float, threads: int, instants: int) -> None:
-        """Place the run at its start, with room for the lateness of `instants` instants in real time."""
+        """Place the run at its start, with memory for the lateness of `instants` instants in real time."""
         d = self.diagram
         d.t0, d.t_end = t0, t_end
         d.realtime_scale = 1.0 / realtime if realtime else 0.0

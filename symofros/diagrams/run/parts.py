@@ -1,4 +1,4 @@
-"""The parts of a compiled diagram, each at its first state in the hands of a stepper."""
+"""The parts of a compiled diagram, each with its stepper at its first state."""
 
 from __future__ import annotations
 

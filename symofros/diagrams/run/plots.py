@@ -16,7 +16,7 @@ from symofros.simulation.results.plots import figure_class
 
 # Matplotlib's ways to draw that have no windows.
 _PAPER = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
-_MOST = 12  # Curves in one picture; more can't be told apart.
+_MOST = 12  # Curves in one picture; more can't be distinguished.
 
 
 def plots_of(wired: Wired) -> list[Plot]:

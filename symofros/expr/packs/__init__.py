@@ -1,4 +1,4 @@
-"""Packs: scalars of one state that are computed alike, side by side, so that generated code may use a vector for them.
+"""Packs: scalars of one state formed by the same operations, so that generated code may use a vector for them.
 
 A pack has WIDTH lanes and an edge of the graph in each. Lane l of a linear combination is
 

@@ -1,4 +1,4 @@
-"""Linear combinations of packs: the scalars of every lane, and a record of what computes them alike."""
+"""Linear combinations of packs: the scalars of every lane, and a record of the operations that form them all."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def _addends(g: Graph, edge: Edge) -> Iterator[tuple[Edge, Edge]]:
 
 
 def is_product(g: Graph, edge: Edge, a: Edge, b: Edge) -> bool:
-    """Whether an edge is a * b, rounded alike; the graph states c1 (c2 x) by (c1 c2) x, which is rounded otherwise."""
+    """Whether an edge is a * b to the last bit; the graph states c1 (c2 x) by (c1 c2) x, which is rounded otherwise."""
     if ZERO in (a, b) or ONE in (abs(a), abs(b)):
         return edge == a * b  # One of them is a sign or zero, and so the product of the edges is an edge.
     if g.is_constant(a) and g.is_constant(b):

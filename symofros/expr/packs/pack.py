@@ -1,4 +1,4 @@
-"""A pack: up to WIDTH edges that are computed alike. The contract is at the top of the folder."""
+"""A pack: up to WIDTH edges formed by the same operations. The contract is at the top of the folder."""
 
 from __future__ import annotations
 

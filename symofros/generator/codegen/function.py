@@ -76,7 +76,7 @@ class FunctionWriter:
         inputs: Names of the input arrays, in order.
         outputs: Outputs to be stored, in order.
         given: Whether parameter-only values are read from `pre` (false for the init function itself).
-        packs: Whether values that are computed alike share vectors.
+        packs: Whether values formed by the same operations share vectors.
     """
 
     def __init__(

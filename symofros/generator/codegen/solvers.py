@@ -31,7 +31,7 @@ def with_solver(program: Program, c_name: str, function: Function, solver: Solve
         c_name: Name of the C function.
         function: Function whose outputs generated code computes.
         solver: Routine that finishes it.
-        packs: Whether values that are computed alike share vectors.
+        packs: Whether values formed by the same operations share vectors.
     """
     terms = FunctionWriter(program, f"{c_name}_terms", ["pre", *function.inputs], function.outputs, packs=packs).text()
     parts = [
@@ -110,7 +110,7 @@ def work_size(macro: str, *sizes: int) -> int:
     macros = _work_macros()
     parameters, expression = macros[macro]
     names: dict[str, object] = {name: partial(work_size, name) for name in macros}
-    # Sums and products of integers are written alike in C and in Python.
+    # Sums and products of integers are written the same in C and in Python.
     return int(eval(expression, {"__builtins__": {}}, names | dict(zip(parameters, sizes, strict=True))))
 
 

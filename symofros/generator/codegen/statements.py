@@ -58,7 +58,7 @@ class StatementWriter:
         nodes: Nodes that the function computes, operands first.
         given: Nodes that are read from an input array.
         stores: Outputs of the function.
-        packs: Whether values that are computed alike share vectors.
+        packs: Whether values formed by the same operations share vectors.
     """
 
     def __init__(

@@ -274,7 +274,7 @@ def _spline_curvatures(h: Sequence[Extended], chords: Sequence[Extended], clampe
     """
     # Row i is lower c_(i-1) + diagonal c_i + upper c_(i+1) = right (equations (5a) and (5b) of the theory).
     rows = [[h[i - 1], 2 * (h[i - 1] + h[i]), h[i], 6 * (chords[i] - chords[i - 1])] for i in range(1, len(h))]
-    # One cubic on two intervals: c_n = (1 + r) c_(n-1) - r c_(n-2), put into the last row; alike at the root.
+    # One cubic on two intervals: c_n = (1 + r) c_(n-1) - r c_(n-2), put into the last row; the same at the root.
     r = h[-1] / h[-2]
     rows[-1] = _without_end(rows[-1], 2, 0, r)
     if clamped:

@@ -93,7 +93,7 @@ def _own_blocks(kinematics: TreeKinematics, M: Matrix, inertias: list[LinkInerti
 
 
 def _carry_to_base(kinematics: TreeKinematics, M: Matrix, momenta: list[_Momentum]) -> None:
-    """Carry momenta to the base, side by side, and enter their virtual power at every joint on the way.
+    """Carry momenta to the base, all columns at once, and enter their virtual power at every joint on the way.
 
     Args:
         kinematics: Kinematics of the tree.

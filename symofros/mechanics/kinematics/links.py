@@ -151,7 +151,7 @@ def tree_kinematics(g: Graph, tree: SpanningTree, deflected_tips: bool = False) 
     for i, link in enumerate(tree.links):
         R_AB = Mat3.identity(g) if link.parent == BASE else links[link.parent].R_LB
         R_AP, p_AP = lowering.placement(link.placement, R_AB)
-        # P and D are turned alike by R_BL, so that the axis lies along a coordinate axis of both.
+        # P and D are both turned by R_BL, so that the axis lies along a coordinate axis of both.
         R_BL, axis = _aligned(lowering, link)
         q = tuple(lowering.symbol(name) for name in coordinate_names(link.joint))
         speeds = tuple(lowering.symbol(name) for name in speed_symbols(link.joint))

@@ -118,7 +118,7 @@ def is_intact(library: Path) -> bool:
         if not stat.S_ISREG(status.st_mode) or not _is_trusted(status) or _others_write(status):
             return False
         stated = _statement_of(library).read_text(encoding="utf-8")
-        # A truncated file is told by its size, before it is read.
+        # The size shows a truncated file before it is read.
         return stated.startswith(f"{status.st_size} ") and stated == _statement(library.read_bytes())
     except (OSError, UnicodeDecodeError):
         return False

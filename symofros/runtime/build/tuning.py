@@ -27,7 +27,7 @@ _STATES, _ROUNDS = 64, 15
 # A clock's reading costs less than a thousandth of this [ns].
 _LEAST = 200_000
 _CALLED = re.compile(r"^\S*(cc|clang)(-\d+)?\s")
-# clang contracts across statements only if it is told to; gcc does by itself.
+# clang contracts across statements only by option, gcc by default.
 _CONTRACTED = "-ffp-contract=fast"
 
 

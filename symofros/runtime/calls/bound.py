@@ -195,7 +195,7 @@ def _room(n: int, shape: tuple[int, ...], layout: Layout) -> Array:
 
 
 def _fits(array: Any, n: int, shape: tuple[int, ...], shared: bool) -> bool:
-    """Whether C can be told where the numbers of a batch lie."""
+    """Whether addresses and strides describe where the numbers of a batch lie."""
     if not isinstance(array, np.ndarray) or array.dtype != np.float64:
         return False
     if shared and array.shape == shape:

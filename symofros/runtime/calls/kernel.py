@@ -151,7 +151,7 @@ class BatchKernel(Kernel, Protocol):
             n: Number of states.
             pre: (n or 1, npre), from `prepare`.
             inputs: Each (n or 1, size), in steps of whole numbers, in the signature's order.
-            outputs: Each (n, size), alike.
+            outputs: Each (n, size), in steps of whole numbers, in the signature's order.
             threads: Number of threads that share a large batch.
         """
         ...

@@ -15,7 +15,7 @@ _LINE, _MANY = 64, 16
 
 
 def columns(n: int, size: int, dtype: type[np.float32] | type[np.float64]) -> Numbers:
-    """Room for n states (n, size) whose batch is the fast axis.
+    """Uninitialised memory for n states (n, size) whose batch is the fast axis.
 
     Each entry's column begins at a line of the cache; the next one, of long columns, an odd number of lines further:
     columns a power of two apart would share a few places in the first cache (1024 states of 22 joints took four times
@@ -24,9 +24,9 @@ def columns(n: int, size: int, dtype: type[np.float32] | type[np.float64]) -> Nu
     line = _LINE // (4 if dtype is np.float32 else 8)
     lines = -(-n // line)
     step = (lines | 1 if lines >= _MANY else lines) * line
-    room = np.empty(size * step + line, dtype)
-    start = -_address(room) % _LINE // room.itemsize
-    return room[start : start + size * step].reshape(size, step)[:, :n].T
+    buffer = np.empty(size * step + line, dtype)
+    start = -_address(buffer) % _LINE // buffer.itemsize
+    return buffer[start : start + size * step].reshape(size, step)[:, :n].T
 
 
 def _address(array: Numbers) -> int:
@@ -70,7 +70,7 @@ def flat(array: Numbers, batch: tuple[int, ...]) -> Numbers:
 
 
 def by_columns(arrays: Iterable[Numbers]) -> bool:
-    """Whether the batch is the fast axis of all arrays (n or 1, size) in which it could be told."""
+    """Whether the batch is the fast axis of all arrays (n or 1, size) in which that makes a difference."""
     contiguous = [x.strides[0] == x.itemsize for x in arrays if len(x) > 1 and x.shape[1] > 1]
     return bool(contiguous) and all(contiguous)
 

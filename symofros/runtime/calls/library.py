@@ -178,7 +178,7 @@ class CompiledKernel:
         return kernel if kernel.has(lanes) else None
 
     def _by_lanes(self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions) -> list[Numbers]:
-        """By vectors of this library: rows are told by their addresses alone, which takes less than their layout."""
+        """By vectors of this library; contiguous rows are passed by their addresses alone, which costs less."""
         if options.precision == "double" and not options.columns and all(x.flags.c_contiguous for x in inputs):
             return self._by_rows(n, [pre, *inputs], options.threads)
         return self._in_place(n, pre, inputs, options)

@@ -188,7 +188,7 @@ def joint_motion(
         frame: Frame whose motion is given.
         positions: p_WF (n, 3) [m].
         velocities: Linear, then angular velocity in world axes (n, 6); (n, 3) if rotations do not matter.
-        accelerations: Their rates, likewise.
+        accelerations: Linear, then angular accelerations in world axes (n, 6) or (n, 3).
         rotations: R_WF (n, 3, 3); none if they do not matter.
         q: Guess for the first sample (nq); each next one starts from the last.
         par: Run-time parameters.

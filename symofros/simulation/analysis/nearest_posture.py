@@ -207,9 +207,9 @@ class NearestPosture:
         """The configuration after a step, shortened to the first limit that it meets."""
         share = 1.0
         for i, k, low, high in self.limits:
-            room = (high if step[k] > 0.0 else low) - q[i]
-            if abs(step[k]) * share > abs(room):
-                share = abs(room) / abs(step[k])
+            margin = (high if step[k] > 0.0 else low) - q[i]
+            if abs(step[k]) * share > abs(margin):
+                share = abs(margin) / abs(step[k])
         moved = self.model.integrate(q, share * step)
         for i, _, low, high in self.limits:
             moved[i] = min(max(moved[i], low), high)

@@ -9,7 +9,7 @@ from typing import Any
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls.kernel import Array
 
-_MOST = 12  # Curves in one picture; more can't be told apart.
+_MOST = 12  # Curves in one picture; more can't be distinguished.
 
 
 def figure_class() -> Any:

@@ -1,1 +1,1 @@
-"""The loops in C in Python's hands: methods, steppers, batches, SUNDIALS."""
+"""The stepping loops in C, driven from Python: methods, steppers, batches, SUNDIALS."""

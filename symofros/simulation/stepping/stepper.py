@@ -78,7 +78,7 @@ class Stepper:
             setattr(system, name, memory.zeros(size))
 
     def _fill_beams(self) -> None:
-        """What judges the bending of the beams, and room for the largest of each."""
+        """What judges the bending of the beams, and memory for the largest of each."""
         system, run, memory = self.system, self.run, self.memory
         firsts = np.cumsum([0, *(beam.size for beam in self.beams)])
         system.n_beams = len(self.beams)
@@ -176,7 +176,7 @@ class Stepper:
         fill_tableau(self.run.tableau, self.method.tableau, self.memory)
 
     def start(self, q: Array, v: Array, capacity: int) -> int:
-        """Place the run at its initial state, with room for `capacity` records.
+        """Place the run at its initial state, with memory for `capacity` records.
 
         Returns:
             A Status.

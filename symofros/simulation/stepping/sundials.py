@@ -86,7 +86,7 @@ class _Run(ABC):
         """Create the solver and place it at the first state y = (q, v)."""
 
     def _options(self) -> dict[str, Any]:
-        """What both solvers take alike."""
+        """Options that both solvers take."""
         run, events = self.stepper.run, self.stepper.events
         options: dict[str, Any] = {
             "rtol": float(run.rtol),

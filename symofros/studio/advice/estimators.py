@@ -53,7 +53,7 @@ def residual(r: float) -> float:
 
 
 def residual_bound(r: float) -> float:
-    """The largest residual of a load as long as r periods or longer; what is shorter than two is not told apart."""
+    """The largest residual of a load as long as r periods or longer; periods below two are not resolved."""
     return math.pi if r < 2.0 else 2.0 / (r * r - 1.0)  # Zero for a load that does not change.
 
 

@@ -126,7 +126,7 @@ class _Search:
                 self._consider(one)
 
     def _fewer(self) -> None:
-        """Fewer functions: alike for all beams first, then beam by beam."""
+        """Fewer functions: the same for all beams first, then beam by beam."""
         beams = [b for b in self.current.bodies if isinstance(b, Beam) and b.modes]
         if len(beams) > 1:
             first = [next(iter(self._hopeful(beam)), None) for beam in beams]

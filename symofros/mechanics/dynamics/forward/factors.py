@@ -75,7 +75,7 @@ class Factors:
         return x
 
     def solve_columns(self, right: Matrix) -> Matrix:
-        """The solution X of M X = right (nv rows), all columns alike."""
+        """The solution X of M X = right (nv rows), column by column."""
         count = len(right[0]) if right else 0
         rows = [_Row.of(self._g, row) for row in right]
         for k in reversed(range(self._n)):

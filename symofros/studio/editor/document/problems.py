@@ -136,13 +136,13 @@ def _by_formula(problem: Problem, data: Any, entry: Path) -> Path:
     wanted = problem.found.strip("'")
     if not problem.found.startswith("'") or not wanted:
         return ()
-    alike = [
+    candidates = [
         path[len(entry) :]
         for path, text in formulas(data)
         if path[: len(entry)] == entry and _canonical(text) == wanted
     ]
     words = {_WORDS.get(word, word) for word in re.findall(r"\w+", problem.what.partition(": ")[2])}
-    return next((path for path in alike if words & {*path}), alike[0] if alike else ())
+    return next((path for path in candidates if words & {*path}), candidates[0] if candidates else ())
 
 
 def _canonical(text: str) -> str:

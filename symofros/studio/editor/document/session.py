@@ -110,12 +110,12 @@ class Session:
         self._leave(body, lambda: self.storage.open(file))
 
     def create(self, body: Json) -> None:
-        """Begin a file of the workspace, alike."""
+        """Begin a document in a new file of the workspace."""
         file = self.workspace.inside(text_of(body, "path"))
         self._leave(body, lambda: self.storage.create(file))
 
     def adopt(self, body: Json, name: str, text: str) -> None:
-        """Begin a document with a text that came from elsewhere, alike."""
+        """Begin a document with a text that came from elsewhere."""
         self._leave(body, lambda: self.storage.adopt(name, text))
 
     def _leave(self, body: Json, enter: Callable[[], None]) -> None:

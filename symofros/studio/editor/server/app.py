@@ -91,7 +91,7 @@ class Editor:
         ]
 
     def changing(self, action: Callable[[Json], None]) -> Answer:
-        """The answer to a request that changes the document: the document. The others are told."""
+        """The answer to a request that changes the document: the document. Other pages are notified."""
 
         async def answer(request: Request) -> Response:
             document = await self.exclusively(partial(self._changed, action, await body_of(request)))
@@ -204,13 +204,13 @@ class Editor:
 
     async def watch(self) -> None:
         """Tell when somebody else has written the file: once a time that it changes."""
-        told = False
+        notified = False
         while True:
             await anyio.sleep(WATCH_SECONDS)
             changed = await self.exclusively(self.session.storage.changed_on_disk)
-            if changed and not told:
+            if changed and not notified:
                 self.events.publish("disk", {"name": self.session.document.file.name})
-            told = changed
+            notified = changed
 
 
 async def body_of(request: Request) -> Json:

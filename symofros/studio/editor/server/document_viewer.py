@@ -34,7 +34,7 @@ BROKEN = Problem("the model has problems", "see their list", "what is drawn is a
 
 
 class DocumentViewer:
-    """What is shown of the document, for all pages alike. Its methods may be called from any thread, and take turns.
+    """View of the document, the same for all pages. Its methods may be called from any thread, and take turns.
 
     The viewer lives in this process: a picture costs milliseconds. Its poses are compiled when the mechanism changes.
     """

@@ -1,4 +1,4 @@
-"""What happens, told to every page that listens: server-sent events."""
+"""Notifications to every page that listens: server-sent events."""
 
 from __future__ import annotations
 

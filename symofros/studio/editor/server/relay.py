@@ -23,7 +23,7 @@ GOING_AWAY, TRY_LATER = 1001, 1013
 
 
 class Relay:
-    """Hands on what browsers and the viewer tell each other."""
+    """Relays messages between browsers and the viewer."""
 
     def __init__(self, view: DocumentViewer, token: str) -> None:
         self.view, self.token = view, token

@@ -121,7 +121,7 @@ class Drawing:
     inertias_fit: bool
 
 
-def alike(a: Drawing, b: Drawing) -> bool:
+def same_geometry(a: Drawing, b: Drawing) -> bool:
     """Whether two drawings of one system, for different parameters, show the same."""
 
     def numbers(x: Drawing) -> list[Array]:

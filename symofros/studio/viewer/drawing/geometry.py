@@ -37,7 +37,7 @@ from symofros.studio.viewer.drawing.inertia_box import inertia_box, longest_edge
 from symofros.studio.viewer.drawing.meshes import Array, Mesh, axes_along, box, cylinder, disc, ellipse, merged, sphere
 from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
 
-# Told apart on white and on grey, also by those who see red and green alike.
+# Distinct on white and on grey, also to people with red-green blindness.
 _PALETTE: tuple[Color, ...] = (
     (68, 119, 170),
     (204, 187, 68),

@@ -27,7 +27,7 @@ _LEAST_SIZE = 1e-6  # [m]; what is smaller is drawn as if it were a metre, for w
 
 @dataclass(frozen=True)
 class Posture:
-    """Poses of all links, with room for any leading dimensions.
+    """Poses of all links, with any leading dimensions.
 
     Attributes:
         p: p_WL of every link, the world last, so that index -1 is the world (..., links + 1, 3) [m].

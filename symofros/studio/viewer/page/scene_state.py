@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from symofros.errors import Problem, UnknownNameError, did_you_mean
-from symofros.studio.viewer.drawing.drawing import Drawing, alike
+from symofros.studio.viewer.drawing.drawing import Drawing, same_geometry
 from symofros.studio.viewer.drawing.layers import shown_at_first
 from symofros.studio.viewer.drawing.meshes import Array
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture, State
@@ -50,7 +50,7 @@ class SceneState:
         self.state = state
         if not np.array_equal(state.par, self._drawn_par):
             drawing = self.mechanism.drawing(state.par)
-            if not alike(drawing, self.scene.drawing):
+            if not same_geometry(drawing, self.scene.drawing):
                 self._draw(drawing)
                 return True
             self._drawn_par = state.par

@@ -45,7 +45,7 @@ class ViewerGuard:
         self.is_asked = False
 
     def before(self, answer: Answerer | None) -> Answerer:
-        """What asks the guard, and then hands the request on as if there were no token."""
+        """What asks the guard, and then forwards the request as if there were no token."""
         self.is_asked = True
 
         def guarded(connection: Any, request: Any) -> Any:

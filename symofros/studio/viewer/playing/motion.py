@@ -142,7 +142,7 @@ def read_motion(path: str | Path, model: Model) -> PlayedMotion:
         fault = Problem(
             f"trajectory: '{file.name}' is not a {file.suffix} file",
             str(error)[:200],
-            "what Trajectory.save writes, or alike",
+            "a file of the form that Trajectory.save writes",
             "save it again",
         )
         raise SymofrosError(fault) from None

@@ -12,7 +12,7 @@ import symofros as sf
 from reference_models import MODELS
 from reference_models.closed.spatial import delta_guess
 from symofros.errors import ShapeError
-from symofros.studio.viewer.drawing.drawing import Drawing, alike
+from symofros.studio.viewer.drawing.drawing import Drawing, same_geometry
 from symofros.studio.viewer.drawing.poses import Mechanism, beam_sweep, connector_sweep
 
 
@@ -144,7 +144,7 @@ def test_parameters_change_the_drawing_where_it_depends_on_them() -> None:
     longer, stiffer = par.copy(), par.copy()
     longer[names.index("L1")] *= 2
     stiffer[names.index("k1")] *= 2
-    assert alike(it.drawing(), it.drawing(stiffer)) and not alike(it.drawing(), it.drawing(longer))
+    assert same_geometry(it.drawing(), it.drawing(stiffer)) and not same_geometry(it.drawing(), it.drawing(longer))
     assert it.drawing(longer).beams[0].length == pytest.approx(1.0)
 
 
