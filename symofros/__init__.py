@@ -50,6 +50,7 @@ from symofros.errors import DescriptionError as DescriptionError
 from symofros.errors import EquilibriumError as EquilibriumError
 from symofros.errors import ExportError as ExportError
 from symofros.errors import InconsistentModelWarning as InconsistentModelWarning
+from symofros.errors import ParameterError as ParameterError
 from symofros.errors import Problem as Problem
 from symofros.errors import ShapeError as ShapeError
 from symofros.errors import SymofrosError as SymofrosError

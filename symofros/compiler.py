@@ -35,6 +35,7 @@ from symofros.generator.record import model_record
 from symofros.generator.units import UnitCompiler
 from symofros.mechanics.dynamics.functions import Request
 from symofros.mechanics.topology.graph import check
+from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.calls.kernel import LaneOptions, Precision
@@ -165,8 +166,14 @@ class Compilation:
         _warn_inconsistent(self.system)
         units = UnitCompiler(self.programs, self.record, self.options, _choose_toolchain(self.options))
         on_demand = units.functions if self.options.functions is None else None
-        built = (units.functions(requests),)
-        return Model(self.record, on_demand, built, formulas=units.formulas, beams=beams_at(self.tree))
+        return Model(
+            self.record,
+            on_demand,
+            (units.functions(requests),),
+            formulas=units.formulas,
+            beams=beams_at(self.tree),
+            parameter_check=RunTimeCheck(self.system, self.record.par_names).problems,
+        )
 
     def library(self, precision: Precision = "double") -> tuple[Path, str]:
         """Path and exported function of the shared library of the requested functions: see `compile_library`."""

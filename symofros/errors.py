@@ -87,6 +87,10 @@ class ShapeError(SymofrosError, ValueError):
     """An array does not have the shape a model function needs."""
 
 
+class ParameterError(SymofrosError, ValueError):
+    """Run-time parameters have values that the description's conditions refuse."""
+
+
 class UnknownNameError(SymofrosError, KeyError):
     """A name that is not in the model: a frame, a parameter, a function."""
 

@@ -18,7 +18,7 @@ from symofros.description.yaml.files import read_yaml, write_yaml
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.mechanics.topology.graph import find_problems
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.physics import inertia_fault
+from symofros.mechanics.topology.physics import has_physical_inertia
 
 _PATHS = "check the path; a relative one starts at the current folder"
 _READABLE = (*files.SUFFIXES, ".urdf", ".xml")
@@ -145,7 +145,7 @@ def _accept_inertias(reading: Reading) -> Reading:
     if system is None:
         return reading
     numbers = Numbers(system)
-    odd = {body.name for body in system.bodies if inertia_fault(body, numbers)}
+    odd = {body.name for body in system.bodies if not has_physical_inertia(body, numbers)}
     if not odd:
         return reading
     waived = [replace(b, waive=(*b.waive, "nonphysical_inertia")) if b.name in odd else b for b in system.bodies]

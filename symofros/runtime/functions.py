@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Self
 
@@ -11,14 +11,16 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike as ArrayLike
 
+from symofros.base.arrays import real_array
 from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, INPUTS, MODEL_FUNCTIONS, generated_with
-from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.record import ModelRecord
 
 Key = tuple[str, str]
+ParameterCheck = Callable[[Array], Sequence[Problem]]
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,7 @@ class Functions:
         beams: Gives the elastic beams at values of the run-time parameters (npar).
         threads: Number of threads that share a large batch.
         precision: Precision of what functions take and return.
+        parameter_check: Problems of sets of run-time parameters (n, npar); None where nothing is known of them.
     """
 
     def __init__(
@@ -70,11 +73,13 @@ class Functions:
         beams: Callable[[Array], tuple[ElasticBeam, ...]] | None = None,
         threads: int = 1,
         precision: Precision = "double",
+        parameter_check: ParameterCheck | None = None,
     ) -> None:
         self.record = record
         self._threads = threads
         self._precision = precision
         self._build = build
+        self._parameter_check, self._last_checked = parameter_check, b""
         self._build_formulas = formulas
         self._beams_at = beams
         self._par = np.array(record.par_default if par is None else par, dtype=np.float64)
@@ -125,11 +130,11 @@ class Functions:
         return MappingProxyType(dict(zip(self.record.par_names, self._par.tolist(), strict=True)))
 
     def with_parameters(self, **values: float) -> Self:
-        """The same compiled code with other parameter values.
+        """The same compiled code with other parameter values, judged by the conditions of the description.
 
         Raises:
             UnknownNameError: No such run-time parameter.
-            ValueError: A value is not a finite number.
+            ParameterError: A value is not a finite number, or the description refuses it (a negative mass).
         """
         par = self._par.copy()
         for name, value in values.items():
@@ -141,7 +146,56 @@ class Functions:
                     "constants are hard-coded: change them in the description",
                 )
             par[self.record.par_names.index(name)] = self._finite(name, value)
-        return self._like(par=par)
+        return self._like(par=self.checked_parameters(par))
+
+    def checked_parameters(self, par: ArrayLike) -> Array:
+        """Sets of run-time parameters (..., npar), which the conditions of the description hold for.
+
+        They are those at the description's own values: finite, positive masses, lengths and stiffnesses, moments of
+        inertia that a body can have, some inertia for each joint. `with_parameter_checks(False)` leaves them out.
+
+        Raises:
+            ShapeError: They are not an array of that shape.
+            ParameterError: A condition does not hold; names it, and the first set where it fails.
+        """
+        array = np.asarray(self._array("par", par, self.npar), dtype=np.float64)
+        if self._parameter_check is None or self.npar == 0 or array.size == 0:
+            return array
+        # Loops pass the same values again and again.
+        content = array.tobytes()
+        if content != self._last_checked:
+            problems = self._parameter_check(array.reshape(-1, self.npar))
+            if problems:
+                raise ParameterError(
+                    [replace(problem, what=f"model '{self.record.name}': {problem.what}") for problem in problems]
+                )
+            self._last_checked = content
+        return array
+
+    def with_parameter_checks(self, checks: bool) -> Self:
+        """The same model, whose run-time parameters are judged by the description's conditions, or taken as they come.
+
+        They are judged wherever they enter: `with_parameters`, `par=` of functions, of simulations and of batches. That
+        takes a microsecond where they are those of the call before, otherwise some hundred and, in batches, about ten a
+        state: loops that change them at every call may leave it out.
+
+        Raises:
+            SymofrosError: The model came without its description.
+        """
+        if not checks:
+            other = self._like()
+            other._parameter_check = None
+            return other
+        if self._parameter_check is None:
+            raise SymofrosError(
+                Problem(
+                    f"model '{self.record.name}': nothing is known of its parameters",
+                    "checks that were left out, or a model without its description",
+                    "a compiled model checks its parameters unless that is turned off",
+                    "use the model that with_parameter_checks(False) was called on",
+                )
+            )
+        return self._like()
 
     @property
     def threads(self) -> int:
@@ -206,6 +260,7 @@ class Functions:
             self._beams_at,
             threads or self._threads,
             precision or self._precision,
+            self._parameter_check,
         )
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
@@ -296,13 +351,10 @@ class Functions:
         return UnknownNameError(Problem(what, listed, rule, did_you_mean(name, known) or "use another model"))
 
     def _finite(self, name: str, value: float) -> float:
-        try:
-            number = float(value)
-        except (TypeError, ValueError):
-            number = np.nan
-        if not np.isfinite(number):
+        number = real_array(value)
+        if number is None or number.shape != () or not np.isfinite(number):
             what = f"model '{self.record.name}': parameter '{name}' is not a finite number"
-            raise ValueError(
+            raise ParameterError(
                 Problem(
                     what,
                     repr(value)[:80],
@@ -310,7 +362,7 @@ class Functions:
                     "pass par=… to a function for values that vary by state",
                 )
             )
-        return number
+        return float(number)
 
     def _one(self, name: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None, frame: str = "") -> Numbers:
         return self._call(name, self._frame(frame) if frame else "", given, par)[0]
@@ -324,7 +376,7 @@ class Functions:
         shapes = [array.shape[:-1] for array in arrays]
         par_array = None
         if par is not None:
-            par_array = self._array("par", par, self.npar)
+            par_array = self.checked_parameters(par)
             shapes.append(par_array.shape[:-1])
         batch = self._batch_shape(name, shapes, given)
         n = int(np.prod(batch))
@@ -377,17 +429,16 @@ class Functions:
         return self._kernels[name, frame]
 
     def _array(self, group: str, values: ArrayLike, size: int, dtype: npt.DTypeLike = np.float64) -> Numbers:
-        try:
-            array = np.asarray(values, dtype=dtype)
-        except (TypeError, ValueError):
+        array = real_array(values, dtype)
+        if array is None:
             raise ShapeError(
                 Problem(
                     f"model '{self.record.name}': {group} is not an array of numbers",
-                    type(values).__name__,
-                    f"{group} is an array of numbers of shape (..., {size})",
-                    self._hint(group),
+                    f"{type(values).__name__} {values!r:.60}",
+                    f"{group} is an array of real numbers of shape (..., {size})",
+                    self._hint(group) or "convert texts, dates and complex numbers before",
                 )
-            ) from None
+            )
         if group == "t":
             return array[..., np.newaxis]
         if array.ndim == 0 or array.shape[-1] != size:

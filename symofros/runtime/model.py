@@ -25,10 +25,12 @@ class Model(ConstraintFunctions, FrameFunctions):
     Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays
     (float32 after `with_precision("single")`). Results lie in memory as inputs do: with the batch as their fast axis if
     that is so in all inputs (`np.asfortranarray(q)`, `Q.T`), which is the fastest; else row by row.
-    `par=` overrides the run-time parameters (..., npar), `t=` gives the time (...,) to models that depend on it; `u=`
-    matters where a motion is prescribed, because its coordinates, speeds and their rates are inputs.
-    NaN in an argument propagates to what depends on it, so that one bad state does not spoil its batch.
-    Methods raise ShapeError where an array does not fit and UnknownNameError for a name that is not in the model.
+    `par=` overrides the run-time parameters (..., npar), judged as the description's own (`with_parameter_checks`), `t=`
+    gives the time (...,) to models that depend on it; `u=` matters where a motion is prescribed, because its coordinates,
+    speeds and their rates are inputs.
+    NaN in a state or an input propagates to what depends on it, so that one bad state does not spoil its batch.
+    Methods raise ShapeError where an array does not fit, UnknownNameError for a name that is not in the model, and
+    ParameterError for parameters that the description refuses.
     Functions may be called from several threads; C runs without the interpreter lock.
     """
 
@@ -80,10 +82,11 @@ class Model(ConstraintFunctions, FrameFunctions):
 
         Raises:
             UnknownNameError: There is no such function, frame, input or output.
+            ParameterError: The description refuses the parameters.
             ShapeError: An array is not a writeable float64 array of its shape, contiguous (of batches: which lies in
                 even steps); or n is below 1.
         """
-        values = self.parameter_values if par is None else self._array("par", par, self.npar)
+        values = self.parameter_values if par is None else self.checked_parameters(par)
         kernel = self._kernel(name, self._frame(frame) if frame else "", "frame functions are bound with their frame")
         defaults = {"u": np.array(self.record.u_default)}
         if n is None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.base.arrays import real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
@@ -25,9 +26,11 @@ def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
     Raises:
         ShapeError: It is something else.
     """
-    array = np.asarray(values, dtype=np.float64)
-    if array.shape != (size,) or not np.all(np.isfinite(array)):
-        fault = str(array.shape) if array.shape != (size,) else "a number that is not finite"
+    array = real_array(values)
+    if array is None or array.shape != (size,) or not np.all(np.isfinite(array)):
+        fault = f"{type(values).__name__} {values!r:.60}"
+        if array is not None:
+            fault = str(array.shape) if array.shape != (size,) else "a number that is not finite"
         raise ShapeError(
             Problem(
                 f"model '{model.record.name}': {name} does not fit",

@@ -61,7 +61,9 @@ def simulate(
     """
     settings = Settings.of(model, (options or SimulationOptions()).changed(changes), t_end)
     model = model.with_precision("double")
-    values = model.parameter_values if par is None else vector(model, "par", par, model.npar)
+    values = model.parameter_values
+    if par is not None:
+        values = vector(model, "par", model.checked_parameters(par), model.npar)
     q = model.neutral() if q0 is None else vector(model, "q0", q0, model.nq)
     v = np.zeros(model.nv) if v0 is None else vector(model, "v0", v0, model.nv)
     looked_for = named_events(events)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import real_array
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.layout import flat
@@ -78,10 +79,13 @@ def simulate_batch(
             Problem("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1", "leave it out")
         )
     given = sort_inputs(model, u)
+    parameters = model.parameter_values if par is None else model.checked_parameters(par)
     rows = {
         "q0": _rows(model, "q0", model.neutral() if q0 is None else q0, model.nq),
         "v0": _rows(model, "v0", np.zeros(model.nv) if v0 is None else v0, model.nv),
-        "par": _rows(model, "par", model.parameter_values if par is None else par, model.npar),
+        "par": _rows(
+            model, "par", model.parameter_values if par is None else model.checked_parameters(par), model.npar
+        ),
     }
     shape = _batch_shape(rows, given.shapes)
     n = math.prod(shape)
@@ -133,13 +137,13 @@ def _check_batch(settings: Settings, options: SimulationOptions) -> None:
 
 
 def _rows(model: Model, name: str, values: ArrayLike, size: int) -> Array:
-    array = np.asarray(values, dtype=np.float64)
-    if array.ndim == 0 or array.shape[-1] != size:
+    array = real_array(values)
+    if array is None or array.ndim == 0 or array.shape[-1] != size:
         raise ShapeError(
             Problem(
                 f"model '{model.record.name}': {name} has the wrong shape",
-                str(array.shape),
-                f"{name} has shape (..., {size})",
+                f"{type(values).__name__} {values!r:.60}" if array is None else str(array.shape),
+                f"{name} has shape (..., {size}), of real numbers",
                 "one row a trajectory, or one for all",
             )
         )

@@ -23,7 +23,7 @@ def started(model: sf.Model, w: Array) -> tuple[Array, Array]:
 
 def test_an_axisymmetric_body_precesses_regularly() -> None:
     """In the body, w turns about the axis with (C - A)/A w_z; in space, the axis turns about H with |H|/A."""
-    model = reference("torque_free_body").with_parameters(B=0.3)
+    model = reference("torque_free_body").with_parameters(B=0.3, C=0.5)
     A, C = model.parameters["A"], model.parameters["C"]
     w = np.array([0.8, 0.3, 1.5])
     q, v = started(model, w)

@@ -15,7 +15,7 @@ from symofros.description.system import System
 from symofros.diagrams.block import ModelSetup
 from symofros.diagrams.program.variants import FRICTION, friction_only
 from symofros.diagrams.tensor import Tensor
-from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
+from symofros.errors import DescriptionError, ParameterError, Problem, ShapeError, did_you_mean
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.program import Program
@@ -27,6 +27,7 @@ from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.forward.factors import Factors
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.kinematics.links import tree_kinematics
+from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import ModelRecord
@@ -98,12 +99,28 @@ class Models:
         return self._records[name]
 
     def parameters(self, name: str) -> Array:
-        """The run-time parameters of a model (npar)."""
+        """The run-time parameters of a model (npar).
+
+        Raises:
+            ParameterError: The model's description refuses them.
+        """
         record = self.record(name)
         values = np.array(record.par_default, dtype=np.float64)
         for key, value in self.setup(name).parameters.items():
             values[self._index(name, "run-time parameter", key, record.par_names)] = float(value)
+        self.check_parameters(name, values)
         return values
+
+    def check_parameters(self, name: str, values: Array) -> None:
+        """Refuse run-time parameters (npar) that the model's description does not allow.
+
+        Raises:
+            ParameterError: With the conditions that do not hold.
+        """
+        problems = RunTimeCheck(self.tree(name).system, self.record(name).par_names).problems(values[None])
+        if problems:
+            what = f"diagram '{self._diagram}': model '{name}'"
+            raise ParameterError([replace(problem, what=f"{what}: {problem.what}") for problem in problems])
 
     def start(self, name: str) -> tuple[Array, Array]:
         """The first q (nq) and v (nv) of a model."""

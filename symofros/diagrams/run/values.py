@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import real_array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Place
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
@@ -23,12 +24,13 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
     Raises:
         UnknownNameError: There is no such parameter.
         SymofrosError: A value does not fit.
+        ParameterError: The description of a model refuses its parameters.
     """
     layout = resolved.layout
     par = np.array(layout.par, dtype=np.float64)
     fields = {f"{block}.{name}": place for (block, name), place in layout.parameters.items() if block}
     for name, value in given.items():
-        array = np.asarray(value, dtype=np.float64)
+        array = real_array(value)
         if name in fields:
             place = fields[name]
         elif name in layout.par_names:
@@ -43,16 +45,18 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
                     did_you_mean(name, known),
                 )
             )
-        if array.shape not in (place.shape, ()) or not np.all(np.isfinite(array)):
+        if array is None or array.shape not in (place.shape, ()) or not np.all(np.isfinite(array)):
             raise SymofrosError(
                 Problem(
                     f"diagram: parameter '{name}' does not fit",
-                    f"{array.shape}",
+                    f"{value!r:.80}",
                     f"finite, of shape {place.shape}",
                     "give it that shape",
                 )
             )
         par[place.slice] = np.broadcast_to(array, place.shape).reshape(-1)
+    for model in resolved.wired.models.names if given else ():
+        resolved.wired.models.check_parameters(model, par[layout.parameters["", model].slice])
     return par
 
 

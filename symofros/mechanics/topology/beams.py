@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import lru_cache
+from collections.abc import Iterator, Mapping
+from functools import lru_cache, partial
 
 import numpy as np
 
 from symofros.base.rotations import Array
-from symofros.description.beam import STATION, Beam
-from symofros.description.system import System
-from symofros.description.values import ORIGIN, Value
+from symofros.description.beam import SECTION, STATION, Beam
+from symofros.description.values import ORIGIN, Value, symbols
 from symofros.errors import Problem
 from symofros.mechanics.beams.deformation import Deformation, deformation_of
 from symofros.mechanics.beams.piecewise import stations
 from symofros.mechanics.beams.shape_functions import FamilyError, Shape
+from symofros.mechanics.topology.conditions import Condition, Formulas, Sign, Term, substituted
 from symofros.mechanics.topology.numbers import Numbers
 
 # Beyond this the mass matrix loses all but four of a double's sixteen digits.
@@ -22,6 +22,8 @@ MOST_CONDITION = 1e12
 # Relative error of the quadrature of section properties that change along the beam.
 QUADRATURE_TOLERANCE = 1e-9
 _POINTS = (16, 24)
+# Stations x/L at which section properties are looked at.
+_STATIONS = np.linspace(0.0, 1.0, 33)
 
 
 def beam_problems(beam: Beam, where: str) -> Iterator[Problem]:
@@ -57,37 +59,26 @@ def beam_problems(beam: Beam, where: str) -> Iterator[Problem]:
         )
 
 
-def beam_number_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
-    """Faults of numbers, at the parameters' defaults."""
-    for beam in system.bodies:
-        if isinstance(beam, Beam):
-            where = system.origin.get(("body", beam.name), "")
-            section_problems = list(_Section(beam, numbers, where).problems())
-            yield from section_problems or _conditioning(beam, where)
+def beam_conditions(beam: Beam, where: str) -> Iterator[Condition]:
+    """Length and section properties have their signs, all along the beam."""
+    return _Section(beam, where).conditions()
+
+
+def beam_number_problems(beam: Beam, numbers: Numbers, where: str) -> Iterator[Problem]:
+    """Section properties too abrupt for the quadrature, and ill-conditioned shape functions."""
+    yield from _Section(beam, where).quadrature_problems(numbers)
+    yield from _conditioning(beam, where)
 
 
 class _Section:
     """The section's properties along one beam."""
 
-    def __init__(self, beam: Beam, numbers: Numbers, where: str) -> None:
-        self.beam, self.numbers, self.where = beam, numbers, where
-        self.length = numbers.value(beam.length)
+    def __init__(self, beam: Beam, where: str) -> None:
+        self.beam, self.where, self.what = beam, where, f"beam '{beam.name}'"
 
-    def along(self, value: Value, xi: Array) -> Array:
-        return np.array([self.numbers.extended({STATION: x * self.length}).value(value) for x in xi.tolist()])
-
-    def problems(self) -> Iterator[Problem]:
-        beam, what = self.beam, f"beam '{self.beam.name}'"
-        if not self.length > 0.0:
-            yield Problem(
-                f"{what}: length {self.length:g}",
-                f"'{beam.length}'",
-                "the length of a beam is positive",
-                "give a positive length",
-                self.where,
-            )
-            return
-        xi = np.linspace(0.0, 1.0, 33)
+    def conditions(self) -> Iterator[Condition]:
+        beam = self.beam
+        yield Condition((beam.length,), "positive", self._no_length)
         for label, needed, why in (
             ("rhoA", True, "a beam has mass all along"),
             ("EI_z", bool(beam.bend_y), "bending along y bends against EI_z"),
@@ -97,45 +88,91 @@ class _Section:
             ("rhoI_y", False, "no moment of inertia is negative"),
             ("rhoI_z", False, "no moment of inertia is negative"),
         ):
-            values = self.along(getattr(beam, label), xi)
-            at = int(np.argmin(np.where(np.isfinite(values), values, -np.inf)))
-            bad = not np.isfinite(values[at]) or values[at] < 0.0 or (needed and values[at] == 0.0)
-            if bad:
-                rule = f"{label} is {'positive' if needed else 'not negative'}: {why}"
+            rule = f"{label} is {'positive' if needed else 'not negative'}: {why}"
+            sign: Sign = "positive" if needed else "not negative"
+            yield Condition(self._margins(label), sign, partial(self._wrong_sign, label, rule))
+        yield Condition((beam.damping,), "not negative", self._negative_damping)
+
+    def _margins(self, label: str) -> tuple[Value, ...]:
+        """The property at stations; along a beam of no length, which is reported, at the root."""
+        value = getattr(self.beam, label)
+        if STATION not in symbols(value):
+            return (value,)
+        length = Term(self.beam.length).maximum(Term(0.0))
+        return tuple(substituted(value, STATION, (Term(xi) * length).value) for xi in _STATIONS.tolist())
+
+    def _no_length(self, numbers: Numbers) -> Problem:
+        return Problem(
+            f"{self.what}: length {numbers.value(self.beam.length):g}",
+            f"'{self.beam.length}'",
+            "the length of a beam is positive",
+            "give a positive length",
+            self.where,
+        )
+
+    def _wrong_sign(self, label: str, rule: str, numbers: Numbers) -> Problem:
+        values, length = self._along(label, _STATIONS, numbers), numbers.value(self.beam.length)
+        at = int(np.argmin(np.where(np.isfinite(values), values, -np.inf)))
+        return Problem(
+            f"{self.what}: {label} = {values[at]:g} at x = {_STATIONS[at] * length:g}",
+            f"'{getattr(self.beam, label)}'",
+            rule,
+            "mend the value",
+            self.where,
+        )
+
+    def _negative_damping(self, numbers: Numbers) -> Problem:
+        return Problem(
+            f"{self.what}: damping {numbers.value(self.beam.damping):g}",
+            f"'{self.beam.damping}'",
+            "a retardation time is not negative",
+            "give zero or more seconds",
+            self.where,
+        )
+
+    def _along(self, label: str, xi: Array, numbers: Numbers) -> Array:
+        return section_values(self.beam, label, xi, numbers.parameters)[0]
+
+    def quadrature_problems(self, numbers: Numbers) -> Iterator[Problem]:
+        """Properties whose integral is not determined by their values at stations."""
+        for label in SECTION:
+            error = float(quadrature_error(self.beam, label, numbers.parameters)[0])
+            if not error <= QUADRATURE_TOLERANCE:
                 yield Problem(
-                    f"{what}: {label} = {values[at]:g} at x = {xi[at] * self.length:g}",
-                    f"'{getattr(beam, label)}'",
-                    rule,
-                    "mend the value",
+                    f"{self.what}: {label} changes too abruptly along x",
+                    f"its integral is uncertain by {error:.1g}",
+                    f"section properties are smooth: quadrature errs by less than {QUADRATURE_TOLERANCE:g}",
+                    "split the beam where the section jumps",
                     self.where,
                 )
-            elif np.ptp(values) > 0.0:
-                yield from self._quadrature(label)
-        if not self.numbers.value(beam.damping) >= 0.0:
-            yield Problem(
-                f"{what}: damping {self.numbers.value(beam.damping):g}",
-                f"'{beam.damping}'",
-                "a retardation time is not negative",
-                "give zero or more seconds",
-                self.where,
-            )
 
-    def _quadrature(self, label: str) -> Iterator[Problem]:
-        """The total of a property by two quadratures: their difference is the error of the coarser one."""
-        knots = sorted({float(k) for f in deformation_of(self.beam).functions for k in f.phi.knots} or {0.0, 1.0})
-        totals = []
-        for points in _POINTS:
-            xi, w = stations(knots, points)
-            totals.append(float(np.dot(self.along(getattr(self.beam, label), np.array(xi)), w)))
-        error = abs(totals[0] / totals[1] - 1.0)
-        if error > QUADRATURE_TOLERANCE:
-            yield Problem(
-                f"beam '{self.beam.name}': {label} changes too abruptly along x",
-                f"its integral is uncertain by {error:.1g}",
-                f"section properties are smooth: quadrature errs by less than {QUADRATURE_TOLERANCE:g}",
-                "split the beam where the section jumps",
-                self.where,
-            )
+
+def section_values(beam: Beam, label: str, xi: Array, values: Mapping[str, Array | float]) -> Array:
+    """A section property at stations xi = x/L (n) for each of several states (states, n).
+
+    Args:
+        beam: Beam.
+        label: Name of the property.
+        xi: Stations (n).
+        values: Number of each parameter, or one for each state (states).
+    """
+    columns = {name: np.reshape(value, (-1, 1)) for name, value in values.items()}
+    x = Formulas([beam.length])(columns)[0] * xi[None, :]
+    (along,) = Formulas([getattr(beam, label)])({**columns, STATION: x})
+    return np.array(np.broadcast_to(along, np.broadcast_shapes(np.shape(along), x.shape)))
+
+
+def quadrature_error(beam: Beam, label: str, values: Mapping[str, Array | float]) -> Array:
+    """Relative difference of a property's total by two quadratures, which is the error of the coarser one (states)."""
+    if STATION not in symbols(getattr(beam, label)):
+        return np.zeros(1)
+    knots = sorted({float(k) for f in deformation_of(beam).functions for k in f.phi.knots} or {0.0, 1.0})
+    totals = []
+    for points in _POINTS:
+        xi, w = stations(knots, points)
+        totals.append(section_values(beam, label, np.array(xi), values) @ np.array(w))
+    scale = np.abs(totals[1])
+    return np.abs(totals[0] - totals[1]) / np.where(scale > 0.0, scale, 1.0)
 
 
 def _conditioning(beam: Beam, where: str) -> Iterator[Problem]:

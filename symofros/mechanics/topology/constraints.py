@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 
 from symofros.description.constraints import Closure, Nonholonomic, Rod
 from symofros.description.forces import Anchor
 from symofros.description.joint import WORLD
 from symofros.description.system import Body, System
+from symofros.description.values import Value
 from symofros.errors import Problem, did_you_mean
+from symofros.mechanics.topology.conditions import Condition
 from symofros.mechanics.topology.coordinates import speed_symbols
 from symofros.mechanics.topology.frames import frame_remedy, frames_of
 from symofros.mechanics.topology.numbers import Numbers
@@ -85,16 +88,21 @@ def constraint_problems(
             )
 
 
-def constraint_number_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
-    """Lengths and radii that are none."""
+def constraint_conditions(system: System) -> Iterator[Condition]:
+    """Lengths and radii are positive."""
     for item in system.constraints:
         for label in ("length", "radius"):
             value = getattr(item, label, None)
-            if value is not None and not numbers.value(value) > 0.0:
-                yield Problem(
-                    f"constraint '{item.name}': {label} {numbers.value(value):g}",
-                    f"'{value}'",
-                    f"the {label} is positive",
-                    "for two points that coincide, use a closure",
-                    system.origin.get(("constraint", item.name), ""),
-                )
+            if value is not None:
+                where = system.origin.get(("constraint", item.name), "")
+                yield Condition((value,), "positive", partial(_not_positive, item.name, label, value, where))
+
+
+def _not_positive(name: str, label: str, value: Value, where: str, numbers: Numbers) -> Problem:
+    return Problem(
+        f"constraint '{name}': {label} {numbers.value(value):g}",
+        f"'{value}'",
+        f"the {label} is positive",
+        "for two points that coincide, use a closure",
+        where,
+    )

@@ -16,14 +16,16 @@ from symofros.description.system import Body, RigidBody, System
 from symofros.errors import DescriptionError, Problem, did_you_mean, first_of
 from symofros.expr.expression import CONSTANTS
 from symofros.expr.ops import FUNCTIONS
-from symofros.mechanics.topology.beams import beam_number_problems, beam_problems
-from symofros.mechanics.topology.constraints import anchor_problems, constraint_number_problems, constraint_problems
+from symofros.mechanics.topology.beams import beam_conditions, beam_number_problems, beam_problems
+from symofros.mechanics.topology.conditions import violations
+from symofros.mechanics.topology.constraints import anchor_problems, constraint_conditions, constraint_problems
 from symofros.mechanics.topology.coordinates import coordinate_names, speed_symbols
-from symofros.mechanics.topology.formulas import TIME, formula_problems, power_problems, stated_values
+from symofros.mechanics.topology.formulas import TIME, formula_problems, power_problems
 from symofros.mechanics.topology.frames import frame_remedy, frames_of
 from symofros.mechanics.topology.joints import IDENTIFIER, joint_number_problems, joint_problems
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.physics import inertia_problems, massless_tip_problems
+from symofros.mechanics.topology.physics import inertia_problems, massless_tip_conditions
+from symofros.mechanics.topology.run_time import rotations_of, value_conditions
 
 # Systems in which no problem was found, by identity: nothing in a system can change, and `replace` makes another one.
 _sound: WeakValueDictionary[int, System] = WeakValueDictionary()
@@ -70,7 +72,9 @@ def _look_for_problems(system: System, broken: frozenset[str]) -> list[Problem]:
         numbers = Numbers(system)
         problems = first_of(checker.values(numbers))
         if not problems:
-            problems = first_of(chain(inertia_problems(system, numbers), massless_tip_problems(system, numbers)))
+            problems = first_of(
+                chain(inertia_problems(system, numbers), violations(massless_tip_conditions(system), numbers))
+            )
     elif not any("cycle" in p.what for p in problems):
         # Physics of single bodies can be judged even where the tree can't.
         problems += first_of(inertia_problems(system, Numbers(system)))
@@ -325,22 +329,15 @@ class _Checker:
 
     def values(self, numbers: Numbers) -> Iterator[Problem]:
         """That every constant is a finite number, every rotation a rotation, every axis a direction."""
-        for stated in stated_values(self.system):
-            if stated.scope == "parameters":
-                yield from numbers.value_problems(stated.what, stated.value, self.where(*stated.key))
+        yield from violations(value_conditions(self.system), numbers)
         for body in self.system.bodies:
-            for what, rotation, where in self._rotations(body):
+            for what, rotation, where in rotations_of(self.system, body):
                 yield from numbers.rotation_problems(what, rotation, where)
-        yield from joint_number_problems(self.system, numbers)
-        yield from beam_number_problems(self.system, numbers)
-        yield from constraint_number_problems(self.system, numbers)
-
-    def _rotations(self, body: Body) -> Iterator[tuple[str, object, str]]:
-        if body.joint is not None:
-            joint = body.joint
-            yield f"joint '{joint.name}': rotation", joint.rotation, self.where("joint", joint.name)
-        if body.inertia is not None:
-            yield f"body '{body.name}': inertia rotation", body.inertia.rotation, self.where("body", body.name)
-        for frame in body.frames:
-            what = f"frame '{frame.name}' of body '{body.name}': rotation"
-            yield what, frame.rotation, self.where("frame", body.name, frame.name)
+            if body.joint is not None:
+                yield from joint_number_problems(body.joint, numbers, self.where("joint", body.joint.name))
+        for body in self.system.bodies:
+            if isinstance(body, Beam):
+                where = self.where("body", body.name)
+                sections = list(violations(beam_conditions(body, where), numbers))
+                yield from sections or beam_number_problems(body, numbers, where)
+        yield from violations(constraint_conditions(self.system), numbers)

@@ -8,7 +8,6 @@ from collections.abc import Collection, Iterator
 import numpy as np
 
 from symofros.description.joint import WORLD, Joint
-from symofros.description.system import System
 from symofros.errors import Problem, did_you_mean
 from symofros.mechanics.topology.coordinates import joint_sizes
 from symofros.mechanics.topology.formulas import element_problems
@@ -108,27 +107,22 @@ def _general_problems(joint: Joint, where: str) -> Iterator[Problem]:
         )
 
 
-def joint_number_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
+def joint_number_problems(joint: Joint, numbers: Numbers, where: str) -> Iterator[Problem]:
     """Faults of numbers: axes of no length, matrices that are no rotations, coinciding axes."""
-    for body in system.bodies:
-        joint = body.joint
-        if joint is None:
-            continue
-        where = system.origin.get(("joint", joint.name), "")
-        if "axis" in joint.traits.entries:
-            yield from numbers.axis_problems(joint, where)
-        if "axis2" in joint.traits.entries:
-            one, two = numbers.values(joint.axis), numbers.values(joint.axis2)
-            if np.linalg.norm(np.cross(one, two)) <= 1e-9 * max(1.0, float(np.linalg.norm(one) * np.linalg.norm(two))):
-                yield Problem(
-                    f"joint '{joint.name}': the axes of a {joint.kind} joint coincide",
-                    f"{one} and {two}",
-                    "axis and axis2 are not parallel",
-                    "use a revolute joint, or another axis2",
-                    where,
-                )
-        if joint.traits.user_defined:
-            yield from _sampled_rotation(joint, numbers, where)
+    if "axis" in joint.traits.entries:
+        yield from numbers.axis_problems(joint, where)
+    if "axis2" in joint.traits.entries:
+        one, two = numbers.values(joint.axis), numbers.values(joint.axis2)
+        if np.linalg.norm(np.cross(one, two)) <= 1e-9 * max(1.0, float(np.linalg.norm(one) * np.linalg.norm(two))):
+            yield Problem(
+                f"joint '{joint.name}': the axes of a {joint.kind} joint coincide",
+                f"{one} and {two}",
+                "axis and axis2 are not parallel",
+                "use a revolute joint, or another axis2",
+                where,
+            )
+    if joint.traits.user_defined:
+        yield from _sampled_rotation(joint, numbers, where)
 
 
 def _sampled_rotation(joint: Joint, numbers: Numbers, where: str) -> Iterator[Problem]:

@@ -32,8 +32,8 @@ class Numbers:
         self.parameters = {**system.parameter_values(), **(more or {})}
 
     def extended(self, more: Mapping[str, float]) -> Numbers:
-        """Numbers of the system with values of further symbols, such as coordinates."""
-        return Numbers(self.system, more)
+        """The same numbers with values of further symbols, such as coordinates."""
+        return Numbers(self.system, {**self.parameters, **more})
 
     def value(self, value: Value) -> float:
         """The number of a value; NaN where it has none."""
@@ -63,17 +63,6 @@ class Numbers:
         if rotation.kind == "quaternion":
             return quaternion_matrix(x / norm)
         return _about(direction / norm, x[3])
-
-    def value_problems(self, what: str, value: Value, where: str) -> Iterator[Problem]:
-        """A value that is not finite at the defaults."""
-        if not math.isfinite(self.value(value)):
-            yield Problem(
-                f"{what}: not a finite number at the parameters' values",
-                f"'{value}'",
-                "every formula is finite at the default parameters",
-                "mind divisions by zero and function domains",
-                where,
-            )
 
     def rotation_problems(self, what: str, rotation: Any, where: str) -> Iterator[Problem]:
         """A rotation that is none."""

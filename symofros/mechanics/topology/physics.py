@@ -3,83 +3,128 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 
 import numpy as np
 
-from symofros.base.rotations import Array, skew
+from symofros.base.rotations import Array
 from symofros.description.beam import STATION, Beam
-from symofros.description.system import Body, RigidBody, System
+from symofros.description.system import Body, Inertia, RigidBody, System
+from symofros.description.values import Value
 from symofros.errors import Problem
+from symofros.mechanics.topology.conditions import Condition, Formulas, Term, substituted, violations
 from symofros.mechanics.topology.numbers import Numbers
 
 # A thin rod or plate meets the triangle inequality with equality; its file's digits may miss it by rounding.
 PHYSICAL_TOLERANCE = 1e-6
+# Moments below this are nothing [kg m^2].
+_LEAST_MOMENT = 1e-12
+_ZERO, _HALF = Term(0.0), Term(0.5)
 
 
 def inertia_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
     """Bodies whose inertia no distribution of mass can have, unless they waive the check."""
+    return violations(inertia_conditions(system), numbers)
+
+
+def inertia_conditions(system: System) -> Iterator[Condition]:
+    """Each body has an inertia that some distribution of mass has, unless it waives the check."""
     for body in system.bodies:
-        fault = inertia_fault(body, numbers)
-        if fault:
-            yield Problem(
-                f"body '{body.name}': non-physical inertia",
-                fault,
-                "mass >= 0; principal moments about the mass centre >= 0, none above the sum of the other two",
-                "mend the numbers (is the matrix about the mass centre?), or waive: [nonphysical_inertia]",
-                system.origin.get(("body", body.name), ""),
-            )
+        yield from _body_conditions(body, system.origin.get(("body", body.name), ""))
 
 
-def inertia_fault(body: Body, numbers: Numbers) -> str:
-    """What no distribution of mass can have of a body's inertia; "" for none, and where the check is waived."""
-    if isinstance(body, Beam) or body.inertia is None or "nonphysical_inertia" in body.waive:
-        return ""
-    mass = numbers.value(body.inertia.mass)
-    if mass < 0.0:
-        return f"mass {mass:g}"
-    J = moments_about_center(body, numbers)
-    if not (np.isfinite(mass) and np.all(np.isfinite(J))):
-        return ""  # Reported as a value that is not finite.
+def has_physical_inertia(body: Body, numbers: Numbers) -> bool:
+    """Whether some distribution of mass has a body's inertia, or the check is waived."""
+    return next(violations(_body_conditions(body, ""), numbers), None) is None
+
+
+def _body_conditions(body: Body, where: str) -> Iterator[Condition]:
+    if isinstance(body, RigidBody) and body.inertia is not None and "nonphysical_inertia" not in body.waive:
+        problem = partial(_nonphysical, body, where)
+        yield Condition((body.inertia.mass,), "not negative", problem)
+        yield Condition(_physical_margins(body.inertia), "positive", problem)
+
+
+def _physical_margins(inertia: Inertia) -> tuple[Value, ...]:
+    """What is positive where moments are physical, and zero without mass.
+
+    The second moments E = tr(J)/2 - J of a mass distribution are positive semidefinite, which is the triangle
+    inequality of the principal moments of J. With a slack on the diagonal the leading minors tell (Sylvester).
+    """
+    mass, J = Term(inertia.mass), _central_moments(inertia)
+    size = sum((entry * entry for row in J for entry in row), _ZERO).sqrt()
+    slack = _HALF * Term(PHYSICAL_TOLERANCE) * size.maximum(Term(_LEAST_MOMENT))
+    half_trace = _HALF * (J[0][0] + J[1][1] + J[2][2])
+    (a, d, e), (_, b, f), (_, _, c) = [
+        [half_trace - J[i][i] + slack if i == j else _ZERO - J[i][j] for j in range(3)] for i in range(3)
+    ]
+    minor = a * b - d * d
+    third = c * minor - a * f * f - b * e * e + Term(2.0) * d * e * f
+    # A mass, or moments too small to count.
+    some_mass = mass.maximum(Term(PHYSICAL_TOLERANCE * _LEAST_MOMENT) - size)
+    return tuple(term.value for term in (some_mass, a, minor, third))
+
+
+def _nonphysical(body: RigidBody, where: str, numbers: Numbers) -> Problem:
+    return Problem(
+        f"body '{body.name}': non-physical inertia",
+        _fault(body, numbers),
+        "mass >= 0; principal moments about the mass centre >= 0, none above the sum of the other two",
+        "mend the numbers (is the matrix about the mass centre?), or waive: [nonphysical_inertia]",
+        where,
+    )
+
+
+def _fault(body: RigidBody, numbers: Numbers) -> str:
+    """What is wrong with an inertia that is not physical."""
+    assert body.inertia is not None
+    mass, J = numbers.value(body.inertia.mass), moments_about_center(body, numbers)
+    if not mass >= 0.0 or not np.all(np.isfinite(J)):
+        return f"mass {mass:g}" if not mass >= 0.0 else "moments that are not finite"
     moments = np.linalg.eigvalsh(J)
-    slack = PHYSICAL_TOLERANCE * max(float(np.abs(moments).max()), 1e-12)
-    shown = ", ".join(f"{moment:.6g}" for moment in moments)
-    if moments[0] < -slack:
-        return f"principal moments {shown}: one is negative"
-    if moments[2] > moments[0] + moments[1] + slack:
-        return f"principal moments {shown}: the largest exceeds the sum of the others"
-    if mass == 0.0 and moments[2] > slack:
-        return f"principal moments {shown} without mass"
-    return ""
+    shown = f"principal moments {', '.join(f'{moment:.6g}' for moment in moments)}"
+    if moments[0] < -PHYSICAL_TOLERANCE * float(np.abs(moments).max()):
+        return f"{shown}: one is negative"
+    return f"{shown}: the largest exceeds the sum of the others" if mass > 0.0 else f"{shown} without mass"
+
+
+def _central_moments(inertia: Inertia) -> list[list[Term]]:
+    """The inertia matrix about the mass centre, along the axes it was stated in [kg m^2]."""
+    xx, yy, zz, xy, xz, yz = map(Term, inertia.moments)
+    J = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+    if inertia.about != "body":
+        return J
+    mass, c = Term(inertia.mass), [Term(value) for value in inertia.center_of_mass]
+    square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2]
+    return [
+        [J[i][j] - mass * (square - c[i] * c[i] if i == j else _ZERO - c[i] * c[j]) for j in range(3)] for i in range(3)
+    ]
 
 
 def moments_about_center(body: RigidBody, numbers: Numbers) -> Array:
     """The inertia matrix about the mass centre, along the axes it was stated in (3, 3) [kg m^2]."""
     assert body.inertia is not None
-    xx, yy, zz, xy, xz, yz = numbers.values(body.inertia.moments)
-    J = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    if body.inertia.about == "body":
-        cross = skew(numbers.values(body.inertia.center_of_mass))
-        J = J + numbers.value(body.inertia.mass) * cross @ cross
-    return J
+    entries = [entry.value for row in _central_moments(body.inertia) for entry in row]
+    return np.array(Formulas(entries)(numbers.parameters)).reshape(3, 3)
 
 
-def _weight(body: Body, numbers: Numbers) -> tuple[float, float]:
-    """Absolute mass [kg] and largest moment of inertia [kg m^2] of a body."""
+def _weight(body: Body) -> tuple[Term, Term]:
+    """Absolute mass [kg] and sum of absolute moments of inertia [kg m^2] of a body."""
     if isinstance(body, Beam):
-        middle = numbers.extended({STATION: 0.5 * numbers.value(body.length)})
-        return abs(middle.value(body.rhoA) * middle.value(body.length)), 0.0
+        length = Term(body.length)
+        return (Term(substituted(body.rhoA, STATION, (_HALF * length).value)) * length).absolute(), _ZERO
     if body.inertia is None:
-        return 0.0, 0.0
-    return abs(numbers.value(body.inertia.mass)), float(np.abs(numbers.values(body.inertia.moments)).max())
+        return _ZERO, _ZERO
+    return Term(body.inertia.mass).absolute(), sum((Term(x).absolute() for x in body.inertia.moments), _ZERO)
 
 
-def massless_tip_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
-    """Joints that move no mass at all: the mass matrix would be singular at every configuration."""
-    mass: dict[str, float] = {}
-    turning: dict[str, float] = {}
+def massless_tip_conditions(system: System) -> Iterator[Condition]:
+    """Each joint moves some mass, or the mass matrix would be singular at every configuration."""
+    mass: dict[str, Term] = {}
+    turning: dict[str, Term] = {}
     parent_of = {body.name: body.joint.parent for body in system.bodies if body.joint is not None}
     for body in system.bodies:
-        own, moments = _weight(body, numbers)
+        own, moments = _weight(body)
         mass[body.name], turning[body.name] = own, own + moments
     for name in _tips_first(parent_of):
         parent = parent_of[name]
@@ -91,14 +136,40 @@ def massless_tip_problems(system: System, numbers: Numbers) -> Iterator[Problem]
         if joint is None or joint.kind == "fixed" or "massless_tip" in body.waive:
             continue
         inertia = mass if joint.traits.translates else turning
-        if inertia[body.name] == 0.0:
-            yield Problem(
-                f"body '{body.name}': joint '{joint.name}' moves no mass",
-                "no inertia on this body or on anything it carries",
-                "each moving joint carries some inertia, or the mass matrix is singular",
-                "give an inertia, make the joint fixed, or waive: [massless_tip] or load(…, waive=['massless_tip'])",
-                system.origin.get(("body", body.name), ""),
-            )
+        where = system.origin.get(("body", body.name), "")
+        yield Condition((inertia[body.name].value,), "positive", partial(_massless_tip, body.name, joint.name, where))
+
+
+def moment_conditions(system: System) -> Iterator[Condition]:
+    """Each tip of the tree has a moment of inertia about the axis that it turns about.
+
+    Descriptions may lack it: kinematics needs none. Run-time parameters may not take it away.
+    """
+    parents = {body.joint.parent for body in system.bodies if body.joint is not None}
+    for body in system.bodies:
+        joint = body.joint
+        if joint is None or not isinstance(body, RigidBody) or body.inertia is None or body.name in parents:
+            continue
+        if joint.traits.turns_about != "axis" or joint.traits.translates or joint.rotors:
+            continue
+        a, c = ([Term(value) for value in vector] for vector in (joint.axis, body.inertia.center_of_mass))
+        arm = [a[i - 2] * c[i - 1] - a[i - 1] * c[i - 2] for i in range(3)]
+        moment = _weight(body)[1] + Term(joint.armature).absolute()
+        if body.inertia.about != "body":
+            # Not the moment itself, but zero where that is, and safe from overflow.
+            moment += Term(body.inertia.mass).absolute() * sum((x.absolute() for x in arm), _ZERO)
+        where = system.origin.get(("body", body.name), "")
+        yield Condition((moment.value,), "positive", partial(_massless_tip, body.name, joint.name, where))
+
+
+def _massless_tip(body: str, joint: str, where: str, numbers: Numbers) -> Problem:
+    return Problem(
+        f"body '{body}': joint '{joint}' moves no mass",
+        "no inertia on this body or on anything it carries, as the joint moves it",
+        "each moving joint carries some inertia, or the mass matrix is singular",
+        "give an inertia, make the joint fixed, or waive: [massless_tip] or load(…, waive=['massless_tip'])",
+        where,
+    )
 
 
 def _tips_first(parent_of: Mapping[str, str]) -> list[str]:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import real_array
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
@@ -103,17 +104,14 @@ def finite_array(what: str, values: ArrayLike, shape: tuple[int | str, ...], rem
     Raises:
         ShapeError: They are not such an array.
     """
-    try:
-        array = np.array(values, dtype=np.float64) if np.asarray(values).dtype.kind in "fiu" else None
-    except ValueError:  # Rows of unequal length.
-        array = None
+    array = real_array(values)
     fits = (
         array is not None
         and array.ndim == len(shape)
         and all(isinstance(n, str) or n == size for n, size in zip(shape, array.shape, strict=True))
     )
     if array is not None and fits and np.all(np.isfinite(array)):
-        return array
+        return np.array(array)
     if array is None:
         seen = f"{type(values).__name__} {values!r:.60}"
     else:

@@ -190,6 +190,6 @@ def test_what_else_is_refused() -> None:
     with pytest.raises(sf.ShapeError, match=r"'layout' can't be bound(.|\n)*'rows' or 'columns'"):
         m.bind("mass_matrix", n=4, layout="diagonal")  # type: ignore[arg-type]
     with pytest.raises(sf.ShapeError, match=rf"'par' can't be bound(.|\n)*\(4, {m.npar}\): of each state"):
-        m.bind("mass_matrix", n=4, par=np.zeros((3, m.npar)))
+        m.bind("mass_matrix", n=4, par=np.tile(m.parameter_values, (3, 1)))
     with pytest.raises(sf.ShapeError, match=r"'par' can't be bound(.|\n)*of one state"):
-        m.bind("mass_matrix", par=np.zeros((3, m.npar)))
+        m.bind("mass_matrix", par=np.tile(m.parameter_values, (3, 1)))

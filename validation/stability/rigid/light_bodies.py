@@ -51,7 +51,8 @@ def pendulum(stiffness: float) -> sf.Model:
 
 def swing(mass: float, h: float, stiffness: float, method: str) -> sf.Trajectory:
     """From a small angle; gravity and spring."""
-    m = pendulum(stiffness).with_parameters(m2=mass)
+    # A mass of zero is one of the points, whose verdict is the subject.
+    m = pendulum(stiffness).with_parameter_checks(False).with_parameters(m2=mass)
     return simulate(m, [0.02, 0.02], t_end=STEPS * h, method=method, dt=h, adaptive=False, every=10)
 
 

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from symofros.base.arrays import real_array
 from symofros.base.options import Options
 from symofros.compiler import compile_system, plan
 from symofros.description.constraints import Closure, Rolling
@@ -106,26 +107,29 @@ class Mechanism:
 
         Raises:
             ShapeError: An array does not fit the model.
+            ParameterError: The description refuses the parameters.
         """
         model = self.model
         return State(
             model.neutral() if q is None else self._vector("q", q, model.nq),
             np.array(model.record.u_default) if u is None else self._vector("u", u, model.nu),
-            np.array(model.parameter_values) if par is None else self._vector("par", par, model.npar),
+            np.array(model.checked_parameters(self._vector("par", par, model.npar)))
+            if par is not None
+            else np.array(model.parameter_values),
         )
 
     def _vector(self, what: str, given: Any, size: int) -> Array:
-        array = np.array(given, dtype=np.float64)
-        if array.shape != (size,):
+        array = real_array(given)
+        if array is None or array.shape != (size,):
             raise ShapeError(
                 Problem(
                     f"view of '{self.system.name}': {what} has the wrong shape",
-                    str(array.shape),
+                    f"{given!r:.60}" if array is None else str(array.shape),
                     f"{what} has shape ({size},)",
                     "one state is shown at a time; motions are played",
                 )
             )
-        return array
+        return np.array(array)
 
     def posture(
         self, q: ArrayLike, u: ArrayLike | None = None, par: ArrayLike | None = None, exaggeration: float = 1.0

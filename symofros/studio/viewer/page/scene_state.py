@@ -85,12 +85,15 @@ class SceneState:
 
         Raises:
             UnknownNameError: There is no such slider or parameter.
+            ParameterError: The description refuses the parameters.
         """
         chosen = self.state.par.copy()
         for name, value in par.items():
             chosen[_index("parameter", self.mechanism.model.names.par, name)] = value
         labels = [slider.label for slider in self.sliders]
-        return {_index("coordinate", labels, name): value for name, value in values.items()}, chosen
+        return {_index("coordinate", labels, name): value for name, value in values.items()}, (
+            self.mechanism.model.checked_parameters(chosen)
+        )
 
     def _posture(self) -> Posture:
         return self.mechanism.posture(self.state.q, self.state.u, self.state.par, self.exaggeration)

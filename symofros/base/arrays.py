@@ -1,0 +1,28 @@
+"""What counts as an array of numbers."""
+
+from __future__ import annotations
+
+import numbers
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from numpy.typing import ArrayLike
+
+
+def real_array(values: ArrayLike, dtype: npt.DTypeLike = np.float64) -> npt.NDArray[Any] | None:
+    """The values as an array of real numbers; None where some are not: texts, dates, complex numbers, None.
+
+    NumPy would read texts and dates, make NaN of None, and drop imaginary parts.
+
+    Args:
+        values: Values.
+        dtype: Type of the array's numbers.
+    """
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind == "O" and not all(isinstance(value, numbers.Real) for value in array.flat):
+            return None
+        return np.asarray(array, dtype=dtype) if array.dtype.kind in "fiubO" else None
+    except (TypeError, ValueError):  # Rows of unequal length, for instance.
+        return None

@@ -1,0 +1,210 @@
+"""Conditions on the numbers of a description: margins that are not negative, as formulas of its parameters.
+
+Each is stated once. A description is judged at its parameters' defaults, run-time parameters at their values, whole
+batches of them at once, and exported C by the same formulas.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.base.rotations import Array
+from symofros.description.values import Value, symbols
+from symofros.errors import Problem
+from symofros.expr.expression import CONSTANTS, Expression
+from symofros.expr.ops import OPS
+from symofros.mechanics.topology.numbers import Numbers
+
+# What a margin must be, besides finite.
+Sign = Literal["positive", "not negative", "any"]
+
+
+class Condition(NamedTuple):
+    """What numbers of a description must satisfy.
+
+    Attributes:
+        margins: Formulas of parameters, each of which has the sign.
+        sign: Sign of the margins.
+        problem: What is wrong where a margin does not have it, from the numbers.
+    """
+
+    margins: tuple[Value, ...]
+    sign: Sign
+    problem: Callable[[Numbers], Problem]
+
+    @property
+    def symbols(self) -> frozenset[str]:
+        """Parameters that the margins depend on."""
+        return frozenset[str]().union(*map(symbols, self.margins))
+
+
+class Formulas:
+    """Formulas evaluated for many states at once, a part that several of them share as one object only once.
+
+    Args:
+        formulas: Numbers and formulas.
+    """
+
+    def __init__(self, formulas: Sequence[Value]) -> None:
+        # In order: numbers, symbols, and operations with the places of their operands.
+        self._steps: list[float | str | tuple[Callable[..., Any], list[int]]] = []
+        self._places: dict[float | str, int] = {}
+        self._results = [self._place(formula) for formula in formulas]
+
+    def _place(self, formula: Value) -> int:
+        """The place of a formula among the steps."""
+        if not isinstance(formula, Expression) or formula.kind == "number":
+            key: float | str = formula.number if isinstance(formula, Expression) else formula
+        elif formula.kind == "symbol":
+            key = CONSTANTS.get(formula.name, formula.name)
+        else:
+            key = f"operation {id(formula)}"
+        if key not in self._places:
+            step: float | str | tuple[Callable[..., Any], list[int]] = key
+            if isinstance(formula, Expression) and formula.args:
+                rule = _ARITHMETIC.get(formula.kind) or OPS[formula.kind].rule
+                step = rule, [self._place(arg) for arg in formula.args]
+            self._places[key] = len(self._steps)
+            self._steps.append(step)
+        return self._places[key]
+
+    def __call__(self, values: Mapping[str, Array | float]) -> list[Array | float]:
+        """The values; NaN or infinite outside a formula's domain.
+
+        Args:
+            values: Number of each symbol, or an array of one for each state.
+        """
+        known: list[Any] = []
+        with np.errstate(all="ignore"):
+            for step in self._steps:
+                if isinstance(step, tuple):
+                    rule, operands = step
+                    known.append(rule(*[known[i] for i in operands]))
+                else:
+                    known.append(values[step] if isinstance(step, str) else step)
+        return [known[i] for i in self._results]
+
+
+class Conditions:
+    """Several conditions, judged together.
+
+    Args:
+        conditions: Conditions.
+    """
+
+    def __init__(self, conditions: Iterable[Condition]) -> None:
+        self.conditions = tuple(conditions)
+        self._formulas = Formulas([margin for condition in self.conditions for margin in condition.margins])
+        signs = [condition.sign for condition in self.conditions for _ in condition.margins]
+        self._positive = np.array([[sign == "positive"] for sign in signs], dtype=bool).reshape(-1, 1)
+        self._any = np.array([[sign == "any"] for sign in signs], dtype=bool).reshape(-1, 1)
+        self._first = np.cumsum([0, *(len(condition.margins) for condition in self.conditions)])[:-1]
+
+    def violated(self, values: Mapping[str, Array | float], states: int = 1) -> npt.NDArray[np.bool_]:
+        """Where a margin lacks its sign, or is not finite: (conditions, states).
+
+        Args:
+            values: Number of each parameter, or an array of one for each state.
+            states: Number of states.
+        """
+        if not self.conditions:
+            return np.zeros((0, states), dtype=bool)
+        margins = np.empty((len(self._any), states))
+        for row, margin in zip(margins, self._formulas(values), strict=True):
+            row[:] = margin
+        with np.errstate(invalid="ignore"):
+            holds = np.isfinite(margins) & (self._any | np.where(self._positive, margins > 0.0, margins >= 0.0))
+        return np.logical_or.reduceat(~holds, self._first, axis=0)
+
+
+def violations(conditions: Iterable[Condition], numbers: Numbers) -> Iterator[Problem]:
+    """The problems of conditions that do not hold; those of names that have no value are passed over."""
+    judged = Conditions(c for c in conditions if c.symbols <= numbers.parameters.keys())
+    for condition, violated in zip(judged.conditions, judged.violated(numbers.parameters), strict=True):
+        if violated[0]:
+            yield condition.problem(numbers)
+
+
+_ARITHMETIC: dict[str, Callable[..., Any]] = {
+    "add": np.add,
+    "sub": np.subtract,
+    "mul": np.multiply,
+    "div": np.divide,
+    "neg": np.negative,
+    "sqrt": np.sqrt,
+}
+
+
+class Term:
+    """A number or a formula with the operators of arithmetic, for margins that are written like equations.
+
+    Args:
+        value: Number or formula.
+    """
+
+    __slots__ = ("value",)
+
+    def __init__(self, value: Value) -> None:
+        self.value = value
+
+    def __add__(self, other: Term) -> Term:
+        return _combined("add", self, other)
+
+    def __sub__(self, other: Term) -> Term:
+        return _combined("sub", self, other)
+
+    def __mul__(self, other: Term) -> Term:
+        return _combined("mul", self, other)
+
+    def sqrt(self) -> Term:
+        """Square root."""
+        return _combined("sqrt", self)
+
+    def maximum(self, other: Term) -> Term:
+        """The larger of two."""
+        return _combined("max", self, other)
+
+    def absolute(self) -> Term:
+        """Absolute value."""
+        return _combined("abs", self)
+
+
+def _combined(kind: str, *terms: Term) -> Term:
+    values = [term.value for term in terms]
+    numbers = [value for value in values if not isinstance(value, Expression)]
+    if len(numbers) == len(values):
+        return Term(_ON_NUMBERS[kind](*numbers))
+    return Term(
+        Expression(kind, tuple(v if isinstance(v, Expression) else Expression("number", number=v) for v in values))
+    )
+
+
+_ON_NUMBERS: dict[str, Callable[..., float]] = {
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "sqrt": math.sqrt,
+    "max": max,
+    "abs": abs,
+}
+
+
+def substituted(value: Value, name: str, replacement: Value) -> Value:
+    """A formula with a symbol replaced."""
+    if not isinstance(value, Expression) or name not in value.symbols():
+        return value
+    if value.kind == "symbol":
+        return replacement
+    args = (substituted(arg, name, replacement) for arg in value.args)
+    return Expression(
+        value.kind,
+        tuple(arg if isinstance(arg, Expression) else Expression("number", number=arg) for arg in args),
+        value.number,
+        value.name,
+    )
