@@ -21,6 +21,8 @@ from symofros.runtime.record import ModelRecord
 
 Key = tuple[str, str]
 ParameterCheck = Callable[[Array], Sequence[Problem]]
+# Largest array of parameters that is remembered as checked.
+_KEPT_BYTES = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -161,9 +163,9 @@ class Functions:
         array = np.asarray(self._array("par", par, self.npar), dtype=np.float64)
         if self._parameter_check is None or self.npar == 0 or array.size == 0:
             return array
-        # Loops pass the same values again and again.
-        content = array.tobytes()
-        if content != self._last_checked:
+        # Loops pass the same values again and again; only few are kept.
+        content = array.tobytes() if array.nbytes <= _KEPT_BYTES else b""
+        if not content or content != self._last_checked:
             problems = self._parameter_check(array.reshape(-1, self.npar))
             if problems:
                 raise ParameterError(

@@ -83,9 +83,7 @@ def simulate_batch(
     rows = {
         "q0": _rows(model, "q0", model.neutral() if q0 is None else q0, model.nq),
         "v0": _rows(model, "v0", np.zeros(model.nv) if v0 is None else v0, model.nv),
-        "par": _rows(
-            model, "par", model.parameter_values if par is None else model.checked_parameters(par), model.npar
-        ),
+        "par": _rows(model, "par", parameters, model.npar),
     }
     shape = _batch_shape(rows, given.shapes)
     n = math.prod(shape)

@@ -131,7 +131,7 @@ class _Section:
         )
 
     def _along(self, label: str, xi: Array, numbers: Numbers) -> Array:
-        return section_values(self.beam, label, xi, numbers.parameters)[0]
+        return np.asarray(section_values(self.beam, label, xi, numbers.parameters)[0])
 
     def quadrature_problems(self, numbers: Numbers) -> Iterator[Problem]:
         """Properties whose integral is not determined by their values at stations."""
@@ -172,7 +172,7 @@ def quadrature_error(beam: Beam, label: str, values: Mapping[str, Array | float]
         xi, w = stations(knots, points)
         totals.append(section_values(beam, label, np.array(xi), values) @ np.array(w))
     scale = np.abs(totals[1])
-    return np.abs(totals[0] - totals[1]) / np.where(scale > 0.0, scale, 1.0)
+    return np.asarray(np.abs(totals[0] - totals[1]) / np.where(scale > 0.0, scale, 1.0))
 
 
 def _conditioning(beam: Beam, where: str) -> Iterator[Problem]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from functools import cached_property, reduce
+from functools import cached_property, partial, reduce
 
 import numpy as np
 
@@ -33,10 +33,10 @@ def value_conditions(system: System) -> Iterator[Condition]:
     for stated in stated_values(system):
         if stated.scope == "parameters" and not isinstance(stated.value, float):
             where = system.origin.get(stated.key, "")
-            yield Condition((stated.value,), "any", lambda numbers, s=stated, w=where: _not_finite(s, w))
+            yield Condition((stated.value,), "any", partial(_not_finite, stated, where))
 
 
-def _not_finite(stated: Stated, where: str) -> Problem:
+def _not_finite(stated: Stated, where: str, _: Numbers) -> Problem:
     return Problem(
         f"{stated.what}: not a finite number at the parameters' values",
         f"'{stated.value}'",
