@@ -1,5 +1,6 @@
 /* What Python loads: integrator, batches, diagrams and their threads, as one library. */
 #include "stepping/integrator.c"
+#include "stepping/spectrum.c"
 #include "symofros_batch.h"
 #include "stepping/batch_stepper.c"
 #include "symofros_diagram.h"

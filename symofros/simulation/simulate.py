@@ -78,7 +78,7 @@ def simulate(
         recorded = drive(stepper, q, v, settings, show)
     seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()
-    outcome = diagnose(stepper, recorded, states, settings)
+    outcome = diagnose(stepper, recorded, states, settings, (q, v))
     met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
     statistics = _statistics(stepper, seconds, worked)
     t, q_all, v_all, u_all = states

@@ -172,6 +172,11 @@ int32_t sym_run_rate(sym_run *run, double t, const double *y, double *rate);
 int32_t sym_run_event_values(sym_run *run, double t, const double *y, double *values);
 /* Rate N(q) w (nq) at the evaluation point, which is at the same configuration q. */
 void sym_run_configuration_rate(const sym_run *run, const double *q, const double *w, double *rate);
+/* Linearise the motion about the present state in the subspace of the first directions that the motion excites, by
+ * differences of the size of a step of length h. basis: (dimension + 4, 2 nv), of which the first rows become an orthonormal
+ * basis of changes (theta, h v); matrix (dimension, dimension): h times the derivative in that basis; motion (dimension):
+ * components of the motion of one step. Returns the number of directions, at most `dimension` <= 2 nv, or a status below 0. */
+int32_t sym_run_spectrum(sym_run *run, double h, int32_t dimension, double *basis, double *matrix, double *motion);
 /* cdef end */
 
 #endif

@@ -12,6 +12,7 @@ from symofros.runtime.beams import bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.postures import nearest_to_singular
 from symofros.simulation.results.outcome import Kind, Outcome
+from symofros.simulation.results.step_size import remedy, step_size_note, unresolved_mode
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded
 from symofros.simulation.stepping.status import Status
@@ -20,7 +21,9 @@ from symofros.simulation.stepping.stepper import Stepper
 _ROUNDING = float(np.finfo(np.float64).eps)
 
 
-def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], settings: Settings) -> Outcome:
+def diagnose(
+    stepper: Stepper, recorded: Recorded, states: Sequence[Array], settings: Settings, start: tuple[Array, Array]
+) -> Outcome:
     """How a run ended.
 
     Args:
@@ -28,10 +31,15 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
         recorded: Record of the run.
         states: All that it recorded: t (n), q, v, u.
         settings: Settings of the run.
+        start: Initial q, v.
     """
     status, interrupted = recorded.status, recorded.interrupted
     t, q, v = stepper.state
     run, notes = stepper.run, _notes(stepper, states, status)
+    failed = status in (Status.DIVERGED, Status.BEYOND_THEORY)
+    mode = unresolved_mode(stepper, settings, start, states, _steps_meant(settings) if failed else int(run.steps))
+    if mode is not None:
+        notes = (*notes, step_size_note(mode, stepper, settings, () if failed else states))
 
     def outcome(kind: Kind, reason: str, advice: str = "") -> Outcome:
         return Outcome(kind, t, reason, advice, notes)
@@ -43,6 +51,9 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
         return outcome("event", f"event '{stepper.events[run.terminal_event].name}'")
     if status == Status.CALLBACK_FAILED:
         return outcome("input failed", f"the input function raised {failure!r}", "call it by itself at this state")
+    if failed and mode is not None and mode.amplified:
+        reason = f"the step is past the limit of stability of '{settings.method.name}'; {_largest(stepper, q, v)}"
+        return outcome("diverged", reason, remedy(mode, settings))
     if status == Status.DIVERGED and _immobile(stepper, q):
         return outcome(
             "singular",
@@ -84,6 +95,11 @@ def diagnose(stepper: Stepper, recorded: Recorded, states: Sequence[Array], sett
     if status == Status.RUNNING and t < float(run.t_end):
         return outcome("interrupted", f"max_steps: {int(run.steps)} steps are done")
     return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")
+
+
+def _steps_meant(settings: Settings) -> int:
+    """Number of fixed steps to the end asked for."""
+    return max(1, round((settings.t_end - settings.t0) / settings.dt)) if settings.dt > 0.0 else 1
 
 
 def _immobile(stepper: Stepper, q: np.ndarray) -> bool:

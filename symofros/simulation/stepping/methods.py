@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import cmath
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Literal
 
+from symofros.simulation.stepping import amplification
 from symofros.simulation.stepping.tableaus import (
     DOP853,
     DORMAND_PRINCE,
@@ -29,6 +34,8 @@ class Family:
         multistep: Whether past steps are kept, so that a state must not be changed between steps.
         keeps_constraints: Whether the constraints are among the equations it solves, so that nothing else keeps them.
         trees_only: Whether constraints and prescribed joints are out of its reach.
+        amplification: Factor by which a step multiplies a mode exp(z t/h), of the tableau and z; None where past steps
+            count.
     """
 
     functions: tuple[str, ...] = ()
@@ -37,14 +44,22 @@ class Family:
     multistep: bool = False
     keeps_constraints: bool = False
     trees_only: bool = False
+    amplification: Callable[[Tableau, complex], complex] | None = None
+
+    @property
+    def judged(self) -> bool:
+        """Whether its fixed steps can be judged by what they make of a mode."""
+        return self.amplification is not None
 
 
 FAMILIES: dict[Kind, Family] = {
-    "explicit": Family(batched=True),
-    "semi_implicit": Family(batched=True),
-    "rosenbrock": Family(("implicit_terms",), implicit=True),
-    "alpha": Family(("implicit_terms", "residual"), implicit=True),
-    "variational": Family(("implicit_terms", "momentum"), implicit=True, trees_only=True),
+    "explicit": Family(batched=True, amplification=amplification.explicit),
+    "semi_implicit": Family(batched=True, amplification=amplification.semi_implicit),
+    "rosenbrock": Family(("implicit_terms",), implicit=True, amplification=amplification.rosenbrock),
+    "alpha": Family(("implicit_terms", "residual"), implicit=True, amplification=amplification.alpha),
+    "variational": Family(
+        ("implicit_terms", "momentum"), implicit=True, trees_only=True, amplification=amplification.midpoint
+    ),
     "cvode": Family(multistep=True),
     "ida": Family(multistep=True, keeps_constraints=True),
 }
@@ -80,6 +95,22 @@ class Method:
         """What it has in common with methods of its kind."""
         return FAMILIES[self.kind]
 
+    def amplification(self, z: complex) -> complex:
+        """Factor by which a step of length h multiplies a mode exp(z t/h); not of methods that keep past steps."""
+        factor = self.family.amplification
+        assert factor is not None, f"'{self.name}' keeps past steps"
+        return factor(self.tableau, z)
+
+    @property
+    def real_limit(self) -> float:
+        """Largest step of a mode that decays without oscillation, in units of its time constant."""
+        return stability_limit(self.name, math.pi)
+
+    @property
+    def imaginary_limit(self) -> float:
+        """Largest step of an undamped oscillation, in units of 1/omega; 0: each step amplifies it."""
+        return stability_limit(self.name, math.pi / 2)
+
 
 METHODS: dict[str, Method] = {
     method.name: method
@@ -98,3 +129,32 @@ METHODS: dict[str, Method] = {
         Method("ida", "ida", 5, True, EXPLICIT_EULER, "SUNDIALS, BDF of order 1 to 5; constraints in its equations"),
     )
 }
+
+# Beyond this |z|, a method that is stable is stable everywhere; an excess of |R| below it is rounding.
+_FAR, _EXCESS = 1e4, 1e-10
+
+
+@cache
+def stability_limit(name: str, angle: float) -> float:
+    """The largest |z| up to which a method does not amplify modes with z = |z| exp(i angle); inf: none is amplified.
+
+    Args:
+        name: Name of the method.
+        angle: Angle of the rate in the complex plane, from pi/2 (undamped) to pi (without oscillation).
+    """
+    method = METHODS[name]
+
+    def grows(radius: float) -> bool:
+        return abs(method.amplification(cmath.rect(radius, angle))) > 1.0 + _EXCESS
+
+    below, above = 0.0, 1e-2
+    while not grows(above):
+        below, above = above, 1.02 * above
+        if above > _FAR:
+            return math.inf
+    if below == 0.0:
+        return 0.0
+    for _ in range(50):
+        middle = 0.5 * (below + above)
+        below, above = (below, middle) if grows(middle) else (middle, above)
+    return below

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from symofros.runtime.model import Model
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.stepping.methods import Method
+from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.tableaus import Tableau
 
 # Events recorded between two calls that take them.
@@ -232,6 +234,42 @@ class Stepper:
     def slope(self, t: float, y: Array, rate: Array) -> int:
         """Write the rate y' = (N v, v') of a state y = (q, v) into `rate`; returns a Status."""
         return int(self.native.sym_run_rate(self.run, t, self._pointer(y), self._pointer(rate)))
+
+    @contextmanager
+    def preserved(self) -> Iterator[None]:
+        """Within, states may be placed and functions evaluated; afterwards the run is where it was."""
+        run, system, model, failure = self.run, self.system, self.model, self.failure
+        sizes = [(run.q, model.nq), (run.v, model.nv), (system.q, model.nq), (system.v, model.nv), (system.t, 1)]
+        sizes += [(system.u, model.nu), (system.a, model.nv), (system.lam, model.nc), (system.rank, 1)]
+        views = [self.memory.view(pointer, size) for pointer, size in sizes]
+        kept, t, evaluations = [view.copy() for view in views], run.t, run.evaluations
+        try:
+            yield
+        finally:
+            for view, values in zip(views, kept, strict=True):
+                view[:] = values
+            run.t, run.evaluations, self.failure = t, evaluations, failure
+
+    def spectrum(self, t: float, q: Array, v: Array, h: float, dimension: int) -> tuple[Array, Array, Array] | None:
+        """The linearised motion about a state, in a subspace of its first directions; within `preserved`.
+
+        Args:
+            t: Time [s].
+            q: Configuration (nq).
+            v: Speeds (nv).
+            h: Step [s].
+            dimension: Most directions m, at most 2 nv.
+
+        Returns:
+            Orthonormal basis (m, 2 nv) of changes (theta, h v), h times the derivative in that basis (m, m), components
+            of the motion of one step (m); None where the accelerations or inputs near the state do not exist.
+        """
+        basis, matrix = np.zeros((dimension + 4, 2 * self.model.nv)), np.zeros((dimension, dimension))
+        motion, m = np.zeros(dimension), int(Status.DIVERGED)
+        if self.place(t, np.concatenate([q, v])) == Status.RUNNING:
+            arrays = (self._pointer(basis), self._pointer(matrix), self._pointer(motion))
+            m = int(self.native.sym_run_spectrum(self.run, h, dimension, *arrays))
+        return (basis[:m], matrix[:m, :m], motion[:m]) if m > 0 else None
 
     def configuration_rate(self, q: Array, w: Array) -> Array:
         """The rate N w (nq) at speeds w (nv) and the configuration that was placed last; q: its numbers."""

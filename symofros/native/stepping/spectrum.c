@@ -1,0 +1,84 @@
+/* What a step of length h sees of the spectrum: a Krylov subspace of the derivative of the slope by the state
+ * (docs/theory/simulation.md, section 8). States are scaled, x = (theta, h (v - v_0)), so that the eigenvalues are those
+ * of h times the linearised motion. */
+
+/* slope = (h theta', h^2 v') at x. y: work (2 nv). Returns 0 or a status. */
+static int32_t sym_scaled_slope(sym_run *r, double h, const double *x, double *y, double *slope) {
+    const int32_t nv = r->system->nv;
+    int32_t i, status;
+    for (i = 0; i < nv; ++i) y[i] = x[i], y[nv + i] = r->v[i] + x[nv + i] / h;
+    status = sym_evaluate_slope(r, r->t, y, slope);
+    for (i = 0; i < nv; ++i) slope[i] *= h, slope[nv + i] *= h * h;
+    return status;
+}
+
+/* The components of x (n) along the rows of an orthonormal basis, taken out of x; twice for the sake of rounding. */
+static void sym_orthogonalize(int32_t n, int32_t rows, const double *basis, double *x, double *components) {
+    int32_t pass, i, l;
+    for (i = 0; i < rows; ++i) components[i] = 0.0;
+    for (pass = 0; pass < 2; ++pass)
+        for (i = 0; i < rows; ++i) {
+            const double *b = basis + (size_t)i * n;
+            double s = 0.0;
+            for (l = 0; l < n; ++l) s += b[l] * x[l];
+            for (l = 0; l < n; ++l) x[l] -= s * b[l];
+            components[i] += s;
+        }
+}
+
+/* Make x (n) of unit length; returns the length it had. */
+static double sym_normalize(int32_t n, double *x) {
+    double s = 0.0;
+    int32_t i;
+    for (i = 0; i < n; ++i) s += x[i] * x[i];
+    s = sqrt(s);
+    for (i = 0; i < n && s > 0.0; ++i) x[i] /= s;
+    return s;
+}
+
+/* Share of the first vector that has no special direction, so that modes without motion are seen, too. */
+#define SYM_SPECTRUM_MIXTURE 1e-3
+/* Least change of a coordinate for a difference, relative to the largest one: its error by rounding is 1e-8. */
+#define SYM_SPECTRUM_LEAST_CHANGE 1e-8
+
+/* basis[0] <- the direction of the motion, mixed with others. Returns the change of the state by the motion of a step. */
+static double sym_first_direction(const sym_run *r, int32_t n, const double *slope, double *first) {
+    double size, largest = 1.0;
+    uint32_t seed = 1;
+    int32_t i;
+    memcpy(first, slope, (size_t)n * sizeof *first);
+    size = sym_normalize(n, first);
+    for (i = 0; i < n; ++i) {
+        seed = seed * 1664525u + 1013904223u;
+        first[i] += SYM_SPECTRUM_MIXTURE * ((double)seed / 2147483648.0 - 1.0);
+    }
+    sym_normalize(n, first);
+    for (i = 0; i < r->system->nq; ++i) largest = fabs(r->q[i]) > largest ? fabs(r->q[i]) : largest;
+    return size > SYM_SPECTRUM_LEAST_CHANGE * largest ? size : SYM_SPECTRUM_LEAST_CHANGE * largest;
+}
+
+SYM_EXPORT int32_t sym_run_spectrum(sym_run *r, double h, int32_t dimension, double *basis, double *matrix, double *motion) {
+    const int32_t n = 2 * r->system->nv;
+    double *slope = basis + (size_t)dimension * n, *x = slope + n, *next = x + n, *y = next + n, change, length;
+    int32_t i, j, k, status;
+    memset(matrix, 0, (size_t)dimension * dimension * sizeof *matrix);
+    memset(x, 0, (size_t)n * sizeof *x);
+    status = sym_scaled_slope(r, h, x, y, slope);
+    if (status != 0) return status;
+    change = sym_first_direction(r, n, slope, basis);
+    for (j = 0; j < dimension; ++j) {
+        for (i = 0; i < n; ++i) x[i] = change * basis[(size_t)j * n + i];
+        status = sym_scaled_slope(r, h, x, y, next);
+        if (status != 0) return status;
+        for (i = 0; i < n; ++i) next[i] = (next[i] - slope[i]) / change;
+        sym_orthogonalize(n, j + 1, basis, next, motion); /* motion: work until the end */
+        for (k = 0; k <= j; ++k) matrix[(size_t)k * dimension + j] = motion[k];
+        length = sym_normalize(n, next);
+        if (j + 1 == dimension || !(length > 0.0)) break; /* at 0 the subspace is invariant, and the rest of matrix 0 */
+        matrix[(size_t)(j + 1) * dimension + j] = length;
+        memcpy(basis + (size_t)(j + 1) * n, next, (size_t)n * sizeof *next);
+    }
+    dimension = j + 1 < dimension ? j + 1 : dimension;
+    sym_orthogonalize(n, dimension, basis, slope, motion);
+    return dimension;
+}

@@ -1,0 +1,141 @@
+"""Remarks on fixed steps: whether they resolve the motion, and what energy they bring in."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from symofros.errors import SymofrosError
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.manifold import retract
+from symofros.runtime.model import Model
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.resolution import Mode, largest_stable_step, states_to_examine, worst_mode
+from symofros.simulation.stepping.stepper import Stepper
+
+# A power is a difference over this share of a step.
+_MOMENT = 1e-3
+# Records, about, among which the fastest is looked for.
+_SPEEDS = 200
+# Records at most this many steps apart show the work between them.
+_DENSE = 1.5
+
+
+def unresolved_mode(
+    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array], steps: int
+) -> Mode | None:
+    """The mode that the fixed steps of a run resolve worst, if they err by it; None also of steps that adapt.
+
+    Args:
+        stepper: Stepper of the run; its state stays.
+        settings: Settings of the run.
+        start: Initial q, v.
+        states: All that it recorded: t (n), q, v, u.
+        steps: Number of steps.
+    """
+    if settings.adaptive or not stepper.method.family.judged or not stepper.model.nv or steps < 1:
+        return None
+    if settings.realtime and stepper.system.callback != stepper.ffi.NULL:
+        return None  # What the function serves may be hardware: it is not called beside the run.
+    t, q, v, _ = states
+    good = _finite_rows(q, v)
+    wanted = states_to_examine(steps, stepper.method.tableau.stages, stepper.model.nv)
+    later = sorted({good * k // (wanted - 1) - 1 for k in range(1, wanted)}) if good else []
+    examined = [(settings.t0, *start), *((float(t[i]), q[i], v[i]) for i in later)]
+    speed = max(_largest_norm(start[1][np.newaxis]), _largest_norm(v[: good : max(1, good // _SPEEDS)]))
+    with stepper.preserved():
+        return worst_mode(stepper, settings.dt, steps, examined, speed)
+
+
+def _finite_rows(q: Array, v: Array) -> int:
+    """Number of records before the first that is not finite."""
+    if math.isfinite(float(q.sum() + v.sum())):  # As nearly always; the sum of great numbers may overflow.
+        return len(q)
+    bad = np.flatnonzero(~(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1)))
+    return int(bad[0]) if len(bad) else len(q)
+
+
+def _largest_norm(rows: Array) -> float:
+    """The largest norm of the rows, without overflow."""
+    size = max(float(rows.max(initial=0.0)), -float(rows.min(initial=0.0)))
+    return size * math.sqrt(float(np.einsum("ij,ij->i", rows / size, rows / size).max())) if size > 0.0 else 0.0
+
+
+def step_size_note(mode: Mode, stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:
+    """What a mode that is not resolved means for a run, in words.
+
+    Args:
+        mode: Mode that the run resolves worst.
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        states: All that it recorded: t (n), q, v, u; none where its energy means nothing.
+    """
+    method, h = settings.method, settings.dt
+    motion = f"{_rate(mode.rate)} (seen at t = {mode.t:.4g} s)"
+    if not mode.amplified:
+        return (
+            f"steps of {h:.4g} s follow a mode of the motion to {_percent(mode.error)} only: {motion} with"
+            f" {_percent(mode.share)} of the speed; a smaller dt or an adaptive method"
+        )
+    limit = largest_stable_step(method, mode.rate)
+    allowed = f"stable up to {limit:.4g} s" if limit > 0.0 else "stable at no step"
+    with np.errstate(all="ignore"):  # What overflows is left out.
+        energy = _energy_that_appeared(stepper, settings, states) if states else ""
+    return (
+        f"the step of {h:.4g} s is past the limit of stability: '{method.name}' is {allowed} for the mode that"
+        f" {motion}, and multiplies it by {abs(mode.factor):.4g} each step; {energy}{remedy(mode, settings)}"
+    )
+
+
+def remedy(mode: Mode, settings: Settings) -> str:
+    """What makes a run stable."""
+    limit = largest_stable_step(settings.method, mode.rate)
+    if limit > 0.0:
+        return f"dt below {limit:.3g} s, or an implicit method"
+    return "another method, such as rk4"
+
+
+def _rate(rate: complex) -> str:
+    decay = f"decays at {-rate.real:.4g} 1/s" if rate.real < 0.0 else f"grows at {rate.real:.4g} 1/s"
+    if abs(rate.imag) <= 1e-3 * abs(rate.real):
+        return decay
+    oscillation = f"oscillates at {rate.imag:.4g} rad/s"
+    return oscillation if abs(rate.real) <= 1e-3 * abs(rate.imag) else f"{oscillation} and {decay}"
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2g} %" if share < 1.0 else "more than 100 %"
+
+
+def _energy_that_appeared(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:
+    """The change of energy that no force supplied, where the records show it: "... J appeared ...; ", or nothing."""
+    model, (t, q, v, u) = stepper.model, states
+    if model.record.driven or len(t) < 2 or not (np.isfinite(q).all() and np.isfinite(v).all()):
+        return ""
+    try:
+        kinetic = model.kinetic_energy(q, v, u=u, par=stepper.par)
+        energy = kinetic + model.potential_energy(q, u=u, par=stepper.par, t=t)
+        power = _power(model, stepper.par, t, q, v, u, _MOMENT * settings.dt)
+    except SymofrosError:  # Options.functions left the energies out.
+        return ""
+    spans = np.diff(t)
+    work, change = float(np.sum(0.5 * (power[1:] + power[:-1]) * spans)), float(energy[-1] - energy[0])
+    known = spans.max() <= _DENSE * settings.dt or float(np.abs(power).max() * spans.sum()) <= 1e-2 * abs(change)
+    appeared, largest = change - work, float(kinetic.max())
+    if not (known and math.isfinite(appeared) and largest > 0.0):
+        return ""
+    return f"{appeared:.3g} J appeared that no force supplied, where the motion has {largest:.3g} J at most; "
+
+
+def _power(model: Model, par: Array, t: Array, q: Array, v: Array, u: Array, moment: float) -> Array:
+    """Rate of the energy along the motion (n), by central differences: the power of all but conservative forces."""
+    a = model.forward_dynamics(q, v, u, par=par, t=t)
+    ends = []
+    for s in (moment, -moment):
+        q_s, v_s = retract(model.record.segments, q, s * v), v + s * a
+        kinetic = model.kinetic_energy(q_s, v_s, u=u, par=par)
+        ends.append(kinetic + model.potential_energy(q_s, u=u, par=par, t=t + s))
+    rate: Array = (ends[0] - ends[1]) / (2.0 * moment)
+    return rate

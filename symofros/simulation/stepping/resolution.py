@@ -1,0 +1,179 @@
+"""Whether fixed steps resolve the modes of a motion, by its spectrum at a few states (docs/theory/simulation.md, 8)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.runtime.calls.kernel import Array
+from symofros.simulation.stepping.methods import METHODS, Method, stability_limit
+from symofros.simulation.stepping.stepper import Stepper
+
+# Relative error of a mode, by its share of the motion, from which a run is remarked upon.
+TOLERANCE = 0.1
+# Directions of the subspace: all of small models; of large ones those that lead to the fastest modes.
+_DIRECTIONS = 24
+# States looked at, as far as their evaluations are below this share of the run's.
+_STATES, _SHARE = 4, 0.01
+# Share of a mode that rounding alone excites.
+_ROUNDING = 1e-16
+# Powers of e by which a mode of the motion grows at the rate of one state; then this has become another.
+_GROWTH = 3.0
+# Exponents of the powers of factors, which do not overflow.
+_LARGEST = 300.0
+
+
+@dataclass(frozen=True)
+class Mode:
+    """The mode of a motion that a run of fixed steps resolves worst.
+
+    Attributes:
+        rate: Rate of the mode [1/s]: its real part is growth, its imaginary part the angular frequency.
+        factor: Factor by which a step multiplies it.
+        error: Relative error of the motion by it over the run.
+        share: Share of the mode in the motion's speed.
+        t: Time of the state at which it was seen [s].
+    """
+
+    rate: complex
+    factor: complex
+    error: float
+    share: float
+    t: float
+
+    @property
+    def amplified(self) -> bool:
+        """Whether steps make it grow though it does not."""
+        return abs(self.factor) > 1.0 and self.rate.real <= 1e-6 * abs(self.rate)
+
+
+def states_to_examine(steps: int, stages: int, nv: int) -> int:
+    """Number of states whose spectrum costs a small share of a run of so many steps; two at least."""
+    each = min(2 * nv, _DIRECTIONS) + 2
+    return int(min(max(_SHARE * steps * stages / each, 2), _STATES))
+
+
+def worst_mode(
+    stepper: Stepper, h: float, steps: int, states: Iterable[tuple[float, Array, Array]], speed: float
+) -> Mode | None:
+    """The mode that a run resolves worst, if it errs beyond TOLERANCE.
+
+    Args:
+        stepper: Stepper of the run, within `preserved`.
+        h: Step [s].
+        steps: Number of steps.
+        states: States of the run (t, q, v); each stands for an equal part of the run.
+        speed: Largest norm of the speeds in the run.
+    """
+    states = list(states) if speed > 0.0 else []  # Rest is kept exactly.
+    method, part = stepper.method, max(1, steps // max(1, len(states)))
+    total, worst = 0.0, None
+    for t, q, v in states:
+        spectrum = stepper.spectrum(t, q, v, h, min(2 * stepper.model.nv, _DIRECTIONS))
+        if spectrum is None:
+            continue
+        basis, matrix, motion = spectrum
+        resolved = _resolved_radius(method.name, part)
+        if _radius(matrix) <= resolved:
+            continue
+        modes = [(z, share) for z, share in _modes(basis, matrix, motion, h * speed) if abs(z) > resolved]
+        judged = (_judged(method, z, share, h, part, t) for z, share in modes)
+        here = max(judged, key=lambda mode: mode.error, default=None)
+        if here is not None:
+            total += here.error
+            worst = here if worst is None or here.error > worst.error else worst
+        if worst is not None and total > TOLERANCE:  # What follows may be no motion any more.
+            return replace(worst, error=total)
+    return None
+
+
+def _judged(method: Method, z: complex, share: float, h: float, steps: int, t: float) -> Mode:
+    factor = method.amplification(z)
+    return Mode(z / h, factor, mode_error(z, factor, steps, share), share, t)
+
+
+def mode_error(z: complex, factor: complex, steps: int, share: float) -> float:
+    """The largest error that a mode exp(z t/h) brings into a motion on the way through so many steps, (16).
+
+    Args:
+        z: Step times the rate of the mode.
+        factor: Factor by which a step multiplies it.
+        steps: Number of steps.
+        share: Share of the mode in the motion, to which the error is relative.
+    """
+    if z.real > 0.0:  # It does not grow for long at the rate of one state.
+        steps = max(1, min(steps, math.ceil(_GROWTH / z.real)))
+    counts = np.unique(np.minimum(2 ** np.arange(1 + math.ceil(math.log2(max(1, steps)))), steps))
+    exact = counts * complex(z)
+    exponents = counts * (np.log(complex(factor)) if factor else complex(-_LARGEST))
+    if abs(factor) > 1.0:
+        share = max(share, _ROUNDING)
+    if z.real > 0.0:  # Relative to what it has grown to, at most to all of the motion.
+        sizes = np.minimum(share * np.exp(np.minimum(counts * z.real, _LARGEST)), 1.0)
+        return float((sizes * np.abs(_power(exponents - exact) - 1.0)).max())
+    return share * float(np.abs(_power(exponents) - _power(exact)).max())
+
+
+def _power(exponents: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+    powers: npt.NDArray[np.complex128] = np.exp(np.clip(exponents.real, -_LARGEST, _LARGEST) + 1j * exponents.imag)
+    return powers
+
+
+def _radius(matrix: Array) -> float:
+    """A bound of the spectral radius, tight but for a factor near 1: the sixteenth root of a norm of the 16th power."""
+    scale = float(np.abs(matrix).max())
+    if not (math.isfinite(scale) and scale > 0.0):
+        return scale
+    power = matrix / scale
+    for _ in range(4):
+        power = power @ power
+    return float(scale * np.vdot(power, power) ** 0.03125)
+
+
+def _modes(basis: Array, matrix: Array, motion: Array, travel: float) -> list[tuple[complex, float]]:
+    """Modes of the subspace: h times the rate, and the share in the motion's speed.
+
+    Args:
+        basis: Orthonormal changes (m, 2 nv).
+        matrix: Derivative (m, m).
+        motion: Components of the motion of one step (m).
+        travel: Step times the largest speed of the run.
+    """
+    if not np.all(np.isfinite(matrix)):
+        return []
+    rates, vectors = np.linalg.eig(matrix)
+    try:
+        content = np.linalg.solve(vectors, motion)
+    except np.linalg.LinAlgError:  # Two modes are one.
+        content = np.linalg.lstsq(vectors, motion.astype(complex), rcond=None)[0]
+    displacements = np.linalg.norm(basis[:, : basis.shape[1] // 2].T @ vectors, axis=0)
+    sizes = np.abs(content) * displacements * np.where(rates.imag != 0.0, 2.0, 1.0)
+    shares = sizes / np.maximum(np.maximum(sizes, travel), 1e-300)
+    return [(complex(z), float(share)) for z, share in zip(rates, shares, strict=True) if z.imag >= 0.0]
+
+
+@cache
+def _resolved_radius(name: str, steps: int) -> float:
+    """The |z| below which each mode, whatever its direction, is resolved over so many steps."""
+    radii, errors = _step_errors(name)
+    resolved = errors * steps <= 0.5 * TOLERANCE / _STATES
+    return float(radii[int(np.argmin(resolved))]) if not resolved.all() else float(radii[-1])
+
+
+@cache
+def _step_errors(name: str) -> tuple[Array, Array]:
+    """Radii |z|, and the largest relative error of one step up to each."""
+    method, radii = METHODS[name], np.geomspace(1e-6, 1.0, 97)
+    directions = [1j, -1.0 + 0.0j, 1.0 + 0.0j, (-1.0 + 1.0j) / math.sqrt(2.0)]
+    errors = [max(abs(method.amplification(r * d) / np.exp(r * d) - 1.0) for d in directions) for r in radii]
+    return radii, np.maximum.accumulate(np.array(errors))
+
+
+def largest_stable_step(method: Method, rate: complex) -> float:
+    """The step [s] up to which a method does not amplify a mode of that rate; inf: at any; 0: at none."""
+    return stability_limit(method.name, min(abs(np.angle(rate)), math.pi)) / abs(rate)

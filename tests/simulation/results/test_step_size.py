@@ -1,0 +1,118 @@
+"""Notes on fixed steps: where the method is unstable or its error is large, and there alone."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.resolution import TOLERANCE
+from tests.simulation.oscillator import exact, fixed, oscillator
+
+JUDGED = tuple(name for name, method in METHODS.items() if method.family.judged)
+# Step [s], and step times the undamped frequency.
+H, STIFFNESS = 1e-2, np.geomspace(1e-3, 5.0, 19)
+
+
+def step_notes(run: sf.Trajectory) -> list[str]:
+    return [note for note in run.outcome.notes if note.startswith(("the step of", "steps of"))]
+
+
+def oscillation(method: str, z: float, damping: float, steps: int, **options) -> tuple[sf.Trajectory, float]:
+    """A run, and its largest error, relative to the largest displacement and speed."""
+    k, c = (z / H) ** 2, 2.0 * damping * z / H
+    options = {"adaptive": fixed(method)} | options
+    run = sf.simulate(oscillator(), [1.0], [0.3 * z / H], steps * H, method=method, dt=H, par=[k, c], **options)
+    x, v = exact(k, c, 1.0, 0.3 * z / H, run.t)
+    if not run.outcome.ok:
+        return run, math.inf
+    return run, max(np.abs(run.q[:, 0] - x).max() / np.abs(x).max(), np.abs(run.v[:, 0] - v).max() / np.abs(v).max())
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05, 1.5])
+@pytest.mark.parametrize("method", JUDGED)
+def test_a_note_where_the_error_is_large_and_there_alone(method: str, damping: float) -> None:
+    """The tolerance of a tenth is met within a factor of three: shares and modes are those of a few states."""
+    for z in STIFFNESS:
+        for steps in (20, 300):
+            run, error = oscillation(method, z, damping, steps)
+            if error > 3.0 * TOLERANCE:
+                assert step_notes(run), (z, steps, error)
+            elif error < 0.5 * TOLERANCE:
+                assert not step_notes(run), (z, steps, error)
+
+
+@pytest.mark.parametrize("method", ["semi_implicit_euler", "rk4", "dop853"])
+def test_a_note_names_limit_mode_and_energy(method: str) -> None:
+    limit = METHODS[method].imaginary_limit
+    run, _ = oscillation(method, 1.05 * limit, 0.0, 100)
+    (note,) = step_notes(run)
+    assert f"stable up to {limit / (1.05 * limit / H):.4g} s" in note
+    assert f"oscillates at {1.05 * limit / H:.4g} rad/s" in note
+    appeared = float(note.split(" J appeared")[0].split()[-1])
+    assert appeared == pytest.approx(run.energy[-1] - run.energy[0], rel=0.01)
+
+
+def test_dissipation_is_no_energy_that_appeared() -> None:
+    """What a damper takes is work; the rest of the change was brought in by the steps."""
+    run, _ = oscillation("rk4", 2.9, 0.02, 120)
+    (note,) = step_notes(run)
+    appeared = float(note.split(" J appeared")[0].split()[-1])
+    work = -np.trapezoid(2.0 * 0.02 * 2.9 / H * run.v[:, 0] ** 2, run.t)
+    assert appeared == pytest.approx(run.energy[-1] - run.energy[0] - work, rel=0.05)
+
+
+@pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler"])
+def test_feedback_is_part_of_the_spectrum(method: str) -> None:
+    """By a formula, and by a Python function."""
+    gain = 1e5
+    for law in ({"x": f"-{gain}*x - 10*dx"}, lambda t, q, v: -gain * q - 10.0 * v):
+        fine = sf.simulate(oscillator(), [1e-3], t_end=0.2, dt=1e-4, u=law, method="rk4")
+        assert not step_notes(fine)
+        coarse = sf.simulate(oscillator(), [1e-3], t_end=0.2, dt=1e-2, u=law, method=method)
+        assert step_notes(coarse) and f"{math.sqrt(gain):.4g} rad/s" in step_notes(coarse)[0]
+
+
+def test_a_function_of_inputs_is_left_alone_in_real_time() -> None:
+    times: list[float] = []
+
+    def call(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        times.append(t)
+        return np.zeros(1)
+
+    sf.simulate(oscillator(), [1.0], t_end=0.02, dt=1e-3, u=call, realtime=True)
+    assert max(times) == times[-1]
+
+
+@pytest.mark.parametrize("dt", [3.5e-4, 1e-3])
+def test_the_stiff_governor_past_the_limit_of_rk4(dt: float) -> None:
+    """Its fastest mode decays at 8117 1/s: five centimetres off at 0.35 ms, and diverging beyond."""
+    model = sf.compile(MODELS["flyball_governor"])
+    q, v = [0.0, np.pi / 6, np.pi / 6, 0.5], [2 * np.pi, 0.0, 0.0, 0.0]
+    assert not step_notes(sf.simulate(model, q, v, 0.5, dt=3e-4))
+    run = sf.simulate(model, q, v, 0.5, dt=dt)
+    assert "stable up to 0.00034" in step_notes(run)[0]
+    assert run.outcome.kind == ("finished" if dt < 4e-4 else "diverged") and "0.00034" in str(run.outcome)
+
+
+def test_the_run_is_not_changed_by_being_judged() -> None:
+    model = oscillator()
+    long = sf.simulate(model, [1.0], t_end=0.1, dt=1e-3)
+    assert long.outcome.t == 0.1 and long.statistics.evaluations == 4 * 100
+    np.testing.assert_array_equal(long.q[50], sf.simulate(model, [1.0], t_end=0.05, dt=1e-3).q[-1])
+
+
+# Rigid reference models at the usual step; elastic ones need their own.
+USUAL = ("pendulum", "double_pendulum", "cart_pole", "rx90", "chain7", "friction_arm", "heavy_top", "gyroscope", "space_arm")
+
+
+@pytest.mark.parametrize("name", USUAL)
+def test_no_note_on_reference_models_at_their_usual_step(name: str) -> None:
+    model = sf.compile(MODELS[name])
+    q, v = model.random_state(np.random.default_rng(1))
+    for method in ("rk4", "semi_implicit_euler"):
+        assert not step_notes(sf.simulate(model, q, v, 1.0, method=method, dt=1e-3, output=0.02))

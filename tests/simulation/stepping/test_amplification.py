@@ -1,0 +1,67 @@
+"""What one step makes of a mode, against steps that are made."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.simulation.inputs import plan_inputs
+from symofros.simulation.stepping.amplification import SPECTRAL_RADIUS
+from symofros.simulation.stepping.methods import METHODS, stability_limit
+from symofros.simulation.stepping.stepper import Stepper
+from tests.simulation.oscillator import fixed, oscillator
+
+JUDGED = tuple(name for name, method in METHODS.items() if method.family.judged)
+
+
+@pytest.mark.parametrize("name", JUDGED)
+def test_the_factor_errs_by_the_order_of_the_method(name: str) -> None:
+    method, sizes = METHODS[name], (0.4, 0.2)  # Smaller ones leave an order of eight to rounding.
+    for direction in (1j, -1.0):
+        errors = [abs(method.amplification(r * direction) - cmath.exp(r * direction)) for r in sizes]
+        assert math.log2(errors[0] / errors[1]) > method.order + 0.5
+
+
+@pytest.mark.parametrize("name", JUDGED)
+@pytest.mark.parametrize("z", [0.7j, 1.5j, -0.3 + 0.9j])
+def test_the_factor_is_that_of_steps(name: str, z: complex) -> None:
+    """The recurrence x_(k+2) - 2 Re R x_(k+1) + |R|^2 x_k = 0 of a factor and its conjugate."""
+    factor = METHODS[name].amplification(z)
+    run = sf.simulate(
+        oscillator(), [1.0], [0.4], 40.0, dt=1.0, par=[abs(z) ** 2, -2.0 * z.real], method=name, adaptive=fixed(name)
+    )
+    x = run.q[20:, 0]  # Generalised alpha has a third, fast factor, which dies away.
+    residual = x[2:] - 2.0 * factor.real * x[1:-1] + abs(factor) ** 2 * x[:-2]
+    assert np.abs(residual).max() < 1e-8 * max(1.0, np.abs(x).max())
+
+
+def test_limits_of_stability() -> None:
+    """Hairer and Wanner II, IV.2: of Runge-Kutta methods; of semi-implicit Euler h omega = 2."""
+    limits = {name: (METHODS[name].real_limit, METHODS[name].imaginary_limit) for name in JUDGED}
+    assert limits["euler"] == pytest.approx((2.0, 0.0), abs=1e-8)
+    assert limits["semi_implicit_euler"] == pytest.approx((2.0, 2.0), abs=1e-8)
+    assert limits["rk4"] == pytest.approx((2.785294, 2.0 * math.sqrt(2.0)), abs=1e-6)
+    assert limits["dopri5"][0] == pytest.approx(3.3066, abs=1e-4)
+    for name in ("implicit_euler", "rodas4", "generalized_alpha", "variational"):
+        assert limits[name] == (math.inf, math.inf)
+
+
+@pytest.mark.parametrize("name", ["semi_implicit_euler", "rk4", "dop853"])
+def test_oscillations_grow_beyond_the_limit_alone(name: str) -> None:
+    limit = stability_limit(name, math.pi / 2)
+    for share, grows in ((0.995, False), (1.005, True)):
+        run = sf.simulate(
+            oscillator(), [1.0], t_end=3000.0, dt=1.0, par=[(share * limit) ** 2, 0.0], method=name,
+            adaptive=fixed(name), output=100.0,
+        )
+        assert (np.abs(run.q).max() > 20.0) == grows
+
+
+def test_the_spectral_radius_is_that_of_the_integrator() -> None:
+    model = oscillator()
+    stepper = Stepper(model, METHODS["generalized_alpha"], plan_inputs(model, None), (), model.parameter_values)
+    assert stepper.run.spectral_radius == SPECTRAL_RADIUS
