@@ -11,7 +11,14 @@ from string import Template
 import numpy as np
 
 from symofros.diagrams.external_block import ExternalBlock
-from symofros.diagrams.program.compiled import Resolved, compile_diagram, fuser, reads_accelerations, record_of
+from symofros.diagrams.program.compiled import (
+    Resolved,
+    compile_diagram,
+    fuser,
+    part_beams,
+    reads_accelerations,
+    record_of,
+)
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.wiring import Source
@@ -25,6 +32,7 @@ from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.names import c_string, identifier
 from symofros.generator.passes import run_passes
 from symofros.native import amalgamated, header_files, native_text
+from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.stepping.methods import METHODS
 
@@ -44,6 +52,7 @@ class PartMaterial:
     frames: tuple[str, ...]
     q_start: tuple[float, ...]
     v_start: tuple[float, ...]
+    beams: tuple[ElasticBeam, ...]
     generator: str
 
 
@@ -91,7 +100,14 @@ def write_diagram(
         record, c_name = record_of(resolved, part), f"{name}_part{i}"
         text = model_source(run_passes(write.motion(part)), record, generator, c_name=c_name)
         material = PartMaterial(
-            c_name, record, stepping, (), tuple(layout.q0[part.q]), tuple(layout.v0[part.v]), generator
+            c_name,
+            record,
+            stepping,
+            (),
+            tuple(layout.q0[part.q]),
+            tuple(layout.v0[part.v]),
+            part_beams(resolved, part, np.array(layout.par)),
+            generator,
         )
         files |= {f"{c_name}.c": text, f"{c_name}.h": _part_header(c_name), f"{c_name}_plant.c": plant_text(material)}
     instants = run_passes(write.samples(resolved.schedule.sets, sources))

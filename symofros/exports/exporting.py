@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -12,7 +13,9 @@ import numpy as np
 from symofros.base.functions import FRAME_FUNCTIONS, exported
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system, plan
+from symofros.description.beam import Beam
 from symofros.description.system import System
+from symofros.description.values import symbols
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.program.compiled import resolve
 from symofros.errors import AssemblyError, ExportError, Problem, UnknownNameError, did_you_mean
@@ -30,6 +33,7 @@ from symofros.exports.material import Material, Stepping
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.names import identifier
 from symofros.loading import load
+from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.assembly import assemble
@@ -63,6 +67,7 @@ def export(
     dt: float = 1e-3,
     rtol: float = 1e-6,
     atol: float = 1e-8,
+    beam_limit: float = BEAM_LIMIT,
 ) -> Exported:
     """Write a model for another environment; all targets wrap the same C, whose interface is symofros_model.h.
 
@@ -82,6 +87,8 @@ def export(
         dt: Step of that method [s]; of an adaptive one the first.
         rtol: Relative error of an adaptive method's step.
         atol: Absolute bound of the local error of adaptive methods.
+        beam_limit: Estimated error of the beams' theory beyond which stepping fails, as in `simulate`; from 0.01 on
+            FMUs log a warning.
 
     Returns:
         What was written, and notes on what the format lacks.
@@ -107,7 +114,7 @@ def export(
     if target in _DESCRIBED:
         plan(system)
         return _DESCRIBED[target](system, name, place, GENERATOR)
-    stepping = _stepping(method, dt, rtol, atol)
+    stepping = replace(_stepping(method, dt, rtol, atol), beam_limit=beam_limit)
     material = _material(system, name, frames, outputs, start or {}, stepping, target in _DIFFERENTIATED)
     return _COMPILED[target](material, place)
 
@@ -184,9 +191,20 @@ def _material(
         tuple(q.tolist()),
         tuple(v.tolist()),
         stepping,
+        interpreted.beams(),
         shown,
         GENERATOR,
-        system.notes,
+        system.notes + _variable_lengths(system),
+    )
+
+
+def _variable_lengths(system: System) -> tuple[str, ...]:
+    """Remarks on beams whose length can be changed in the package, while what judges them is a constant there."""
+    at_run_time = {parameter.name for parameter in system.parameters if not parameter.constant}
+    return tuple(
+        f"beam '{body.name}': its bending is judged at the default of its length, which is a run-time parameter"
+        for body in system.bodies
+        if isinstance(body, Beam) and body.modes and symbols(body.length) & at_run_time
     )
 
 

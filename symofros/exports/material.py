@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from symofros.description.system import System
+from symofros.runtime.beams import BEAM_LIMIT, ElasticBeam
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.stepping.methods import Method
 
@@ -18,12 +19,14 @@ class Stepping:
         dt: Step, or longest step within a communication interval [s].
         rtol: Relative bound of the local error of adaptive methods.
         atol: Absolute.
+        beam_limit: Estimated error of the beams' theory beyond which stepping fails.
     """
 
     method: Method
     dt: float
     rtol: float
     atol: float
+    beam_limit: float = BEAM_LIMIT
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,7 @@ class Material:
         q_start: First configuration (nq).
         v_start: First speeds (nv).
         stepping: Stepping method and its settings.
+        beams: Elastic beams, at the default parameters.
         outputs: Frames whose positions are outputs of blocks and FMUs.
         generator: Name and version of what wrote it.
         notes: Remarks for the user.
@@ -69,6 +73,7 @@ class Material:
     q_start: tuple[float, ...]
     v_start: tuple[float, ...]
     stepping: Stepping
+    beams: tuple[ElasticBeam, ...]
     outputs: tuple[str, ...]
     generator: str
     notes: tuple[str, ...] = field(default=())

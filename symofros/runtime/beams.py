@@ -113,6 +113,14 @@ class ElasticBeam:
         return slice(self.v, self.v + self.size)
 
     @property
+    def angle_blocks(self) -> Array:
+        """Angles as C reads them: by block of four stations, coordinate and station; zeros fill the last block."""
+        blocks = -(-len(self.xi) // 4)
+        angles = np.zeros((4 * blocks, self.size))
+        angles[: len(self.xi)] = self.angles
+        return np.ascontiguousarray(angles.reshape(blocks, 4, self.size).transpose(0, 2, 1))
+
+    @property
     def contrast(self) -> float:
         """Difference of the stiffnesses over the smaller: how twist acts on bending; zero where a plane is rigid."""
         if not (self.counts[0] and self.counts[1]) or min(self.EI_z, self.EI_y) <= 0.0:

@@ -188,11 +188,11 @@ def _model(resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, o
         """What the stepper looks for zeros of."""
         return unit
 
-    beams = partial(_beams_at, resolved, part)
+    beams = partial(part_beams, resolved, part)
     return Model(record, None, (unit,), np.array(record.par_default), formulas, beams), text
 
 
-def _beams_at(resolved: Resolved, part: Part, par: Array) -> tuple[ElasticBeam, ...]:
+def part_beams(resolved: Resolved, part: Part, par: Array) -> tuple[ElasticBeam, ...]:
     """The elastic beams of a part's mechanisms at the diagram's parameters, each named after its block."""
     layout, models, beams = resolved.layout, resolved.wired.models, list[ElasticBeam]()
     for name in part.blocks:

@@ -48,7 +48,7 @@ def description_xml(material: Material, variables: Sequence[Variable], version: 
     _interfaces(root, material, version)
     _units(root, variables)
     categories = Tree.SubElement(root, "LogCategories")
-    for name in ("logStatusError", "logStatusDiscard"):
+    for name in ("logStatusWarning", "logStatusError", "logStatusDiscard"):
         Tree.SubElement(categories, "Category", {"name": name})
     Tree.SubElement(
         root, "DefaultExperiment", {"startTime": "0", "stopTime": "1", "stepSize": repr(_communication(material))}
@@ -78,7 +78,9 @@ def _interfaces(root: Tree.Element, material: Material, version: int) -> None:
     stepping = {"canHandleVariableCommunicationStepSize": "true"}
     if version == 3 and not material.stepping.method.adaptive:
         stepping["fixedInternalStepSize"] = repr(material.stepping.dt)
-    for kind, more in (("ModelExchange", {}), ("CoSimulation", stepping)):
+    # Ends of steps are where the bending of beams is judged.
+    exchange = {"needsCompletedIntegratorStep": "true"} if version == 3 and material.beams else {}
+    for kind, more in (("ModelExchange", exchange), ("CoSimulation", stepping)):
         entry = Tree.SubElement(root, kind, common | both | more)
         if version == 2:
             Tree.SubElement(Tree.SubElement(entry, "SourceFiles"), "File", {"name": f"{material.c_name}_fmi2.c"})

@@ -1,16 +1,22 @@
 /* FMI 2.0 over symofros_fmi.h. Written by hand. */
 
+static const char *category(fmi2Status status) {
+    if (status == fmi2Warning) return "logStatusWarning";
+    return status == fmi2Discard ? "logStatusDiscard" : "logStatusError";
+}
+
 static fmi2Status say(const fmu *f, fmi2Status status, const char *message) {
     fmi2CallbackLogger logger;
     memcpy(&logger, &f->logger, sizeof logger);
     if (logger != NULL)
-        logger(f->environment, f->name, status, status == fmi2Discard ? "logStatusDiscard" : "logStatusError", "%s",
+        logger(f->environment, f->name, status, category(status), "%s",
                message);
     return status;
 }
 
 static fmi2Status outcome(const fmu *f, int found) {
     if (found == FMU_OK) return fmi2OK;
+    if (found == FMU_BEYOND_THEORY) return say(f, fmi2Discard, f->message);
     return say(f, found == FMU_SINGULAR ? fmi2Discard : fmi2Error, fmi_message(found));
 }
 
@@ -156,6 +162,8 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean final, fmi2B
     (void)final;
     ALLOWED(!f->cosim && f->phase == FMU_CONTINUOUS);
     *event = *terminate = fmi2False;
+    if (sym_instance_judge_beams(f->instance) != 0) *terminate = fmi2True;
+    if (fmu_note_bending(f)) say(f, fmi2Warning, f->message);
     return fmi2OK;
 }
 
@@ -206,9 +214,12 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean final) {
     fmu *f = c;
+    int found;
     (void)final;
     ALLOWED(f->cosim && f->phase == FMU_STEPPING);
-    return outcome(f, fmu_step(f, t, h));
+    found = fmu_step(f, t, h);
+    if (found == FMU_OK && fmu_note_bending(f)) say(f, fmi2Warning, f->message);
+    return outcome(f, found);
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {

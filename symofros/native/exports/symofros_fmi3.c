@@ -1,14 +1,20 @@
 /* FMI 3.0 over symofros_fmi.h. Written by hand. */
 
+static const char *category(fmi3Status status) {
+    if (status == fmi3Warning) return "logStatusWarning";
+    return status == fmi3Discard ? "logStatusDiscard" : "logStatusError";
+}
+
 static fmi3Status say(const fmu *f, fmi3Status status, const char *message) {
     fmi3LogMessageCallback logger;
     memcpy(&logger, &f->logger, sizeof logger);
-    if (logger != NULL) logger(f->environment, status, status == fmi3Discard ? "logStatusDiscard" : "logStatusError", message);
+    if (logger != NULL) logger(f->environment, status, category(status), message);
     return status;
 }
 
 static fmi3Status outcome(const fmu *f, int found) {
     if (found == FMU_OK) return fmi3OK;
+    if (found == FMU_BEYOND_THEORY) return say(f, fmi3Discard, f->message);
     return say(f, found == FMU_SINGULAR ? fmi3Discard : fmi3Error, fmi_message(found));
 }
 
@@ -182,6 +188,8 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean final, fmi3Bo
     (void)final;
     ALLOWED(!f->cosim && f->phase == FMU_CONTINUOUS);
     *event = *terminate = fmi3False;
+    if (sym_instance_judge_beams(f->instance) != 0) *terminate = fmi3True;
+    if (fmu_note_bending(f)) say(f, fmi3Warning, f->message);
     return fmi3OK;
 }
 
@@ -251,5 +259,6 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean 
     *event = *terminate = *early = fmi3False;
     found = fmu_step(f, t, h);
     *last = f->instance->t;
+    if (found == FMU_OK && fmu_note_bending(f)) say(f, fmi3Warning, f->message);
     return outcome(f, found);
 }

@@ -9,7 +9,8 @@ typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FM
 
 enum {
     FMU_OK, FMU_NOT_ALLOWED, FMU_UNKNOWN, FMU_SINGULAR, FMU_WRONG_MODE, FMU_START_NOT_CONSISTENT,
-    FMU_STOP_BEFORE_START, FMU_NO_MEMORY, FMU_OTHER_MODEL, FMU_BUFFER_TOO_SMALL
+    FMU_STOP_BEFORE_START, FMU_NO_MEMORY, FMU_OTHER_MODEL, FMU_BUFFER_TOO_SMALL,
+    FMU_BEYOND_THEORY
 };
 
 typedef struct fmu_snapshot { /* followed by q, v, u, par */
@@ -33,6 +34,8 @@ typedef struct fmu {
     /* What the environment gave. */
     void *environment, *logger;
     char *name;
+    int bending_noted;  /* whether the environment has been told that a beam bends much */
+    char message[256]; /* on the beam that bends most */
     void (*release)(void *);
 } fmu;
 
@@ -122,6 +125,7 @@ static void fmu_reset(fmu *f) {
     if (!f->cosim)
         for (i = 0; i < 2 * nc; ++i) f->instance->gains[i] = FMU_GAIN;
     f->phase = FMU_INSTANTIATED, f->rates_valid = 0, f->has_stop = 0, f->parameters_valid = 1;
+    f->bending_noted = 0;
 }
 
 /* Rates at the present state, evaluated when they are first asked for. */
@@ -189,6 +193,22 @@ static int fmu_initialise(fmu *f) {
     return FMU_OK;
 }
 
+/* Estimated error of the beams' theory from which the environment is told of it. */
+#define FMU_NOTED_ERROR 0.01
+
+/* Write the message on the beam whose theory errs most. Returns whether that is new and worth telling. */
+static int fmu_note_bending(fmu *f) {
+    const sym_plant *plant = f->instance->plant;
+    const sym_run *r = &f->instance->run;
+    int32_t b, worst = 0;
+    for (b = 1; b < plant->n_beams; ++b)
+        if (r->beam_error[b] > r->beam_error[worst]) worst = b;
+    if (plant->n_beams == 0 || !(r->beam_error[worst] > FMU_NOTED_ERROR)) return 0;
+    sprintf(f->message, "beam '%.60s' bends at t = %.6g s: second-order theory errs by about %.2g %% of the deflection",
+            plant->beam_names[worst], r->beam_t[worst], 100.0 * r->beam_error[worst]);
+    return !f->bending_noted++;
+}
+
 /* One communication step. */
 static int fmu_step(fmu *f, double t, double h) {
     const double slack = 1e-9 * (fabs(t) + h);
@@ -196,7 +216,11 @@ static int fmu_step(fmu *f, double t, double h) {
     if (!(h > 0.0) || !(fabs(t - f->instance->t) <= slack)) return FMU_NOT_ALLOWED;
     if (f->has_stop && t + h > f->stop + slack) return FMU_NOT_ALLOWED;
     f->rates_valid = 0;
-    return sym_instance_advance(f->instance, t + h, 0.0) == SYM_FINISHED ? FMU_OK : FMU_SINGULAR;
+    switch (sym_instance_advance(f->instance, t + h, 0.0)) {
+    case SYM_FINISHED: return FMU_OK;
+    case SYM_BEYOND_THEORY: return fmu_note_bending(f), FMU_BEYOND_THEORY;
+    default: return FMU_SINGULAR;
+    }
 }
 
 /* The derivative of a frame's coordinate along f->dq and f->du. */

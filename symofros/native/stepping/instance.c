@@ -21,6 +21,10 @@ static int32_t sym_instance_allocate(sym_instance *instance, sym_arena *arena) {
     sym_run_set_defaults(r);
     r->system = s, r->method = p->method, r->adaptive = p->adaptive, r->tableau = *p->tableau;
     r->rtol = p->rtol, r->atol = p->atol;
+    s->n_beams = p->n_beams, s->beams = p->beams;
+    r->beam_limit = p->beam_limit, r->beam_scale = p->beam_scale, r->beam_reach = p->beam_reach;
+    r->beam_error = sym_allocate(arena, (size_t)p->n_beams), r->beam_t = sym_allocate(arena, (size_t)p->n_beams);
+    r->beam_q = sym_allocate(arena, (size_t)p->n_beam_coordinates);
     instance->par = sym_allocate(arena, (size_t)m->npar), instance->pre = sym_allocate(arena, (size_t)m->npre);
     instance->work = sym_allocate(arena, sym_work(m));
     s->q = sym_allocate(arena, nq), s->v = sym_allocate(arena, nv);
@@ -72,6 +76,7 @@ SYM_EXPORT void sym_instance_reset(sym_instance *instance) {
     memcpy(instance->u, p->u_start, (size_t)m->nu * sizeof(double));
     memcpy(instance->par, m->par_default, (size_t)m->npar * sizeof(double));
     memset(instance->gains, 0, 2 * (size_t)m->nc * sizeof(double));
+    if (p->n_beams > 0) memset(instance->run.beam_error, 0, (size_t)p->n_beams * sizeof(double));
     instance->project = m->nc > 0;
     sym_instance_prepare(instance);
 }
@@ -89,6 +94,11 @@ SYM_EXPORT int32_t sym_instance_project(sym_instance *instance) {
     if (instance->model->nc == 0) return 0;
     instance->run.t = instance->t;
     return sym_project_state(&instance->run);
+}
+
+SYM_EXPORT int32_t sym_instance_judge_beams(sym_instance *instance) {
+    instance->run.t = instance->t;
+    return sym_run_judge_beams(&instance->run);
 }
 
 SYM_EXPORT int32_t sym_instance_accelerate(sym_instance *instance) {

@@ -7,7 +7,7 @@
  *     status = sym_instance_advance(arm, t_end, 1e-3);         // arm->t, arm->q, arm->v move on
  *
  * After sym_instance_init nothing allocates, and nothing is shared between instances: each may live in a thread of its
- * own. A status below zero is one of SYM_DIVERGED ... SYM_PROJECTION_FAILED (symofros_stepper.h).
+ * own. A status below zero is one of SYM_DIVERGED ... SYM_BEYOND_THEORY (symofros_stepper.h).
  */
 #ifndef SYMOFROS_INSTANCE_H
 #define SYMOFROS_INSTANCE_H
@@ -31,6 +31,11 @@ typedef struct sym_plant { /* constants that a package generates besides the mod
     int32_t method, adaptive;
     const sym_tableau *tableau;
     double h, rtol, atol;                 /* step [s], or the first one of an adaptive method; its error bounds */
+    int32_t n_beams, n_beam_coordinates;
+    const sym_beam *beams;                /* (n_beams) what judges their bending: sym_run_judge_beams */
+    const char *const *beam_names;
+    const double *beam_scale, *beam_reach; /* (n_beam_coordinates) at the default parameters */
+    double beam_limit;
 } sym_plant;
 
 typedef struct sym_instance {
@@ -57,6 +62,9 @@ void sym_instance_reset(sym_instance *instance);
 void sym_instance_prepare(sym_instance *instance);
 /* Project the state onto the constraints. Returns 0 or a status. */
 int32_t sym_instance_project(sym_instance *instance);
+/* Judge how far the beams of the present state bend: run.beam_error is the largest of each since the reset, as
+ * sym_instance_advance keeps it. Returns 0 or SYM_BEYOND_THEORY. */
+int32_t sym_instance_judge_beams(sym_instance *instance);
 /* Accelerations and multipliers at the present state. Returns 0 or a status. */
 int32_t sym_instance_accelerate(sym_instance *instance);
 /* Integrate to t_end by steps of at most h (0: the plant's). Returns SYM_FINISHED or a status below zero. */

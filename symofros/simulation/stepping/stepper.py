@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from symofros.errors import CompileError
-from symofros.runtime.beams import BeamBending, ElasticBeam, worst_bendings
+from symofros.runtime.beams import BeamBending, worst_bendings
 from symofros.runtime.calls.binding import NativeMemory, native_library
 from symofros.runtime.calls.declarations import constants, interface
 from symofros.runtime.calls.kernel import Array, Kernel
@@ -87,8 +87,9 @@ class Stepper:
         system.beams = memory.own(
             "sym_beam[]",
             [
-                (beam.q, first, *beam.counts, *self._angles(beam), beam.EI_z, beam.EI_y, beam.contrast)
+                (beam.q, first, *beam.counts, len(blocks), memory.doubles(blocks), beam.EI_z, beam.EI_y, beam.contrast)
                 for beam, first in zip(self.beams, firsts.tolist(), strict=False)
+                for blocks in (beam.angle_blocks,)
             ],
         )
         run.beam_limit = math.inf
@@ -98,13 +99,6 @@ class Stepper:
         run.beam_error, run.beam_t, run.beam_q = (
             memory.shared(array if array.size else np.zeros(1)) for array in self._beam_record
         )
-
-    def _angles(self, beam: ElasticBeam) -> tuple[int, Any]:
-        """Number of blocks of four stations, and their angles by block, coordinate and station; zeros fill the last."""
-        blocks = -(-len(beam.xi) // 4)
-        angles = np.zeros((4 * blocks, beam.size))
-        angles[: len(beam.xi)] = beam.angles
-        return blocks, self.memory.doubles(angles.reshape(blocks, 4, beam.size).transpose(0, 2, 1))
 
     @property
     def bendings(self) -> tuple[BeamBending, ...]:

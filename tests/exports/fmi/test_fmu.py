@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -346,3 +347,31 @@ def test_models_without_states_or_inputs(tmp_path: Path, version: int, prescribe
     done = sf.export(sf.System("odd", (body,)), target, tmp_path, outputs=[])
     assert validate_fmu(str(done.files[0])) == []
     assert fmpy.simulate_fmu(str(done.files[0]), fmi_type="CoSimulation", stop_time=0.01)["time"][-1] == 0.01
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_beams_beyond_their_theory_are_told(tmp_path: Path, version: int, kind: str) -> None:
+    """A warning from 1 % on; beyond the limit a step of Co-Simulation is discarded, and Model Exchange is ended."""
+    blade = sf.Beam("blade", sf.Joint("root", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=2)
+    told: dict[float, list[str]] = {}
+    ends: dict[float, float] = {}
+    for g in (0.2, 0.5, 60.0):
+        system = sf.System("limp", (blade,), gravity=(0, -g, 0))
+        target: Any = f"fmu{version}"
+        done = sf.export(system, target, tmp_path / f"{g}", method="dopri5")
+        log: list[str] = []
+
+        def logger(*given: Any, log: list[str] = log) -> None:
+            log.append(" ".join(x.decode() if isinstance(x, bytes) else str(x) for x in given))
+
+        try:
+            run = fmpy.simulate_fmu(
+                str(done.files[0]), fmi_type=kind, stop_time=1.0, output_interval=0.01, logger=logger
+            )
+            ends[g] = float(run["time"][-1])
+        except FMICallException:
+            ends[g] = math.nan
+        told[g] = [line for line in log if "second-order theory errs" in line]
+    assert not told[0.2] and ends[0.2] == pytest.approx(1.0)
+    assert len(told[0.5]) == 1 and "'blade'" in told[0.5][0] and ends[0.5] == pytest.approx(1.0)
+    assert told[60.0] and not ends[60.0] == pytest.approx(1.0)
