@@ -14,11 +14,12 @@ from validation.accuracy.elastica import FUNCTIONS, STRETCH
 from validation.accuracy.princeton import STEPS, rod_tips, strip_model
 from validation.adapters.exudyn.ancf import Strip, static_tip
 from validation.mechanics.geometry import Array
-from validation.reporting.figures import Chart, Curve, Figure, Mark
+from validation.reporting.figures import Chart, Curve, Figure, Kind, Mark
 from validation.reporting.findings import Finding, Study
 
 # Errors between which the estimate is asked to be right, and within which factor.
 SMALLEST, LARGEST, FACTOR = 0.01, 0.5, 2.0
+LIMITS = (Mark("limit", LARGEST), Mark("note", SMALLEST))
 CRITICAL = np.pi**2 / 4.0
 # Compressive loads over the critical one, each with transverse loads beside it.
 COLUMNS = (-2.0, 0.5, 0.75, 0.9, 0.95)
@@ -176,10 +177,10 @@ def study(quick: bool) -> Study:
     )
     plain = max(worst_factor(points[kind]) for kind in ("force at the tip", "weight"))
     answer = (
-        f"Under transverse loads the estimate is right to {plain - 1:.0%} from {SMALLEST:.0%} to {LARGEST:.0%}, from the "
-        f"largest slope alone; under axial loads and in the twisted strip within a factor of "
-        f"{max(worst_factor(some) for some in points.values()):.1f}. Columns past their critical load, whose second-order "
-        f"equilibria lie on the wrong side, are refused."
+        f"Under transverse loads the estimate is right to {plain - 1:.0%} from {SMALLEST:.0%} to {LARGEST:.0%}, from "
+        f"the largest slope alone; under axial loads and in the twisted strip within a factor of "
+        f"{max(worst_factor(some) for some in points.values()):.1f}. Columns past their critical load, whose "
+        f"second-order equilibria lie on the wrong side, are refused."
     )
     return Study(
         "What does the estimate of a beam's error say?",
@@ -193,44 +194,35 @@ def study(quick: bool) -> Study:
 def calibration(points: dict[str, list[Judged]]) -> Figure:
     """Estimate against error."""
     line = np.geomspace(1e-3, 2.0, 20)
-    bounds = [Curve("exact", line, line, 11), Curve("factor of two", line, 2 * line, 10, "dotted")]
-    bounds.append(Curve("factor of two, low", line, line / 2, 10, "dotted"))
-    shown = [
-        Curve(kind, [one.error for one in some], [one.estimate for one in some], k % 10, "points", k // 5)
-        for k, (kind, some) in enumerate(points.items())
-    ]
-    chart = Chart(
-        "what the beam states against what it errs by",
-        "error of the tip over its displacement  [1]",
-        "estimated error  [1]",
-        (*bounds, *shown),
-        (Mark("limit", LARGEST), Mark("note", SMALLEST)),
-        log="xy",
-        range_y=(1e-3, 2.0),
+    bounds = (
+        Curve("exact", line, line, 11),
+        Curve("factor of two", line, 2 * line, 10, "dotted"),
+        Curve("factor of two, low", line, line / 2, 10, "dotted"),
     )
+    drawn, marks = (*bounds, *_kinds(points, "error", "estimate", "points")), LIMITS
+    title, x = "what the beam states against what it errs by", "error of the tip over its displacement  [1]"
     return Figure(
         "Points on the middle line are estimated exactly; the dotted lines are a factor of two away. From the note at "
         "1 % to the limit at 50 % all lie between them.",
-        (chart,),
+        (Chart(title, x, "estimated error  [1]", drawn, marks, log="xy", range_y=(1e-3, 2.0)),),
     )
 
 
 def amplification(points: dict[str, list[Judged]]) -> Figure:
     """Error against slope."""
-    shown = [
-        Curve(kind, [one.slope for one in some], [one.error for one in some], k % 10, "joined", k // 5)
-        for k, (kind, some) in enumerate(points.items())
-    ]
-    chart = Chart(
-        "error against slope",
-        "largest slope  [rad]",
-        "error of the tip over its displacement  [1]",
-        tuple(shown),
-        (Mark("limit", LARGEST), Mark("note", SMALLEST)),
-        log="xy",
-    )
+    drawn, marks = _kinds(points, "slope", "error", "joined"), LIMITS
+    y = "error of the tip over its displacement  [1]"
     return Figure(
         "Without axial loads all beams lie on one curve of slope two, whatever bends them: the largest slope tells the "
-        "error. Compression lifts the curve by (A + 3)/4, with A the elastic stiffness over what the load leaves of it.",
-        (chart,),
+        "error. Compression lifts the curve by (A + 3)/4, with A the elastic stiffness over what the load leaves "
+        "of it.",
+        (Chart("error against slope", "largest slope  [rad]", y, drawn, marks, log="xy"),),
+    )
+
+
+def _kinds(points: dict[str, list[Judged]], x: str, y: str, style: Kind) -> tuple[Curve, ...]:
+    """A curve for each kind of load."""
+    return tuple(
+        Curve(kind, [getattr(one, x) for one in some], [getattr(one, y) for one in some], k % 10, style, k // 5)
+        for k, (kind, some) in enumerate(points.items())
     )

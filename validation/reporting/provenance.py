@@ -51,7 +51,7 @@ class Provenance:
             "took": f"{stated['seconds']:.0f} s" if "seconds" in stated else "",
             "machine": machine,
             "versions": named(stated.get("versions", {}), ", "),
-            "compiler": stated.get("compiler") or "; ".join(stated.get("compilers", ())),
+            "compiler": "; ".join(stated.get("compilers", ())) or stated.get("compiler", ""),
             "flags": named(flags, "; ") if isinstance(flags, dict) else flags,
             "revision": stated.get("revision", ""),
         }

@@ -10,7 +10,6 @@ import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -120,21 +119,7 @@ def prepare(peers: Iterable[str]) -> list[str]:
 
 
 def facts() -> Mapping[str, Any]:
-    """What times depend on: processor, its measured limits, versions, flags."""
-    packages = {
-        "symofros": "symofros",
-        "pinocchio": "pin",
-        "mujoco": "mujoco",
-        "casadi": "casadi",
-        "sympy": "sympy",
-        "exudyn": "exudyn",
-    }
-    versions = {}
-    for name, package in packages.items():
-        try:
-            versions[name] = metadata.version(package)
-        except metadata.PackageNotFoundError:
-            versions[name] = "not installed"
+    """What times depend on: processor, its measured limits, compilers, flags."""
     flags = {
         "symofros": " ".join(DEFAULT_FLAGS),
         "pinocchio": " ".join(PINOCCHIO_FLAGS),
@@ -144,7 +129,6 @@ def facts() -> Mapping[str, Any]:
     return {
         **machine(),
         "compilers": [compiler.version for compiler in compilers()],
-        "versions": versions,
         "flags": flags,
         **peaks(),
     }

@@ -84,6 +84,13 @@ def test_doubts_are_told(tmp_path: Path, change: dict[str, Any], says: str) -> N
     assert entry(write(tmp_path, FUZZ | change)).remarks == (says,)
 
 
+def test_what_is_said_of_several_compilers_comes_before_the_default_one() -> None:
+    """The report on timing builds its sides by more than one."""
+    machine = {"compilers": ["gcc 12", "clang 19"], "flags": {"symofros": "-O2", "pinocchio": "-O3"}}
+    rows = dict(Provenance.of({"compiler": "cc", "flags": "-O2", "seconds": 60.0, "machine": machine}).rows)
+    assert rows == {"took": "60 s", "compiler": "gcc 12; clang 19", "flags": "symofros -O2; pinocchio -O3"}
+
+
 def test_a_package_that_is_not_installed_makes_nothing_stale() -> None:
     origin = Provenance.of(FUZZ | {"versions": {"adams": "1"}})
     assert doubts(origin, {"numpy": "2.0"}, TODAY) == []

@@ -10,13 +10,14 @@ import pytest
 
 from validation.reporting import html, markdown
 from validation.reporting.charts import draw
+from validation.reporting.command import Run
 from validation.reporting.figures import Chart, Curve, Figure, Mark, Tag
 from validation.reporting.findings import Finding
 from validation.reporting.numbers import counted
 from validation.reporting.plain import plain, restored
 from validation.reporting.provenance import Provenance
 from validation.reporting.questions import findings_fold
-from validation.reporting.record import Bullets, Cell, Fold, Report, Section, Table, Text
+from validation.reporting.record import Bullets, Cell, Fold, Report, Section, Table, Text, Topic
 
 LIMIT = Mark("limit", 2.0, "x")
 CHART = Chart(
@@ -55,6 +56,12 @@ def test_markdown_shows_everything_but_figures() -> None:
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert "| a\\|b | **missed** 3 |" in rows and "| gap [m] | **missed** 2 |  | 1 | asked |" in rows
     assert "## How | wide?" in text and "Only there" not in text and "svg" not in text and "numpy 2" in text
+
+
+def test_a_run_stamps_its_data_where_that_does_not_say_otherwise() -> None:
+    topic = Topic("t", "g", "q?", lambda data: REPORT)
+    data = Run(topic).stamped({"seconds": 3.0})
+    assert data["seconds"] == 3.0 and "numpy" in data["versions"] and data["machine"]["processor"] and data["date"]
 
 
 @pytest.mark.parametrize("text", ["<script>", "[x](javascript:alert)", '[x](#"onclick="y)', "`<b>`", "**<i>**"])
