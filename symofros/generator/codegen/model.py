@@ -39,7 +39,7 @@ def model_source(
         in_lanes: Options of the code that takes several states of a batch at once; None for none.
             Functions with a solver have none: the solver takes the time, and it pivots (docs/theory/code.md).
         c_name: Prefix of symbols; made of the record's name by default.
-        packs: Whether values formed by the same operations share vectors, which takes a compiler of GNU C; not in lanes,
+        packs: Whether values formed by the same operations share vectors, which takes GNU C; not in lanes,
             where every value is a vector already.
     """
     name = c_name or identifier(record.name)
