@@ -2,21 +2,9 @@
 
 from __future__ import annotations
 
-from validation.accuracy import (
-    buckling,
-    conditioning,
-    convergence,
-    damping,
-    elastica,
-    energy,
-    estimate,
-    modes_needed,
-    outboard,
-    pendulum,
-    princeton,
-    spinning,
-    spinup,
-)
+from validation.accuracy.frequencies import conditioning, convergence, modes_needed, outboard, spinning
+from validation.accuracy.motion import damping, energy, pendulum, spinup
+from validation.accuracy.statics import buckling, elastica, estimate, princeton
 from validation.reporting.findings import Question
 from validation.reporting.questions import composing, measuring
 from validation.reporting.record import Topic

@@ -12,7 +12,7 @@ import numpy as np
 
 import reference_models
 import symofros as sf
-from validation.accuracy import spinup
+from validation.accuracy.motion import spinup
 from validation.accuracy.reference import data
 from validation.adapters.exudyn.ancf import spin_up
 from validation.adapters.mujoco import motion as mujoco_motion

@@ -107,7 +107,17 @@ def test_the_run_is_not_changed_by_being_judged() -> None:
 
 
 # Rigid reference models at the usual step; elastic ones need their own.
-USUAL = ("pendulum", "double_pendulum", "cart_pole", "rx90", "chain7", "friction_arm", "heavy_top", "gyroscope", "space_arm")
+USUAL = (
+    "pendulum",
+    "double_pendulum",
+    "cart_pole",
+    "rx90",
+    "chain7",
+    "friction_arm",
+    "heavy_top",
+    "gyroscope",
+    "space_arm",
+)
 
 
 @pytest.mark.parametrize("name", USUAL)

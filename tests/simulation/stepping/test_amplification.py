@@ -55,8 +55,14 @@ def test_oscillations_grow_beyond_the_limit_alone(name: str) -> None:
     limit = stability_limit(name, math.pi / 2)
     for share, grows in ((0.995, False), (1.005, True)):
         run = sf.simulate(
-            oscillator(), [1.0], t_end=3000.0, dt=1.0, par=[(share * limit) ** 2, 0.0], method=name,
-            adaptive=fixed(name), output=100.0,
+            oscillator(),
+            [1.0],
+            t_end=3000.0,
+            dt=1.0,
+            par=[(share * limit) ** 2, 0.0],
+            method=name,
+            adaptive=fixed(name),
+            output=100.0,
         )
         assert (np.abs(run.q).max() > 20.0) == grows
 

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from validation.__main__ import app
 from validation.accuracy import catalogue
 from validation.accuracy.catalogue import TOPIC
-from validation.accuracy.elastica import exact
+from validation.accuracy.statics.elastica import exact
 from validation.reporting.command import Done, write
 from validation.reporting.findings import Finding, Study, exponent, near
 

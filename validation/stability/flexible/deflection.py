@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.accuracy.pendulum import GRAVITY, MODELS, WORDS
-from validation.accuracy.pendulum import pendulum as stated
+from validation.accuracy.motion.pendulum import GRAVITY, MODELS, WORDS
+from validation.accuracy.motion.pendulum import pendulum as stated
 from validation.accuracy.reference import data, source
 from validation.reporting.findings import Finding
 from validation.stability.study import Cell, Grid, Map, Maps, ParameterStudy, Subject, Verdict, cell, simulate

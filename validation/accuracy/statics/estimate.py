@@ -10,8 +10,8 @@ from scipy.integrate import solve_bvp
 
 import symofros as sf
 from validation.accuracy.beams import cantilever, interpreted
-from validation.accuracy.elastica import FUNCTIONS, STRETCH
-from validation.accuracy.princeton import STEPS, rod_tips, strip_model
+from validation.accuracy.statics.elastica import FUNCTIONS, STRETCH
+from validation.accuracy.statics.princeton import STEPS, rod_tips, strip_model
 from validation.adapters.exudyn.ancf import Strip, static_tip
 from validation.mechanics.geometry import Array
 from validation.reporting.figures import Chart, Curve, Figure, Kind, Mark

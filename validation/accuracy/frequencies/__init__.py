@@ -1,0 +1,1 @@
+"""Frequencies of beams at rest and in steady spin: convergence, conditioning, stiffening."""

@@ -1,0 +1,1 @@
+"""Beams in motion: spin-up, swing, energy, damping."""

@@ -1,0 +1,1 @@
+"""Beams at rest: large deflections, buckling, the estimate of their own error."""
