@@ -5,11 +5,10 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
-
-import pytest
 
 from validation.adapters import ROUTES
 
@@ -121,17 +120,25 @@ ADAPTERS = {name: name for name in ENGINES} | {
 }
 
 
-def imported(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text())):
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text())
+
+
+@cache
+def imported(path: Path) -> tuple[str, ...]:
+    modules: list[str] = []
+    for node in ast.walk(tree(path)):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            modules += (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import"
             module = node.module or ""
             if module in ("validation", "validation.adapters"):  # What is taken from them may be a layer.
-                yield from (f"{module}.{alias.name}" for alias in node.names)
+                modules += (f"{module}.{alias.name}" for alias in node.names)
             else:
-                yield module
+                modules.append(module)
+    return tuple(modules)
 
 
 # Folders whose subfolders are layers of their own.
@@ -147,75 +154,87 @@ def layer(module: str) -> str:
 
 
 SOURCES = sorted((ROOT / "symofros").rglob("*.py"))
+HARNESS_SOURCES = sorted((ROOT / "validation").rglob("*.py"))
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_imports_run_one_way(path: Path) -> None:
-    own = layer(".".join(path.relative_to(ROOT).with_suffix("").parts))
-    if (
-        own in ("__main__", "commands") or path.name == "__init__.py" and own in DIVIDED
-    ):  # The command line may use all.
-        return
-    for module in imported(path):
-        if module.partition(".")[0] in {"validation", "reference_models"}:
-            pytest.fail(f"{path.name} imports {module}: the generator knows nothing of its harness")
-        if module.startswith("symofros") and layer(module) != own:
-            assert layer(module) in ALLOWED[own], f"{own} may not import {module}"
+def check_all(paths: Iterable[Path], faults: Callable[[Path], Iterable[str]]) -> None:
+    """Each file against a rule, with all that breaks it in one message."""
+    broken = [f"{path.relative_to(ROOT)}: {fault}" for path in paths for fault in faults(path)]
+    assert not broken, "\n".join(broken)
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_only_freeze_looks_inside_sympy(path: Path) -> None:
-    if path.name != "freeze.py":
-        assert not any(module.partition(".")[0] == "sympy" for module in imported(path))
+def test_imports_run_one_way() -> None:
+    def faults(path: Path) -> Iterator[str]:
+        own = layer(".".join(path.relative_to(ROOT).with_suffix("").parts))
+        # The command line may use all.
+        if own in ("__main__", "commands") or path.name == "__init__.py" and own in DIVIDED:
+            return
+        for module in imported(path):
+            if module.partition(".")[0] in {"validation", "reference_models"}:
+                yield f"imports {module}: the generator knows nothing of its harness"
+            if module.startswith("symofros") and layer(module) != own and layer(module) not in ALLOWED[own]:
+                yield f"{own} may not import {module}"
+
+    check_all(SOURCES, faults)
+
+
+def test_only_freeze_looks_inside_sympy() -> None:
+    others = [path for path in SOURCES if path.name != "freeze.py"]
+    check_all(others, lambda path: [name for name in imported(path) if name.partition(".")[0] == "sympy"])
 
 
 # What the harness, as any tool beside the package, may import of it: the rest may change without notice.
 PUBLIC = {"symofros", "symofros.blocks", "symofros.tools"}
 PACKAGE_MODULES = {".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__") for path in SOURCES}
-HARNESS_SOURCES = sorted((ROOT / "validation").rglob("*.py"))
 
 
-@pytest.mark.parametrize("path", HARNESS_SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_the_harness_imports_public_modules_only(path: Path) -> None:
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.Import):
-            modules = {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module is not None:
-            packages = {f"{node.module}.{alias.name}" for alias in node.names} & PACKAGE_MODULES
-            modules = packages | ({node.module} if len(packages) < len(node.names) else set())
-        else:
-            continue
-        internal = {module for module in modules if module.partition(".")[0] == "symofros"} - PUBLIC
-        assert not internal, f"{path.name} imports {', '.join(internal)}"
+def test_the_harness_imports_public_modules_only() -> None:
+    def faults(path: Path) -> Iterator[str]:
+        for node in ast.walk(tree(path)):
+            if isinstance(node, ast.Import):
+                modules = {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module is not None:
+                packages = {f"{node.module}.{alias.name}" for alias in node.names} & PACKAGE_MODULES
+                modules = packages | ({node.module} if len(packages) < len(node.names) else set())
+            else:
+                continue
+            yield from {module for module in modules if module.partition(".")[0] == "symofros"} - PUBLIC
+
+    check_all(HARNESS_SOURCES, faults)
 
 
 # Adapters that need no engine: all others may use them.
 BESIDE = {path.stem for path in (ROOT / "validation/adapters").glob("*.py")}
 
 
-@pytest.mark.parametrize("path", HARNESS_SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_imports_of_the_harness_run_one_way(path: Path) -> None:
-    own = path.relative_to(ROOT / "validation").parts[0].removesuffix(".py")
-    if own in ("__main__", "commands"):  # The command line may use everything.
-        return
-    for module in imported(path):
-        if module.partition(".")[0] == "validation" and layer(module) != own:
-            assert layer(module) in MAY_USE[own], f"{own} may not import {module}"
+def test_imports_of_the_harness_run_one_way() -> None:
+    def faults(path: Path) -> Iterator[str]:
+        own = path.relative_to(ROOT / "validation").parts[0].removesuffix(".py")
+        if own in ("__main__", "commands"):  # The command line may use everything.
+            return
+        for module in imported(path):
+            if module.partition(".")[0] == "validation" and layer(module) not in MAY_USE[own] | {own}:
+                yield f"{own} may not import {module}"
+
+    check_all(HARNESS_SOURCES, faults)
 
 
-@pytest.mark.parametrize("path", HARNESS_SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_engines_stay_in_their_adapters(path: Path) -> None:
+def test_engines_stay_in_their_adapters() -> None:
     """And adapters of one engine know nothing of another's."""
-    folder = path.parent.relative_to(ROOT / "validation").parts
-    own = folder[1] if folder[:1] == ("adapters",) and len(folder) > 1 else ""
-    for module in imported(path):
-        package = module.partition(".")[0]
-        assert package not in ENGINES or package == ADAPTERS.get(own), (
-            f"{path.name} imports {package} outside its folder"
-        )
-        if folder[:1] == ("adapters",) and module.startswith("validation.adapters."):
-            engine = module.split(".")[2]
-            assert engine in (own, *BESIDE), f"adapters of '{own}' may not import {module}"
+
+    def faults(path: Path) -> Iterator[str]:
+        folder = path.parent.relative_to(ROOT / "validation").parts
+        own = folder[1] if folder[:1] == ("adapters",) and len(folder) > 1 else ""
+        for module in imported(path):
+            package = module.partition(".")[0]
+            if package in ENGINES and package != ADAPTERS.get(own):
+                yield f"imports {package} outside its folder"
+            if folder[:1] == ("adapters",) and module.startswith("validation.adapters."):
+                engine = module.split(".")[2]
+                if engine not in (own, *BESIDE):
+                    yield f"adapters of '{own}' may not import {module}"
+
+    check_all(HARNESS_SOURCES, faults)
 
 
 def test_importing_the_package_loads_numpy_and_mpmath_only() -> None:
@@ -238,7 +257,7 @@ def _modules() -> dict[str, Path]:
 def _imported_modules(path: Path, known: Collection[str]) -> set[str]:
     """The modules of ours that a file imports, for type checkers and within functions, too."""
     names: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(tree(path)):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module is not None:
