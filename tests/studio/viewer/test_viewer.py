@@ -293,6 +293,20 @@ def test_the_controls_say_what_is_shown(viewer: sf.Viewer) -> None:
     assert panel._exaggeration.value == 7.0 and panel._sliders[0].value == 0.25
 
 
+def test_a_state_that_bends_beams_beyond_a_per_cent_of_error_is_remarked_on(viewer: sf.Viewer) -> None:
+    (beam, *_), panel = viewer.mechanism.model.beams(), viewer._panel
+    q = viewer.mechanism.model.neutral()
+    q[beam.q] = 0.01 * beam.length
+    viewer.exaggeration = 40.0  # Of the picture, not of the beam.
+    viewer.show(q)
+    assert not panel._warning.content
+    q[beam.q] = 0.2 * beam.length
+    viewer.show(q)
+    assert panel._warning.content.startswith(f"**Large bending:** beam '{beam.name}' bends by ")
+    viewer.reset()
+    assert not panel._warning.content
+
+
 def test_it_may_be_closed_twice_and_its_port_is_free_again(viewer: sf.Viewer) -> None:
     port = viewer.port
     viewer.close()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Protocol
 
@@ -86,6 +86,7 @@ class Panel:
         gui.configure_theme(show_logo=False, show_share_button=False)
         gui.set_panel_label(drawing.name)
         self._status = gui.add_markdown("")
+        self._warning = gui.add_markdown("")
         if not controls_shown:
             gui.main_panel.minimize()
             return
@@ -144,6 +145,12 @@ class Panel:
     def say(self, text: str) -> None:
         """Show a line of text above the controls."""
         self._status.content = text
+
+    def warn(self, notes: Sequence[str]) -> None:
+        """Show remarks on the state in the picture, in bold; nothing where there are none."""
+        text = "\n\n".join(f"**Large bending:** {note}" for note in notes)
+        if self._warning.content != text:
+            self._warning.content = text
 
     def show(self, layers: frozenset[str], exaggeration: float) -> None:
         """Let the controls say what is shown."""

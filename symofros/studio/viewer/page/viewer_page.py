@@ -7,6 +7,7 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
+from symofros.runtime.beams import bending_notes
 from symofros.studio.viewer.drawing.meshes import Array
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.page.panel import Panel
@@ -185,7 +186,14 @@ class ViewerPage:
 
     def _follow(self) -> None:
         self._panel.follow(self._scene_state.values, self._player)
+        self._panel.warn(self._bending_notes())
         self._followed = time.monotonic()
+
+    def _bending_notes(self) -> tuple[str, ...]:
+        """Remarks on beams that the state, not its exaggerated picture, bends beyond a per cent of error."""
+        state = self._scene_state.state
+        beams = self.mechanism.model.beams(state.par)
+        return bending_notes([beam.bending(state.q[beam.in_q]) for beam in beams])
 
     def _new_panel(self) -> Panel:
         scene_state, mechanism = self._scene_state, self._scene_state.mechanism
@@ -200,4 +208,5 @@ class ViewerPage:
             self._controls,
         )
         panel.follow(scene_state.values, self._player)
+        panel.warn(self._bending_notes())
         return panel
