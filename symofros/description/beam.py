@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
+from symofros.description.entries import refuses_unknown_entries
 from symofros.description.frames import Frame
 from symofros.description.joint import Joint
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
@@ -23,6 +24,7 @@ SECTION = ("rhoA", "EI_y", "EI_z", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
 STATION = "x"
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Samples:
     """A shape function by its values at stations; a cubic spline goes through them, the cubic itself where it is one.
@@ -64,6 +66,7 @@ class Samples:
 UserShape = Value | Samples
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class BeamLoad:
     """A force and a moment on the centroid axis, at one station or spread over the length.
@@ -104,6 +107,7 @@ class BeamLoad:
             )
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Beam:
     """A slender elastic body along x of its frame B, clamped to B at the root (docs/theory/beams.md).

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
+from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Anchor
 from symofros.description.values import Value, as_value
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -28,6 +29,7 @@ def _axes(stated: Any, what: str) -> tuple[AxisName, ...]:
     return tuple(axis for axis in AXES if axis in stated)
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Closure:
     """Two frames that stay together in some directions: it closes a loop of the tree.
@@ -73,6 +75,7 @@ class Closure:
         return ()
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Rod:
     """A massless rod: the distance between two frames' origins stays the same.
@@ -104,6 +107,7 @@ class Rod:
         return ()
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class KnifeEdge:
     """A frame that moves along its own axes, but for one: an edge, or a thin wheel that may slip along.
@@ -133,6 +137,7 @@ class KnifeEdge:
         return self.conditions
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Rolling:
     """A disc or a sphere that rolls without slipping on the horizontal plane z = height of the world.
@@ -179,6 +184,7 @@ class Rolling:
         return self.conditions[:2]
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Nonholonomic:
     """A condition on speeds by formula: the sum of coefficient times speed equals a right-hand side.

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, Literal
 
+from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
 from symofros.errors import DescriptionError, Problem
 
@@ -20,6 +21,7 @@ class _Values:
                 object.__setattr__(self, item.name, as_value(value, f"{type(self).__name__.lower()}: {item.name}"))
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Spring(_Values):
     """F = -(stiffness x + cubic x^3), x = q - rest; its energy is potential energy.
@@ -37,6 +39,7 @@ class Spring(_Values):
     coordinate: int = 0
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Damper(_Values):
     """F = -(coefficient v + quadratic v |v|).
@@ -52,6 +55,7 @@ class Damper(_Values):
     coordinate: int = 0
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Stop(_Values):
     """A limit as penalty: a spring and damper that act only beyond it; the spring's energy is potential energy.
@@ -71,6 +75,7 @@ class Stop(_Values):
     coordinate: int = 0
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Friction(_Values):
     """Coulomb, Stribeck and viscous friction, smooth through zero speed.
@@ -97,6 +102,7 @@ class Friction(_Values):
 JointElement = Spring | Damper | Stop | Friction
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Rotor:
     """A motor's rotor that spins `ratio` times as fast as a joint speed, about an axis fixed in its carrier.
@@ -127,6 +133,7 @@ class Rotor:
             object.__setattr__(self, "axis", as_vector(self.axis, "rotor: axis"))
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Load:
     """A force and a torque on a body, by formulas of inputs, parameters, coordinates, speeds and t.
@@ -156,6 +163,7 @@ class Load:
 Anchor = tuple[str, str | None]
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Connection:
     """A spring and damper along the line between two frames.
@@ -182,6 +190,7 @@ class Connection:
             object.__setattr__(self, label, as_value(getattr(self, label), f"connection '{self.name}': {label}"))
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class VirtualPower:
     """Internal forces by their virtual power, the sum of force_k times the virtual change of speed k.
@@ -202,6 +211,7 @@ class VirtualPower:
         object.__setattr__(self, "forces", tuple((str(k), as_value(x, f"{what}: {k}")) for k, x in pairs))
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Potential:
     """A potential energy by formula of coordinates, parameters and t [J]; its forces follow by differentiation."""

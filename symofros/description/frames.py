@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Vector, as_vector
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Frame:
     """An extremity frame E fixed on a body B.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import JointElement, Rotor
 from symofros.description.joint_kinds import JOINT_KINDS, KINDS, JointKind, JointKindName
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
@@ -12,6 +13,7 @@ from symofros.errors import DescriptionError, Problem, did_you_mean
 WORLD = "world"
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Limits:
     """Bounds of a one-coordinate joint; data for sampling and inverse kinematics, not a force.
@@ -29,6 +31,7 @@ class Limits:
     effort: float | None = None
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Joint:
     """How a body B moves on its parent A: proximal frame P fixed on A, distal frame D = body frame B.

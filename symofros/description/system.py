@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 from symofros.description.beam import Beam
 from symofros.description.constraints import Closure, Constraint, Rod
+from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Connection, Load, Potential, VirtualPower
 from symofros.description.frames import Frame
 from symofros.description.joint import Joint
@@ -27,6 +28,7 @@ WAIVERS: dict[str, str] = {
 }
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Parameter:
     """A named number: given at run time, or hard-coded in the C code if constant.
@@ -46,6 +48,7 @@ class Parameter:
     description: str = ""
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Input:
     """A named input u, used in formulas of efforts and forces.
@@ -61,6 +64,7 @@ class Input:
     description: str = ""
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class Inertia:
     """Mass, mass centre and inertia matrix of a rigid body.
@@ -113,6 +117,7 @@ class Inertia:
             )
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class RigidBody:
     """A rigid body with the joint that carries it. Without a joint it is the base, and its frame is the world frame.
@@ -152,6 +157,7 @@ class RigidBody:
 Body = RigidBody | Beam
 
 
+@refuses_unknown_entries
 @dataclass(frozen=True)
 class System:
     """A mechanism as the user stated it.

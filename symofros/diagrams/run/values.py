@@ -36,7 +36,7 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
         elif name in layout.par_names:
             place = Place(layout.par_names.index(name), ())
         else:
-            known = [*fields, *layout.par_names]
+            known = list(dict.fromkeys([*fields, *layout.par_names]))
             raise UnknownNameError(
                 Problem(
                     f"diagram: no run-time parameter '{name}'",

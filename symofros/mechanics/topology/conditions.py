@@ -23,6 +23,8 @@ from symofros.mechanics.topology.numbers import Numbers
 
 # What a margin must be, besides finite.
 Sign = Literal["positive", "not negative", "any"]
+# A number, a symbol, or the kind of an operation with the places of its operands.
+Step = float | str | tuple[str, list[int]]
 
 
 class Condition(NamedTuple):
@@ -49,13 +51,19 @@ class Formulas:
 
     Args:
         formulas: Numbers and formulas.
+
+    Attributes:
+        steps: Numbers, symbols, and operations with the places of their operands among the steps, in order.
+        results: Place of each formula among the steps.
     """
 
     def __init__(self, formulas: Sequence[Value]) -> None:
-        # In order: numbers, symbols, and operations with the places of their operands.
-        self._steps: list[float | str | tuple[Callable[..., Any], list[int]]] = []
+        self.steps: list[Step] = []
         self._places: dict[float | str, int] = {}
-        self._results = [self._place(formula) for formula in formulas]
+        self.results = [self._place(formula) for formula in formulas]
+        self._rules = [
+            _ARITHMETIC.get(step[0]) or OPS[step[0]].rule if isinstance(step, tuple) else None for step in self.steps
+        ]
 
     def _place(self, formula: Value) -> int:
         """The place of a formula among the steps."""
@@ -66,12 +74,11 @@ class Formulas:
         else:
             key = f"operation {id(formula)}"
         if key not in self._places:
-            step: float | str | tuple[Callable[..., Any], list[int]] = key
+            step: Step = key
             if isinstance(formula, Expression) and formula.args:
-                rule = _ARITHMETIC.get(formula.kind) or OPS[formula.kind].rule
-                step = rule, [self._place(arg) for arg in formula.args]
-            self._places[key] = len(self._steps)
-            self._steps.append(step)
+                step = formula.kind, [self._place(arg) for arg in formula.args]
+            self._places[key] = len(self.steps)
+            self.steps.append(step)
         return self._places[key]
 
     def __call__(self, values: Mapping[str, Array | float]) -> list[Array | float]:
@@ -82,13 +89,12 @@ class Formulas:
         """
         known: list[Any] = []
         with np.errstate(all="ignore"):
-            for step in self._steps:
-                if isinstance(step, tuple):
-                    rule, operands = step
-                    known.append(rule(*[known[i] for i in operands]))
+            for step, rule in zip(self.steps, self._rules, strict=True):
+                if isinstance(step, tuple) and rule is not None:
+                    known.append(rule(*[known[i] for i in step[1]]))
                 else:
                     known.append(values[step] if isinstance(step, str) else step)
-        return [known[i] for i in self._results]
+        return [known[i] for i in self.results]
 
 
 class Conditions:
@@ -100,7 +106,7 @@ class Conditions:
 
     def __init__(self, conditions: Iterable[Condition]) -> None:
         self.conditions = tuple(conditions)
-        self._formulas = Formulas([margin for condition in self.conditions for margin in condition.margins])
+        self.formulas = Formulas([margin for condition in self.conditions for margin in condition.margins])
         signs = [condition.sign for condition in self.conditions for _ in condition.margins]
         self._positive = np.array([[sign == "positive"] for sign in signs], dtype=bool).reshape(-1, 1)
         self._any = np.array([[sign == "any"] for sign in signs], dtype=bool).reshape(-1, 1)
@@ -116,7 +122,7 @@ class Conditions:
         if not self.conditions:
             return np.zeros((0, states), dtype=bool)
         margins = np.empty((len(self._any), states))
-        for row, margin in zip(margins, self._formulas(values), strict=True):
+        for row, margin in zip(margins, self.formulas(values), strict=True):
             row[:] = margin
         with np.errstate(invalid="ignore"):
             holds = np.isfinite(margins) & (self._any | np.where(self._positive, margins > 0.0, margins >= 0.0))

@@ -4,6 +4,7 @@
  */
 
 static const char *fmi_message(int found) {
+    if (found >= FMU_PARAMETERS) return sym_fmu_conditions[found - FMU_PARAMETERS];
     switch (found) {
     case FMU_UNKNOWN: return "no such variable, or not one for this call";
     case FMU_SINGULAR: return "no finite acceleration, or constraints that can't be met";
@@ -29,8 +30,10 @@ static int fmi_prepare(fmu *f, int has_tolerance, double tolerance, double start
 }
 
 static int fmi_exit_initialisation(fmu *f) {
+    int found;
     if (f->phase != FMU_INITIALISING) return FMU_WRONG_MODE;
-    return fmu_initialise(f) == FMU_OK ? FMU_OK : FMU_START_NOT_CONSISTENT;
+    found = fmu_initialise(f);
+    return found == FMU_SINGULAR ? FMU_START_NOT_CONSISTENT : found;
 }
 
 static int fmi_terminate(fmu *f) {

@@ -2,7 +2,7 @@
  *
  * Value references run through, in this order: time, q, v, rates of q, rates of v, u, par, lam, kinetic and potential
  * energy, then x, y, z of each output frame. Included by the file that names the model: it defines SYM_FMU_PLANT,
- * SYM_FMU_TOKEN, SYM_FMU_FRAMES and sym_fmu_frames[].
+ * SYM_FMU_TOKEN, SYM_FMU_FRAMES, sym_fmu_frames[], sym_fmu_violated() and sym_fmu_conditions[].
  */
 
 typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FMU_STEPPING, FMU_TERMINATED } fmu_phase;
@@ -10,7 +10,8 @@ typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FM
 enum {
     FMU_OK, FMU_NOT_ALLOWED, FMU_UNKNOWN, FMU_SINGULAR, FMU_WRONG_MODE, FMU_START_NOT_CONSISTENT,
     FMU_STOP_BEFORE_START, FMU_NO_MEMORY, FMU_OTHER_MODEL, FMU_BUFFER_TOO_SMALL,
-    FMU_BEYOND_THEORY
+    FMU_BEYOND_THEORY,
+    FMU_PARAMETERS /* and beyond: by the number of the condition that the parameters do not meet */
 };
 
 typedef struct fmu_snapshot { /* followed by q, v, u, par */
@@ -128,9 +129,20 @@ static void fmu_reset(fmu *f) {
     f->bending_noted = 0;
 }
 
+/* What depends on parameters alone, for the present ones, if the description allows them. */
+static int fmu_prepare(fmu *f) {
+    int violated;
+    if (f->parameters_valid) return FMU_OK;
+    violated = sym_fmu_violated(f->instance->par);
+    if (violated >= 0) return FMU_PARAMETERS + violated;
+    sym_instance_prepare(f->instance), f->parameters_valid = 1;
+    return FMU_OK;
+}
+
 /* Rates at the present state, evaluated when they are first asked for. */
 static int fmu_refresh(fmu *f) {
-    if (!f->parameters_valid) sym_instance_prepare(f->instance), f->parameters_valid = 1;
+    const int status = fmu_prepare(f);
+    if (status != FMU_OK) return status;
     if (f->rates_valid) return FMU_OK;
     if (sym_instance_rates(f->instance, f->rates) != 0) return FMU_SINGULAR;
     f->rates_valid = 1;
@@ -146,8 +158,9 @@ static int fmu_get(fmu *f, size_t reference, double *value) {
     if (what == FMU_DQ || what == FMU_DV || what == FMU_LAM) {
         const int status = fmu_refresh(f);
         if (status != FMU_OK) return status;
-    } else if (!f->parameters_valid) {
-        sym_instance_prepare(instance), f->parameters_valid = 1;
+    } else if (what != FMU_PAR) {
+        const int status = fmu_prepare(f);
+        if (status != FMU_OK) return status;
     }
     out[0] = p, out[1] = R;
     switch (what) {
@@ -186,7 +199,8 @@ static int fmu_set(fmu *f, size_t reference, double value) {
 }
 
 static int fmu_initialise(fmu *f) {
-    if (!f->parameters_valid) sym_instance_prepare(f->instance), f->parameters_valid = 1;
+    const int status = fmu_prepare(f);
+    if (status != FMU_OK) return status;
     f->rates_valid = 0;
     if (sym_instance_project(f->instance) != 0 || fmu_refresh(f) != FMU_OK) return FMU_SINGULAR;
     f->phase = f->cosim ? FMU_STEPPING : FMU_EVENT;
@@ -212,7 +226,8 @@ static int fmu_note_bending(fmu *f) {
 /* One communication step. */
 static int fmu_step(fmu *f, double t, double h) {
     const double slack = 1e-9 * (fabs(t) + h);
-    if (!f->parameters_valid) sym_instance_prepare(f->instance), f->parameters_valid = 1;
+    const int status = fmu_prepare(f);
+    if (status != FMU_OK) return status;
     if (!(h > 0.0) || !(fabs(t - f->instance->t) <= slack)) return FMU_NOT_ALLOWED;
     if (f->has_stop && t + h > f->stop + slack) return FMU_NOT_ALLOWED;
     f->rates_valid = 0;

@@ -273,6 +273,17 @@ def test_parameters_belong_to_an_instance(unit: Any) -> None:
     assert one.get("energy.kinetic")[0] == pytest.approx(5.0 * other.get("energy.kinetic")[0], rel=1e-12)
 
 
+@pytest.mark.parametrize(("value", "ok"), [(5.0, True), (1e-6, True), (0.0, False), (-5.0, False)])
+def test_parameters_that_the_description_refuses_are_refused(unit: Any, value: float, ok: bool) -> None:
+    it = unit("four_bar", cosim=True)
+    it.set("par.m", value)
+    if ok:
+        it.start()
+        return
+    with pytest.raises(FMICallException):
+        it.start()
+
+
 def test_what_the_standard_forbids_is_refused(unit: Any) -> None:
     it = unit("four_bar", cosim=True)
     forbidden = [

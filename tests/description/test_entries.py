@@ -1,0 +1,50 @@
+"""Entries that do not exist are refused in words, by every class of a description."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import pytest
+
+import symofros as sf
+from symofros.description.beam import BeamLoad, Samples
+
+CLASSES: tuple[Any, ...] = (
+    sf.Beam,
+    BeamLoad,
+    Samples,
+    sf.Joint,
+    sf.Limits,
+    sf.RigidBody,
+    sf.System,
+    sf.Inertia,
+    sf.Parameter,
+    sf.Frame,
+    sf.Spring,
+    sf.Damper,
+    sf.Friction,
+    sf.Rod,
+    sf.Closure,
+    sf.Connection,
+    sf.Load,
+)
+
+
+@pytest.mark.parametrize("cls", CLASSES)
+def test_an_unknown_entry_is_named_with_the_nearest(cls: Any) -> None:
+    entry = fields(cls)[-1].name
+    with pytest.raises(sf.DescriptionError, match=f"no entry '{entry}x'") as raised:
+        cls(**{f"{entry}x": 1})
+    problem = raised.value.problem
+    assert entry in problem.rule and problem.found and problem.remedy
+
+
+@pytest.mark.parametrize("entry", ["EA", "GA", "kGA"])
+def test_a_beam_says_what_its_theory_has_not(entry: str) -> None:
+    with pytest.raises(sf.DescriptionError, match=rf"Beam 'b': no entry '{entry}'(.|\n)*(stretch|shear)"):
+        sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 1.0, **{entry: 1e6})
+
+
+def test_known_entries_pass() -> None:
+    assert sf.Frame("f", position=(1, 2, 3)).position == (1.0, 2.0, 3.0)
