@@ -182,7 +182,7 @@ class SceneRunner:
             )
             if not run.outcome.ok:
                 beyond = largest_bending(run.bendings) if run.outcome.kind == "beyond theory" else None
-                return Trial(None, f"{run.outcome.kind} at t = {run.outcome.t:.3g} s", {}, beyond)
+                return Trial(None, f"{run.outcome.kind} at t = {run.outcome.t:.3g} s: {run.outcome.reason}", {}, beyond)
             return Trial(run, "", {output.name: output.values(run) for output in self.scene.outputs})
         except AssemblyError as error:
             return Trial(None, str(error).splitlines()[0], {})
@@ -200,7 +200,7 @@ class SceneRunner:
         return self._exact[key]
 
     def _converged(self, system: System) -> tuple[Trial, Stepping]:
-        failure = ""
+        failures: list[str] = []
         for method in ("dop853", "rodas4"):
             before: Trial | None = None
             for rtol in _LADDER:
@@ -209,17 +209,27 @@ class SceneRunner:
                 if trial.beyond is not None:
                     raise _beyond_theory(system, trial.beyond)
                 if trial.run is None:
-                    failure = failure or trial.failure
+                    failures.append(f"{stepping}: {trial.failure}")
                     break
                 if before is not None and self.error(before, trial) <= EXACT:
                     return trial, stepping
                 before = trial
+        what = f"advise: the motion of '{system.name}' can't be computed to its tolerance"
+        if failures:
+            raise SymofrosError(
+                Problem(
+                    what,
+                    "; ".join(failures),
+                    f"runs reach the end within {MOST_STEPS} steps, and two of different tolerance agree",
+                    "loosen the tolerance, shorten the scene, or find by sf.simulate what ends it there",
+                )
+            )
         raise SymofrosError(
             Problem(
-                f"advise: the motion of '{system.name}' can't be computed to its tolerance",
-                failure or "runs differ however tight their tolerance",
+                what,
+                f"runs that reach the end differ, as far as rtol = {_LADDER[-1]:g}",
                 "two runs of different tolerance agree",
-                "look at the scene by sf.simulate first; loosen the tolerance; a chaotic motion has no exact one",
+                "loosen the tolerance or shorten the scene; a chaotic motion has no exact one",
             )
         )
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.studio.advice import scene_runner
 from reference_models import MODELS
 from symofros.generator.passes.count import count_program
 
@@ -211,6 +212,20 @@ def test_scenes_that_do_not_fit(changed: dict[str, object], words: str) -> None:
     with pytest.raises(sf.SymofrosError) as raised:
         sf.advise(system, replace(scene, **changed))  # type: ignore[arg-type]
     assert words in str(raised.value)
+
+
+def test_runs_that_end_early_are_told_from_runs_that_differ(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only motions that reach the end and differ whatever their tolerance may be chaotic."""
+    system, scene = crane()
+    monkeypatch.setattr(scene_runner, "MOST_STEPS", 3)
+    monkeypatch.setattr(scene_runner.SceneRunner.trial, "__defaults__", (3,))
+    with pytest.raises(sf.SymofrosError, match="interrupted at t = .* 3 steps are done(.|\n)*within 3 steps") as raised:
+        sf.advise(system, scene)
+    assert "chaotic" not in str(raised.value)
+    monkeypatch.undo()
+    monkeypatch.setattr(scene_runner, "EXACT", -1.0)
+    with pytest.raises(sf.SymofrosError, match="runs that reach the end differ(.|\n)*chaotic"):
+        sf.advise(system, scene)
 
 
 @pytest.mark.slow(minutes=5)
