@@ -20,7 +20,7 @@ _ABSENT: Mapping[str, str] = {
 
 def refuses_unknown_entries(cls: _Class) -> _Class:
     """A class decorator, above @dataclass: a keyword that is no field raises DescriptionError with the nearest one."""
-    initialise: Any = cls.__init__
+    initialise: Any = vars(cls)["__init__"]
     known = tuple(field.name for field in fields(cls) if field.init)
 
     @wraps(initialise)
