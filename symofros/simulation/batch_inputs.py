@@ -110,7 +110,8 @@ def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
                 "one row a trajectory, or one for all",
             )
         )
-    return GivenInputs(values.reshape(-1, model.nu)[0] if values.size else None, {-1: values}, {})
+    # What is not finite ends its own trajectory, not the batch.
+    return GivenInputs(np.nan_to_num(values.reshape(-1, model.nu)[0]) if values.size else None, {-1: values}, {})
 
 
 def _whole_signal(signal: Signal) -> GivenInputs:
@@ -136,7 +137,7 @@ def _by_name(model: Model, given: Mapping[str, Any]) -> GivenInputs:
             n_signals += 1
         elif isinstance(value, np.ndarray) and value.ndim > 0 and value.size and name in model.names.u:
             constants[model.names.u.index(name)] = np.asarray(value, dtype=np.float64)
-            first[name] = float(value.flat[0])
+            first[name] = float(np.nan_to_num(value.flat[0]))
     return GivenInputs(first, constants, samples)
 
 

@@ -92,7 +92,10 @@ def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
     if callable(u):
         return InputPlan(constant, callback=u)
     array = np.asarray(u, dtype=np.float64)
-    if array.shape != (len(names),):
+    if array.shape == (len(names),):
+        for name, value in zip(names, array, strict=True):
+            _refuse_infinite(name, float(value))
+    else:
         raise ShapeError(
             Problem(
                 f"model '{model.record.name}': u has the wrong shape",
@@ -146,11 +149,21 @@ def _by_name(model: Model, given: Mapping[str, Any], constant: Array) -> InputPl
                 )
             plan.signals.append((i, value.t, value.values, value.kind == "linear"))
         elif isinstance(value, (int, float, np.floating)):
+            _refuse_infinite(name, float(value))
             plan.constant[i] = value
         else:
             plan.formulas[i] = value
     _complete_motions(model, given, plan)
     return plan
+
+
+def _refuse_infinite(name: str, value: float) -> None:
+    if not np.isfinite(value):
+        raise ShapeError(
+            Problem(
+                f"input '{name}' is not a finite number", str(value), "constant inputs are finite", "mend its value"
+            )
+        )
 
 
 def _complete_motions(model: Model, given: Mapping[str, Any], plan: InputPlan) -> None:

@@ -95,6 +95,8 @@ def simulate_batch(
     steppers = [BatchStepper(model, settings, initial, results, i, count) for i in range(min(count, n))]
     if steppers:
         results.status[_off(model, settings, initial, steppers[0])] = Status.PROJECTION_FAILED
+        infinite = ~np.isfinite(initial.inputs.constant).all(axis=1)
+        results.status[np.broadcast_to(infinite, n)] = Status.CALLBACK_FAILED
         began = time.perf_counter(), time.process_time()
         run_batch_steppers(steppers)
     seconds = time.perf_counter() - began[0], time.process_time() - began[1]

@@ -55,6 +55,8 @@ class Loop:
     Attributes:
         diagram: The sym_diagram: state, counters, records.
         failure: Exception that an external block raised; it ended the run.
+        failed_block: Name of the block that raised it.
+        fault: First output of an external block that was not finite, in words.
     """
 
     def __init__(
@@ -73,6 +75,7 @@ class Loop:
         self._ffi, self._memory = interface(), NativeMemory()
         self._external, self._par = external, par
         self.failure: BaseException | None = None
+        self.failed_block = self.fault = ""
         self.diagram = self._ffi.new("sym_diagram *")
         self.diagram.reads_accelerations = int(reads_accelerations)
         self._fill_point(layout, u0)
@@ -140,12 +143,14 @@ class Loop:
         try:
             given = self._memory.view(inputs, self._external.input_sizes[block]).copy()
             outputs = self._external.call(block, t, given)
+            if not (self.fault or np.isfinite(outputs).all()) and np.isfinite(given).all():
+                self.fault = self._external.fault(block, t, outputs)
             into, first = self._memory.view(u, self.diagram.nu), 0
             for place in self._external.output_places[block]:
                 into[place.slice] = outputs[first : first + place.size]
                 first += place.size
         except BaseException as error:  # It may not pass through C.
-            self.failure = error
+            self.failure, self.failed_block = error, self._external.names[block]
             return 1
         return 0
 
@@ -168,6 +173,11 @@ class Loop:
     def advance(self, instants: int) -> int:
         """At most `instants` instants further; returns a Status."""
         return int(self.native.sym_diagram_advance(self.diagram, instants))
+
+    @property
+    def held(self) -> Array:
+        """The inputs that are held between samples (nu)."""
+        return self._memory.view(self.diagram.u, self.diagram.nu).copy()
 
     def take(self) -> tuple[list[Array], list[tuple[float, int]]]:
         """The records since the last call, t (n), q, v, u, and the crossings, (t, index); their rows are free again."""

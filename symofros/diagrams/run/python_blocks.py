@@ -8,6 +8,8 @@ from contextlib import ExitStack, contextmanager
 
 import numpy as np
 
+from symofros.base.user_functions import named_function
+from symofros.diagrams.block import Port
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.program.compiled import Resolved, fuser
 from symofros.diagrams.program.layout import Place
@@ -50,6 +52,14 @@ class Called:
         }
         outputs = self._running[name].call(t, signals)
         return {port.name: _output(name, outputs, port.name, port.shape or ()) for port in ports.outputs}
+
+    def ports(self, name: str) -> tuple[Port, ...]:
+        """Outputs of a block, in order."""
+        return tuple(self._wired.ports[name].outputs)
+
+    def code(self, name: str) -> str:
+        """The function that a block calls, with its file and line."""
+        return named_function(getattr(self._wired.blocks[name], "function", None) or self._running[name].call)
 
     def kept(self) -> dict[str, dict[str, Array]]:
         """What each block kept of the run, those left out that keep nothing."""
@@ -125,3 +135,16 @@ class ExternalCalls:
             at += math.prod(shape)
         outputs = self._called.call(self.names[which], t, inputs)
         return np.concatenate([np.zeros(0), *(value.reshape(-1) for value in outputs.values())])
+
+    def fault(self, which: int, t: float, outputs: Array) -> str:
+        """The first output of a block that is not finite, in words; outputs as `call` returns them."""
+        name, at = self.names[which], 0
+        for port in self._called.ports(name):
+            size = math.prod(port.shape or ())
+            bad = outputs[at : at + size][~np.isfinite(outputs[at : at + size])]
+            if len(bad):
+                return (
+                    f"block '{name}': output '{port.name}' is {bad[0]} at t = {t:.6g} s, by {self._called.code(name)}"
+                )
+            at += size
+        return ""

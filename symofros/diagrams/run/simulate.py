@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.user_functions import raised_where
 from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
+from symofros.diagrams.program.layout import Layout
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
@@ -136,7 +138,7 @@ def _drive(
         interrupted = True
     t, q, v, u = (np.concatenate(columns) for columns in zip(*portions, strict=True))
     bendings = tuple(bending for part in loop.parts for bending in part.bendings)
-    outcome = _outcome(loop, status, interrupted, t_end, bendings)
+    outcome = _outcome(loop, compiled.resolved.layout, status, interrupted, t_end, bendings)
     looked_for = watched(compiled.resolved.pieces)
     crossings = tuple(Crossed(*looked_for[which], when) for when, which in met)
     d = loop.diagram
@@ -152,8 +154,27 @@ def _drive(
     return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost)
 
 
-def _outcome(loop: Loop, status: int, interrupted: bool, t_end: float, bendings: tuple[BeamBending, ...]) -> Outcome:
-    t, notes = float(loop.diagram.t[0]), bending_notes(bendings)
+def _held_fault(loop: Loop, layout: Layout) -> str:
+    """An output held between samples that is not finite though all states are, in words; "" where there is none."""
+    u = loop.held
+    if not all(np.isfinite(np.concatenate(stepper.state[1:])).all() for stepper in loop.parts):
+        return ""
+    for (block, port), place in layout.held.items():
+        bad = u[place.slice][~np.isfinite(u[place.slice])]
+        if len(bad):
+            return f"block '{block}': output '{port}' is {bad[0]} before t = {float(loop.diagram.t[0]):.6g} s"
+    return ""
+
+
+def _outcome(
+    loop: Loop,
+    layout: Layout,
+    status: int,
+    interrupted: bool,
+    t_end: float,
+    bendings: tuple[BeamBending, ...],
+) -> Outcome:
+    t, notes = float(loop.diagram.t[0]), (*bending_notes(bendings), *([loop.fault] if loop.fault else []))
     if interrupted:
         return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes)
     if status == Status.BEYOND_THEORY:
@@ -163,7 +184,12 @@ def _outcome(loop: Loop, status: int, interrupted: bool, t_end: float, bendings:
     if status == Status.FINISHED:
         return Outcome("finished", t_end, f"{int(loop.diagram.steps)} steps", notes=notes)
     if status == Status.CALLBACK_FAILED:
-        return Outcome("input failed", t, f"a block of Python's raised {loop.failure!r}", "call it by itself", notes)
+        raised = raised_where(loop.failure) if loop.failure else "an exception"
+        reason, advice = f"block '{loop.failed_block}' raised {raised}", "call it by itself; outcome.failure"
+        return Outcome("input failed", t, reason, advice, notes, loop.failure)
+    fault = loop.fault or _held_fault(loop, layout)
+    if fault:
+        return Outcome("input failed", t, fault, "outputs that are finite at all samples", bending_notes(bendings))
     kinds = {
         Status.DIVERGED: ("diverged", "a state is no longer finite", "a smaller dt; look for gains that are too high"),
         Status.SINGULAR: ("singular", "no accelerations exist", "give every speed an inertia or a constraint"),

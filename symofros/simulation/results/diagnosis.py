@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from symofros.errors import SymofrosError
 from symofros.runtime.beams import bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.postures import nearest_to_singular
+from symofros.simulation.results.input_faults import input_failure, input_fault
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.results.step_size import remedy, step_size_note, unresolved_mode
 from symofros.simulation.settings import Settings
@@ -19,6 +21,8 @@ from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
 _ROUNDING = float(np.finfo(np.float64).eps)
+# Growth of speeds that no mechanism explains.
+_EXPLODED = 1e6
 
 
 def diagnose(
@@ -36,7 +40,8 @@ def diagnose(
     status, interrupted = recorded.status, recorded.interrupted
     t, q, v = stepper.state
     run, notes = stepper.run, _notes(stepper, states, status)
-    failed = status in (Status.DIVERGED, Status.BEYOND_THEORY)
+    fault = input_fault(stepper) if status < 0 else ""
+    failed = status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
     mode = unresolved_mode(stepper, settings, start, states, _steps_meant(settings) if failed else int(run.steps))
     if mode is not None:
         notes = (*notes, step_size_note(mode, stepper, settings, () if failed else states))
@@ -50,11 +55,13 @@ def diagnose(
     if status == Status.TERMINAL_EVENT:
         return outcome("event", f"event '{stepper.events[run.terminal_event].name}'")
     if status == Status.CALLBACK_FAILED:
-        return outcome("input failed", f"the input function raised {failure!r}", "call it by itself at this state")
+        return replace(outcome("input failed", *input_failure(failure)), failure=failure)
+    if fault:
+        return outcome("input failed", fault, "inputs that are finite at all times and states of the run")
     if failed and mode is not None and mode.amplified:
         reason = f"the step is past the limit of stability of '{settings.method.name}'; {_largest(stepper, q, v)}"
         return outcome("diverged", reason, remedy(mode, settings))
-    if status == Status.DIVERGED and _immobile(stepper, q):
+    if status == Status.DIVERGED and _immobile(stepper, start, q, v):
         return outcome(
             "singular",
             "the mass matrix is singular: a speed moves no mass",
@@ -102,13 +109,22 @@ def _steps_meant(settings: Settings) -> int:
     return max(1, round((settings.t_end - settings.t0) / settings.dt)) if settings.dt > 0.0 else 1
 
 
-def _immobile(stepper: Stepper, q: np.ndarray) -> bool:
-    """Whether a tree's mass matrix has lost a direction at the last finite state; constraints may bind such a one."""
+def _immobile(stepper: Stepper, start: tuple[Array, Array], q: Array, v: Array) -> bool:
+    """Whether a tree's mass matrix has lost a direction, at the start or at the last state.
+
+    Constraints may bind such a direction. A last state whose speeds have exploded says nothing of the mechanism.
+    """
     model = stepper.model
-    if model.nc or not np.all(np.isfinite(q)):
+    sane = _EXPLODED * (1.0 + float(np.abs(start[1]).max(initial=0.0)))
+    states = [start[0], *([q] if float(np.abs(v).max(initial=0.0)) < sane else [])]
+    return not model.nc and any(_singular_mass(stepper, state) for state in states)
+
+
+def _singular_mass(stepper: Stepper, q: Array) -> bool:
+    if not np.all(np.isfinite(q)):
         return False
     try:
-        M = model.mass_matrix(q, u=stepper.inputs_now, par=stepper.par)
+        M = stepper.model.mass_matrix(q, u=stepper.inputs_now, par=stepper.par)
     except SymofrosError:  # Options.functions left it out; the run has diverged all the same.
         return False
     scale = np.sqrt(np.diag(M))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 Kind = Literal[
@@ -29,6 +29,7 @@ class Outcome:
         reason: One sentence.
         advice: Remedy to try; empty where nothing is wrong.
         notes: Remarks on what was met without ending the run, such as a singular posture.
+        failure: Exception that a function of the user's raised, with its traceback; None where none did.
     """
 
     kind: Kind
@@ -36,6 +37,7 @@ class Outcome:
     reason: str
     advice: str = ""
     notes: tuple[str, ...] = ()
+    failure: BaseException | None = field(default=None, compare=False)
 
     @property
     def ok(self) -> bool:

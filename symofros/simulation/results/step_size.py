@@ -45,7 +45,7 @@ def unresolved_mode(
     later = sorted({good * k // (wanted - 1) - 1 for k in range(1, wanted)}) if good else []
     examined = [(settings.t0, *start), *((float(t[i]), q[i], v[i]) for i in later)]
     speed = max(_largest_norm(start[1][np.newaxis]), _largest_norm(v[: good : max(1, good // _SPEEDS)]))
-    with stepper.preserved():
+    with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
         return worst_mode(stepper, settings.dt, steps, examined, speed)
 
 

@@ -36,6 +36,7 @@ _ENDS: dict[int, tuple[Kind, str, str]] = {
         "the error bounds ask for steps below rounding",
         "look for a force that jumps or a singular posture here; loosen rtol",
     ),
+    Status.CALLBACK_FAILED: ("input failed", "a constant input is not a finite number", "mend its value"),
     Status.PROJECTION_FAILED: (
         "constraints lost",
         "the state is off the constraints and projection does not mend it",

@@ -24,6 +24,8 @@ _STATES, _SHARE = 4, 0.01
 _ROUNDING = 1e-16
 # Powers of e by which a mode of the motion grows at the rate of one state; then this has become another.
 _GROWTH = 3.0
+# Of |z|: farther out a state is no motion any more, and powers of z overflow.
+_FARTHEST = 1e8
 # Exponents of the powers of factors, which do not overflow.
 _LARGEST = 300.0
 
@@ -93,6 +95,7 @@ def worst_mode(
 
 
 def _judged(method: Method, z: complex, share: float, h: float, steps: int, t: float) -> Mode:
+    z *= min(1.0, _FARTHEST / abs(z))
     factor = method.amplification(z)
     return Mode(z / h, factor, mode_error(z, factor, steps, share), share, t)
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.user_functions import named_function
 from symofros.errors import CompileError
 from symofros.runtime.beams import BeamBending, worst_bendings
 from symofros.runtime.calls.binding import NativeMemory, native_library
@@ -27,6 +28,10 @@ _EVENT_ROWS = 64
 _INPUT_CALLBACK = "int32_t(void *, double, const double *, const double *, double *)"
 
 
+class InputValueError(ValueError):
+    """A function of inputs returned what is no input."""
+
+
 class Stepper:
     """One run of one model.
 
@@ -41,6 +46,7 @@ class Stepper:
         memory: Arrays that C points to.
         system: The sym_system: the model's functions and the evaluation point.
         run: The sym_run: settings, present state, counters.
+        inputs: Inputs by how they are evaluated.
         kernels: Slot of the system, such as "forward_dynamics" -> the function bound to it.
         beams: Elastic beams at the parameters.
         failure: Exception that an input function raised; it ended the run.
@@ -52,6 +58,7 @@ class Stepper:
     def __init__(self, model: Model, method: Method, inputs: InputPlan, events: Sequence[Event], par: Array) -> None:
         self.ffi, self.native = interface(), native_library()
         self.model, self.method, self.events, self.par = model, method, events, par
+        self.inputs = inputs
         self.failure: BaseException | None = None
         self.beams = model.beams(par)
         self.memory = NativeMemory()
@@ -152,12 +159,18 @@ class Stepper:
     def _input_callback(self, function: Callable[[float, Array, Array], Any]) -> Callable[..., int]:
         """A Python function as the inputs; what it raises is kept and ends the run."""
         nq, nv, nu, view = self.model.nq, self.model.nv, self.model.nu, self.memory.view
+        names = self.model.names.u
 
         def call(_data: Any, t: float, q: Any, v: Any, u: Any) -> int:
             try:
                 values = np.asarray(function(t, view(q, nq).copy(), view(v, nv).copy()), dtype=np.float64)
                 if values.shape != (nu,):
-                    raise ValueError(f"the input function returned shape {values.shape}, not ({nu},)")
+                    what = f"the input function {named_function(function)} returned shape {values.shape}"
+                    raise InputValueError(f"{what}, not ({nu},)")
+                if not np.isfinite(values).all():
+                    i = int(np.flatnonzero(~np.isfinite(values))[0])
+                    what = f"input '{names[i]}' is {values[i]} at t = {t:.6g} s"
+                    raise InputValueError(f"{what}, by the input function {named_function(function)}")
                 view(u, nu)[:] = values
             except BaseException as error:  # It may not pass through C; the loop raises it again.
                 self.failure = error

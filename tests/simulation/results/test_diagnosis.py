@@ -1,0 +1,95 @@
+"""What ends a run is named: the input, the function and its line, the step; nothing else is blamed."""
+
+from __future__ import annotations
+
+import traceback
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from tests.simulation.oscillator import oscillator
+
+BAD = (np.nan, np.inf, -np.inf)
+METHODS = ("rk4", "semi_implicit_euler", "dopri5", "dop853", "implicit_euler", "rodas4", "generalized_alpha")
+
+
+@pytest.mark.parametrize("bad", BAD)
+@pytest.mark.parametrize("method", ["rk4", "dopri5", "cvode"])
+def test_a_function_that_returns_no_finite_number_is_named_with_its_line(method: str, bad: float) -> None:
+    def push(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.array([bad if t > 0.1 else 1.0])
+
+    run = sf.simulate(oscillator(), t_end=0.3, u=push, method=method, dt=1e-2)
+    line = push.__code__.co_firstlineno
+    assert run.outcome.kind == "input failed" and 0.05 < run.outcome.t <= 0.11
+    assert f"input 'x' is {bad} at t = 0.1" in run.outcome.reason
+    assert f"push (test_diagnosis.py:{line})" in run.outcome.reason
+    assert "smaller dt" not in run.outcome.advice
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("formula", "bad"), [("sqrt(0.1 - t)", "nan"), ("log(t - 0.1)", "nan"), ("exp(1e300*(t - 0.1))", "inf")])
+def test_a_formula_without_a_value_is_named(formula: str, bad: str, method: str) -> None:
+    run = sf.simulate(oscillator(), t_end=0.3, u={"x": formula}, method=method, dt=1e-2)
+    assert run.outcome.kind == "input failed", run.outcome
+    assert f"input 'x' is {bad}" in run.outcome.reason or f"input 'x' is -{bad}" in run.outcome.reason
+    assert formula in run.outcome.reason
+
+
+@pytest.mark.parametrize("bad", BAD)
+@pytest.mark.parametrize("given", ["array", "number"])
+def test_constants_that_are_not_finite_are_refused_by_name(given: str, bad: float) -> None:
+    u: Any = [bad] if given == "array" else {"x": bad}
+    with pytest.raises(sf.ShapeError, match="input 'x' is not a finite number"):
+        sf.simulate(oscillator(), u=u)
+
+
+@pytest.mark.parametrize("bad", BAD)
+def test_samples_that_are_not_finite_are_refused(bad: float) -> None:
+    with pytest.raises(sf.ShapeError, match="all finite"):
+        sf.Signal([0.0, 1.0], [0.0, bad])
+
+
+@pytest.mark.parametrize("bad", BAD)
+@pytest.mark.parametrize("given", ["rows", "named"])
+def test_a_constant_of_a_batch_that_is_not_finite_ends_its_own_trajectory(given: str, bad: float) -> None:
+    for which in (0, 2):
+        values = np.ones(4)
+        values[which] = bad
+        u: Any = values[:, np.newaxis] if given == "rows" else {"x": values}
+        many = sf.simulate_batch(oscillator(), np.zeros((4, 1)), t_end=0.1, u=u, dt=1e-2)
+        assert np.flatnonzero(~many.ok).tolist() == [which]
+        assert many.outcome(which).kind == "input failed" and "input" in many.outcome(which).reason
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5", "cvode"])
+def test_an_exception_of_a_function_keeps_its_traceback(method: str) -> None:
+    def inner() -> float:
+        raise LookupError("no such gain")
+
+    def push(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.array([inner() if t > 0.1 else 0.0])
+
+    outcome = sf.simulate(oscillator(), t_end=0.3, u=push, method=method, dt=1e-2).outcome
+    assert outcome.kind == "input failed" and isinstance(outcome.failure, LookupError)
+    assert "LookupError('no such gain') at test_diagnosis.py:" in outcome.reason and "in push" in outcome.reason
+    names = [frame.name for frame in traceback.extract_tb(outcome.failure.__traceback__)]
+    assert names[-2:] == ["push", "inner"]
+
+
+def test_feedback_of_a_state_that_diverged_is_not_blamed() -> None:
+    run = sf.simulate(oscillator(), [1.0], t_end=40.0, dt=0.2, u={"x": "-1e4*x - 1e-3*dx"})
+    assert run.outcome.kind == "diverged" and "stability" in run.outcome.reason
+
+
+@pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler", "euler", "dop853"])
+@pytest.mark.parametrize("name", ["pendulum", "double_pendulum", "cart_pole", "rx90", "chain7", "gyroscope", "car"])
+def test_a_step_that_is_too_long_is_no_singular_mass_matrix(name: str, method: str) -> None:
+    model = sf.compile(MODELS[name])
+    q, v = model.random_state(np.random.default_rng(2))
+    for dt in (0.05, 0.2, 1.0):
+        run = sf.simulate(model, q, 3.0 * v, 20.0, method=method, dt=dt, adaptive=False if method == "dop853" else None)
+        assert run.outcome.kind in ("finished", "diverged"), (dt, run.outcome)
