@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from string import Template
 from textwrap import wrap
 
+from symofros.expr.edges import Edge
+from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen import lanes, trigonometry
 from symofros.generator.codegen.function import FunctionWriter
@@ -20,6 +23,8 @@ from symofros.runtime.record import ModelRecord
 _INIT = "init_par"
 # Columns of a comment; stands for a space where a line of it may not break.
 _WIDTH, _SPACE = 112, "\x00"
+# Names of parameters that a value without a name is described by.
+_MOST_NAMES = 4
 
 
 def model_source(
@@ -48,7 +53,12 @@ def model_source(
     texts = [
         "\n".join(
             [
-                *_legend(record, "parameters -> pre, all that depends on them alone", ["par"]),
+                *_legend(
+                    record,
+                    "parameters -> pre, all that depends on them alone",
+                    ["par"],
+                    described=_described_pre(program, record),
+                ),
                 _init_function(program, name),
             ]
         )
@@ -140,9 +150,21 @@ class _Row:
 
 
 def _legend(
-    record: ModelRecord, title: str, inputs: Iterable[str], returns: Sequence[tuple[str, tuple[int, ...]]] = ()
+    record: ModelRecord,
+    title: str,
+    inputs: Iterable[str],
+    returns: Sequence[tuple[str, tuple[int, ...]]] = (),
+    described: Sequence[str] = (),
 ) -> list[str]:
-    """A comment that tells what a function returns, and which of the user's names each entry of its inputs has."""
+    """A comment that tells what a function returns, and which of the user's names each entry of its inputs has.
+
+    Args:
+        record: Names of the model.
+        title: First line.
+        inputs: Input groups.
+        returns: Name and shape of each output.
+        described: Descriptions of output entries, in their order.
+    """
     names = {
         "q": record.q_names,
         "v": record.v_names,
@@ -152,13 +174,38 @@ def _legend(
     }
     lines = ["/* " + _comment(title)]
     for group in inputs:
-        # A line may break between entries, not within one.
-        entries = [_comment(f"{group}[{i}] {name}").replace(" ", _SPACE) for i, name in enumerate(names.get(group, ()))]
-        text = wrap(", ".join(entries), _WIDTH, break_long_words=False, break_on_hyphens=False)
-        lines += [f" *   {line.replace(_SPACE, ' ')}" for line in text]
+        lines += _wrapped([f"{group}[{i}] {name}" for i, name in enumerate(names.get(group, ()))])
+    lines += _wrapped(described)
     if returns:
         lines.append(f" *   -> {', '.join(_shaped(name, shape) for name, shape in returns)}")
     return [*lines, " */"] if len(lines) > 1 else []
+
+
+def _wrapped(entries: Iterable[str]) -> list[str]:
+    """Lines of a comment that break between entries, not within one."""
+    text = ", ".join(_comment(entry).replace(" ", _SPACE) for entry in entries)
+    lines = wrap(text, _WIDTH, break_long_words=False, break_on_hyphens=False)
+    return [f" *   {line.replace(_SPACE, ' ')}" for line in lines]
+
+
+def _described_pre(program: Program, record: ModelRecord) -> list[str]:
+    """Entries of pre by their names in the graph, or else by the parameters they depend on; equal ones as a range."""
+    graph = program.graph
+    parameters = {node: frozenset([slot.index]) for node, slot in graph.slot.items() if slot.group == "par"}
+    for node in needed_nodes(graph, program.init):
+        parameters[node] = frozenset().union(*(parameters.get(abs(arg), frozenset()) for arg in graph.args[node]))
+
+    def described(edge: Edge) -> str:
+        names = [record.par_names[i] for i in sorted(parameters.get(abs(edge), ()))]
+        stated = f"of {' '.join(names[:_MOST_NAMES])}{' ...' if len(names) > _MOST_NAMES else ''}"
+        return graph.label.get(abs(edge), stated)
+
+    entries, first = [], 0
+    for description, run in groupby(map(described, program.init)):
+        last = first + len(list(run)) - 1
+        entries.append(f"pre[{first}{f'..{last}' if last > first else ''}] {description}")
+        first = last + 1
+    return entries
 
 
 def _shaped(name: str, shape: tuple[int, ...]) -> str:

@@ -239,11 +239,24 @@ def test_each_function_begins_with_the_users_names_of_its_inputs() -> None:
     boom = sf.RigidBody("boom", sf.Joint("shoulder", "revolute", effort=("pump*m",)), solid)
     crane = sf.System("crane", [boom], [sf.Parameter("m", 3.0)], inputs=[sf.Input("pump")])
     text = source_of_functions(crane, ("dynamics",))
-    parameters = "/* parameters -> pre, all that depends on them alone\n *   par[0] m\n */\n"
+    parameters = "/* parameters -> pre, all that depends on them alone\n *   par[0] m\n *   pre[0..1] of m\n */\n"
     assert f"{parameters}static void crane_init_0(" in text
     names = " *   q[0] shoulder\n *   v[0] shoulder\n *   u[0] pump\n"
     legend = f"/* dynamics: M, h and Q in one call\n{names} *   -> M[1 x 1] by rows, h[1], Q[1]\n */\n"
     assert f"{legend}static void crane_dynamics" in text
+
+
+def test_the_legend_of_init_says_which_parameters_each_entry_of_pre_depends_on() -> None:
+    joint = sf.Joint("hinge", "revolute", axis=(0, 0, 1))
+    body = sf.RigidBody("rod", joint, sf.Inertia("m", ("L/2", 0, 0), (0, "J", "J"), about="body"))
+    system = sf.System("rod", [body], [sf.Parameter(name, 1.0) for name in ("m", "L", "J")])
+    compilation = Compilation(system, sf.Options(functions=("dynamics",)))
+    text = compilation.source("rod")
+    legend = text[text.index("/* parameters -> pre") :].partition("*/")[0]
+    assert "par[0] m, par[1] L, par[2] J" in legend
+    stated = re.findall(r"pre\[(\d+)(?:\.\.(\d+))?\]", legend)
+    listed = [i for first, last in stated for i in range(int(first), int(last or first) + 1)]
+    assert listed == list(range(len(compilation.program.init))) and " of J" in legend
 
 
 def test_a_name_does_not_end_the_comment_that_states_it() -> None:
