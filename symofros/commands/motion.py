@@ -43,6 +43,9 @@ def simulate(
     method: Annotated[str | None, typer.Option(help=f"{', '.join(METHODS)}; rk4 by default.")] = None,
     dt: Annotated[float | None, typer.Option(help="Step [s]; the first one of adaptive methods.")] = None,
     rtol: Annotated[float | None, typer.Option(help="Relative error of a step, adaptive methods.")] = None,
+    beam_limit: Annotated[
+        float | None, typer.Option(help="Estimated error of a beam's theory at which to end; 0.5 by default, or inf.")
+    ] = None,
     given: Annotated[
         list[str],
         typer.Option(
@@ -82,7 +85,7 @@ def simulate(
 ) -> None:
     """Move a model or a diagram through time, and say how it went."""
     pace = speed or float(realtime)
-    settings = {"method": method, "dt": dt, "rtol": rtol}
+    settings = {"method": method, "dt": dt, "rtol": rtol, "beam_limit": beam_limit}
     stated: dict[str, Any] = {name: value for name, value in settings.items() if value is not None}
     wanted = not as_json and err.is_terminal
     viewing = view_options.ViewOptions(view, view_block, record_view, exaggeration)

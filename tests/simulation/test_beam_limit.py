@@ -67,6 +67,7 @@ def test_each_trajectory_of_a_batch_is_judged_by_its_own_length() -> None:
         assert run.outcome.notes == single.outcome.notes
         assert run.bendings[0].error == pytest.approx(single.bendings[0].error, rel=1e-9)
     assert "'blade'" in runs.outcome(2).reason
+    assert "beams bend much in 2, first: [1]: beam 'blade'" in str(runs)
 
 
 def test_a_column_past_its_critical_load_ends_when_it_swings_out() -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from symofros.runtime.beams import BeamBending, bending_notes, largest_bending, worst_bendings
+from symofros.runtime.beams import NOTED_ERROR, BeamBending, bending_notes, largest_bending, worst_bendings
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 from symofros.simulation.results.outcome import Kind, Outcome
@@ -148,7 +148,7 @@ class Trajectories:
         return (self[index] for index in np.ndindex(self.shape))
 
     def __str__(self) -> str:
-        """How many ended how, and the first that went wrong."""
+        """How many ended how, the first that went wrong, and in how many beams bend much."""
         kinds = self.kinds
         names, counts = np.unique(kinds, return_counts=True)
         lines = [", ".join(f"{count} {name}" for name, count in zip(names, counts, strict=True)) or "no trajectories"]
@@ -156,4 +156,8 @@ class Trajectories:
         if len(wrong):
             index = tuple(map(int, wrong[0]))
             lines.append(f"  first: {list(index)}: {self.outcome(index)}")
+        noted = np.argwhere((self.beam_errors > NOTED_ERROR).any(axis=-1))
+        if len(noted):
+            index = tuple(map(int, noted[0]))
+            lines.append(f"  beams bend much in {len(noted)}, first: {list(index)}: {largest_bending(self.bendings(index))}")
         return "\n".join(lines)
