@@ -165,7 +165,7 @@ _ROWS = (
     _row(
         "project",
         "q v u t",
-        "q_on (nq); v_on (nv); residual (); rank ()",
+        "q_on (nq); v_on (nv); residual (); rank (); energies (2)",
         "stepping",
         "nearest state on the constraints",
         exported=True,

@@ -23,6 +23,8 @@ UNLIKE = 1e3
 PIVOT = 1e-13
 # Reach [m] below which residuals count in proportion; SYM_SMALL_REACH in C.
 SMALL_REACH = 1e-3
+# A speed that counts as rest; SYM_STILL in C.
+STILL = 1e-7
 # Of the projection, as in C: |phi| that no step improves on, most steps, halvings of one, its largest entry.
 CLOSED, NEWTON, HALVINGS, LARGEST_STEP = 1e-13, 30, 30, 0.5
 
@@ -211,7 +213,7 @@ def project(
     q: Array,
     v: Array,
     measures: Measures,
-) -> tuple[Array, Array, float, int]:
+) -> tuple[Array, Array, float, int, Array]:
     """The nearest state on the constraints, in the metric of M.
 
     Args:
@@ -222,7 +224,8 @@ def project(
         measures: Measures of the rows and columns of G.
 
     Returns:
-        q, v, |phi| by weight and the rank of G.
+        q, v, |phi| by weight, the rank of G, and the energies (2): what the change of speeds takes, and the kinetic
+        energy before it.
     """
     M, G, binds, phi, rate = terms(q, v)
     weights, closer = residual_weights(G, measures), True
@@ -241,6 +244,7 @@ def project(
                 left = float(np.linalg.norm(weights * phi))
                 break
     if not len(G):
-        return q, v, left, 0
-    change, _, rank = solve(M, np.zeros_like(v), G, -rate, measures)
-    return q, v + change, left, rank
+        return q, v, left, 0, np.zeros(2)
+    change, mu, rank = solve(M, np.zeros_like(v), G, -rate, measures)
+    energies = 0.5 * np.array([-rate @ mu, v @ M @ v + STILL**2 * np.trace(M)])
+    return q, v + change, left, rank, energies

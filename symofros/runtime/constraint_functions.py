@@ -110,5 +110,5 @@ class ConstraintFunctions(Functions):
         drifted. It does not judge what it reaches; `sf.assemble` starts from afar, holds coordinates, and does.
         Conditions that repeat others are met by the same change; NaN where M and G determine none.
         """
-        on_q, on_v, residual, _ = self._call("project", "", {"q": q, "v": v, "u": u, "t": t}, par)
+        on_q, on_v, residual, *_ = self._call("project", "", {"q": q, "v": v, "u": u, "t": t}, par)
         return on_q, on_v, residual

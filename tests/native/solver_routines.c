@@ -57,7 +57,7 @@ int main(void) {
     const double q0[NQ] = {0.3, 0.1, -0.2}, v0[N] = {1, 2, 3}, none[1] = {0};
     const double *const in[5] = {none, q0, v0, none, none};
     const int columns[1] = {N};
-    double A[N * N], B[M_ * N], r[N], c[M_], q[NQ], v[N], residual, derivative[(N + M_) * N], *out[1], *work;
+    double energies[2], A[N * N], B[M_ * N], r[N], c[M_], q[NQ], v[N], residual, derivative[(N + M_) * N], *out[1], *work;
     copy(A, MASS, N * N), copy(B, G, M_ * N), copy(r, FORCE, N), copy(c, RIGHT, M_);
     work = scratch(SYM_CONSTRAINED_WORK(N, M_));
     printf("rank %d\n", sym_constrained(N, M_, &MEASURES, A, r, B, c, work));
@@ -67,7 +67,7 @@ int main(void) {
     printf("null_rank %d\n", sym_null_space(N, M_, &MEASURES, MASS, r, B, c, work));
     print("null_a", N, r), print("null_lam", M_, c), free(work);
     work = scratch(SYM_PROJECT_WORK(NQ, N, M_) + SYM_CONSTRAINED_WORK(N, M_));
-    printf("project_rank %d\n", sym_project(NQ, N, M_, &MEASURES, projection_terms, move, in, q, v, &residual, work));
+    printf("project_rank %d\n", sym_project(NQ, N, M_, &MEASURES, projection_terms, move, in, q, v, &residual, energies, work));
     print("q", NQ, q), print("v", N, v), print("residual", 1, &residual), free(work);
     work = scratch(SYM_DIFFERENTIATE_WORK(N, M_) + SYM_KKT_SOLVE_WORK(N, M_, N));
     out[0] = derivative;

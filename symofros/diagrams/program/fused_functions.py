@@ -241,7 +241,7 @@ class Fuser:
         )
         q_moved = self._moved(at, part)
         move = Function("move", "", ("q", "step"), (_vector("q_moved", q_moved),))
-        projected = (("q_on", (part.nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()))
+        projected = (("q_on", (part.nq,)), ("v_on", (nv,)), ("residual", ()), ("rank", ()), ("energies", (2,)))
         outputs = (terms_of[0], terms_of[2], _vector("binds", binds), _vector("phi", phi), _vector("rate", rate))
         return [forward, Function("project", "", AT, outputs, Solver("project", projected, (move,), measures))]
 

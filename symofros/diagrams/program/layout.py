@@ -99,6 +99,7 @@ class Layout:
         lock_inputs: Entries of u that engage constraints: a change projects the state onto them.
         condition_names: Names of the conditions of constraints.
         speed_conditions: Names of the conditions on speeds only.
+        driven: Whether some mechanism has prescribed motions.
         measures: Block -> measures of its mechanism's constraint Jacobian.
     """
 
@@ -124,6 +125,7 @@ class Layout:
     lock_inputs: list[int] = field(default_factory=list)
     condition_names: list[str] = field(default_factory=list)
     speed_conditions: list[str] = field(default_factory=list)
+    driven: bool = False
     measures: dict[str, Measures] = field(default_factory=dict)
 
     def measures_of(self, part: Part) -> Measures:
@@ -187,6 +189,7 @@ def _mechanism(layout: Layout, wired: Wired, piece: Piece) -> None:
     layout.q[name], layout.v[name] = Place(q, (len(piece.q),)), Place(v, (len(piece.v),))
     layout.lam[name] = Place(len(layout.condition_names), (piece.nc,))
     layout.measures[name] = record.measures
+    layout.driven |= record.driven > 0
     layout.segments += [Segment(s.kind, s.q + q, s.v + v, s.size) for s in record.segments]
     layout.q0 += piece.q.tolist()
     layout.v0 += piece.v.tolist()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -69,6 +70,8 @@ def place_parts(compiled: CompiledDiagram, settings_of: Callable[[Model], Settin
             )
         stepper = Stepper(model, settings.method, InputPlan(u0.copy(), list(layout.signals)), events, par)
         settings.apply(stepper)
+        if layout.driven:
+            stepper.run.loss_limit = math.inf
         stepper.run.record_every = 0  # Instants are recorded by the diagram's own loop.
         placed.append(Placed(stepper, *_first(layout.q0, layout.v0, part)))
         if model.nc and settings.stabilisation != "baumgarte":
@@ -107,7 +110,7 @@ def _close(model: Model, name: str, t0: float, placed: Placed, u: Array, par: Ar
     kernel = model.kernel("project")
     given = {"q": placed.q, "v": placed.v, "u": u, "t": np.array([t0])}
     inputs = [np.ascontiguousarray(given[group]).reshape(1, -1) for group, _ in kernel.signature.inputs]
-    q_on, v_on, residual, _ = kernel.run(1, kernel.prepare(par.reshape(1, -1)), inputs)
+    q_on, v_on, residual, *_ = kernel.run(1, kernel.prepare(par.reshape(1, -1)), inputs)
     if not residual[0] <= CLOSED:
         raise AssemblyError(
             Problem(

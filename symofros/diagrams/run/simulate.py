@@ -194,6 +194,11 @@ def _outcome(
         Status.DIVERGED: ("diverged", "a state is no longer finite", "a smaller dt; look for gains that are too high"),
         Status.SINGULAR: ("singular", "no accelerations exist", "give every speed an inertia or a constraint"),
         Status.STEP_TOO_SMALL: ("step too small", "the tolerances ask for steps below rounding", "loosen rtol"),
+        Status.ENERGY_LOST: (
+            "constraints lost",
+            "keeping the constraints has taken the energy of the motion: they are singular here",
+            "a smaller step, or an event before it",
+        ),
         Status.PROJECTION_FAILED: (
             "constraints lost",
             "projection does not meet the constraints again",

@@ -87,7 +87,7 @@ def _project(c_name: str, function: Function, needs: int) -> tuple[list[str], in
     nq = function.returns[0][1][0]
     lines = [
         f"    *out[3] = sym_project({nq}, {n}, {m}, &measures, {c_name}_terms, {c_name}_move,",
-        "                          in, out[0], out[1], out[2], work);",
+        "                          in, out[0], out[1], out[2], out[4], work);",
     ]
     return lines, work_size("SYM_PROJECT_WORK", nq, n, m) + max(needs, work_size("SYM_CONSTRAINED_WORK", n, m))
 

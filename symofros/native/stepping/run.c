@@ -63,6 +63,7 @@ static int32_t sym_try_step(sym_run *r, sym_workspace *w, double h, double *erro
 
 SYM_EXPORT void sym_run_set_defaults(sym_run *r) {
     r->spectral_radius = SYM_SPECTRAL_RADIUS;
+    r->loss_limit = INFINITY;
     r->newton_tolerance = SYM_NEWTON_TOLERANCE;
 }
 
@@ -75,6 +76,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     r->n_records = r->n_event_records = r->next_grid = 0;
     r->rank_max = -1, r->rank_min = s->nc + 1;
     r->previous_error = 1.0;
+    r->lost_energy = r->kinetic_energy = 0.0;
     r->clock_start = r->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;
     sym_load_state(r);
     if (r->record_every > 0 || (r->n_grid > 0 && r->grid[0] <= r->t)) {
@@ -120,6 +122,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     int32_t dense_ready = 0, status, beyond, stopped = 0;
     double stop_x = 2.0;
     status = sym_load_projected_state(r, t1, w->y1);
+    if (status == 0 && r->project) status = sym_judge_projection(r);
     if (status != 0) return status;
     sym_store_end_state(s, w);
     if (s->n_events > 0) {

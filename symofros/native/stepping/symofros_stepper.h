@@ -22,7 +22,8 @@ typedef enum sym_status {
     SYM_CALLBACK_FAILED = -4,    /* a function of the caller's failed */
     SYM_NO_CONVERGENCE = -5,     /* the equations of an implicit step were not solved */
     SYM_PROJECTION_FAILED = -6,  /* the state could not be projected onto the constraints */
-    SYM_BEYOND_THEORY = -7       /* a beam is bent beyond second-order theory */
+    SYM_BEYOND_THEORY = -7,      /* a beam is bent beyond second-order theory */
+    SYM_ENERGY_LOST = -8         /* projection onto the constraints has taken the motion's energy */
 } sym_status;
 
 typedef enum sym_method {
@@ -137,6 +138,8 @@ typedef struct sym_run {
     int64_t late_steps, paced_steps;
     /* Bending of the beams, each at the accepted state where its theory errs most: the estimated relative error, when,
      * and the elastic coordinates. The caller clears beam_error. */
+    double loss_limit;         /* share of the largest kinetic energy that projections may take */
+    double lost_energy, kinetic_energy; /* taken by projections; the largest so far [J] */
     double beam_limit;         /* error beyond which the run ends */
     const double *beam_scale;  /* 1/L of coordinates that are displacements, else 1 */
     const double *beam_reach;  /* largest angle per coordinate */

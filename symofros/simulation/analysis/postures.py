@@ -1,6 +1,8 @@
-"""Postures in which constraints all but repeat each other, met on the way."""
+"""Postures in which constraints all but repeat each other, or turn into others at once, met on the way."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +14,98 @@ from symofros.runtime.model import Model
 NEAR = 0.05
 # States that are looked at, spread over the run; more would cost more than short runs themselves.
 MOST = 1000
+# Change of a row of G, relative to its size, while the configuration changes by MOST_CHANGE [rad, m], halved BISECTIONS
+# times: a smooth row changes by far less.
+TURN, MOST_CHANGE, BISECTIONS = 0.3, 0.02, 16
+
+
+class Jump(NamedTuple):
+    """A row of G that is not continuous.
+
+    Attributes:
+        name: Name of the condition.
+        turn: Change of the row at once, relative to its size; infinite where the row is not finite.
+    """
+
+    name: str
+    turn: float
+
+
+def jump_ahead(model: Model, t: float, q: Array, v: Array, u: Array, par: Array) -> Jump | None:
+    """The condition whose row of G changes at once where the motion leads to from a state, or led from.
+
+    Args:
+        model: Model with constraints.
+        t: Time [s].
+        q: Configuration (nq).
+        v: Speeds (nv).
+        u: Inputs (nu).
+        par: Run-time parameters (npar).
+    """
+    model = model.with_precision("double")
+    fastest = float(np.abs(v).max(initial=0.0))
+    if fastest == 0.0:
+        return None
+
+    def rows(at: Array) -> Array:
+        return model.constraint_jacobian(model.integrate(q, at[:, None] * v), u=u, par=par, t=t)
+
+    def turns(G: Array) -> Array:
+        change = np.linalg.norm(np.diff(G, axis=0), axis=-1) / size
+        return np.where(np.isnan(change), np.inf, change)
+
+    within = MOST_CHANGE / fastest * np.array([1.0, 0.1, 0.01, 1e-3])
+    times = np.concatenate([-within, [0.0], within[::-1]])
+    G = rows(times)
+    size = np.maximum(np.nan_to_num(np.linalg.norm(G, axis=-1)).max(axis=0), 1e-300)
+    at = int(np.argmax(turns(G).max(axis=1)))
+    ends = times[at : at + 2]
+    for _ in range(BISECTIONS):  # A row that only turns fast turns by less within less time.
+        halves = np.array([ends[0], ends.mean(), ends[1]])
+        larger = int(np.argmax(turns(rows(halves)).max(axis=1)))
+        ends = halves[larger : larger + 2]
+    turn = turns(rows(ends))[0]
+    worst = int(np.argmax(turn))
+    return Jump(model.names.constraints[worst], float(turn[worst])) if turn[worst] > TURN else None
+
+
+class Violation(NamedTuple):
+    """A condition on speeds that a run did not keep.
+
+    Attributes:
+        name: Name of the condition.
+        share: Its residual G v - b, relative to the largest sum of the sizes of its terms in the run.
+        t: Instant [s].
+    """
+
+    name: str
+    share: float
+    t: float
+
+
+def worst_violation(model: Model, t: Array, states: tuple[Array, Array, Array], par: Array) -> Violation | None:
+    """The condition on speeds that was kept worst, at the instant when it was first violated by half as much.
+
+    Args:
+        model: Model with constraints.
+        t: Recorded times (n).
+        states: Recorded q (n, nq), v (n, nv), u (n, nu).
+        par: Run-time parameters (npar).
+    """
+    chosen = np.unique(np.linspace(0, len(t) - 1, min(len(t), MOST)).astype(int))
+    q, v, u = (x[chosen] for x in states)
+    model = model.with_precision("double")
+    rate = np.abs(model.constraint_rate(q, v, u=u, par=par, t=t[chosen]))
+    G = model.constraint_jacobian(q, u=u, par=par, t=t[chosen])
+    sizes = np.nan_to_num(np.abs(G) * np.abs(v)[:, None, :]).sum(axis=-1).max(axis=0, initial=0.0)
+    shares = np.where(np.isnan(rate), 0.0, rate) / np.maximum(sizes, 1e-300)
+    if not shares.size or not sizes.any():
+        return None
+    worst = int(np.argmax(shares.max(axis=0)))
+    share = float(shares[:, worst].max())
+    return Violation(
+        model.names.constraints[worst], share, float(t[chosen[int(np.argmax(shares[:, worst] > 0.5 * share))]])
+    )
 
 
 def nearest_to_singular(

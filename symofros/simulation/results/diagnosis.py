@@ -12,6 +12,7 @@ from symofros.errors import SymofrosError
 from symofros.runtime.beams import bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.simulation.analysis.postures import nearest_to_singular
+from symofros.simulation.results.constraint_faults import jump, lost_energy, violation
 from symofros.simulation.results.input_faults import input_failure, input_fault
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.results.step_size import remedy, step_size_note, unresolved_mode
@@ -23,6 +24,8 @@ from symofros.simulation.stepping.stepper import Stepper
 _ROUNDING = float(np.finfo(np.float64).eps)
 # Growth of speeds that no mechanism explains.
 _EXPLODED = 1e6
+# A step this short, relative to the run, is creeping.
+_CREEP = 1e-8
 
 
 def diagnose(
@@ -58,6 +61,15 @@ def diagnose(
         return replace(outcome("input failed", *input_failure(failure)), failure=failure)
     if fault:
         return outcome("input failed", fault, "inputs that are finite at all times and states of the run")
+    turning = jump(stepper, status)
+    if turning is not None:
+        lost = f"; {lost_energy(stepper)}" if status == Status.ENERGY_LOST else ""
+        return outcome(
+            "singular",
+            f"'{turning.name}' has no definite direction here: its row of G changes at once, by {turning.turn:.3g} of its"
+            f" size{lost}",
+            "end the run by a terminal event before it; a disc that lies flat, for example, has no lowest point",
+        )
     if failed and mode is not None and mode.amplified:
         reason = f"the step is past the limit of stability of '{settings.method.name}'; {_largest(stepper, q, v)}"
         return outcome("diverged", reason, remedy(mode, settings))
@@ -94,13 +106,32 @@ def diagnose(
             f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it",
             "a smaller step; the loop may be stretched to its end",
         )
+    if status == Status.ENERGY_LOST:
+        return outcome(
+            "constraints lost",
+            lost_energy(stepper),
+            "a smaller step; look for a posture near here in which the loops are singular",
+        )
     if status == Status.BEYOND_THEORY:
         beyond = largest_bending(stepper.bendings)
         assert beyond is not None
         limit = f"the limit is {100.0 * settings.beam_limit:g} %"
         return outcome("beyond theory", f"{beyond}; {limit}", f"{beyond.remedy}; or move the limit, beam_limit=...")
     if status == Status.RUNNING and t < float(run.t_end):
-        return outcome("interrupted", f"max_steps: {int(run.steps)} steps are done")
+        done, h = f"max_steps: {int(run.steps)} steps are done", float(run.next_step)
+        if settings.adaptive and h < _CREEP * (settings.t_end - settings.t0):
+            look = "look for a singular posture or a force that has no bound here; for stiff models, an implicit method"
+            return outcome("interrupted", f"{done}, and the next would be {h:.2g} s long", look)
+        return outcome("interrupted", done)
+    broken = violation(stepper, states, settings.project)
+    if broken is not None:
+        return Outcome(
+            "constraints lost",
+            broken.t,
+            f"from here on '{broken.name}' is not kept: G v - b is {broken.share:.3g} of the sizes of its terms",
+            "stabilisation='projection'; a smaller step; look for a posture in which the constraints are singular",
+            notes,
+        )
     return outcome("finished", f"{int(run.steps)} steps of {settings.method.name}")
 
 

@@ -42,6 +42,11 @@ _ENDS: dict[int, tuple[Kind, str, str]] = {
         "the state is off the constraints and projection does not mend it",
         "start from sf.assemble; a smaller step; the loop may be stretched to its end",
     ),
+    Status.ENERGY_LOST: (
+        "constraints lost",
+        "keeping the constraints has taken the energy of the motion: they are singular here, or the steps are too long",
+        "sf.simulate from this state says which; a smaller step, or a terminal event before it",
+    ),
     Status.BEYOND_THEORY: ("beyond theory", "a beam is bent beyond second-order theory", ""),
 }
 

@@ -1,4 +1,4 @@
-"""Masses, lengths and inertias from 1e-9 to 1e9: forward dynamics under constraints against fifty digits; closing loops."""
+"""Masses, lengths and inertias from 1e-9 to 1e9: forward dynamics under constraints against fifty digits."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ROUNDING = 1e-11
 
 
 def workshop(*, repeated: bool) -> sf.System:
-    """Mechanisms of unlike sizes side by side: a weight that is held, a plate on a pin, a slider-crank, a gear and rack.
+    """Mechanisms of unlike sizes: a weight that is held, a plate on a pin, a slider-crank, a gear and rack.
 
     Args:
         repeated: Whether the slider-crank's loop is closed in space, with conditions that repeat others.
@@ -122,7 +122,7 @@ def test_accelerations_and_multipliers_are_those_of_extended_precision_at_any_sc
 
 @pytest.mark.parametrize("exponent", [-9, -6, -3, 0, 3, 6, 9])
 def test_loops_close_to_the_digits_of_their_own_size(exponent: int) -> None:
-    """A slider-crank whose rod is turned by 1e-3 rad: by projection and by assembly it closes as one of a metre does."""
+    """A slider-crank whose rod is turned by 1e-3 rad closes as one of a metre does."""
     m = model("multipliers", False).with_parameters(crank=10.0**exponent)
     q, v = state(dict.fromkeys(NAMES, 1.0) | {"crank": 10.0**exponent})
     q[m.names.q.index("q2")] += 1e-3
