@@ -96,6 +96,22 @@ class Strip(NamedTuple):
         return 5.0 / 6.0 * self.G * self.height * self.thickness
 
 
+def node_sensor(system: Any, node: int, quantity: str) -> int:
+    """A sensor that keeps a node's quantity over time in memory.
+
+    Args:
+        system: System of Exudyn's.
+        node: Number of the node.
+        quantity: Name in Exudyn's OutputVariableType: "Position", "Coordinates".
+
+    Returns:
+        Number of the sensor.
+    """
+    output = getattr(exudyn.OutputVariableType, quantity)
+    sensor = items.SensorNode(nodeNumber=node, writeToFile=False, storeInternal=True, outputVariableType=output)
+    return int(system.AddSensor(sensor))
+
+
 def static_tip(length: float, EI: float, EA: float, force: tuple[float, float], elements: int = 16) -> Array:
     """Position of the tip (2,) of a cantilever along x at rest under a dead load on its tip.
 
@@ -199,14 +215,7 @@ def spin_up(elements: int = 16, step: float = 2.5e-3, end: float = 20.0, stretch
             offsetUserFunction=lambda mbs, t, number, offsets: [0.0, 0.0, 0.0, 0.0, 0.0, hub.angle(t)],
         )
     )
-    sensor = system.AddSensor(
-        items.SensorNode(
-            nodeNumber=nodes[-1],
-            writeToFile=False,
-            storeInternal=True,
-            outputVariableType=exudyn.OutputVariableType.Position,
-        )
-    )
+    sensor = node_sensor(system, nodes[-1], "Position")
     system.Assemble()
     settings: Any = exudyn.SimulationSettings()
     settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(end / step), end

@@ -14,7 +14,7 @@ from exudyn.advancedUtilities import CreateSymbolicUserFunction
 
 import symofros as sf
 from validation.adapters.closed import anchor_name
-from validation.adapters.exudyn.ancf import straight_beam
+from validation.adapters.exudyn.ancf import node_sensor, straight_beam
 from validation.adapters.exudyn.motion import Link, linkage
 from validation.adapters.exudyn.planar import Cable, populate
 from validation.adapters.exudyn.steps import Timed
@@ -80,14 +80,7 @@ def spinning(rod: Rod, elements: int) -> Timed:
 
         made = CreateSymbolicUserFunction(system, offset, "offsetUserFunction", joint)
         system.SetObjectParameter(joint, "offsetUserFunction", made)
-        sensor = system.AddSensor(
-            items.SensorNode(
-                nodeNumber=nodes[-1],
-                writeToFile=False,
-                storeInternal=True,
-                outputVariableType=exudyn.OutputVariableType.Position,
-            )
-        )
+        sensor = node_sensor(system, nodes[-1], "Position")
         system.Assemble()
         return container, system, [sensor]
 
@@ -153,14 +146,7 @@ def pendulum(gravity: float) -> Timed:
                 gravity=[0, 0, -gravity],
             )
         )
-        sensor = made.AddSensor(
-            items.SensorNode(
-                nodeNumber=node,
-                writeToFile=False,
-                storeInternal=True,
-                outputVariableType=exudyn.OutputVariableType.Coordinates,
-            )
-        )
+        sensor = node_sensor(made, node, "Coordinates")
         made.Assemble()
         return container, made, [sensor]
 
@@ -225,17 +211,7 @@ def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Tim
             )
         driven = made.AddMarker(items.MarkerBodyRigid(bodyNumber=carriers[0].body))
         made.AddLoad(items.LoadTorqueVector(markerNumber=driven, loadVector=[0.0, 0.0, torque]))
-        sensors = [
-            made.AddSensor(
-                items.SensorNode(
-                    nodeNumber=carrier.node,
-                    writeToFile=False,
-                    storeInternal=True,
-                    outputVariableType=exudyn.OutputVariableType.Coordinates,
-                )
-            )
-            for carrier in carriers
-        ]
+        sensors = [node_sensor(made, carrier.node, "Coordinates") for carrier in carriers]
         made.Assemble()
         return container, made, sensors
 
@@ -296,14 +272,7 @@ def held(system: sf.System, start: Array, targets: Array, stiffness: float, damp
                 jointVelocityOffsetVector=[0.0] * n,
             )
         )
-        sensor = made.AddSensor(
-            items.SensorNode(
-                nodeNumber=node,
-                writeToFile=False,
-                storeInternal=True,
-                outputVariableType=exudyn.OutputVariableType.Coordinates,
-            )
-        )
+        sensor = node_sensor(made, node, "Coordinates")
         made.Assemble()
         return container, made, [sensor]
 
