@@ -10,8 +10,8 @@ import numpy as np
 import reference_models
 import symofros as sf
 from validation import studies
-from validation.adapters.exudyn.scenes import joint_angles, looped
 from validation.adapters.exudyn.steps import Solver
+from validation.adapters.exudyn.timed_systems import joint_angles, looped
 from validation.mechanics.geometry import Array
 from validation.pareto.contestants.exudyn import ExudynModel
 from validation.pareto.contestants.symofros import SymofrosModel

@@ -10,8 +10,8 @@ from typing import TypeVar
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn.scenes import held as exudyn_held
 from validation.adapters.exudyn.steps import Solver
+from validation.adapters.exudyn.timed_systems import held as exudyn_held
 from validation.adapters.mujoco import steps as mujoco_steps
 from validation.adapters.mujoco import tree as mujoco
 from validation.adapters.pinocchio import steps as pinocchio_steps

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn.scenes import bars
 from validation.adapters.exudyn.steps import Solver
+from validation.adapters.exudyn.timed_systems import bars
 from validation.adapters.mujoco.steps import loaded
 from validation.mechanics.geometry import Array
 from validation.pareto.contestants.exudyn import ExudynModel

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from validation.adapters.exudyn.scenes import pendulum as exudyn_pendulum
 from validation.adapters.exudyn.steps import Solver
+from validation.adapters.exudyn.timed_systems import pendulum as exudyn_pendulum
 from validation.adapters.mujoco.steps import loaded
 from validation.mechanics.geometry import Array
 from validation.pareto.contestants.exudyn import ExudynModel

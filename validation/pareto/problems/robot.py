@@ -11,8 +11,8 @@ import numpy as np
 import reference_models
 import symofros as sf
 from validation.adapters.exudyn.planar import Cable
-from validation.adapters.exudyn.scenes import planar
 from validation.adapters.exudyn.steps import Solver
+from validation.adapters.exudyn.timed_systems import planar
 from validation.mechanics.geometry import Array
 from validation.pareto.contestants.exudyn import ExudynModel
 from validation.pareto.contestants.symofros import SymofrosModel

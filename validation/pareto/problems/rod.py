@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.adapters.exudyn.scenes import Rod
+from validation.adapters.exudyn.timed_systems import Rod
 from validation.mechanics.geometry import Array
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 import symofros as sf
-from validation.adapters.exudyn.scenes import Rod, spinning
 from validation.adapters.exudyn.steps import Recorded, Solver
+from validation.adapters.exudyn.timed_systems import Rod, spinning
 from validation.mechanics.geometry import Array
 from validation.pareto.contestants.exudyn import ExudynModel
 from validation.pareto.contestants.symofros import SymofrosModel

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from validation.adapters.exudyn.scenes import pendulum
 from validation.adapters.exudyn.steps import Solver
+from validation.adapters.exudyn.timed_systems import pendulum
 from validation.pareto.problems import pendulum as swing
 from validation.pareto.problems import spin_up
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.special import ellipk
 
-from validation.adapters.exudyn.scenes import Rod, pendulum
 from validation.adapters.exudyn.steps import Solver
+from validation.adapters.exudyn.timed_systems import Rod, pendulum
 from validation.pareto.catalogue import PROBLEMS
 from validation.pareto.front import usable
 from validation.pareto.problems import andrews, arm, closed_forms, four_bar, rod, spin_up
