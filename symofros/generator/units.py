@@ -24,6 +24,7 @@ from symofros.mechanics.dynamics.formulas import formula_program
 from symofros.mechanics.dynamics.functions import Request
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library, recall_library
+from symofros.runtime.build.progress import Progress
 from symofros.runtime.build.toolchain import Toolchain
 from symofros.runtime.build.tuning import Build, builds, fastest
 from symofros.runtime.calls.kernel import LaneOptions, Unit
@@ -52,7 +53,8 @@ class UnitCompiler:
     def functions(self, keys: Sequence[Key]) -> Unit:
         """A unit of the model's functions."""
         requests = tuple(Request(*key) for key in keys)
-        return self._unit(requests, lambda: self._programs.program(requests))
+        names = ", ".join(f"{name}({frame})" if frame else name for name, frame in keys)
+        return self._unit(requests, names, lambda: self._programs.program(requests))
 
     def formulas(self, formulas: Sequence[Any], derivatives: bool) -> Unit:
         """A unit of one function, "formulas": numbers, texts or SymPy expressions over the model's names."""
@@ -63,7 +65,7 @@ class UnitCompiler:
         def program() -> Program:
             return run_passes(formula_program(self._programs.equations().kinematics, values, derivatives))
 
-        return self._unit((values, derivatives), program)
+        return self._unit((values, derivatives), "formulas", program)
 
     def library(self, requests: Sequence[Request], lanes: LaneOptions | None) -> Path:
         """The shared library of some functions, each with code by vectors beside it if there are lanes.
@@ -90,26 +92,35 @@ class UnitCompiler:
         """C that chooses among kinds of processors, where a library is for several."""
         return dispatch_source(self.symbol) if self._options.processors == "any" else ""
 
-    def _unit(self, request: object, form: Callable[[], Program]) -> Unit:
-        """The unit of a request; its program is formed only where no library of it is known."""
+    def _unit(self, request: object, names: str, form: Callable[[], Program]) -> Unit:
+        """The unit of a request, of functions of some names; its program is formed only where no library is known."""
         program = cache(form)
         if self._toolchain is None:
             return InterpretedUnit(program())
         in_lanes = self._in_lanes(request, program) if self._options.batch == "vector" else None
-        return self._compile((request, "one by one"), program, self._toolchain, None, in_lanes)
+        return self._compile((request, "one by one"), names, program, self._toolchain, None, in_lanes)
 
     def _compile(
         self,
         request: object,
+        names: str,
         program: Callable[[], Program],
         toolchain: Toolchain,
         lanes: LaneOptions | None,
         in_lanes: Callable[[Key, LaneOptions], CompiledKernel | None] | None = None,
     ) -> CompiledUnit:
+        progress = Progress(self._record.name, names)
+
+        def source(build: Build) -> str:
+            progress.begin("generating")
+            text = model_source(program(), self._record, GENERATOR, lanes, packs=build.packs)
+            progress.begin("compiling")
+            return text
+
         def recall_one(build: Build) -> Path:
             return recall_library(
                 f"{self._recipe}{request!r}{build.packs}",
-                lambda: model_source(program(), self._record, GENERATOR, lanes, packs=build.packs),
+                lambda: source(build),
                 _header(),
                 build.toolchain,
                 build.flags,
@@ -117,7 +128,8 @@ class UnitCompiler:
                 self.symbol,
             )
 
-        path = self._build(recall_one, toolchain, lanes)
+        with progress:
+            path = self._build(recall_one, toolchain, lanes)
         return CompiledUnit(path, self.symbol, self._record.hash, in_lanes)
 
     def _in_lanes(
@@ -130,7 +142,8 @@ class UnitCompiler:
             if function.solver is not None or self._toolchain is None:
                 return None
             alone = replace(program(), functions=(function,))
-            return self._compile((request, lanes, key), lambda: alone, self._toolchain, lanes).compiled[key]
+            names = f"{key[0]} by vectors"
+            return self._compile((request, lanes, key), names, lambda: alone, self._toolchain, lanes).compiled[key]
 
         return compile_in_lanes
 

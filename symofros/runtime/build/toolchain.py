@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from threading import Event, Timer
 
 from symofros.errors import CompileError, Problem
 
@@ -159,9 +160,20 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
             raise CompileError(
                 Problem(f"compiler '{command[0]}' can't be started", str(error), rule, remedy)
             ) from error
+        # Waiting with a time limit of its own would ask twenty times a second.
+        too_late = Event()
+        watch = Timer(limit, lambda: (too_late.set(), process.kill()))
+        watch.daemon = True
+        watch.start()
         try:
-            status = process.wait(limit)
-        except subprocess.TimeoutExpired as error:
+            status = process.wait()
+        except BaseException:  # As of a user who interrupts.
+            process.kill()
+            process.wait()
+            raise
+        finally:
+            watch.cancel()
+        if too_late.is_set():
             raise CompileError(
                 Problem(
                     f"the C compiler did not end within {limit:g} s",
@@ -169,11 +181,7 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
                     "a compiler answers within its time limit",
                     "name another compiler, or generate fewer functions: Options(functions=…)",
                 )
-            ) from error
-        finally:
-            if process.poll() is None:
-                process.kill()
-                process.wait()
+            )
         said.seek(0)
         return status, said.read().decode(errors="replace")
 
