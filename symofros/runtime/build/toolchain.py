@@ -162,7 +162,12 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
             ) from error
         # Waiting with a time limit of its own would ask twenty times a second.
         too_late = Event()
-        watch = Timer(limit, lambda: (too_late.set(), process.kill()))
+
+        def end() -> None:
+            too_late.set()
+            process.kill()
+
+        watch = Timer(limit, end)
         watch.daemon = True
         watch.start()
         try:
