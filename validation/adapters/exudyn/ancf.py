@@ -215,23 +215,44 @@ def spin_up(elements: int = 16, step: float = 2.5e-3, end: float = 20.0, stretch
             offsetUserFunction=lambda mbs, t, number, offsets: [0.0, 0.0, 0.0, 0.0, 0.0, hub.angle(t)],
         )
     )
-    sensor = node_sensor(system, nodes[-1], "Position")
-    system.Assemble()
-    settings: Any = exudyn.SimulationSettings()
-    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(end / step), end
-    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
-    settings.timeIntegration.newton.useModifiedNewton = True
-    settings.timeIntegration.newton.absoluteTolerance = _ROUNDING * EA
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write, settings.solution.file.name = False, ""
-    settings.solution.sensors.writePeriod = step
-    if not system.SolveDynamic(settings, solverType=_METHOD):
-        raise RuntimeError(f"Exudyn did not finish the spin-up with {elements} elements and steps of {step} s")
-    recorded = np.array(system.GetSensorStoredData(sensor))
-    t, x, y = recorded[:, 0], recorded[:, 1], recorded[:, 2]
+    try:
+        t, tip = _tip_motion(system, nodes[-1], EA, end, step)
+    except RuntimeError as error:
+        raise RuntimeError(f"no spin-up with {elements} elements and steps of {step} s: {error}") from None
+    x, y = tip.T
     angle = np.array([hub.angle(at) for at in t])
     along, across = np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x
     return t, np.stack([along - hub.length, across], axis=-1)
+
+
+def swing(force: float, weight: float, end: float, elements: int = 12, step: float = 2e-3) -> tuple[Array, Array]:
+    """The tip of a cantilever along x of unit length, stiffness and mass a length, under sudden loads along y.
+
+    Args:
+        force: Dead load on the tip.
+        weight: Load a length.
+        end: End time [s].
+        elements: ANCFCable2D.
+        step: Step of the generalised-alpha method [s].
+
+    Returns:
+        Times (n,) [s] and displacement of the tip (n, 2) [m].
+
+    Raises:
+        RuntimeError: Exudyn's solver gave up.
+    """
+    EA = 1e5
+    container = exudyn.SystemContainer()
+    system = container.AddSystem()
+    nodes = straight_beam(system, 1.0, 1.0, EA, 1.0, elements)
+    _hold(system, nodes[0], (0, 1, 3))
+    marker = system.AddMarker(items.MarkerNodePosition(nodeNumber=nodes[-1]))
+    system.AddLoad(items.Force(markerNumber=marker, loadVector=[0.0, force, 0.0]))
+    for element in range(elements):
+        mass = system.AddMarker(items.MarkerBodyMass(bodyNumber=element))
+        system.AddLoad(items.LoadMassProportional(markerNumber=mass, loadVector=[0.0, weight, 0.0]))
+    t, tip = _tip_motion(system, nodes[-1], EA, end, step)
+    return t, tip - (1.0, 0.0)
 
 
 def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None = None) -> tuple[Array, Array]:
@@ -304,6 +325,24 @@ def _solve_static(system: Any, EA: float) -> None:
     settings.solution.file.write, settings.solution.file.name = False, ""
     if not system.SolveStatic(settings):
         raise RuntimeError("Exudyn found no state of rest")
+
+
+def _tip_motion(system: Any, node: Any, EA: float, end: float, step: float) -> tuple[Array, Array]:
+    """Times (n,) and positions (n, 2) of a node, from the start of a system to `end` [s]."""
+    sensor = node_sensor(system, node, "Position")
+    system.Assemble()
+    settings: Any = exudyn.SimulationSettings()
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(end / step), end
+    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
+    settings.timeIntegration.newton.useModifiedNewton = True
+    settings.timeIntegration.newton.absoluteTolerance = _ROUNDING * EA
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write, settings.solution.file.name = False, ""
+    settings.solution.sensors.writePeriod = step
+    if not system.SolveDynamic(settings, solverType=_METHOD):
+        raise RuntimeError("Exudyn did not finish the motion")
+    recorded = np.array(system.GetSensorStoredData(sensor))
+    return recorded[:, 0], recorded[:, 1:3]
 
 
 def _position(system: Any, node: Any) -> Array:
