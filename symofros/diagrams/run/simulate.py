@@ -10,23 +10,20 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.user_functions import raised_where
 from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
-from symofros.diagrams.program.layout import Layout
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
+from symofros.diagrams.run.diagnosis import Ended, diagnose
 from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.options import DiagramOptions
 from symofros.diagrams.run.parts import place_parts, start
 from symofros.diagrams.run.python_blocks import ExternalCalls, begun
 from symofros.diagrams.run.recording import Cost, Crossed
 from symofros.diagrams.run.values import parameter_values, record_interval
-from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.calls.library import CompiledKernel
 from symofros.simulation.progress import bar
-from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.time_slice import TimeSlice
 
@@ -137,8 +134,9 @@ def _drive(
     if isinstance(loop.failure, KeyboardInterrupt):
         interrupted = True
     t, q, v, u = (np.concatenate(columns) for columns in zip(*portions, strict=True))
-    bendings = tuple(bending for part in loop.parts for bending in part.bendings)
-    outcome = _outcome(loop, compiled.resolved.layout, status, interrupted, t_end, bendings)
+    settings = [options.settings(part.model, t_end) for part in loop.parts]
+    layout, recorded = compiled.resolved.layout, (t, q, v, u)
+    outcome = diagnose(Ended(loop, layout, settings, plan.spacing, recorded, status, interrupted))
     looked_for = watched(compiled.resolved.pieces)
     crossings = tuple(Crossed(*looked_for[which], when) for when, which in met)
     d = loop.diagram
@@ -152,58 +150,3 @@ def _drive(
         plan.spacing / (realtime or 1.0),
     )
     return DiagramRun(compiled, t, q, v, u, par, outcome, crossings, cost)
-
-
-def _held_fault(loop: Loop, layout: Layout) -> str:
-    """An output held between samples that is not finite though all states are, in words; "" where there is none."""
-    u = loop.held
-    if not all(np.isfinite(np.concatenate(stepper.state[1:])).all() for stepper in loop.parts):
-        return ""
-    for (block, port), place in layout.held.items():
-        bad = u[place.slice][~np.isfinite(u[place.slice])]
-        if len(bad):
-            return f"block '{block}': output '{port}' is {bad[0]} before t = {float(loop.diagram.t[0]):.6g} s"
-    return ""
-
-
-def _outcome(
-    loop: Loop,
-    layout: Layout,
-    status: int,
-    interrupted: bool,
-    t_end: float,
-    bendings: tuple[BeamBending, ...],
-) -> Outcome:
-    t, notes = float(loop.diagram.t[0]), (*bending_notes(bendings), *([loop.fault] if loop.fault else []))
-    if interrupted:
-        return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes)
-    if status == Status.BEYOND_THEORY:
-        worst = largest_bending(bendings)
-        assert worst is not None
-        return Outcome("beyond theory", worst.t, str(worst), f"{worst.remedy}; or move the limit, beam_limit=...")
-    if status == Status.FINISHED:
-        return Outcome("finished", t_end, f"{int(loop.diagram.steps)} steps", notes=notes)
-    if status == Status.CALLBACK_FAILED:
-        raised = raised_where(loop.failure) if loop.failure else "an exception"
-        reason, advice = f"block '{loop.failed_block}' raised {raised}", "call it by itself; outcome.failure"
-        return Outcome("input failed", t, reason, advice, notes, loop.failure)
-    fault = loop.fault or _held_fault(loop, layout)
-    if fault:
-        return Outcome("input failed", t, fault, "outputs that are finite at all samples", bending_notes(bendings))
-    kinds = {
-        Status.DIVERGED: ("diverged", "a state is no longer finite", "a smaller dt; look for gains that are too high"),
-        Status.SINGULAR: ("singular", "no accelerations exist", "give every speed an inertia or a constraint"),
-        Status.STEP_TOO_SMALL: ("step too small", "the tolerances ask for steps below rounding", "loosen rtol"),
-        Status.ENERGY_LOST: (
-            "constraints lost",
-            "keeping the constraints has taken the energy of the motion: they are singular here",
-            "a smaller step, or an event before it",
-        ),
-        Status.PROJECTION_FAILED: (
-            "constraints lost",
-            "projection does not meet the constraints again",
-            "a smaller step",
-        ),
-    }
-    kind, reason, advice = kinds[Status(status)]
-    return Outcome(kind, t, reason, advice, notes)  # type: ignore[arg-type]

@@ -31,7 +31,9 @@ def test_a_function_that_returns_no_finite_number_is_named_with_its_line(method:
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize(("formula", "bad"), [("sqrt(0.1 - t)", "nan"), ("log(t - 0.1)", "nan"), ("exp(1e300*(t - 0.1))", "inf")])
+@pytest.mark.parametrize(
+    ("formula", "bad"), [("sqrt(0.1 - t)", "nan"), ("log(t - 0.1)", "nan"), ("exp(1e300*(t - 0.1))", "inf")]
+)
 def test_a_formula_without_a_value_is_named(formula: str, bad: str, method: str) -> None:
     run = sf.simulate(oscillator(), t_end=0.3, u={"x": formula}, method=method, dt=1e-2)
     assert run.outcome.kind == "input failed", run.outcome
