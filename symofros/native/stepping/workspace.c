@@ -3,6 +3,8 @@
 typedef struct sym_implicit_workspace { /* n = nv + nc; empty for explicit methods */
     double *matrix;                      /* (n, n) Newton's or a Rosenbrock step's, then its factors */
     double *right, *solution, *scratch;  /* (n) */
+    double *correction, *tried;          /* (n) of damped Newton iteration */
+    double *unknowns;                    /* (2 n) of the equations of a step, and their guess */
     double *history;                     /* (2 nv) what a step leaves to the next one */
     double *time_slope;                  /* (2 nv) partial derivative of the slope by time; else work */
     double *stages;                      /* (stages + 3, 2 nv) solutions U of Rosenbrock stages; else work */
@@ -30,6 +32,8 @@ static sym_workspace sym_allocate_workspace(const sym_run *r, sym_arena *arena) 
         sym_implicit_workspace *implicit = &w.implicit;
         implicit->matrix = sym_allocate(arena, n * n), implicit->right = sym_allocate(arena, n);
         implicit->solution = sym_allocate(arena, n), implicit->scratch = sym_allocate(arena, n);
+        implicit->correction = sym_allocate(arena, n), implicit->tried = sym_allocate(arena, n);
+        implicit->unknowns = sym_allocate(arena, 2 * n);
         implicit->history = sym_allocate(arena, m), implicit->time_slope = sym_allocate(arena, m);
         implicit->stages = sym_allocate(arena, m * ((size_t)r->tableau.stages + 3));
     }
