@@ -1,4 +1,4 @@
-"""Exudyn's systems of the scenes in which speed is compared with accuracy."""
+"""Exudyn's systems of the benchmark problems in which speed is compared with accuracy."""
 
 from __future__ import annotations
 
