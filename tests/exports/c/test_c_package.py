@@ -153,7 +153,9 @@ BODY = sf.RigidBody("b", sf.Joint("j", "revolute"), sf.Inertia(1.0, (1, 0, 0), (
 DRIVEN = sf.RigidBody("b", sf.Joint("j", "revolute", prescribed=True), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
 
 
-@pytest.mark.parametrize(("name", "body"), [("no_inputs", BODY), ("no_states", DRIVEN)])
+@pytest.mark.parametrize(
+    ("name", "body"), [pytest.param("no_inputs", BODY, marks=pytest.mark.slow), ("no_states", DRIVEN)]
+)
 def test_models_without_inputs_or_states(tmp_path: Path, name: str, body: sf.RigidBody) -> None:
     sf.export(sf.System(name, (body,)), "c", tmp_path)
     flags = (*STRICT, "-O1", "-g", *sanitizers("gcc", "undefined,address"))

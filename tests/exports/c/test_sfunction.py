@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.exports.cases import SAMPLED, STARTS, STEP, STRICT, first_state, relative, run, system_of, trajectory
+from tests.exports.cases import MODELS, STARTS, STEP, STRICT, first_state, relative, run, system_of, trajectory
+from tests.models import sampled
 
 HEADERS = Path(__file__).parent / "simulink"
 SAME = 1e-12
 
 
-@pytest.fixture(scope="module", params=SAMPLED)
+@pytest.fixture(scope="module", params=sampled(MODELS, ("four_bar",)))
 def block(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     name = request.param
     folder = tmp_path_factory.mktemp("block") / name

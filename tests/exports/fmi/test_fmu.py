@@ -94,16 +94,33 @@ def version(request: pytest.FixtureRequest) -> int:
     return request.param
 
 
+# The robot takes long to make.
+ONE_VERSION = [pytest.param(2, marks=pytest.mark.slow), 3]
+# Every model by one version of the standard in every run, by the other with --slow; a loop by both.
+VERSIONS = {"planar_robot": 3, "floating": 2, "driven": 3}
+
+
+def by_version(*cases: Any) -> list[Any]:
+    """Models and versions that a test is tried with."""
+    listed = [case if hasattr(case, "values") else pytest.param(case) for case in cases]
+    return [
+        pytest.param(version, *case.values, marks=[*case.marks, *([pytest.mark.slow] if other else [])])
+        for case in listed
+        for version in (2, 3)
+        for other in [VERSIONS.get(case.values[0], version) != version]
+    ]
+
+
 def columns(result: Any, prefix: str) -> np.ndarray:
     return np.array([result[name][-1] for name in result.dtype.names if name.startswith(prefix)])
 
 
-@pytest.mark.parametrize("name", [*SAMPLED, *OWN])
+@pytest.mark.parametrize(("version", "name"), by_version(*SAMPLED, *OWN))
 def test_valid(made: Any, name: str, version: int) -> None:
     assert validate_fmu(str(made(name, version))) == []
 
 
-@pytest.mark.parametrize("name", SAMPLED)
+@pytest.mark.parametrize(("version", "name"), by_version(*SAMPLED))
 def test_co_simulation_moves_as_python_does(made: Any, name: str, version: int) -> None:
     found = fmpy.simulate_fmu(str(made(name, version)), fmi_type="CoSimulation", stop_time=0.2, output_interval=0.01)
     wanted = trajectory(name, 0.2)
@@ -111,7 +128,7 @@ def test_co_simulation_moves_as_python_does(made: Any, name: str, version: int) 
     assert relative(columns(found, "v."), wanted.v[-1]) < SAME
 
 
-@pytest.mark.parametrize("name", [*SAMPLED, *OWN])
+@pytest.mark.parametrize(("version", "name"), by_version(*SAMPLED, *OWN))
 def test_model_exchange_moves_as_python_does(made: Any, name: str, version: int) -> None:
     found = fmpy.simulate_fmu(
         str(made(name, version)), fmi_type="ModelExchange", stop_time=0.2, output_interval=0.01, relative_tolerance=1e-9
@@ -122,6 +139,7 @@ def test_model_exchange_moves_as_python_does(made: Any, name: str, version: int)
     assert relative(columns(found, "q."), wanted.q[-1]) < MODEL_EXCHANGE
 
 
+@pytest.mark.parametrize("version", ONE_VERSION)
 def test_inputs_act(made: Any, version: int) -> None:
     drive = np.array([(0.0, 0.5), (1.0, 0.5)], dtype=[("time", float), ("u.q1", float)])
     found = fmpy.simulate_fmu(
@@ -213,7 +231,7 @@ def unit(made: Any, version: int, tmp_path: Path) -> Iterator[Any]:
         shutil.rmtree(tmp_path, ignore_errors=True)
 
 
-@pytest.mark.parametrize("name", [*SAMPLED, *OWN])
+@pytest.mark.parametrize(("version", "name"), by_version(*SAMPLED, *OWN))
 def test_directional_derivatives_are_those_of_the_functions(unit: Any, name: str, rng: np.random.Generator) -> None:
     it = unit(name, cosim=False)
     it.start()
@@ -326,6 +344,7 @@ def test_another_token_is_refused(made: Any, version: int, tmp_path: Path) -> No
         fmu.instantiate()
 
 
+@pytest.mark.parametrize("version", ONE_VERSION)
 def test_units_and_dependencies(made: Any, version: int) -> None:
     description = fmpy.read_model_description(str(made("planar_robot", version)))
     units = {variable.name: variable.unit for variable in description.modelVariables}

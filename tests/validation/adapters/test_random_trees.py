@@ -73,7 +73,7 @@ def trees(draw: st.DrawFn) -> sf.System:
 
 
 @pytest.mark.parametrize("engine", [pinocchio, mujoco], ids=["pinocchio", "mujoco"])
-@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(trees())
 def test_random_trees_agree(engine: object, system: sf.System) -> None:
     assembly = assemble(system)
@@ -92,7 +92,7 @@ def test_random_trees_agree(engine: object, system: sf.System) -> None:
 
 
 @pytest.mark.parametrize("way", ["articulated", "factors"])
-@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(system=trees())
 def test_either_way_of_forward_dynamics(way: Literal["articulated", "factors"], system: sf.System) -> None:
     """Pinocchio's own articulated bodies."""

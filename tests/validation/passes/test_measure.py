@@ -27,9 +27,16 @@ def text(name: str, options: sf.Options) -> str:
     return path.with_suffix(".c").read_text(encoding="utf-8") + path.name
 
 
-@pytest.mark.parametrize("one", ABLATIONS, ids=lambda one: one.name)
+LARGE = ("packs", "pieces")  # Passes that show in long chains.
+
+
+@pytest.mark.parametrize(
+    "one",
+    [pytest.param(one, marks=[pytest.mark.slow] if one.name in LARGE else []) for one in ABLATIONS],
+    ids=lambda one: one.name,
+)
 def test_a_pass_that_is_left_out_shows(one: Ablation) -> None:
-    name = WHERE.get(one.name, "chain22" if one.name in ("packs", "pieces") else "puma560")
+    name = WHERE.get(one.name, "chain22" if one.name in LARGE else "puma560")
     plain = sf.Options(("dynamics",), batch="loop")
     whole, before = text(name, plain), operations(name)
     with one.without():

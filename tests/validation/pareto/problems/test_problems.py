@@ -17,7 +17,7 @@ from validation.pareto.problems import pendulum as swing
 from validation.pareto.race import race
 
 
-@pytest.mark.parametrize("name", ["arm", "four_bar", "andrews"])
+@pytest.mark.parametrize("name", [pytest.param("arm", marks=pytest.mark.slow), "four_bar", "andrews"])
 def test_references_agree_and_sides_move_alike(name: str) -> None:
     problem = PROBLEMS[name]
     found = race(problem, quick=True)
