@@ -25,9 +25,9 @@ class Model(ConstraintFunctions, FrameFunctions):
     Every function takes float64 arrays with any leading batch dimensions, broadcasts them, and returns new arrays
     (float32 after `with_precision("single")`). Results lie in memory as inputs do: with the batch as their fast axis if
     that is so in all inputs (`np.asfortranarray(q)`, `Q.T`), which is the fastest; else row by row.
-    `par=` overrides the run-time parameters (..., npar), judged as the description's own (`with_parameter_checks`), `t=`
-    gives the time (...,) to models that depend on it; `u=` matters where a motion is prescribed, because its coordinates,
-    speeds and their rates are inputs.
+    `par=` overrides the run-time parameters (..., npar), judged as the description's own (`with_parameter_checks`);
+    `t=` gives the time (...,) to models that depend on it; `u=` matters where a motion is prescribed, because its
+    coordinates, speeds and their rates are inputs.
     NaN in a state or an input propagates to what depends on it, so that one bad state does not spoil its batch.
     Methods raise ShapeError where an array does not fit, UnknownNameError for a name that is not in the model, and
     ParameterError for parameters that the description refuses.

@@ -49,7 +49,7 @@ def read_yaml(
     Args:
         path: The main file. Files that it includes lie in its folder or below.
         text: Content of the main file, where that is not written yet; then only its name and folder are used.
-        composed: Root of that text and its duplicate keys, as `compose_text(text, "")` gives them, where they are known.
+        composed: Root of that text and its duplicate keys, as `compose_text(text, "")` gives them, where known.
 
     Returns:
         The system without the entries that could not be read, and every problem. No system where names are missing

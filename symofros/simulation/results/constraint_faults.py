@@ -1,4 +1,4 @@
-"""What has gone wrong with the constraints of a run: rows that are not continuous, energy taken, conditions not kept."""
+"""What went wrong with the constraints of a run: rows not continuous, energy taken, conditions not kept."""
 
 from __future__ import annotations
 

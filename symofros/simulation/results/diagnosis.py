@@ -66,8 +66,8 @@ def diagnose(
         lost = f"; {lost_energy(stepper)}" if status == Status.ENERGY_LOST else ""
         return outcome(
             "singular",
-            f"'{turning.name}' has no definite direction here: its row of G changes at once, by {turning.turn:.3g} of its"
-            f" size{lost}",
+            f"'{turning.name}' has no definite direction here: its row of G changes at once, by {turning.turn:.3g}"
+            f" of its size{lost}",
             "end the run by a terminal event before it; a disc that lies flat, for example, has no lowest point",
         )
     if failed and mode is not None and mode.amplified:

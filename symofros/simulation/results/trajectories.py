@@ -164,5 +164,6 @@ class Trajectories:
         noted = np.argwhere((self.beam_errors > NOTED_ERROR).any(axis=-1))
         if len(noted):
             index = tuple(map(int, noted[0]))
-            lines.append(f"  beams bend much in {len(noted)}, first: {list(index)}: {largest_bending(self.bendings(index))}")
+            largest = largest_bending(self.bendings(index))
+            lines.append(f"  beams bend much in {len(noted)}, first: {list(index)}: {largest}")
         return "\n".join(lines)
