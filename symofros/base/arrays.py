@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
+from symofros.errors import Problem, ShapeError
+
 
 def real_array(values: ArrayLike, dtype: npt.DTypeLike = np.float64) -> npt.NDArray[Any] | None:
     """The values as an array of real numbers; None where some are not: texts, dates, complex numbers, None.
@@ -26,3 +28,26 @@ def real_array(values: ArrayLike, dtype: npt.DTypeLike = np.float64) -> npt.NDAr
         return np.asarray(array, dtype=dtype) if array.dtype.kind in "fiubO" else None
     except (TypeError, ValueError):  # Rows of unequal length, for instance.
         return None
+
+
+def numeric(what: str, values: ArrayLike) -> npt.NDArray[np.float64]:
+    """The values as a new array of real numbers of any shape.
+
+    Args:
+        what: Name of the values in the message.
+        values: Values.
+
+    Raises:
+        ShapeError: Some are no real numbers.
+    """
+    array = real_array(values)
+    if array is None:
+        raise ShapeError(
+            Problem(
+                f"{what} is not an array of numbers",
+                f"{type(values).__name__} {values!r:.60}",
+                f"{what} is an array of real numbers",
+                "convert texts, dates and complex numbers before",
+            )
+        )
+    return np.array(array)

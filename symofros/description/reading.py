@@ -47,9 +47,8 @@ def read_bytes(path: Path, limit: int) -> bytes:
     """
     try:
         if not path.is_file():
-            actual = "a folder" if path.is_dir() else "no such file"
             raise DescriptionError(
-                Problem(f"'{path}' can't be read", actual, "a description is a file", "check the path")
+                Problem(f"'{path}' can't be read", kind_of(path), "a description is a regular file", "check the path")
             )
         with path.open("rb") as stream:
             data = stream.read(limit + 1)
@@ -60,6 +59,18 @@ def read_bytes(path: Path, limit: int) -> bytes:
         ) from None
     refuse_size(path, data, limit)
     return data
+
+
+def kind_of(path: Path) -> str:
+    """What a path leads to that is no regular file."""
+    kinds = (
+        (path.is_dir, "a folder"),
+        (path.is_fifo, "a named pipe, whose reader would wait"),
+        (path.is_socket, "a socket"),
+        (path.is_char_device, "a device"),
+        (path.is_block_device, "a device"),
+    )
+    return next((kind for holds, kind in kinds if holds()), "no such file")
 
 
 def refuse_size(path: Path, data: bytes, limit: int) -> None:

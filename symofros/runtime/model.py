@@ -7,6 +7,7 @@ from typing import Literal, overload
 
 import numpy as np
 
+from symofros.base.arrays import numeric
 from symofros.runtime import linear, manifold
 from symofros.runtime.calls.bound import Bound, Layout, bind, bind_batch
 from symofros.runtime.calls.kernel import Array
@@ -192,7 +193,7 @@ class Model(ConstraintFunctions, FrameFunctions):
     def _gains(self, gains: ArrayLike | None) -> ArrayLike:
         if gains is None:
             return np.zeros(2 * self.nc)
-        given = np.asarray(gains, dtype=np.float64)
+        given = numeric("gains", gains)
         return np.repeat(given, self.nc, axis=-1) if given.shape == (2,) else given
 
     def inverse_dynamics(

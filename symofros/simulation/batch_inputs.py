@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import numeric
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
@@ -100,7 +101,7 @@ def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
         )
     if u is None:
         return GivenInputs(None, {}, {})
-    values = np.asarray(u, dtype=np.float64)
+    values = numeric("u", u)
     if values.ndim == 0 or values.shape[-1] != model.nu:
         raise ShapeError(
             Problem(
@@ -136,7 +137,7 @@ def _by_name(model: Model, given: Mapping[str, Any]) -> GivenInputs:
                 samples[n_signals] = value.values[..., 0]
             n_signals += 1
         elif isinstance(value, np.ndarray) and value.ndim > 0 and value.size and name in model.names.u:
-            constants[model.names.u.index(name)] = np.asarray(value, dtype=np.float64)
+            constants[model.names.u.index(name)] = numeric(f"input '{name}'", value)
             first[name] = float(np.nan_to_num(value.flat[0]))
     return GivenInputs(first, constants, samples)
 

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from symofros.base.arrays import numeric
 from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import Rate
@@ -30,7 +31,7 @@ class Signal:
 
     def __post_init__(self) -> None:
         """Samples must be numbers in the order of time."""
-        t, values = np.asarray(self.t, dtype=np.float64), np.asarray(self.values, dtype=np.float64)
+        t, values = numeric("signal: t", self.t), numeric("signal: values", self.values)
         object.__setattr__(self, "t", np.ascontiguousarray(t))
         object.__setattr__(self, "values", np.ascontiguousarray(values))
         times = values.shape[0 if values.ndim == 1 else -2] if values.ndim else 0
@@ -91,7 +92,7 @@ def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
         return _by_name(model, u, constant)
     if callable(u):
         return InputPlan(constant, callback=u)
-    array = np.asarray(u, dtype=np.float64)
+    array = numeric("u", u)
     if array.shape == (len(names),):
         for name, value in zip(names, array, strict=True):
             _refuse_infinite(name, float(value))

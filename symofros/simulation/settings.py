@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symofros.base.arrays import real_array
+from symofros.base.arrays import numeric, real_array
 from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
@@ -232,7 +232,7 @@ def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, 
 def _grid(output: float | ArrayLike | None, t0: float, t_end: float) -> Array:
     if output is None:
         return np.zeros(0)
-    times = np.asarray(output, dtype=np.float64)
+    times = numeric("output", output)
     if times.ndim == 0:
         interval = float(times)
         if not (math.isfinite(interval) and interval > 0):
@@ -256,7 +256,7 @@ def _gains(model: Model, stabilisation: str, gains: ArrayLike | None, step: floa
         return np.zeros(2 * model.nc)
     if gains is None:
         return np.full(2 * model.nc, min(_GAIN, _GAIN_STEP / step) if step else _GAIN)
-    given = np.asarray(gains, dtype=np.float64)
+    given = numeric("gains", gains)
     given = np.repeat(given, model.nc) if given.shape == (2,) else given
     if given.shape != (2 * model.nc,) or not np.all(given >= 0):
         raise ShapeError(

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from symofros.description.constraints import Constraint
 from symofros.description.forces import Connection, Potential, VirtualPower
 from symofros.description.reading import Reading as Reading
-from symofros.description.reading import in_order, read_bytes, refuse_size
+from symofros.description.reading import in_order, kind_of, read_bytes, refuse_size
 from symofros.description.system import Body, Input, Parameter, System
 from symofros.description.yaml.faults import line_of, path_of, problem_of
 from symofros.description.yaml.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
@@ -193,10 +193,11 @@ class _Merger:
             )
         if not target.is_file():
             there = [file.name for file in target.parent.glob("*.y*ml")] if target.parent.is_dir() else []
+            kind = kind_of(target)
             return Problem(
-                f"{what}: there is no such file",
+                f"{what}: {'there is no such file' if kind == 'no such file' else f'it is {kind}'}",
                 text[:100],
-                "an included file exists",
+                "an included file exists, and is a regular one",
                 did_you_mean(target.name, sorted(there)),
             )
         return None

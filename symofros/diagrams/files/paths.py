@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from symofros.description.reading import kind_of
 from symofros.errors import Problem, did_you_mean
 
 DIAGRAMS = (".yaml", ".yml")
@@ -40,15 +41,16 @@ def refused(text: str, base: Path, folder: Path, suffixes: tuple[str, ...] = ())
             "name another",
         )
     if not exists:
+        kind = kind_of(target)
         there = sorted(
             file.name
             for file in target.parent.glob("*")
             if file.is_file() and (not suffixes or file.suffix.lower() in suffixes)
         )
         return Problem(
-            f"file '{text:.80}' does not exist",
+            f"file '{text:.80}' {'does not exist' if kind == 'no such file' else f'is {kind}'}",
             f"in its folder: {', '.join(there[:8]) or 'none such'}",
-            "a file that is referred to exists",
+            "a file that is referred to exists, and is a regular one",
             did_you_mean(target.name, there) or "check the path",
         )
     return None

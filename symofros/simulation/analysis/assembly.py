@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import numeric
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import LARGEST_STEP, eliminate, pseudo_inverse, residual_weights, step_factor
@@ -66,8 +67,8 @@ def assemble(
     """
     free = free_speeds(model, held)
     model = model.with_precision("double")
-    q = model.neutral() if q is None else np.array(q, dtype=np.float64)
-    wished = np.zeros(model.nv) if v is None else np.array(v, dtype=np.float64)
+    q = model.neutral() if q is None else numeric("q", q)
+    wished = np.zeros(model.nv) if v is None else numeric("v", v)
 
     def residual(at: Array) -> Array:
         return model.constraint(at, u=u, par=par, t=t)

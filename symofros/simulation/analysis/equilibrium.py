@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symofros.base.arrays import numeric
 from symofros.errors import BeamTheoryError, EquilibriumError, Problem
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes, largest_bending
 from symofros.runtime.calls.kernel import Array
@@ -83,9 +84,9 @@ def equilibrium(
     model = model.with_precision("double")
     free = free_speeds(model, held)
     nv, nc = model.nv, model.nc
-    q = model.neutral() if q is None else np.array(q, dtype=np.float64)
-    v = np.zeros(nv) if v is None else np.array(v, dtype=np.float64)
-    u = np.array(model.record.u_default if u is None else u, dtype=np.float64)
+    q = model.neutral() if q is None else numeric("q", q)
+    v = np.zeros(nv) if v is None else numeric("v", v)
+    u = numeric("u", model.record.u_default if u is None else u)
     lam, still = np.zeros(nc), np.zeros(nv)
 
     def residual(at: Array, lam: Array) -> tuple[Array, float]:

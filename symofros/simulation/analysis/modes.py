@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arrays import numeric
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import ArrayLike, Model
@@ -62,7 +63,7 @@ def modes(
     Raises:
         BeamTheoryError: A beam is bent beyond the limit.
     """
-    bendings = bendings_at(model, np.asarray(q, dtype=np.float64), par)
+    bendings = bendings_at(model, numeric("q", q), par)
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
     linear_model = state_space(model, q, v, u, par=par, t=t)
     s, X = np.linalg.eig(linear_model.A)
