@@ -18,6 +18,7 @@ from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.batch_inputs import Shape, sort_inputs
 from symofros.simulation.inputs import Inputs
 from symofros.simulation.options import SimulationOptions
+from symofros.simulation.results.batch_examination import BatchExamination
 from symofros.simulation.results.trajectories import Trajectories
 from symofros.simulation.settings import CLOSED, Settings
 from symofros.simulation.stepping.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
@@ -120,6 +121,7 @@ def simulate_batch(
         _shaped(results.beam_coordinates, shape),
         settings.method.name,
         *seconds,
+        BatchExamination(model, settings, replace(initial, q=initial.q.copy(), v=initial.v.copy(), par=values.copy())),
     )
 
 

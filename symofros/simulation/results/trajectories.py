@@ -11,8 +11,10 @@ import numpy.typing as npt
 from symofros.runtime.beams import NOTED_ERROR, BeamBending, bending_notes, largest_bending, worst_bendings
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
+from symofros.simulation.results.batch_examination import BatchExamination
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.results.trajectory import Statistics, Trajectory
+from symofros.simulation.stepping.resolution import Mode
 from symofros.simulation.stepping.status import Status
 
 Index = int | tuple[int, ...]
@@ -49,6 +51,10 @@ _ENDS: dict[int, tuple[Kind, str, str]] = {
     ),
     Status.BEYOND_THEORY: ("beyond theory", "a beam is bent beyond second-order theory", ""),
 }
+# Statuses that a step past the limit of stability leads to.
+_EXPLODED = (Status.DIVERGED, Status.BEYOND_THEORY)
+# Runs whose steps the summary of a batch looks at.
+_EXAMINED = 8
 
 
 @dataclass(frozen=True)
@@ -74,6 +80,7 @@ class Trajectories:
         method: Name of the method.
         seconds: Wall time of all runs together [s].
         processor_seconds: Processor time of all threads together [s]; other programs do not lengthen it.
+        examination: What looks at the steps and inputs of a run when its outcome is asked for.
     """
 
     model: Model
@@ -94,6 +101,7 @@ class Trajectories:
     method: str
     seconds: float
     processor_seconds: float
+    examination: BatchExamination | None = None
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -111,14 +119,56 @@ class Trajectories:
         return np.asarray(np.vectorize(lambda status: _ENDS[int(status)][0], otypes=["U16"])(self.status))
 
     def outcome(self, index: Index) -> Outcome:
-        """How one run ended."""
+        """How one run ended; its steps and inputs are examined now."""
         kind, reason, advice = _ENDS[int(self.status[index])]
         bendings = self.bendings(index)
+        t, notes = float(self.t_last[index]), bending_notes(bendings)
+        if self.status[index] < 0:
+            reason = self._input_fault(index) or reason
+        seen = self._step_size(index)
+        if seen is not None:
+            mode, note = seen
+            notes = (*notes, note)
+            if self.status[index] in _EXPLODED and mode.amplified:
+                reason, advice = f"the step is past the limit of stability of '{self.method}'", "see the note"
+                return Outcome("diverged", t, reason, advice, notes)
         if self.status[index] == Status.BEYOND_THEORY:
             worst = largest_bending(bendings)
             assert worst is not None
-            return Outcome(kind, float(self.t_last[index]), str(worst), worst.remedy)
-        return Outcome(kind, float(self.t_last[index]), reason, advice, bending_notes(bendings))
+            return Outcome(kind, t, str(worst), worst.remedy)
+        return Outcome(kind, t, reason, advice, notes)
+
+    def _number(self, index: Index) -> int:
+        """Number of a run among all."""
+        return int(np.arange(self.status.size).reshape(self.shape)[index])
+
+    def _input_fault(self, index: Index) -> str:
+        last = float(self.t_last[index]), self.q_last[index], self.v_last[index]
+        return self.examination.input_fault(self._number(index), *last) if self.examination else ""
+
+    def _step_size(self, index: Index) -> tuple[Mode, str] | None:
+        """The mode that the steps of one run resolve worst, and the note on it."""
+        if self.examination is None or not self.steps[index]:
+            return None
+        reached = self._reached(index)
+        t, q, v = self.t[reached], self.q[index][reached], self.v[index][reached]
+        u = self.u[index][reached]
+        if not len(t) or t[-1] < self.t_last[index]:
+            t, q, v = (
+                np.append(t, self.t_last[index]),
+                np.vstack([q, self.q_last[index]]),
+                np.vstack([v, self.v_last[index]]),
+            )
+            u = np.vstack([u, u[-1:] if len(u) else np.zeros((1, u.shape[1]))])
+        settings = self.examination.settings
+        meant = max(1, round((settings.t_end - settings.t0) / settings.dt)) if settings.dt > 0.0 else 1
+        steps = meant if self.status[index] in _EXPLODED else int(self.steps[index])
+        return self.examination.step_size(self._number(index), (t, q, v, u), steps)
+
+    def _reached(self, index: Index) -> npt.NDArray[np.bool_]:
+        """Which samples one run reached (m)."""
+        before = self.t <= self.t_last[index] + 1e-9 * abs(self.t_last[index])
+        return np.asarray(before & ~np.isnan(self.q[index]).any(axis=-1))
 
     def bendings(self, index: Index) -> tuple[BeamBending, ...]:
         """Bending of each beam in one run, at the step where its theory errs most."""
@@ -127,8 +177,7 @@ class Trajectories:
 
     def __getitem__(self, index: Index) -> Trajectory:
         """One run, as far as it was recorded; `index` addresses all batch dimensions."""
-        reached = self.t <= self.t_last[index] + 1e-9 * abs(self.t_last[index])
-        reached &= ~np.isnan(self.q[index]).any(axis=-1)
+        reached = self._reached(index)
         par = self.par[index] if self.par.ndim > 1 else self.par
         statistics = Statistics(self.method, int(self.steps[index]), int(self.rejected[index]), -1, -1, self.seconds)
         return Trajectory(
@@ -153,7 +202,7 @@ class Trajectories:
         return (self[index] for index in np.ndindex(self.shape))
 
     def __str__(self) -> str:
-        """How many ended how, the first that went wrong, and in how many beams bend much."""
+        """How many ended how, the first that went wrong, in how many beams bend much, and the steps of some."""
         kinds = self.kinds
         names, counts = np.unique(kinds, return_counts=True)
         lines = [", ".join(f"{count} {name}" for name, count in zip(names, counts, strict=True)) or "no trajectories"]
@@ -166,4 +215,11 @@ class Trajectories:
             index = tuple(map(int, noted[0]))
             largest = largest_bending(self.bendings(index))
             lines.append(f"  beams bend much in {len(noted)}, first: {list(index)}: {largest}")
+        good = np.argwhere(self.ok)
+        for row in good[:: max(1, -(-len(good) // _EXAMINED))]:
+            index = tuple(map(int, row))
+            seen = self._step_size(index)
+            if seen is not None:
+                lines.append(f"  steps, first seen in {list(index)}: {seen[1]}")
+                break
         return "\n".join(lines)

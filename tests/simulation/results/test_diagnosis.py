@@ -64,7 +64,13 @@ def test_a_constant_of_a_batch_that_is_not_finite_ends_its_own_trajectory(given:
         u: Any = values[:, np.newaxis] if given == "rows" else {"x": values}
         many = sf.simulate_batch(oscillator(), np.zeros((4, 1)), t_end=0.1, u=u, dt=1e-2)
         assert np.flatnonzero(~many.ok).tolist() == [which]
-        assert many.outcome(which).kind == "input failed" and "input" in many.outcome(which).reason
+        assert many.outcome(which).kind == "input failed" and "input 'x' is" in many.outcome(which).reason
+
+
+def test_a_formula_of_a_batch_that_has_no_value_is_named() -> None:
+    many = sf.simulate_batch(oscillator(), [[0.0], [0.5]], [1.0], 0.1, u={"x": "10 + sqrt(0.6 - x)"}, dt=1e-3)
+    assert not many.ok[1]
+    assert "input 'x' is nan" in many.outcome(1).reason and "sqrt(0.6 - x)" in many.outcome(1).reason
 
 
 @pytest.mark.parametrize("method", ["rk4", "dopri5", "cvode"])

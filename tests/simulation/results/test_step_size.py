@@ -126,3 +126,15 @@ def test_no_note_on_reference_models_at_their_usual_step(name: str) -> None:
     q, v = model.random_state(np.random.default_rng(1))
     for method in ("rk4", "semi_implicit_euler"):
         assert not step_notes(sf.simulate(model, q, v, 1.0, method=method, dt=1e-3, output=0.02))
+
+
+def test_each_run_of_a_batch_is_judged_by_its_own_parameters() -> None:
+    """Springs from slow to past the limit; the notes are those of single runs."""
+    z = np.array([0.05, 1.0, 2.9, 3.5])
+    par = np.stack([(z / H) ** 2, np.zeros(4)], axis=1)
+    many = sf.simulate_batch(oscillator(), [1.0], t_end=100 * H, par=par, dt=H, output=10 * H)
+    for i in range(4):
+        alone = sf.simulate(oscillator(), [1.0], t_end=100 * H, par=par[i], dt=H, output=10 * H)
+        assert [note[:60] for note in many[i].outcome.notes] == [note[:60] for note in alone.outcome.notes]
+        assert bool(many.outcome(i).notes) == (z[i] > 0.5)
+    assert "past the limit of stability" in many.outcome(3).notes[0] and "steps, first seen in [1]" in str(many)
