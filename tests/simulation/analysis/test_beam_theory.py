@@ -129,3 +129,30 @@ def test_a_beam_cut_into_several_errs_less_by_the_square_of_their_number() -> No
         exact = np.array([1.0 - elastica(1.5)[1], elastica(1.5)[0]])
         errors.append(float(np.linalg.norm(p[:2] - exact)))
     assert errors[0] / errors[1] > 3.0 and errors[1] / errors[2] > 3.0
+
+
+@pytest.mark.parametrize("family", ["spline", "polynomial", "legendre", "clamped_free", "hermite"])
+@pytest.mark.parametrize("direction", ["bend_y", "bend_z"])
+def test_the_estimate_does_not_depend_on_the_shape_functions(family: str, direction: str) -> None:
+    """Coordinates are displacements [m] or angles [rad]; the deflection under a force at the tip is the same cubic."""
+    y = float(direction == "bend_y")
+    load = sf.BeamLoad((0.0, y * 2.0 / 9.0, (1.0 - y) * 2.0 / 9.0), at=1.0, axes="world")
+    stated = {direction: 2 if family == "hermite" else 4, "family": family, "loads": (load,)}
+    beam = sf.Beam("b", sf.Joint("root", "fixed"), 3.0, 1.0, EI_z=2.0, EI_y=2.0, **stated)
+    model = sf.compile(sf.System("s", (beam,), gravity=(0, 0, 0)), sf.Options(backend="interpreter"))
+    (bending,) = sf.equilibrium(model).bendings
+    assert bending.error == pytest.approx(0.1081, rel=0.05 if family == "clamped_free" else 1e-3)
+    assert bending.foreshortening == pytest.approx(1.0 / 15.0, rel=0.02)
+    assert bending.twist == 0.0
+
+
+def test_a_strip_whose_theory_has_no_equilibrium_does_not_blame_the_start() -> None:
+    """The Princeton beam at 13.3 N and 60 degrees: strain energy to second order has no bottom there."""
+    load = sf.BeamLoad((0.0, "F/2", "sqrt(3)*F/2"), at=1.0, axes="world")
+    counts = {"bend_y": 2, "bend_z": 2, "twist": 2, "family": "legendre", "retain": "all", "loads": (load,)}
+    strip = sf.Beam("strip", sf.Joint("root", "fixed"), 0.508, 0.1, 36.28, 2.429, 3.104, rhoJ=1e-6, **counts)
+    system = sf.System("strip", (strip,), gravity=(0, 0, 0), parameters=(sf.Parameter("F", 0.0),))
+    model = sf.compile(system, sf.Options(backend="interpreter"))
+    assert sf.equilibrium(model.with_parameters(F=6.0)).bendings[0].error < 0.06
+    with pytest.raises(sf.BeamTheoryError, match="theory of its beams may have none\n(.*\n)*.*'strip'"):
+        sf.equilibrium(model.with_parameters(F=13.345), iterations=20)
