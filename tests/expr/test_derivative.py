@@ -59,6 +59,18 @@ def test_derivatives_equal_central_differences(formula: str) -> None:
         np.testing.assert_allclose(value(row[k], points), measured, rtol=1e-8, atol=1e-8)
 
 
+@pytest.mark.parametrize("formula", ["min(x, y)", "max(x, y)"])
+def test_where_operands_are_equal_the_lesser_and_the_greater_have_the_mean_of_the_derivatives_beside(
+    formula: str,
+) -> None:
+    """Along (1, 1) both operands move alike, and so does the chosen one, whichever it is."""
+    g = Graph()
+    x, y = g.input("q", 0), g.input("q", 1)
+    (row,) = partials(g, [lower(parse(formula), g, {"x": x, "y": y})], [x, y])
+    values = evaluate_edges(Program("p", g, {}, ()), row, {"q": np.full((3, 2), 0.7)}, {})
+    assert [np.unique(value).tolist() for value in values] == [[0.5], [0.5]]
+
+
 def test_what_does_not_vary_has_no_derivative() -> None:
     g = Graph()
     x, y = g.input("q", 0), g.input("q", 1)

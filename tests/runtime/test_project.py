@@ -79,6 +79,19 @@ def test_newton_converges_to_second_order(name: str) -> None:
     assert after_one_step(1e-4) < 1e-2 * after_one_step(2e-3)
 
 
+@pytest.mark.parametrize("backend", ["c", "interpreter"])
+@pytest.mark.parametrize("name", ["delta", "rolling_disc"])
+def test_quaternions_are_of_unit_length_after_large_changes(name: str, backend: str) -> None:
+    """q + N dq is longer than q by the square of the turn, which a few hundredths of drift make visible."""
+    q, v = drifted(name, 0.05, 2)[2:]
+    on_q = model(name, backend).project(q, v)[0]
+    assert np.abs(on_q - q).max() > 1e-3
+    for segment in model(name).record.segments:
+        if segment.kind != "linear":
+            quaternion = on_q[:, segment.q + segment.translations : segment.q + segment.translations + 4]
+            assert np.abs(np.linalg.norm(quaternion, axis=1) - 1).max() < 1e-12
+
+
 @pytest.mark.parametrize("name", GUESSES)
 def test_c_is_its_twin(name: str) -> None:
     _, _, q, v = drifted(name, 1e-6, 3)

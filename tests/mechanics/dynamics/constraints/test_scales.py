@@ -130,3 +130,32 @@ def test_loops_close_to_the_digits_of_their_own_size(exponent: int) -> None:
         q1, q2, x = (closed[m.names.q.index(name)] for name in ("q1", "q2", "x"))
         assert q2 == pytest.approx(-2 * q1, abs=1e-9) and abs(q1 - 0.7) < 2e-3
         assert x == pytest.approx(2 * 10.0**exponent * np.cos(q1), rel=1e-9)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("far", [0.0, 1e4])
+def test_a_planar_loop_closed_in_space_keeps_its_freedom_whatever_its_axis(form: str, far: float) -> None:
+    """Bars about parallel oblique axes, near the origin or far away: one of three conditions repeats the others."""
+    n, e, away = (2 / 7, 3 / 7, 6 / 7), (0.6, -0.8, 0.0), (far, -far, far)
+    side = np.cross(n, e)
+    along = np.array(e) - np.dot(e, n) * np.array(n)
+    end = tuple((along + 0.3 * side).tolist())
+    solid = sf.Inertia(1.5, tuple(0.5 * x for x in end), (0.3, 0.4, 0.5))
+    frames = (sf.Frame("e", end),)
+    bodies = (
+        sf.RigidBody("a", sf.Joint("q1", "revolute", position=away, axis=n), solid, frames),
+        sf.RigidBody("b", sf.Joint("q2", "revolute", "a", "e", axis=n), solid, frames),
+        sf.RigidBody("c", sf.Joint("q3", "revolute", "b", "e", axis=n), solid, frames),
+        sf.RigidBody("d", sf.Joint("q4", "revolute", position=away, axis=n), solid, frames),
+    )
+    loop = sf.Closure("loop", ("d", "e"), ("c", "e"), ("x", "y", "z"))
+    m = sf.compile(sf.System("s", bodies, constraints=(loop,)), sf.Options(constraints=form))  # type: ignore[arg-type]
+    q = np.array([0.3, 1.2, -2.4, 0.3])
+    q = sf.assemble(m, q, held=("q1",)).q
+    a, lam, rank = m.constrained_dynamics(q, np.zeros(4), [])
+    assert rank == 2
+    M, h, Q = m.dynamics(q, np.zeros(4), [])
+    G = m.constraint_jacobian(q)
+    Z = np.linalg.svd(G)[2][2:].T
+    assert a == pytest.approx(Z @ np.linalg.solve(Z.T @ M @ Z, Z.T @ (Q - h)), rel=1e-9, abs=1e-9)
+    assert np.linalg.norm(lam) < 1e3
