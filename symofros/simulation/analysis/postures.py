@@ -74,7 +74,8 @@ class Violation(NamedTuple):
 
     Attributes:
         name: Name of the condition.
-        share: Its residual G v - b, relative to the largest sum of the sizes of its terms in the run.
+        share: Its residual G v - b, relative to the largest sum of the sizes of its terms in the run, beyond twice that
+            of the first state, which Baumgarte's gains may have been asked to mend.
         t: Instant [s].
     """
 
@@ -101,6 +102,7 @@ def worst_violation(model: Model, t: Array, states: tuple[Array, Array, Array], 
     shares = np.where(np.isnan(rate), 0.0, rate) / np.maximum(sizes, 1e-300)
     if not shares.size or not sizes.any():
         return None
+    shares = np.maximum(shares - 2.0 * shares[0], 0.0)
     worst = int(np.argmax(shares.max(axis=0)))
     share = float(shares[:, worst].max())
     return Violation(
