@@ -42,7 +42,8 @@ def simulate(
         t_end: End time [s].
         u: Inputs: an array (nu), a Signal of all, a mapping from input names to numbers, formulas (of coordinates,
             speeds, parameters and t, compiled to C) and Signals, or a function (t, q, v) -> (nu), called from the loop
-            and hence slow. Those not given are zero, but for the rates of a prescribed motion that is a formula of t.
+            and hence slow; after a run of fixed steps, but not in real time, it is called about a few states again.
+            Those not given are zero, but for the rates of a prescribed motion that is a formula of t.
         par: Run-time parameters (npar); the model's own by default.
         events: Name -> formula or Event.
         options: Options of stepping, stabilisation and recording; those of `SimulationOptions()` by default.

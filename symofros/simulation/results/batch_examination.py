@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -66,19 +68,30 @@ class BatchExamination:
         return ""
 
     def _stepper(self, i: int) -> Stepper:
-        """A single run in the place of run i, at its first state."""
+        """A single run in the place of run i."""
+        alike = len(self.initial.par) == len(self.initial.inputs.constant) == 1 and not any(self.initial.inputs.strides)
+        return self._first if alike else self._single(i)
+
+    @cached_property
+    def _first(self) -> Stepper:
+        return self._single(0)
+
+    def _single(self, i: int) -> Stepper:
         inputs = self.initial.inputs
         signals = [
             (index, t, values[i] if stride else values, linear)
             for (index, t, values, linear), stride in zip(inputs.plan.signals, inputs.strides, strict=True)
         ]
         plan = replace(inputs.plan, constant=_row(inputs.constant, i), signals=signals)
-        stepper = Stepper(
-            self.model.with_precision("double"), self.settings.method, plan, (), _row(self.initial.par, i)
-        )
+        model, par = self.model.with_precision("double"), _row(self.initial.par, i)
+        stepper = Stepper(model, self.settings.method, plan, (), par)
         self.settings.apply(stepper)
         stepper.start(_row(self.initial.q, i), _row(self.initial.v, i), max(1, len(self.settings.grid)))
         return stepper
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the stepper, whose memory is that of C."""
+        return {name: value for name, value in vars(self).items() if name != "_first"}
 
 
 def _row(rows: Array, i: int) -> Array:
