@@ -74,7 +74,7 @@ class Violation(NamedTuple):
 
     Attributes:
         name: Name of the condition.
-        share: Its residual G v - b, relative to the largest sum of the sizes of its terms in the run, beyond twice that
+        share: Residual G v - b, relative to the largest coefficient times the largest speed in the run, beyond twice that
             of the first state, which Baumgarte's gains may have been asked to mend.
         t: Instant [s].
     """
@@ -98,7 +98,8 @@ def worst_violation(model: Model, t: Array, states: tuple[Array, Array, Array], 
     model = model.with_precision("double")
     rate = np.abs(model.constraint_rate(q, v, u=u, par=par, t=t[chosen]))
     G = model.constraint_jacobian(q, u=u, par=par, t=t[chosen])
-    sizes = np.nan_to_num(np.abs(G) * np.abs(v)[:, None, :]).sum(axis=-1).max(axis=0, initial=0.0)
+    # Not of the terms themselves: where nothing moves that a condition binds, these are rounding.
+    sizes = np.nan_to_num(np.abs(G)).max(axis=(0, 2), initial=0.0) * np.nan_to_num(np.abs(v)).max(initial=0.0)
     shares = np.where(np.isnan(rate), 0.0, rate) / np.maximum(sizes, 1e-300)
     if not shares.size or not sizes.any():
         return None

@@ -128,7 +128,7 @@ def diagnose(
         return Outcome(
             "constraints lost",
             broken.t,
-            f"from here on '{broken.name}' is not kept: G v - b is {broken.share:.3g} of the sizes of its terms",
+            f"from here on '{broken.name}' is not kept: G v - b is {broken.share:.3g} of coefficient times speed",
             "stabilisation='projection'; a smaller step; look for a posture in which the constraints are singular",
             notes,
         )
