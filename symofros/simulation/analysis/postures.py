@@ -74,7 +74,7 @@ class Violation(NamedTuple):
 
     Attributes:
         name: Name of the condition.
-        share: Residual G v - b, relative to the largest coefficient times the largest speed in the run, beyond twice that
+        share: Residual G v - b over the largest coefficient times the largest speed in the run, beyond twice that
             of the first state, which Baumgarte's gains may have been asked to mend.
         t: Instant [s].
     """
