@@ -31,6 +31,6 @@ def test_a_diagram_ends_where_a_beam_bends_beyond_its_theory() -> None:
 
 def test_a_diagram_notes_the_largest_bending_at_its_parameters() -> None:
     stiff = simulation(0.5)
-    first, second = stiff.run(2.0).outcome.notes
+    first, second = (note for note in stiff.run(2.0).outcome.notes if "second-order theory" in note)
     assert "'first.blade'" in first and "'second.blade'" in second and "x = 0.875 m" in first
     assert not stiff.run(1.0, parameters={"plant.L": 0.5}).outcome.notes
