@@ -100,7 +100,9 @@ def worst_violation(model: Model, t: Array, states: tuple[Array, Array, Array], 
     G = model.constraint_jacobian(q, u=u, par=par, t=t[chosen])
     # Not of the terms themselves: where nothing moves that a condition binds, these are rounding.
     sizes = np.nan_to_num(np.abs(G)).max(axis=(0, 2), initial=0.0) * np.nan_to_num(np.abs(v)).max(initial=0.0)
-    shares = np.where(np.isnan(rate), 0.0, rate) / np.maximum(sizes, 1e-300)
+    # Where a row is all but zero in every posture met, its terms are rounding of the other rows' terms.
+    rounding = 1e-12 * float(sizes.max(initial=0.0))
+    shares = np.where(np.isnan(rate), 0.0, rate) / np.maximum(sizes, max(rounding, 1e-300))
     if not shares.size or not sizes.any():
         return None
     shares = np.maximum(shares - 2.0 * shares[0], 0.0)
