@@ -15,11 +15,12 @@ _WORK_MACRO = re.compile(r"^#define (SYM_\w+_WORK)\(([\w, ]+)\) (.+)$", re.MULTI
 ROUTINES: dict[str, tuple[str, ...]] = {
     "dense": ("dense",),
     "row_sizes": ("dense", "row_sizes"),
-    "null_space": ("dense", "row_sizes", "null_space"),
-    "kkt": ("dense", "row_sizes", "null_space", "kkt"),
-    "constrained": ("dense", "row_sizes", "null_space", "kkt", "constrained"),
-    "project": ("dense", "row_sizes", "null_space", "kkt", "constrained", "project"),
-    "differentiate": ("dense", "row_sizes", "null_space", "kkt", "differentiate"),
+    "null_space_factors": ("dense", "row_sizes", "null_space_factors"),
+    "null_space": ("dense", "row_sizes", "null_space_factors", "null_space"),
+    "kkt": ("dense", "row_sizes", "null_space_factors", "kkt"),
+    "constrained": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained"),
+    "project": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "project"),
+    "differentiate": ("dense", "row_sizes", "null_space_factors", "kkt", "differentiate"),
 }
 
 
