@@ -44,7 +44,7 @@ class OutputArray:
     source: str
 
     def sizes(self, known: Mapping[str, int]) -> tuple[int, ...]:
-        """Shape in numbers, from the sizes nq, nv, nu, nc, npar, nw and npi."""
+        """Shape in numbers, from the sizes nq, nv, nu, nc, npar, nw, nj, ns and npi."""
         return tuple(size_of(text, known) for text in self.shape)
 
 
@@ -178,6 +178,20 @@ _ROWS = (
         "on_second (nw, 6) = wrenches_on_second; on_first (nw, 6) = wrenches_on_first",
         "constraints",
         "force and moment of each constraint on the frames that it joins",
+    ),
+    _row(
+        "joint_wrenches",
+        "q v a u lam t",
+        "wrench (nj, 6) = joint_wrenches",
+        "dynamics",
+        "force and moment that each joint transmits to its body",
+    ),
+    _row(
+        "prescribed_efforts",
+        "q v a u lam t",
+        "effort (ns) = prescribed_efforts",
+        "dynamics",
+        "efforts of the drives of prescribed motions",
     ),
     _row(
         "constraint_rate_derivative",

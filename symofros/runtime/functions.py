@@ -27,7 +27,7 @@ _KEPT_BYTES = 1 << 16
 
 @dataclass(frozen=True)
 class Names:
-    """Names of coordinates, speeds, inputs, run-time parameters, frames and constraints, in order."""
+    """Names of coordinates, speeds, inputs, run-time parameters, frames, constraints, joints, prescribed speeds."""
 
     q: tuple[str, ...]
     v: tuple[str, ...]
@@ -35,6 +35,8 @@ class Names:
     par: tuple[str, ...]
     frames: tuple[str, ...]
     constraints: tuple[str, ...]
+    joints: tuple[str, ...]
+    prescribed: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,8 @@ class Functions:
             record.par_names,
             record.frame_names,
             record.constraint_names,
+            record.joint_names,
+            record.prescribed_names,
         )
 
     def __repr__(self) -> str:

@@ -76,6 +76,8 @@ class ModelRecord:
         constraint_names: One a condition: the constraint's name, and which of its conditions.
         speed_conditions: Names of the conditions that bind speeds only.
         wrench_names: Constraints that act on bodies by a wrench: all but conditions by formula.
+        joint_names: Joints that transmit wrenches, and tips of beams: one a link.
+        prescribed_names: Speeds of prescribed motions.
         closures: Closures of frames, for checks of their rotations.
         driven: Inputs that prescribe motion, the last of u.
         measures: Measures of the rows and columns of the constraint Jacobian.
@@ -99,6 +101,8 @@ class ModelRecord:
     constraint_names: tuple[str, ...] = ()
     speed_conditions: tuple[str, ...] = ()
     wrench_names: tuple[str, ...] = ()
+    joint_names: tuple[str, ...] = ()
+    prescribed_names: tuple[str, ...] = ()
     closures: tuple[ClosureRecord, ...] = ()
     driven: int = 0
     measures: Measures = Measures()

@@ -60,6 +60,11 @@ class SymofrosEngine:
         """M a + h - Q(q, v, 0), with the model's own Q."""
         return self.model.inverse_dynamics(states.q, states.v, states.a, u=states.u)
 
+    def joint_wrenches(self, states: States) -> Array:
+        """Wrenches of the joints; where loops are closed, those of the tree cut open."""
+        lam = np.zeros(self.model.nc)
+        return self.model.joint_wrenches(states.q, states.v, states.a, states.u, lam)
+
     def forward_dynamics(self, states: States) -> Array:
         """M^-1 (Q - h), with the model's own Q."""
         return self.model.forward_dynamics(states.q, states.v, states.u)

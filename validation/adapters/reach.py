@@ -50,6 +50,12 @@ def offered(engine: type, system: sf.System) -> frozenset[str]:
     return offered_by(engine) - ({"potential_energy"} if stores_energy(system) else set())
 
 
+def bears_its_weight_alone(system: sf.System) -> bool:
+    """Whether no force acts on bodies but their weight, so that joints carry what an engine knows of."""
+    loads = any(body.loads for body in system.bodies)
+    return not loads and not system.connections
+
+
 def stores_energy(system: sf.System) -> bool:
     """Whether anything but the weight has potential energy."""
     joints = [body.joint for body in system.bodies if body.joint is not None]

@@ -68,6 +68,7 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity("kinetic_energy", "T", "J", ROUNDING, 0, "none", "T, V"),
         Quantity("potential_energy", "V", "J", ROUNDING, 0, "energy", "T, V"),
         Quantity("inverse_dynamics", "M a + h - Q", "N m, N", ROUNDING, 1, "inertia_force", "inverse"),
+        Quantity("joint_wrenches", "f, n", "N, N m", ROUNDING, 2, "inertia_force", column="wrenches"),
         Quantity("forward_dynamics", "dv/dt", "rad/s², m/s²", SOLVE, 1, column="forward"),
         Quantity("frame_pose", "p, R", "m, 1", ROUNDING, 1, column="poses"),
         Quantity("frame_velocity", "v, w", "m/s, rad/s", ROUNDING, 1, column="twists"),

@@ -110,7 +110,7 @@ class _Harness:
     def _inputs(self, states: States, model: sf.Model) -> dict[str, Array]:
         par = np.array([list(model.parameters.values())]).reshape(1, -1)
         groups = {"q": states.q, "v": states.v, "a": states.a, "u": states.u, "par": par}
-        groups["t"] = np.zeros((len(states), 1))
+        groups |= {"t": np.zeros((len(states), 1)), "lam": np.zeros((len(states), model.nc))}
         init = evaluate_edges(self.program, self.program.init, groups, {}) if self.program.init else []
         pre = np.array([float(np.asarray(x).ravel()[0]) for x in init])
         return {**groups, "pre": np.broadcast_to(pre, (len(states), len(init)))}

@@ -13,11 +13,12 @@ from symofros.expr.graph import Graph
 from symofros.expr.packs.pack import EMPTY
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.applied.forces import generalized_forces, stored_energy
+from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, base_to_tip
+from symofros.mechanics.dynamics.applied.forces import applied_wrenches, generalized_forces, stored_energy
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia, inertia_inputs, link_inertias
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor, rotors_of
 from symofros.mechanics.dynamics.constraints.rows import Constraints, Row
-from symofros.mechanics.dynamics.constraints.wrenches import closure_wrenches
+from symofros.mechanics.dynamics.constraints.wrenches import closure_wrenches, wrenches_on_links
 from symofros.mechanics.dynamics.derivatives import by_configuration, by_inputs
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
 from symofros.mechanics.dynamics.forward.articulated import articulated_acceleration, is_local
@@ -25,6 +26,7 @@ from symofros.mechanics.dynamics.forward.factors import Factors, SingularMassMat
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import Matrix, mass_matrix
 from symofros.mechanics.dynamics.momentum import coadjoint, momentum_rate
+from symofros.mechanics.dynamics.reactions import in_body_frames, prescribed_efforts, transmitted_wrenches
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics, tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree
@@ -218,6 +220,27 @@ class Equations:
     def wrenches_on_first(self) -> Matrix:
         """Force and moment of each constraint on its first frame (nw x 6)."""
         return self._wrenches[1]
+
+    @cached_property
+    def _motions(self) -> list[LinkMotion]:
+        return base_to_tip(self.kinematics, self.v_rate, self.gravity)
+
+    @cached_property
+    def _transmitted(self) -> list[Wrench]:
+        acting, _ = applied_wrenches(self.kinematics, self.frames)
+        by_constraints = wrenches_on_links(self.kinematics, self.frames, self.constraints)
+        lists = [by_constraints] if acting is None else [acting, by_constraints]
+        return transmitted_wrenches(self.kinematics, self.rotors, self._motions, self.v_rate, lists)
+
+    @property
+    def joint_wrenches(self) -> Matrix:
+        """Wrench that each joint transmits to its body (nj x 6)."""
+        return in_body_frames(self.kinematics, self._transmitted)
+
+    @property
+    def prescribed_efforts(self) -> list[Edge]:
+        """Effort of the drive of each prescribed speed (ns)."""
+        return prescribed_efforts(self.kinematics, self.rotors, self._motions, self.v_rate, self._transmitted)
 
     @cached_property
     def inverse_dynamics(self) -> list[Edge]:

@@ -16,6 +16,7 @@ from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
+from symofros.mechanics.topology.tree import prescribed_speeds
 
 
 class Request(NamedTuple):
@@ -82,6 +83,8 @@ def _sizes(e: Equations) -> dict[str, int]:
         "nc": sum(len(constraint.conditions) for constraint in constraints),
         "npar": len(names.par),
         "nw": len(acts_on_bodies(constraints)),
+        "nj": len(e.tree.links),
+        "ns": len(prescribed_speeds(e.tree)),
         "npi": 10 * len(e.tree.links),
     }
 

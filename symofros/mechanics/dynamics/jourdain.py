@@ -6,7 +6,7 @@ joint is accumulated once and projected on the joint's partial velocities (docs/
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3
@@ -14,6 +14,7 @@ from symofros.mechanics.dynamics.acceleration import LinkMotion, Wrench, base_to
 from symofros.mechanics.dynamics.bodies.beams import beam_forces
 from symofros.mechanics.dynamics.bodies.inertia import LinkInertia
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
+from symofros.mechanics.kinematics.joint import PartialVelocity
 from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.topology.tree import BASE
 
@@ -70,18 +71,26 @@ def link_wrenches(
             wrenches[beam.root] = wrenches[beam.root] + deformation
             total[tip.first_speed : tip.first_speed + len(modal)] = modal
     for rotor in rotors:
-        rate = rotor.rate(kinematics, v_rate)
-        spin_rate = g.mul(rotor.ratio, rate)
+        spin_rate = g.mul(rotor.ratio, rotor.rate(kinematics, v_rate))
         if rotor.carrier != BASE:
             state = motions[rotor.carrier]
             n = rotor.axis.scaled(g.mul(rotor.inertia, spin_rate))
             n = n + state.w_WL_L.cross(rotor.axis).scaled(g.mul(rotor.inertia, rotor.spin(kinematics)))
             wrenches[rotor.carrier] = wrenches[rotor.carrier] + Wrench(Vec3(g), n)
-            spin_rate = g.add(spin_rate, state.alpha_WL_L.dot(rotor.axis))
         if rotor.k is not None:
-            reaction = g.mul(g.mul(rotor.ratio, rotor.inertia), spin_rate)
-            total[rotor.k] = g.add(total[rotor.k], reaction)
+            total[rotor.k] = g.add(total[rotor.k], spin_effort(kinematics, rotor, motions, v_rate))
     return wrenches, total
+
+
+def spin_effort(
+    kinematics: TreeKinematics, rotor: MovingRotor, motions: Sequence[LinkMotion], v_rate: Sequence[Edge]
+) -> Edge:
+    """What the spin of a rotor takes from the speed that drives it (eq. 37)."""
+    g = kinematics.g
+    rate = g.mul(rotor.ratio, rotor.rate(kinematics, v_rate))
+    if rotor.carrier != BASE:
+        rate = g.add(rate, motions[rotor.carrier].alpha_WL_L.dot(rotor.axis))
+    return g.mul(g.mul(rotor.ratio, rotor.inertia), rate)
 
 
 def virtual_power(kinematics: TreeKinematics, wrenches: Sequence[Wrench]) -> list[Edge]:
@@ -94,16 +103,32 @@ def virtual_power(kinematics: TreeKinematics, wrenches: Sequence[Wrench]) -> lis
     Returns:
         One edge a speed.
     """
-    g = kinematics.g
-    subtree_wrench = list(wrenches)
     total: list[Edge] = [ZERO] * kinematics.nv
+    for i, wrench in subtree_wrenches(kinematics, wrenches):
+        link = kinematics.links[i]
+        for k, partial in enumerate(link.free_partial_velocities):
+            total[link.first_speed + k] = power(partial, wrench)
+    return total
+
+
+def power(partial: PartialVelocity, wrench: Wrench) -> Edge:
+    """Virtual power of a wrench on a link per unit of one speed of its joint (eq. 5)."""
+    return partial.w.g.add(partial.w.dot(wrench.n), partial.v.dot(wrench.f))
+
+
+def subtree_wrenches(kinematics: TreeKinematics, wrenches: Sequence[Wrench]) -> Iterator[tuple[int, Wrench]]:
+    """Each link's index with the wrench on it and all beyond it, about its origin, tip to base (eq. 11).
+
+    Args:
+        kinematics: Kinematics of the tree.
+        wrenches: One wrench a link, about its origin, in its frame.
+    """
+    subtree_wrench = list(wrenches)
     for i, link in reversed(list(enumerate(kinematics.links))):
         f_Lo_L = subtree_wrench[i].f.named(f"f_Lo_L[{link.name}]")
         n_Lo_L = subtree_wrench[i].n.named(f"n_Lo_L[{link.name}]")
-        for k, partial in enumerate(link.free_partial_velocities):
-            total[link.first_speed + k] = g.add(partial.w.dot(n_Lo_L), partial.v.dot(f_Lo_L))
+        yield i, Wrench(f_Lo_L, n_Lo_L)
         if link.parent != BASE:
             f_Lo_A = link.R_AL.apply(f_Lo_L)
             about_Ao = Wrench(f_Lo_A, link.R_AL.apply(n_Lo_L) + link.p_AL.cross(f_Lo_A))
             subtree_wrench[link.parent] = subtree_wrench[link.parent] + about_Ao
-    return total

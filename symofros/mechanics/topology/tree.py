@@ -9,7 +9,7 @@ from symofros.description.beam import Beam
 from symofros.description.joint import WORLD, Joint
 from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.description.values import IDENTITY, Rotation, Vector
-from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates
+from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates, speed_names
 
 BASE = -1
 
@@ -102,6 +102,16 @@ class SpanningTree:
             if name in (frame.name, frame.qualified):
                 return frame
         raise KeyError(name)
+
+
+def joint_names(tree: SpanningTree) -> tuple[str, ...]:
+    """Name of each link's joint; of what a beam carries, that of the beam's tip."""
+    return tuple(link.joint.name if link.tip_of is None else link.name for link in tree.links)
+
+
+def prescribed_speeds(tree: SpanningTree) -> tuple[str, ...]:
+    """Names of the speeds of prescribed motions, in order."""
+    return tuple(name for link in tree.links if link.joint.prescribed for name in speed_names(link.joint))
 
 
 def frame_of(tree: SpanningTree, body: str, frame: str | None = None) -> NamedFrame:

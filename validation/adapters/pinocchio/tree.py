@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from validation.adapters.reach import armature, offered, unrepresented
+from validation.adapters.reach import armature, bears_its_weight_alone, offered, unrepresented
 from validation.contract.conventions import Chart
 from validation.contract.interface import States, Subject, Unsupported
 from validation.contract.quantities import TREE_QUANTITIES
@@ -76,6 +76,17 @@ class PinocchioEngine:
         """Newton-Euler."""
         forces = self._each(states, lambda data, q, v, a, f: pin.rnea(self.model, data, q, v, a))
         return self.chart.our_forces(states.q, forces) - states.passive
+
+    def joint_wrenches(self, states: States) -> Array:
+        """`data.f` after Newton-Euler; of a joint that is a series of simple ones, that of the last."""
+        movers = [slot.mover for slot in self.chart.slots]
+        last = [i for i, mover in enumerate(movers[1:], start=1) if not mover.continues] + [len(movers)]
+
+        def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
+            pin.rnea(self.model, data, q, v, a)
+            return [data.f[i].vector for i in last]
+
+        return self._each(states, result)
 
     def forward_dynamics(self, states: States) -> Array:
         """Articulated bodies: no mass matrix is formed, so this is a second algorithm, not a second solve."""
@@ -154,6 +165,8 @@ def build(subject: Subject) -> PinocchioEngine | Unsupported:
     # Pinocchio 4.1 counts an armature in the energy of some joints (prismatic, free) and not of others (revolute about
     # a general axis), while its M counts all: with armatures, its kinetic energy is not one to compare with.
     silent = {"kinetic_energy"} if np.any(model.armature) else set()
+    if not bears_its_weight_alone(subject.system):
+        silent.add("joint_wrenches")
     return PinocchioEngine(NAME, model, chart, frames, offered(PinocchioEngine, subject.system) - silent)
 
 

@@ -8,7 +8,7 @@ from symofros.base.manifold import ManifoldKind
 from symofros.expr.derivative import along
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.quaternion import Quaternion
-from symofros.mechanics.dynamics.acceleration import no_wrench
+from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench
 from symofros.mechanics.dynamics.applied.beam_loads import beam_loads
 from symofros.mechanics.dynamics.applied.elements import element_energy, element_force
 from symofros.mechanics.dynamics.applied.loads import connection_energy, wrenches
@@ -42,17 +42,34 @@ def generalized_forces(kinematics: TreeKinematics, frames: FrameKinematics) -> l
         total = [
             g.sub(force, slope) for force, slope in zip(total, _gradient(kinematics, g.sum(potentials)), strict=True)
         ]
-    acting = wrenches(kinematics, frames)
-    for beam in kinematics.beams:
-        if beam.forms.beam.loads:
-            wrench, modal = beam_loads(kinematics, frames, beam)
-            acting = acting or [no_wrench(g) for _ in kinematics.links]
-            acting[beam.root] = acting[beam.root] + wrench
-            _add_modal(kinematics, beam, total, modal)
+    acting, modal = applied_wrenches(kinematics, frames)
+    for beam, forces in zip(kinematics.beams, modal, strict=True):
+        _add_modal(kinematics, beam, total, forces)
         _add_modal(kinematics, beam, total, elastic_forces(kinematics, beam))
     if acting is not None:
         total = [g.add(a, b) for a, b in zip(total, virtual_power(kinematics, acting), strict=True)]
     return total
+
+
+def applied_wrenches(
+    kinematics: TreeKinematics, frames: FrameKinematics
+) -> tuple[list[Wrench] | None, list[list[Edge]]]:
+    """Wrench of loads and connections on each link, and what loads do to elastic coordinates.
+
+    Returns:
+        One wrench a link, of a beam on its root, or None if nothing acts; and forces on the elastic coordinates of each
+        beam, none without loads along it.
+    """
+    acting = wrenches(kinematics, frames)
+    modal: list[list[Edge]] = []
+    for beam in kinematics.beams:
+        forces: list[Edge] = []
+        if beam.forms.beam.loads:
+            wrench, forces = beam_loads(kinematics, frames, beam)
+            acting = acting or [no_wrench(kinematics.g) for _ in kinematics.links]
+            acting[beam.root] = acting[beam.root] + wrench
+        modal.append(forces)
+    return acting, modal
 
 
 def _add_modal(kinematics: TreeKinematics, beam: MovingBeam, total: list[Edge], forces: list[Edge]) -> None:
@@ -119,6 +136,16 @@ def rates_per_speed(kinematics: TreeKinematics) -> list[dict[Edge, Edge]]:
         _RATES[link.joint.traits.manifold](kinematics.lowering, coordinate_names(link.joint), k)
         for link in kinematics.tree.links
         for k in range(link.v[1])
+    ]
+
+
+def prescribed_rates_per_speed(kinematics: TreeKinematics) -> list[dict[Edge, Edge]]:
+    """For each speed of a prescribed motion, the rates of its coordinates per unit of it."""
+    return [
+        _RATES[link.joint.traits.manifold](kinematics.lowering, coordinate_names(link.joint), k)
+        for link in kinematics.tree.links
+        if link.joint.prescribed
+        for k in range(len(speed_symbols(link.joint)))
     ]
 
 

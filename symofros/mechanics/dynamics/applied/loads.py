@@ -31,7 +31,7 @@ def wrenches(kinematics: TreeKinematics, frames: FrameKinematics) -> list[Wrench
         for anchor, pull in ((connection.first, force), (connection.second, -force)):
             frame = frame_of(kinematics.tree, *anchor)
             if frame.link != BASE:
-                total[frame.link] = total[frame.link] + _at_frame(kinematics, frames, frame, pull, Vec3(kinematics.g))
+                total[frame.link] = total[frame.link] + at_frame(kinematics, frames, frame, pull, Vec3(kinematics.g))
     return total if acting else None
 
 
@@ -51,15 +51,15 @@ def _load(
     elif load.at != "body":
         frame = kinematics.tree.frame(f"{body.name}.{load.at}")
     if load.axes == "world":
-        return _at_frame(kinematics, frames, frame, force, torque)
+        return at_frame(kinematics, frames, frame, force, torque)
     R_LF, _ = kinematics.lowering.placement(frame.placement, kinematics.in_link(frame.link))
     return _in_link(kinematics, frame, R_LF.times(force), R_LF.times(torque))
 
 
-def _at_frame(
+def at_frame(
     kinematics: TreeKinematics, frames: FrameKinematics, frame: NamedFrame, force: Vec3, torque: Vec3
 ) -> Wrench:
-    """The wrench of a force and torque in world axes."""
+    """The wrench about Lo of a force at a frame's origin and a torque, both in world axes; in link axes."""
     R_WL: Mat3 = frames.link_pose(frame.link).R_WF
     return _in_link(kinematics, frame, R_WL.T.times(force), R_WL.T.times(torque))
 

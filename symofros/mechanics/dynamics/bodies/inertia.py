@@ -111,7 +111,7 @@ def link_inertias(kinematics: TreeKinematics, regrouped: bool = True) -> tuple[l
     Returns:
         One inertia a link, and the base's share: it never moves, but its weight counts in the energy.
     """
-    kept = {i: _stated(kinematics, i) for i in range(len(kinematics.links))}
+    kept = dict(enumerate(stated_inertias(kinematics)))
     kept[BASE] = no_inertia(kinematics.g)
     for i, link in reversed(list(enumerate(kinematics.links))):
         kept[i], share = _split(link, kept[i]) if regrouped else _if_clamped(link, kept[i])
@@ -132,6 +132,11 @@ def inertia_inputs(kinematics: TreeKinematics) -> list[LinkInertia]:
         S, J = Vec3(g, sx, sy, sz), Sym3(g, xx, yy, zz, xy, xz, yz)
         inertias.append(LinkInertia(m, link.R_LB.times(S), _rotated(link.R_LB, J)))
     return inertias
+
+
+def stated_inertias(kinematics: TreeKinematics) -> list[LinkInertia]:
+    """Inertia of each link by itself, where the description puts it: what joints really carry."""
+    return [_stated(kinematics, i) for i in range(len(kinematics.links))]
 
 
 def _stated(kinematics: TreeKinematics, index: int) -> LinkInertia:

@@ -8,9 +8,12 @@ from symofros.description.constraints import Closure, Constraint, Nonholonomic, 
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
+from symofros.mechanics.dynamics.acceleration import Wrench, no_wrench
+from symofros.mechanics.dynamics.applied.loads import at_frame
 from symofros.mechanics.dynamics.constraints.rows import Row
 from symofros.mechanics.kinematics.frames import FrameKinematics
-from symofros.mechanics.topology.tree import frame_of
+from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.topology.tree import BASE, frame_of
 
 # Force and moment about a frame's origin, in world axes (6).
 FrameWrench = tuple[Edge, ...]
@@ -46,6 +49,31 @@ def closure_wrenches(frames: FrameKinematics, rows: Sequence[Row]) -> tuple[list
             on_first.append(_on_ground(g, _sum(g, own, second.qualified), frames.pose(second).p_WF))
         on_second.append(_sum(g, own, second.qualified))
     return on_second, on_first
+
+
+def wrenches_on_links(kinematics: TreeKinematics, frames: FrameKinematics, rows: Sequence[Row]) -> list[Wrench]:
+    """The wrench of all constraints on each link, about its origin, in its frame.
+
+    Args:
+        kinematics: Kinematics of the tree.
+        frames: Kinematics of the frames that constraints join.
+        rows: Rows of all constraints, in order.
+    """
+    tree, g = kinematics.tree, kinematics.g
+    total = [no_wrench(g) for _ in kinematics.links]
+    acting = [item for item in tree.system.constraints if not isinstance(item, Nonholonomic)]
+    for constraint, *sides in zip(acting, *closure_wrenches(frames, rows), strict=True):
+        # The first side of what binds a single body is the ground.
+        if isinstance(constraint, Closure | Rod):
+            anchors = [constraint.second, constraint.first]
+        else:
+            anchors = [constraint.anchor]
+        for anchor, (fx, fy, fz, nx, ny, nz) in zip(anchors, sides, strict=False):
+            frame = frame_of(tree, *anchor)
+            if frame.link != BASE:
+                wrench = at_frame(kinematics, frames, frame, Vec3(g, fx, fy, fz), Vec3(g, nx, ny, nz))
+                total[frame.link] = total[frame.link] + wrench
+    return total
 
 
 def _sum(g: Graph, own: Sequence[tuple[Edge, Row]], frame: str) -> FrameWrench:

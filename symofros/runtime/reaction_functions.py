@@ -1,0 +1,84 @@
+"""Reactions of a model: wrenches that joints transmit, efforts of prescribed motions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from symofros.errors import Problem, ShapeError
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.functions import ArrayLike, Functions
+
+
+class ReactionFunctions(Functions):
+    """Methods of a model that tell of the reactions in a motion; arguments as in `Model`."""
+
+    def joint_wrenches(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        u: ArrayLike,
+        lam: ArrayLike | None = None,
+        *,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+    ) -> Array:
+        """What each joint transmits from its parent to its body (..., joints, 6) [N, N m].
+
+        The force f_Bo_B, then the moment n_Bo_B about the origin of the body frame B, both along its axes, in the order
+        of `names.joints`: constraint forces of the joint, its springs, dampers, friction and actuators together. They
+        are what the motion takes beyond the weight and all other loads (docs/theory/rigid.md, section 11). Of an
+        elastic beam "BEAM.tip" is what its tip transmits to what it carries, in the frame of the tip. Bodies on fixed
+        joints are parts of the body that carries them.
+
+        Args:
+            q: Configuration (..., nq).
+            v: Speeds (..., nv).
+            a: Rates of the speeds (..., nv): with `forward_dynamics`, the wrenches of the motion under u.
+            u: Inputs (..., nu): loads may depend on them; efforts of actuators count through a alone.
+            lam: Multipliers (..., nc), from `forward_dynamics` or `sf.actuator_efforts`; needed where loops are closed.
+            par: Run-time parameters.
+            t: Time.
+        """
+        return self._reactions("joint_wrenches", q, v, a, u, lam, par, t)
+
+    def prescribed_efforts(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        u: ArrayLike,
+        lam: ArrayLike | None = None,
+        *,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+    ) -> Array:
+        """Efforts of the drives of prescribed motions (..., speeds) [N m or N], in the order of `names.prescribed`.
+
+        Arguments as of `joint_wrenches`. A drive's power is its effort times its speed; its effort counts what its
+        rotors and its armature take (docs/theory/rigid.md, (49)).
+        """
+        return self._reactions("prescribed_efforts", q, v, a, u, lam, par, t)
+
+    def _reactions(
+        self,
+        name: str,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        u: ArrayLike,
+        lam: ArrayLike | None,
+        par: ArrayLike | None,
+        t: ArrayLike,
+    ) -> Array:
+        if lam is None and self.nc:
+            raise ShapeError(
+                Problem(
+                    f"{name} of model '{self.record.name}': no lam",
+                    f"{self.nc} constraints, whose forces joints carry too",
+                    "(..., nc) multipliers",
+                    "give those of forward_dynamics(..., multipliers=True) or of sf.actuator_efforts",
+                )
+            )
+        given = {"q": q, "v": v, "a": a, "u": u, "lam": np.zeros(0) if lam is None else lam, "t": t}
+        return self._one(name, given, par)

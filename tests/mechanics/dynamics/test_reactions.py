@@ -1,0 +1,265 @@
+"""Wrenches of joints and efforts of drives against Newton and Euler's equations, power balances and closed forms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+from validation.mechanics.assembly import Mover, assemble
+
+G = 9.81
+# A sum over bodies of some hundred products, relative to the largest entry.
+ROUNDING = 1e-12
+FUNCTIONS = ("joint_wrenches", "prescribed_efforts", "closure_wrenches")
+
+
+@cache
+def model(name: str) -> sf.Model:
+    return sf.compile(MODELS[name], sf.Options(backend="interpreter"))
+
+
+def weight_and_inertia(
+    m: sf.Model, mover: Mover, gravity: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray
+) -> np.ndarray:
+    """Rate of a body's momentum less its weight, about the world's origin: Newton and Euler in world axes (6)."""
+    mass = mover.merged()
+    p, R = m.frame_pose(mover.body, q)
+    alpha, w = m.frame_acceleration(mover.body, q, v, a)[3:], m.frame_velocity(mover.body, q, v)[3:]
+    r, J = R @ mass.p_BC, R @ mass.J_BC @ R.T
+    a_cm = m.frame_acceleration(mover.body, q, v, a)[:3] + np.cross(alpha, r) + np.cross(w, np.cross(w, r))
+    force = mass.mass * (a_cm - gravity)
+    return np.concatenate([force, np.cross(p + r, force) + J @ alpha + np.cross(w, J @ w)])
+
+
+def in_world(m: sf.Model, frame: str, q: np.ndarray, wrench: np.ndarray, *, turned: bool) -> np.ndarray:
+    """A wrench at a frame about the world's origin, in world axes; `turned`: it is along the frame's axes."""
+    p, R = m.frame_pose(frame, q)
+    force, moment = (R @ wrench[:3], R @ wrench[3:]) if turned else (wrench[:3], wrench[3:])
+    return np.concatenate([force, moment + np.cross(p, force)])
+
+
+@pytest.mark.parametrize("name", ["joint_zoo", "random_tree1", "four_bar", "slider_crank", "bricard", "delta"])
+def test_wrenches_on_each_body_balance_its_momentum(name: str) -> None:
+    """For any accelerations and multipliers: those of its joint, of the joints it carries, and of constraints."""
+    m, system, assembly = model(name), MODELS[name], assemble(MODELS[name])
+    rng = np.random.default_rng(0)
+    q, v = m.random_state(rng)
+    a, lam = rng.normal(size=m.nv), rng.normal(size=m.nc)
+    total: dict[int, np.ndarray] = {i: np.zeros(6) for i in range(-1, len(assembly.movers))}
+    wrenches = dict(zip(m.names.joints, m.joint_wrenches(q, v, a, np.zeros(m.nu), lam), strict=True))
+    scale = max(1.0, max(np.abs(wrench).max() for wrench in wrenches.values()))
+    last = [
+        i for i in range(len(assembly.movers)) if i + 1 == len(assembly.movers) or not assembly.movers[i + 1].continues
+    ]
+    carrier = {}
+    for i in last:
+        mover, first = assembly.movers[i], i
+        while assembly.movers[first].continues:
+            first -= 1
+        carrier[i] = assembly.movers[first].parent
+        wrench = in_world(m, mover.body, q, wrenches[mover.joint.name], turned=True)
+        total[i] += wrench - weight_and_inertia(m, mover, assembly.gravity, q, v, a)
+        total[carrier[i]] -= wrench
+    for constraint in system.constraints:
+        assert isinstance(constraint, sf.Closure | sf.Rod)
+        for side, (body, frame) in (("first", constraint.first), ("second", constraint.second)):
+            at = body if frame is None else f"{body}.{frame}"
+            site = assembly.frames.get(at) or assembly.frames[str(frame)]
+            wrench = m.closure_wrench(constraint.name, q, lam, on=side)  # type: ignore[arg-type]
+            total[site.mover] += in_world(m, at, q, wrench, turned=False)
+    for i in last:
+        assert np.abs(total[i]).max() < ROUNDING * scale, assembly.movers[i].body
+
+
+def slope(f: Callable[[float], float], h: float) -> float:
+    """Derivative at 0, to the fourth order in h."""
+    return (8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h)
+
+
+EVERYTHING = sf.System(
+    "everything",
+    [
+        sf.RigidBody(
+            "cart",
+            sf.Joint("q1", "prismatic", axis=(1, 0.2, 0), prescribed=True, armature=0.3),
+            sf.Inertia(2.0, (0.1, 0, 0.2), (0.1, 0.2, 0.3)),
+            [sf.Frame("hook", (0.1, 0.2, 0.5))],
+        ),
+        sf.RigidBody(
+            "arm",
+            sf.Joint(
+                "q2",
+                "revolute",
+                "cart",
+                None,
+                (0, 0.1, 0),
+                axis=(0, 1, 0.3),
+                actuated=True,
+                elements=(sf.Spring(3.0, 0.1), sf.Damper(0.7)),
+                rotors=(sf.Rotor(0.02, 5.0),),
+            ),
+            sf.Inertia(1.0, (0.2, 0.1, 0), (0.1, 0.1, 0.1)),
+        ),
+        sf.RigidBody(
+            "head",
+            sf.Joint(
+                "q3",
+                "revolute",
+                "arm",
+                None,
+                (0.4, 0, 0.1),
+                axis=(1, 0, 0),
+                prescribed=True,
+                rotors=(sf.Rotor(0.01, 7.0),),
+            ),
+            sf.Inertia(0.5, (0, 0.1, 0.1), (0.02, 0.03, 0.04)),
+            [sf.Frame("eye", (0, 0.3, 0))],
+        ),
+        sf.Beam(
+            "boom",
+            sf.Joint("clamp", "fixed", "head"),
+            0.8,
+            0.4,
+            20.0,
+            30.0,
+            10.0,
+            0.01,
+            bend_y=1,
+            bend_z=1,
+            twist=1,
+            retain="all",
+        ),
+        sf.RigidBody(
+            "load", sf.Joint("weld", "fixed", "boom", "tip"), sf.Inertia(0.2, (0.1, 0, 0), (0.01, 0.01, 0.01))
+        ),
+    ],
+    connections=[sf.Connection("spring", ("cart", "hook"), ("head", "eye"), 12.0, 0.2)],
+    potentials=[sf.Potential("magnet", "2*cos(q1)*sin(q3) + 0.5*q2^2*q1")],
+)
+
+
+def test_power_of_the_drives_and_actuators_is_the_rate_of_energy() -> None:
+    """d(T + V)/dt = drives, actuator and damper: through rotors, beams, springs, potentials and connections."""
+    m = sf.compile(EVERYTHING, sf.Options(backend="interpreter"))
+    assert m.names.prescribed == ("q1", "q3") and m.names.joints == ("q1", "q2", "q3", "clamp", "boom.tip")
+    rng = np.random.default_rng(1)
+    y, dy, ddy = 0.3 * rng.normal(size=(3, m.nv))
+    motion, tau = rng.normal(size=(2, 3)), 1.3
+
+    def energy(s: float) -> float:
+        q, v = y + s * dy + 0.5 * s * s * ddy, dy + s * ddy
+        u = np.concatenate([[tau], *([x + s * d + 0.5 * s * s * a, d + s * a, a] for x, d, a in motion)])
+        return float(m.kinetic_energy(q, v, u=u) + m.potential_energy(q, u=u))
+
+    u = np.concatenate([[tau], *motion])
+    ddy = m.forward_dynamics(y, dy, u)
+    drives = m.prescribed_efforts(y, dy, ddy, u)
+    powers = [*(drives * motion[:, 1]), tau * dy[0], -0.7 * dy[0] ** 2]
+    assert slope(energy, 1e-4) == pytest.approx(sum(powers), abs=1e-9 * np.abs(powers).sum())
+
+
+def test_power_of_a_crank_that_drives_a_loop_with_a_beam() -> None:
+    """Wrenches through the loop are those of its multipliers: without them the drive of the crank would be wrong."""
+    system = MODELS["flexible_slider_crank"]
+    bodies = [replace(body, retain="all", damping=0.0) if isinstance(body, sf.Beam) else body for body in system.bodies]
+    m = sf.compile(replace(system, bodies=tuple(bodies)), sf.Options(backend="interpreter"))
+    motion = np.array([0.7, 3.0, 2.0])
+    guess = 1e-4 * np.ones(m.nq)
+    state = sf.assemble(m, guess, 0.1 * np.ones(m.nv), u=motion)
+    a, lam = m.forward_dynamics(state.q, state.v, motion, multipliers=True)
+
+    def energy(s: float) -> float:
+        q, v = state.q + s * state.v + 0.5 * s * s * a, state.v + s * a
+        u = np.array([motion[0] + s * motion[1] + 0.5 * s * s * motion[2], motion[1] + s * motion[2], motion[2]])
+        return float(m.kinetic_energy(q, v, u=u) + m.potential_energy(q, u=u))
+
+    (drive,) = m.prescribed_efforts(state.q, state.v, a, motion, lam)
+    assert drive * motion[1] == pytest.approx(slope(energy, 1e-7), rel=1e-7)
+    with pytest.raises(sf.ShapeError, match="constraints, whose forces joints carry too"):
+        m.prescribed_efforts(state.q, state.v, a, motion)
+
+
+class TestClosedForms:
+    def test_the_torque_of_a_pendulum_that_follows_its_drive(self) -> None:
+        """tau = (J + m l^2 + armature) theta'' + m g l sin(theta); the pin carries the weight and the inertia."""
+        mass, length, J, armature = 2.0, 0.5, 0.1, 0.03
+        joint = sf.Joint("pin", "revolute", axis=(0, -1, 0), prescribed=True, armature=armature)
+        body = sf.RigidBody("b", joint, sf.Inertia(mass, (0, 0, -length), (J, J, 0.1 * J)))
+        m = sf.compile(sf.System("p", [body]), sf.Options(backend="interpreter"))
+        theta, rate, acceleration = 0.4, 3.0, 5.0
+        u = np.array([theta, rate, acceleration])
+        wanted = (J + mass * length**2 + armature) * acceleration + mass * G * length * np.sin(theta)
+        assert m.prescribed_efforts([], [], [], u) == pytest.approx([wanted], rel=1e-14)
+        wrench = m.joint_wrenches([], [], [], u)[0]
+        along, across = (
+            mass * (G * np.cos(theta) + length * rate**2),
+            mass * (G * np.sin(theta) + length * acceleration),
+        )
+        assert wrench[[2, 0]] == pytest.approx([along, across], rel=1e-13)
+        assert wrench[4] == pytest.approx(-(wanted - armature * acceleration), rel=1e-14)
+
+    def test_what_the_root_of_a_cantilever_holds(self) -> None:
+        """Its weight, a load along it, a load at its tip and what it carries; the tip holds the last alone."""
+        loads = (sf.BeamLoad(force=(0, 0, -3.0)), sf.BeamLoad(force=(0, 0, -2.0), at=1.0))
+        clamp = sf.Joint("clamp", "fixed")
+        beam = sf.Beam("beam", clamp, 2.0, 0.5, 1e9, 1e9, 1e9, 0.1, bend_y=2, bend_z=2, twist=1, loads=loads)
+        weight = sf.RigidBody("weight", sf.Joint("weld", "fixed", "beam", "tip"), sf.Inertia(0.3, (0.1, 0, 0)))
+        m = sf.compile(sf.System("c", [beam, weight]), sf.Options(backend="interpreter"))
+        root, tip = m.joint_wrenches(np.zeros(5), np.zeros(5), np.zeros(5), [])
+        force = 1.0 * G + 6.0 + 2.0 + 0.3 * G
+        assert root == pytest.approx([0, 0, force, 0, -(G + 6.0 + 4.0 + 0.3 * 2.1 * G), 0], abs=1e-12)
+        assert tip == pytest.approx([0, 0, 0.3 * G, 0, -0.03 * G, 0], abs=1e-13)
+
+    def test_a_bar_on_a_hinge_and_a_support(self) -> None:
+        """The mass centre lies at 0.3 of the span: the hinge carries 0.7 of the weight, and no moment."""
+        bar = sf.RigidBody(
+            "b",
+            sf.Joint("hinge", "revolute", axis=(0, 1, 0)),
+            sf.Inertia(2.0, (0.3, 0, 0), (0.1, 0.2, 0.3)),
+            [sf.Frame("end", (1, 0, 0))],
+        )
+        rest = sf.Closure("rest", ("world", None), ("b", "end"), ("z",))
+        m = sf.compile(sf.System("s", [bar], constraints=[rest]), sf.Options(backend="interpreter"))
+        _, lam = m.forward_dynamics([0.0], [0.0], [], multipliers=True)
+        assert m.joint_wrenches([0.0], [0.0], [0.0], [], lam)[0] == pytest.approx([0, 0, 1.4 * G, 0, 0, 0], abs=1e-12)
+
+    def test_the_bars_of_a_truss(self) -> None:
+        """Two light bars at 30 degrees carry 100 N at their apex: each is compressed by 100 / (2 sin 30) N."""
+        half, span = np.deg2rad(30), np.cos(np.deg2rad(30))
+        inertia = sf.Inertia(1.0, (0.5, 0, 0), (0.01, 0.01, 0.01))
+        left = sf.RigidBody(
+            "left",
+            sf.Joint("a", "revolute", axis=(0, -1, 0)),
+            inertia,
+            [sf.Frame("apex", (1, 0, 0))],
+            loads=[sf.Load((0, 0, -100.0), at="apex", axes="world")],
+        )
+        joint = sf.Joint("b", "revolute", position=(2 * span, 0, 0), axis=(0, -1, 0))
+        right = sf.RigidBody("right", joint, inertia, [sf.Frame("apex", (1, 0, 0))])
+        pin = sf.Closure("pin", ("left", "apex"), ("right", "apex"), ("x", "z"))
+        truss = sf.System("truss", [left, right], constraints=[pin], gravity=(0, 0, 0))
+        m = sf.compile(truss, sf.Options(backend="interpreter"))
+        q = [half, np.pi - half]
+        a, lam = m.forward_dynamics(q, [0.0, 0.0], [], multipliers=True)
+        wrenches = m.joint_wrenches(q, [0.0, 0.0], a, [], lam)
+        assert wrenches == pytest.approx(np.array([[100.0, 0, 0, 0, 0, 0]] * 2), abs=1e-11)
+
+
+def test_c_is_what_the_interpreter_says() -> None:
+    """One state and a batch; the fast path, generated C."""
+    compiled = sf.compile(EVERYTHING, sf.Options(functions=FUNCTIONS[:2]))
+    interpreted = sf.compile(EVERYTHING, sf.Options(functions=FUNCTIONS[:2], backend="interpreter"))
+    rng = np.random.default_rng(2)
+    q, v, a = 0.3 * rng.normal(size=(3, 9, compiled.nv))
+    u = rng.normal(size=(9, compiled.nu))
+    for name in FUNCTIONS[:2]:
+        wanted = getattr(interpreted, name)(q, v, a, u)
+        result = getattr(compiled, name)(q, v, a, u)
+        np.testing.assert_allclose(result, wanted, rtol=0, atol=1e-13 * np.abs(wanted).max())
+        np.testing.assert_allclose(getattr(compiled, name)(q[0], v[0], a[0], u[0]), wanted[0], atol=1e-11)
