@@ -19,6 +19,8 @@ NOTED_ERROR = 0.01
 BEAM_LIMIT = 0.5
 # Slope [rad] below which a beam is straight but for rounding.
 _STRAIGHT = 1e-9
+# Elastic coordinate [m or 1] beyond which a run has diverged, and squares of angles might overflow.
+_LARGEST = 1e100
 # Tangent stiffness over elastic stiffness below which an axial load counts as critical.
 _CRITICAL = 1e-9
 # Largest slope [rad] from which the number of beams that would do is no longer stated: true slopes stay below it.
@@ -142,7 +144,7 @@ class ElasticBeam:
             amplification: Elastic stiffness over the stiffness that axial loads leave (26).
         """
         n_y, n_z, _ = self.counts
-        by_coordinate = self.angles * (self.scale * elastic)
+        by_coordinate = self.angles * (self.scale * np.clip(elastic, -_LARGEST, _LARGEST))
         yaw, pitch, twist = (part.sum(axis=1) ** 2 for part in np.split(by_coordinate, (n_y, n_y + n_z), axis=1))
         slope = yaw + pitch
         at = int(np.argmax(slope))

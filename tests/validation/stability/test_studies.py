@@ -56,9 +56,9 @@ def test_overdamped_modes_bound_the_step_by_the_damping() -> None:
 @pytest.mark.parametrize(("method", "bound"), [("rk4", 2.7852936), ("euler", 2.0)])
 def test_gains_hold_up_to_the_closed_form(method: str, bound: float) -> None:
     h = 1e-4
-    held, lost = (baumgarte.swing(method, h, share * bound / h, 1.0) for share in (0.98, 1.01))
+    held, lost = (baumgarte.swing(method, h, share * bound / h, 1.0) for share in (0.95, 1.01))
     assert held.outcome.ok and baumgarte.violation(held) < baumgarte.BOUND
-    assert lost.outcome.kind == "diverged" and "smaller dt" in lost.outcome.advice
+    assert lost.outcome.kind == "diverged" and "dt below" in lost.outcome.advice
 
 
 def test_growth_without_foreshortening() -> None:
