@@ -42,6 +42,7 @@ from symofros.description.system import RigidBody as RigidBody
 from symofros.description.system import System as System
 from symofros.description.values import Rotation as Rotation
 from symofros.description.values import as_value
+from symofros.errors import ActuationError as ActuationError
 from symofros.errors import AssemblyError as AssemblyError
 from symofros.errors import BeamTheoryError as BeamTheoryError
 from symofros.errors import CompileError as CompileError
@@ -71,6 +72,7 @@ if TYPE_CHECKING:
     from symofros.loading import load as load
     from symofros.loading import save as save
     from symofros.runtime.model import Model as Model
+    from symofros.simulation.analysis.actuator_efforts import actuator_efforts as actuator_efforts
     from symofros.simulation.analysis.assembly import assemble as assemble
     from symofros.simulation.analysis.base_parameters import base_parameters as base_parameters
     from symofros.simulation.analysis.equilibrium import equilibrium as equilibrium
@@ -122,6 +124,7 @@ _LAZY = {
     "Output": ("symofros.studio.advice.scene", "Output"),
     "load_scene": ("symofros.studio.advice.scene_file", "load_scene"),
     "Model": ("symofros.runtime.model", "Model"),
+    "actuator_efforts": ("symofros.simulation.analysis.actuator_efforts", "actuator_efforts"),
     "assemble": ("symofros.simulation.analysis.assembly", "assemble"),
     "base_parameters": ("symofros.simulation.analysis.base_parameters", "base_parameters"),
     "inverse_kinematics": ("symofros.simulation.analysis.inverse_kinematics", "inverse_kinematics"),

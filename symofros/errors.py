@@ -115,6 +115,10 @@ class EquilibriumError(SymofrosError):
     """No configuration was found in which the speeds stay as they are."""
 
 
+class ActuationError(SymofrosError):
+    """The chosen actuators can't produce a motion, or it is no motion of the mechanism."""
+
+
 class BeamTheoryError(EquilibriumError):
     """A beam is bent beyond second-order theory, or that theory has no equilibrium; says which beam, where, how far."""
 

@@ -118,6 +118,16 @@ def eliminate(G: Array, measures: Measures, inertia: Array) -> Eliminated:
     return Eliminated(L, U, np.array(rows, dtype=np.intp), np.array(columns, dtype=np.intp))
 
 
+def free_motions(eliminated: Eliminated, nv: int) -> tuple[Array, npt.NDArray[np.intp]]:
+    """Basis Z (nv, free) of the motions with G Z = 0, and the free speeds, its independent ones (eq. 15)."""
+    _, U, _, columns = eliminated
+    free = np.setdiff1d(np.arange(nv), columns)
+    Z = np.zeros((nv, len(free)))
+    Z[free, np.arange(len(free))] = 1.0
+    Z[columns] = -np.linalg.solve(U[:, columns], U[:, free])
+    return Z, free
+
+
 def pseudo_inverse(G: Array, measures: Measures) -> Array:
     """The pseudo-inverse of G, its rank judged by natural sizes; rows of unlike sizes are brought to one."""
     if not G.size:
@@ -150,10 +160,7 @@ def solve(M: Array, r: Array, G: Array, c: Array, measures: Measures) -> tuple[A
     if not (np.all(np.isfinite(M)) and np.all(np.isfinite(G))):
         return *unsolved, 0
     L, U, rows, columns = eliminated = eliminate(G, measures, np.diag(M))
-    free = np.setdiff1d(np.arange(nv), columns)
-    Z = np.zeros((nv, len(free)))
-    Z[free, np.arange(len(free))] = 1.0
-    Z[columns] = -np.linalg.solve(U[:, columns], U[:, free])
+    Z, _ = free_motions(eliminated, nv)
     B = _factor(Z.T @ M @ Z, np.diag(np.abs(Z.T) @ np.abs(M) @ np.abs(Z)))
     if B is None:
         return *unsolved, -1

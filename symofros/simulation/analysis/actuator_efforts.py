@@ -1,0 +1,290 @@
+"""Inverse dynamics with chosen actuators: trees and closed mechanisms (docs/theory/constraints.md, section 11)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from symofros.base.arrays import numeric
+from symofros.errors import ActuationError, Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.constrained import STILL, eliminate, free_motions, pseudo_inverse, residual_weights
+from symofros.runtime.model import ArrayLike, Model
+
+# Share of the terms of a sum below which it is their rounding.
+ROUNDING = 1e-12
+# Smallest singular value of Z^T B that counts, rows and columns brought to one size.
+RANK = 1e-10
+# Imbalance relative to the sum of the sizes of its terms: what accelerations of forward dynamics leave where the
+# condition of M is 1e7.
+BALANCE = 1e-8
+# Residual of phi = 0, and of G v = b and G a = gamma relative to their terms: what interpolated trajectories meet.
+CONSISTENT = 1e-6
+
+
+@dataclass(frozen=True)
+class ActuatorEfforts:
+    """Efforts that produce a motion, and the forces of the constraints in it.
+
+    Attributes:
+        actuators: Names of the actuators.
+        efforts: Effort of each actuator (..., actuators) [N m or N].
+        lam: Multipliers (..., nc), of least norm where conditions repeat each other.
+        u: Inputs, with the efforts of those actuators that are inputs (..., nu).
+        redundancy: Number of independent combinations of efforts that move nothing (...,); zero where they are unique.
+    """
+
+    actuators: tuple[str, ...]
+    efforts: Array
+    lam: Array
+    u: Array
+    redundancy: Array
+
+
+class _State(NamedTuple):
+    """Terms of one state: M a + h = Q + B tau + G^T lam, without the efforts in Q; G has no rows for trees."""
+
+    a: Array
+    M: Array
+    h: Array
+    Q: Array
+    B: Array
+    G: Array
+
+
+def actuator_efforts(
+    model: Model,
+    q: ArrayLike,
+    v: ArrayLike,
+    a: ArrayLike,
+    actuators: Collection[str] | None = None,
+    *,
+    u: ArrayLike | None = None,
+    sizes: ArrayLike | None = None,
+    par: ArrayLike | None = None,
+    t: ArrayLike = 0.0,
+) -> ActuatorEfforts:
+    """The efforts of chosen actuators that make a mechanism move as given, loops closed.
+
+    Unique where there are as many actuators as the motion has freedoms; of least norm where there are more. The motion
+    must meet the constraints: phi = 0, G v = b, G a = gamma. The efforts of prescribed motions follow from the result:
+    `model.prescribed_efforts(q, v, a, result.u, result.lam)`.
+
+    Args:
+        model: Model, with or without constraints.
+        q: Configuration (..., nq), on the constraints.
+        v: Speeds (..., nv).
+        a: Rates of the speeds (..., nv).
+        actuators: Names of inputs, on which the forces depend linearly, and of speeds, on whose joints an effort acts
+            then; all inputs but prescribed motions, if not given.
+        u: Other inputs and prescribed motions (..., nu); what it states of the actuators does not count.
+        sizes: Size of the effort of each actuator (actuators): the norm is that of efforts over sizes; ones if not
+            given, which weigh 1 N as 1 N m.
+        par: Run-time parameters (..., npar).
+        t: Time (...,).
+
+    Raises:
+        UnknownNameError: An actuator is neither an input nor a speed.
+        ShapeError: An array does not fit.
+        ActuationError: The motion violates the constraints, or these actuators can't produce it; says where, and by
+            how much.
+    """
+    model = model.with_precision("double")
+    names = _names(model, actuators)
+    accelerations = _vector("a", a, model.nv)
+    weights = np.ones(len(names)) if sizes is None else _vector("sizes", sizes, len(names))
+    stated = [model.names.u.index(name) for name in names if name in model.names.u]
+    others = np.array(model.record.u_default if u is None else _vector("u", u, model.nu), dtype=np.float64)
+    others[..., stated] = 0.0
+    M, h, Q = model.dynamics(q, v, others, par=par, t=t)
+    B = _columns(model, names, (q, v, others), Q, par, t)
+    G = _consistent_jacobian(model, (q, v, accelerations, others), par, t)
+    batch = np.broadcast_shapes(h.shape[:-1], accelerations.shape[:-1])
+    terms = _State(
+        *(
+            np.broadcast_to(x, batch + x.shape[-n:])
+            for x, n in zip((accelerations, M, h, Q, B, G), (1, 2, 1, 1, 2, 2), strict=True)
+        )
+    )
+    efforts, lam = np.empty((*batch, len(names))), np.empty((*batch, model.nc))
+    redundancy = np.empty(batch, dtype=int)
+    for index in np.ndindex(batch):
+        state = _State(*(array[index] for array in terms))
+        efforts[index], lam[index], redundancy[index] = _solve(model, names, state, weights, index)
+    inputs = np.array(np.broadcast_to(others, (*batch, model.nu)))
+    for k, name in enumerate(names):
+        if name in model.names.u:
+            inputs[..., model.names.u.index(name)] = efforts[..., k]
+    _check_linear(model, terms, efforts, model.generalized_force(q, v, inputs, par=par, t=t), names)
+    return ActuatorEfforts(names, efforts, lam, inputs, redundancy)
+
+
+def _names(model: Model, actuators: Collection[str] | None) -> tuple[str, ...]:
+    """Names of the actuators, each an input that prescribes no motion, or a speed."""
+    inputs = model.names.u[: model.nu - model.record.driven]
+    if actuators is None:
+        return inputs
+    known = (*inputs, *(name for name in model.names.v if name not in inputs))
+    for name in actuators:
+        if name not in known:
+            raise UnknownNameError(
+                Problem(
+                    f"model '{model.record.name}': no actuator '{name}'",
+                    ", ".join(known[:12]) or "neither inputs nor speeds",
+                    "an actuator is an input that prescribes no motion, or a speed",
+                    did_you_mean(name, known) or "name one of these",
+                )
+            )
+    return tuple(dict.fromkeys(actuators))
+
+
+def _vector(name: str, values: ArrayLike, size: int) -> Array:
+    array = numeric(name, values)
+    if array.ndim == 0 or array.shape[-1] != size:
+        raise ShapeError(
+            Problem(f"{name} has the wrong shape", str(array.shape), f"{name} has shape (..., {size})", "mend it")
+        )
+    return array
+
+
+def _columns(
+    model: Model,
+    names: tuple[str, ...],
+    state: tuple[ArrayLike, ArrayLike, Array],
+    Q: Array,
+    par: ArrayLike | None,
+    t: ArrayLike,
+) -> Array:
+    """B (..., nv, actuators), dQ/du of forces linear in u: a difference, at inputs large enough to cancel no digits."""
+    q, v, others = state
+    large = np.maximum(1.0, np.abs(Q).max(axis=-1, initial=0.0))[..., None]
+    columns = [np.zeros_like(Q) for _ in names]
+    for column, name in zip(columns, names, strict=True):
+        if name in model.names.u:
+            unit = np.eye(model.nu)[model.names.u.index(name)]
+            column[...] = (model.generalized_force(q, v, others + large * unit, par=par, t=t) - Q) / large
+        else:
+            column[..., model.names.v.index(name)] = 1.0
+    return np.stack(columns, axis=-1) if columns else np.zeros((*Q.shape, 0))
+
+
+def _consistent_jacobian(
+    model: Model, state: tuple[ArrayLike, ArrayLike, Array, Array], par: ArrayLike | None, t: ArrayLike
+) -> Array:
+    """G (..., nc, nv), at a motion that meets the constraints.
+
+    Raises:
+        ActuationError: It does not.
+    """
+    if not model.nc:
+        return np.zeros((0, model.nv))
+    q, v, a, u = state
+    G = model.constraint_jacobian(q, u=u, par=par, t=t)
+    speeds, size = np.asarray(v, dtype=np.float64), np.abs(G)
+    weights = np.array([residual_weights(one, model.record.measures) for one in G.reshape(-1, model.nc, model.nv)])
+    phi = model.constraint(q, u=u, par=par, t=t)
+    rate = model.constraint_rate(q, v, u=u, par=par, t=t)
+    gamma = model.constraint_bias(q, v, u=u, par=par, t=t)
+    square = np.square(speeds).max(axis=-1, keepdims=True, initial=0.0)
+    moved = (size @ np.abs(speeds)[..., None])[..., 0]
+    # At rest residuals are rounding; gamma is a sum of products of speeds, which may cancel.
+    rest = STILL * size.sum(axis=-1)
+    terms = (size @ np.abs(a)[..., None])[..., 0] + np.abs(gamma) + size.sum(axis=-1) * square + rest
+    residuals = {
+        "phi = {:.3g}": (phi * weights.reshape(phi.shape), np.ones_like(phi)),
+        "G v - b = {:.3g}": (rate, rest + moved + np.abs(rate - (G @ speeds[..., None])[..., 0])),
+        "G a - gamma = {:.3g}": ((G @ a[..., None])[..., 0] - gamma, terms),
+    }
+    for text, (residual, against) in residuals.items():
+        excess = np.abs(residual) - CONSISTENT * against
+        if excess.max(initial=0.0) > 0.0:
+            *index, row = (int(i) for i in np.unravel_index(int(np.argmax(excess)), excess.shape))
+            raise ActuationError(
+                Problem(
+                    f"model '{model.record.name}': the motion violates its constraints{_at(tuple(index))}",
+                    f"{text.format(residual[(*index, row)])} at '{model.names.constraints[row]}'",
+                    "efforts are those of a motion with phi = 0, G v = b and G a = gamma",
+                    "q and v from sf.assemble or model.project; a from forward_dynamics, or with G a = gamma",
+                )
+            )
+    return G
+
+
+def _solve(
+    model: Model, names: tuple[str, ...], state: _State, sizes: Array, index: tuple[int, ...]
+) -> tuple[Array, Array, int]:
+    """Efforts, multipliers and the redundancy of one state (eqs. 25-27); NaN where a term is not finite."""
+    a, M, h, Q, B, G = state
+    if not all(np.all(np.isfinite(term)) for term in state):
+        return np.full(len(names), np.nan), np.full(model.nc, np.nan), 0
+    measures = model.record.measures
+    Z, free = (
+        free_motions(eliminate(G, measures, np.diag(M)), model.nv)
+        if model.nc
+        else (np.eye(model.nv), np.arange(model.nv))
+    )
+    r = M @ a + h - Q
+    A, noise = Z.T @ B * sizes, np.abs(Z.T) @ np.abs(B) * sizes
+    A[np.abs(A) <= ROUNDING * noise] = 0.0
+    tau, rank = _least_norm(A, Z.T @ r)
+    tau = sizes * tau
+    terms = np.abs(Z.T) @ (np.abs(M) @ np.abs(a) + np.abs(h) + np.abs(Q) + np.abs(B) @ np.abs(tau))
+    left = Z.T @ (r - B @ tau)
+    excess = np.abs(left) - BALANCE * terms
+    if excess.max(initial=0.0) > 0.0:
+        worst = int(np.argmax(excess))
+        raise ActuationError(
+            Problem(
+                f"model '{model.record.name}': {_listed(names)} can't produce the motion{_at(index)}",
+                f"{rank} independent efforts for {len(free)} freedoms; {left[worst]:.3g} is left at speed"
+                f" '{model.names.v[free[worst]]}'",
+                "the efforts of the actuators produce every motion, or this one happens to need no others",
+                "name more actuators, or give the accelerations that forward_dynamics finds",
+            )
+        )
+    return tau, pseudo_inverse(G, measures).T @ (r - B @ tau), len(names) - rank
+
+
+def _least_norm(A: Array, b: Array) -> tuple[Array, int]:
+    """The x of least norm with A x = b, in the sense of least squares if there is none, and the rank of A."""
+    if not A.size:
+        return np.zeros(A.shape[1]), 0
+    largest = np.abs(A).max(axis=1)
+    by_row = 1.0 / np.where(largest > 0.0, largest, 1.0)
+    even = by_row[:, None] * A
+    columns = np.abs(even).max(axis=0)
+    values = np.linalg.svd(even / np.where(columns > 0.0, columns, 1.0), compute_uv=False)
+    rank = int(np.sum(values > RANK * values.max(initial=0.0)))
+    U, s, Vt = np.linalg.svd(even, full_matrices=False)
+    return Vt[:rank].T @ ((U[:, :rank].T @ (by_row * b)) / s[:rank]), rank
+
+
+def _check_linear(model: Model, terms: _State, efforts: Array, force: Array, names: tuple[str, ...]) -> None:
+    """Refuse inputs on which the forces do not depend linearly: Q at the inputs found must be Q + B tau."""
+    stated = [k for k, name in enumerate(names) if name in model.names.u]
+    made = terms.Q + (terms.B[..., stated] @ efforts[..., stated, None])[..., 0]
+    size = np.abs(terms.Q) + (np.abs(terms.B[..., stated]) @ np.abs(efforts[..., stated, None]))[..., 0]
+    excess = np.abs(force - made) - BALANCE * size
+    if excess.max(initial=0.0) > 0.0:
+        *index, k = (int(i) for i in np.unravel_index(int(np.argmax(excess)), excess.shape))
+        raise ActuationError(
+            Problem(
+                f"model '{model.record.name}': the forces are not linear in {_listed(names)}{_at(tuple(index))}",
+                f"at speed '{model.names.v[k]}' the efforts found give {force[(*index, k)]:.6g}, a linear law"
+                f" {made[(*index, k)]:.6g}",
+                "an actuator's force is proportional to its input",
+                "name the speeds of the joints that the actuators drive instead",
+            )
+        )
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    shown = ", ".join(f"'{name}'" for name in names[:6]) + (", ..." if len(names) > 6 else "")
+    return f"actuators {shown}" if names else "no actuators"
+
+
+def _at(index: tuple[int, ...]) -> str:
+    return f", state {index if len(index) > 1 else index[0]}" if index else ""

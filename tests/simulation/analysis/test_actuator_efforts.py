@@ -1,0 +1,196 @@
+"""Efforts of chosen actuators: closed forms, round trips with forward dynamics, least norm, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from reference_models import MODELS
+
+G = 9.81
+INTERPRETED = sf.Options(backend="interpreter")
+
+
+def actuated(system: sf.System, *joints: str) -> sf.System:
+    """The system with motors in some joints; in all of one coordinate, if none is named."""
+    bodies = []
+    for body in system.bodies:
+        joint = body.joint
+        if joint is not None and joint.kind in ("revolute", "continuous", "prismatic"):
+            joint = replace(joint, actuated=not joints or joint.name in joints)
+        bodies.append(replace(body, joint=joint))
+    return system.with_bodies(*bodies)
+
+
+def slider_crank(r: float = 1.0, rod: float = 2.5, mass: float = 1.0, **crank: bool) -> sf.System:
+    """A crank in the x-z plane, its rod, and a piston on the x axis that 10 N push back, in units of mass and r."""
+    push = sf.Load((-10.0 * mass, 0, 0), at="body")
+    return sf.System(
+        "slider_crank",
+        [
+            sf.RigidBody(
+                "crank",
+                sf.Joint("q1", "revolute", axis=(0, -1, 0), **crank),
+                sf.Inertia(mass, (r / 2, 0, 0), (mass * r * r / 12,) * 3),
+                [sf.Frame("end", (r, 0, 0))],
+            ),
+            sf.RigidBody(
+                "rod",
+                sf.Joint("q2", "revolute", "crank", "end", axis=(0, -1, 0)),
+                sf.Inertia(mass, (rod / 2, 0, 0), (mass * r * r / 12,) * 3),
+                [sf.Frame("end", (rod, 0, 0))],
+            ),
+            sf.RigidBody(
+                "piston",
+                sf.Joint("q3", "prismatic", axis=(1, 0, 0)),
+                sf.Inertia(mass, (0, 0, 0), (mass * r * r,) * 3),
+                loads=(push,),
+            ),
+        ],
+        constraints=[sf.Closure("pin", ("piston", None), ("rod", "end"), ("x", "z"))],
+        gravity=(0, 0, 0),
+    )
+
+
+def posture(theta: float, r: float = 1.0, rod: float = 2.5) -> tuple[np.ndarray, float]:
+    """Coordinates of the slider-crank, and the rod's angle to the axis."""
+    beta = np.arcsin(r * np.sin(theta) / rod)
+    return np.array([theta, -beta - theta, r * np.cos(theta) + rod * np.cos(beta)]), float(beta)
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("mass", [1e-6, 1.0, 1e6])
+def test_the_torque_of_a_crank_that_holds_a_piston(scale: float, mass: float) -> None:
+    """tau = F r sin(theta + beta)/cos(beta), by virtual work, at every size and mass; here F pushes back."""
+    m = sf.compile(slider_crank(scale, 2.5 * scale, mass, actuated=True), INTERPRETED)
+    q, beta = posture(0.8, scale, 2.5 * scale)
+    result = sf.actuator_efforts(m, q, np.zeros(3), np.zeros(3))
+    wanted = -10.0 * mass * scale * np.sin(0.8 + beta) / np.cos(beta)
+    assert result.efforts == pytest.approx([wanted], rel=1e-11)
+    assert result.redundancy == 0
+
+
+def test_the_torque_that_holds_a_parallelogram() -> None:
+    """The coupler does not turn: V = g l sin(theta) (m_1/2 + m_2 + m_3/2)."""
+    length, base = 1.0, 2.0
+    bar = sf.Inertia(2.0, (length / 2, 0, 0), (0.1, 0.2, 0.2))
+    up = {"axis": (0, -1, 0)}
+    left = sf.RigidBody("left", sf.Joint("q1", "revolute", **up), bar, [sf.Frame("end", (length, 0, 0))])
+    coupler = sf.RigidBody(
+        "coupler",
+        sf.Joint("q2", "revolute", "left", "end", **up),
+        sf.Inertia(3.0, (base / 2, 0, 0), (0.1, 1, 1)),
+        [sf.Frame("end", (base, 0, 0))],
+    )
+    right = sf.RigidBody(
+        "right", sf.Joint("q3", "revolute", position=(base, 0, 0), **up), bar, [sf.Frame("end", (length, 0, 0))]
+    )
+    pin = sf.Closure("pin", ("right", "end"), ("coupler", "end"), ("x", "z"))
+    m = sf.compile(sf.System("parallelogram", [left, coupler, right], constraints=[pin]), INTERPRETED)
+    q = [0.7, -0.7, 0.7]
+    wanted = G * length * np.cos(0.7) * (2.0 / 2 + 3.0 + 2.0 / 2)
+    for name in ("q1", "q3"):
+        assert sf.actuator_efforts(m, q, np.zeros(3), np.zeros(3), [name]).efforts == pytest.approx([wanted], rel=1e-12)
+    # Two alike share alike, which is the least norm; by size in the ratio of the squares of sizes.
+    both = sf.actuator_efforts(m, q, np.zeros(3), np.zeros(3), ["q1", "q3"])
+    assert both.efforts == pytest.approx([wanted / 2, wanted / 2], rel=1e-12) and both.redundancy == 1
+    unlike = sf.actuator_efforts(m, q, np.zeros(3), np.zeros(3), ["q1", "q3"], sizes=[2.0, 1.0])
+    assert unlike.efforts == pytest.approx([0.8 * wanted, 0.2 * wanted], rel=1e-12)
+
+
+def test_the_effort_of_an_actuator_is_that_of_a_drive() -> None:
+    """A crank that is driven as it moves under its actuator: two functions, one torque."""
+    free = sf.compile(slider_crank(actuated=True), INTERPRETED)
+    driven = sf.compile(slider_crank(prescribed=True), INTERPRETED)
+    start = sf.assemble(free, posture(0.8)[0], [3.0, 0, 0], held=["q1"])
+    a, lam = free.forward_dynamics(start.q, start.v, [7.0], multipliers=True)
+    result = sf.actuator_efforts(free, start.q, start.v, a)
+    motion = [start.q[0], start.v[0], a[0]]
+    assert result.efforts == pytest.approx([7.0], rel=1e-12)
+    assert result.lam == pytest.approx(lam, rel=1e-11)
+    drive = driven.prescribed_efforts(start.q[1:], start.v[1:], a[1:], motion, result.lam)
+    assert drive == pytest.approx([7.0], rel=1e-12)
+    # The actuator is an internal force of its joint: the wrench's moment about the axis (0, -1, 0).
+    assert free.joint_wrenches(start.q, start.v, a, [7.0], lam)[0, 4] == pytest.approx(-7.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "joints"), [("four_bar", ("q1",)), ("four_bar", ()), ("bricard", ("q1",)), ("bricard", ())]
+)
+def test_forward_dynamics_under_the_efforts_is_the_motion(name: str, joints: tuple[str, ...]) -> None:
+    """Of random efforts, at random postures, in a batch; redundant ones are of least norm (Karush, Kuhn, Tucker)."""
+    m = sf.compile(actuated(MODELS[name], *joints), INTERPRETED)
+    rng = np.random.default_rng(3)
+    guess = {"four_bar": [1.2, -1.0, 1.3]}.get(name, m.neutral())
+    states = [sf.assemble(m, guess + 0.1 * rng.normal(size=m.nq), rng.normal(size=m.nv)) for _ in range(4)]
+    q, v = np.array([state.q for state in states]), np.array([state.v for state in states])
+    u = rng.normal(size=(4, m.nu))
+    a = m.forward_dynamics(q, v, u)
+    result = sf.actuator_efforts(m, q, v, a)
+    again, lam = m.forward_dynamics(q, v, result.u, multipliers=True)
+    np.testing.assert_allclose(again, a, rtol=0, atol=1e-9 * np.abs(a).max())
+    np.testing.assert_allclose(result.lam, lam, rtol=0, atol=1e-8 * np.abs(lam).max())
+    if joints:
+        np.testing.assert_allclose(result.efforts, u, rtol=0, atol=1e-9)
+    assert np.all(result.redundancy == m.nu - 1)
+    # Efforts that move nothing are orthogonal to those of least norm: the difference from u is one.
+    products = np.sum((u - result.efforts) * result.efforts, axis=1)
+    np.testing.assert_allclose(products, 0.0, atol=1e-9)
+
+
+def test_trees_have_their_inverse_dynamics() -> None:
+    m = sf.compile(MODELS["double_pendulum"], INTERPRETED)
+    rng = np.random.default_rng(0)
+    q, v, a = rng.normal(size=(3, 5, m.nv))
+    result = sf.actuator_efforts(m, q, v, a, m.names.v)
+    np.testing.assert_allclose(result.efforts, m.inverse_dynamics(q, v, a), rtol=1e-12)
+    assert result.lam.shape == (5, 0)
+    assert np.all(np.isnan(sf.actuator_efforts(m, q[0] * np.nan, v[0], a[0], m.names.v).efforts))
+
+
+class TestRefused:
+    def test_a_motion_that_needs_more_actuators(self) -> None:
+        m = sf.compile(MODELS["double_pendulum"], INTERPRETED)
+        q, v = np.array([0.3, 0.4]), np.zeros(2)
+        with pytest.raises(sf.ActuationError, match="1 independent efforts for 2 freedoms; .* is left at speed 'q2'"):
+            sf.actuator_efforts(m, q, v, np.ones(2), [m.names.v[0]])
+        # What it does by itself needs none.
+        a = m.forward_dynamics(q, v, np.zeros(m.nu))
+        assert sf.actuator_efforts(m, q, v, a, [m.names.v[0]]).efforts == pytest.approx([0.0], abs=1e-12)
+
+    def test_a_piston_at_its_dead_centre(self) -> None:
+        """The force of the piston does no work there, so that no force of it moves the crank."""
+        m = sf.compile(slider_crank(), INTERPRETED)
+        q, _ = posture(0.0)
+        with pytest.raises(sf.ActuationError, match="0 independent efforts for 1 freedoms"):
+            sf.actuator_efforts(m, q, np.zeros(3), [1.0, -1.4, 0.0], ["q3"])
+
+    @pytest.mark.parametrize(
+        ("q", "v", "a", "words"),
+        [
+            ([0.01, 0, 0], [0, 0, 0], [0, 0, 0], "phi = .* at 'pin"),
+            ([0, 0, 0], [1, 0, 0], [0, 0, 0], "G v - b = "),
+            ([0, 0, 0], [0, 0, 0], [0, 1, 0], "G a - gamma = "),
+        ],
+    )
+    def test_what_is_no_motion_of_the_mechanism(
+        self, q: list[float], v: list[float], a: list[float], words: str
+    ) -> None:
+        m = sf.compile(slider_crank(), INTERPRETED)
+        with pytest.raises(sf.ActuationError, match=words):
+            sf.actuator_efforts(m, posture(0.8)[0] + q, v, a, ["q1"])
+
+    def test_an_input_that_acts_by_its_square(self) -> None:
+        joint = sf.Joint("q1", "revolute", effort=("current^2",))
+        body = sf.RigidBody("b", joint, sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+        m = sf.compile(sf.System("s", [body], inputs=[sf.Input("current")]), INTERPRETED)
+        with pytest.raises(sf.ActuationError, match="not linear in actuators 'current'"):
+            sf.actuator_efforts(m, [0.0], [0.0], [2.0])
+
+    def test_names_of_nothing(self) -> None:
+        m = sf.compile(slider_crank(), INTERPRETED)
+        with pytest.raises(sf.UnknownNameError, match="no actuator 'q9'"):
+            sf.actuator_efforts(m, posture(0.8)[0], np.zeros(3), np.zeros(3), ["q9"])
