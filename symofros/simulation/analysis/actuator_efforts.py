@@ -10,9 +10,11 @@ import numpy as np
 
 from symofros.base.arrays import numeric
 from symofros.errors import ActuationError, Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import STILL, eliminate, free_motions, pseudo_inverse, residual_weights
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.beam_theory import bendings_at, refuse_beyond
 
 # Share of the terms of a sum below which it is their rounding.
 ROUNDING = 1e-12
@@ -35,6 +37,8 @@ class ActuatorEfforts:
         lam: Multipliers (..., nc), of least norm where conditions repeat each other.
         u: Inputs, with the efforts of those actuators that are inputs (..., nu).
         redundancy: Number of independent combinations of efforts that move nothing (...,); zero where they are unique.
+        bendings: Largest bending of each beam, with the error of its theory.
+        notes: Remarks: beams whose theory errs by more than a per cent.
     """
 
     actuators: tuple[str, ...]
@@ -42,6 +46,8 @@ class ActuatorEfforts:
     lam: Array
     u: Array
     redundancy: Array
+    bendings: tuple[BeamBending, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 class _State(NamedTuple):
@@ -66,6 +72,7 @@ def actuator_efforts(
     sizes: ArrayLike | None = None,
     par: ArrayLike | None = None,
     t: ArrayLike = 0.0,
+    beam_limit: float = BEAM_LIMIT,
 ) -> ActuatorEfforts:
     """The efforts of chosen actuators that make a mechanism move as given, loops closed.
 
@@ -85,8 +92,11 @@ def actuator_efforts(
             given, which weigh 1 N as 1 N m.
         par: Run-time parameters (..., npar).
         t: Time (...,).
+        beam_limit: Estimated error of the beams' second-order theory, relative to the deflection, beyond which there is
+            no result (docs/theory/beams.md, section 6); `math.inf` for no limit.
 
     Raises:
+        BeamTheoryError: A beam is bent beyond the limit.
         UnknownNameError: An actuator is neither an input nor a speed.
         ShapeError: An array does not fit.
         ActuationError: The motion violates the constraints, or these actuators can't produce it; says where, and by
@@ -119,7 +129,9 @@ def actuator_efforts(
         if name in model.names.u:
             inputs[..., model.names.u.index(name)] = efforts[..., k]
     _check_linear(model, terms, efforts, model.generalized_force(q, v, inputs, par=par, t=t), names)
-    return ActuatorEfforts(names, efforts, lam, inputs, redundancy)
+    bendings = _bendings(model, q, par, batch)
+    refuse_beyond(model, bendings, beam_limit, "the motion")
+    return ActuatorEfforts(names, efforts, lam, inputs, redundancy, bendings, bending_notes(bendings))
 
 
 def _names(model: Model, actuators: Collection[str] | None) -> tuple[str, ...]:
@@ -279,6 +291,17 @@ def _check_linear(model: Model, terms: _State, efforts: Array, force: Array, nam
                 "name the speeds of the joints that the actuators drive instead",
             )
         )
+
+
+def _bendings(model: Model, q: ArrayLike, par: ArrayLike | None, batch: tuple[int, ...]) -> tuple[BeamBending, ...]:
+    """Bending of each beam in the state of the batch where it is largest."""
+    if not model.beams():
+        return ()
+    values = model.parameter_values if par is None else np.asarray(par, dtype=np.float64)
+    configurations = np.broadcast_to(np.asarray(q, dtype=np.float64), (*batch, model.nq))
+    parameters = np.broadcast_to(values, (*batch, model.npar))
+    states = [bendings_at(model, configurations[index], parameters[index]) for index in np.ndindex(batch)]
+    return tuple(max(beam, key=lambda bending: bending.error) for beam in zip(*states, strict=True))
 
 
 def _listed(names: tuple[str, ...]) -> str:

@@ -151,6 +151,20 @@ def test_trees_have_their_inverse_dynamics() -> None:
     assert np.all(np.isnan(sf.actuator_efforts(m, q[0] * np.nan, v[0], a[0], m.names.v).efforts))
 
 
+def test_a_beam_bent_beyond_its_theory_is_told_of() -> None:
+    """The worst of a batch: a note from 1 % on, a refusal beyond the limit."""
+    beam = sf.Beam("beam", sf.Joint("q1", "revolute", actuated=True), 1.0, 1.0, 1.0, bend_y=1, retain="all")
+    m = sf.compile(sf.System("s", [beam]), INTERPRETED)
+    q, v = np.array([[0, 0.01], [0, 0.1]]), np.zeros((2, 2))
+    a = m.forward_dynamics(q, v, [[1.0], [2.0]])
+    assert not sf.actuator_efforts(m, q[0], v[0], a[0]).notes
+    result = sf.actuator_efforts(m, q, v, a)
+    assert result.efforts == pytest.approx(np.array([[1.0], [2.0]]), rel=1e-11)
+    assert len(result.notes) == 1 and "beam" in result.notes[0]
+    with pytest.raises(sf.BeamTheoryError, match="the motion lies beyond the theory"):
+        sf.actuator_efforts(m, 5 * q, v, m.forward_dynamics(5 * q, v, [[1.0], [2.0]]), beam_limit=0.1)
+
+
 class TestRefused:
     def test_a_motion_that_needs_more_actuators(self) -> None:
         m = sf.compile(MODELS["double_pendulum"], INTERPRETED)
