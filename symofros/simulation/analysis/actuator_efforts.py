@@ -12,9 +12,10 @@ from symofros.base.arrays import numeric
 from symofros.errors import ActuationError, Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.constrained import STILL, eliminate, free_motions, pseudo_inverse, residual_weights
+from symofros.runtime.constrained import eliminate, free_motions, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_at, refuse_beyond
+from symofros.simulation.analysis.consistency import consistent_jacobian, place_in_batch
 
 # Share of the terms of a sum below which it is their rounding.
 ROUNDING = 1e-12
@@ -23,8 +24,6 @@ RANK = 1e-10
 # Imbalance relative to the sum of the sizes of its terms: what accelerations of forward dynamics leave where the
 # condition of M is 1e7.
 BALANCE = 1e-8
-# Residual of phi = 0, and of G v = b and G a = gamma relative to their terms: what interpolated trajectories meet.
-CONSISTENT = 1e-6
 
 
 @dataclass(frozen=True)
@@ -111,7 +110,7 @@ def actuator_efforts(
     others[..., stated] = 0.0
     M, h, Q = model.dynamics(q, v, others, par=par, t=t)
     B = _columns(model, names, (q, v, others), Q, par, t)
-    G = _consistent_jacobian(model, (q, v, accelerations, others), par, t)
+    G = consistent_jacobian(model, (q, v, accelerations, others), par, t)
     batch = np.broadcast_shapes(h.shape[:-1], accelerations.shape[:-1])
     terms = _State(
         *(
@@ -183,48 +182,6 @@ def _columns(
     return np.stack(columns, axis=-1) if columns else np.zeros((*Q.shape, 0))
 
 
-def _consistent_jacobian(
-    model: Model, state: tuple[ArrayLike, ArrayLike, Array, Array], par: ArrayLike | None, t: ArrayLike
-) -> Array:
-    """G (..., nc, nv), at a motion that meets the constraints.
-
-    Raises:
-        ActuationError: It does not.
-    """
-    if not model.nc:
-        return np.zeros((0, model.nv))
-    q, v, a, u = state
-    G = model.constraint_jacobian(q, u=u, par=par, t=t)
-    speeds, size = np.asarray(v, dtype=np.float64), np.abs(G)
-    weights = np.array([residual_weights(one, model.record.measures) for one in G.reshape(-1, model.nc, model.nv)])
-    phi = model.constraint(q, u=u, par=par, t=t)
-    rate = model.constraint_rate(q, v, u=u, par=par, t=t)
-    gamma = model.constraint_bias(q, v, u=u, par=par, t=t)
-    square = np.square(speeds).max(axis=-1, keepdims=True, initial=0.0)
-    moved = (size @ np.abs(speeds)[..., None])[..., 0]
-    # At rest residuals are rounding; gamma is a sum of products of speeds, which may cancel.
-    rest = STILL * size.sum(axis=-1)
-    terms = (size @ np.abs(a)[..., None])[..., 0] + np.abs(gamma) + size.sum(axis=-1) * square + rest
-    residuals = {
-        "phi = {:.3g}": (phi * weights.reshape(phi.shape), np.ones_like(phi)),
-        "G v - b = {:.3g}": (rate, rest + moved + np.abs(rate - (G @ speeds[..., None])[..., 0])),
-        "G a - gamma = {:.3g}": ((G @ a[..., None])[..., 0] - gamma, terms),
-    }
-    for text, (residual, against) in residuals.items():
-        excess = np.abs(residual) - CONSISTENT * against
-        if excess.max(initial=0.0) > 0.0:
-            *index, row = (int(i) for i in np.unravel_index(int(np.argmax(excess)), excess.shape))
-            raise ActuationError(
-                Problem(
-                    f"model '{model.record.name}': the motion violates its constraints{_at(tuple(index))}",
-                    f"{text.format(residual[(*index, row)])} at '{model.names.constraints[row]}'",
-                    "efforts are those of a motion with phi = 0, G v = b and G a = gamma",
-                    "q and v from sf.assemble or model.project; a from forward_dynamics, or with G a = gamma",
-                )
-            )
-    return G
-
-
 def _solve(
     model: Model, names: tuple[str, ...], state: _State, sizes: Array, index: tuple[int, ...]
 ) -> tuple[Array, Array, int]:
@@ -250,7 +207,7 @@ def _solve(
         worst = int(np.argmax(excess))
         raise ActuationError(
             Problem(
-                f"model '{model.record.name}': {_listed(names)} can't produce the motion{_at(index)}",
+                f"model '{model.record.name}': {_listed(names)} can't produce the motion{place_in_batch(index)}",
                 f"{rank} independent efforts for {len(free)} freedoms; {left[worst]:.3g} is left at speed"
                 f" '{model.names.v[free[worst]]}'",
                 "the efforts of the actuators produce every motion, or this one happens to need no others",
@@ -284,7 +241,7 @@ def _check_linear(model: Model, terms: _State, efforts: Array, force: Array, nam
         *index, k = (int(i) for i in np.unravel_index(int(np.argmax(excess)), excess.shape))
         raise ActuationError(
             Problem(
-                f"model '{model.record.name}': the forces are not linear in {_listed(names)}{_at(tuple(index))}",
+                f"model '{model.record.name}': forces not linear in {_listed(names)}{place_in_batch(tuple(index))}",
                 f"at speed '{model.names.v[k]}' the efforts found give {force[(*index, k)]:.6g}, a linear law"
                 f" {made[(*index, k)]:.6g}",
                 "an actuator's force is proportional to its input",
@@ -307,7 +264,3 @@ def _bendings(model: Model, q: ArrayLike, par: ArrayLike | None, batch: tuple[in
 def _listed(names: tuple[str, ...]) -> str:
     shown = ", ".join(f"'{name}'" for name in names[:6]) + (", ..." if len(names) > 6 else "")
     return f"actuators {shown}" if names else "no actuators"
-
-
-def _at(index: tuple[int, ...]) -> str:
-    return f", state {index if len(index) > 1 else index[0]}" if index else ""

@@ -201,7 +201,7 @@ class TestRefused:
         joint = sf.Joint("q1", "revolute", effort=("current^2",))
         body = sf.RigidBody("b", joint, sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
         m = sf.compile(sf.System("s", [body], inputs=[sf.Input("current")]), INTERPRETED)
-        with pytest.raises(sf.ActuationError, match="not linear in actuators 'current'"):
+        with pytest.raises(sf.ActuationError, match="forces not linear in actuators 'current'"):
             sf.actuator_efforts(m, [0.0], [0.0], [2.0])
 
     def test_names_of_nothing(self) -> None:

@@ -4,6 +4,7 @@ disagreement to a minimal tree.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -107,3 +108,28 @@ def test_either_way_of_forward_dynamics(way: Literal["articulated", "factors"], 
     # A joint across gravity rests: what an engine then gives is the rounding of a quarter turn, a share of gravity.
     scale = max(np.abs(expected).max(), np.linalg.norm(system.gravity))
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * scale)
+
+
+@settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@given(system=trees(), which=st.integers(0, 5))
+def test_the_drive_of_a_prescribed_joint_supplies_what_inverse_dynamics_asks(system: sf.System, which: int) -> None:
+    """The same motion, one joint of it prescribed: its effort and those of the other joints are as before."""
+    described = assemble(system).joints
+    chosen = described[which % len(described)]
+    bodies = [
+        replace(body, joint=replace(body.joint, prescribed=True))
+        if body.joint is not None and body.joint.name == chosen.joint.name
+        else body
+        for body in system.bodies
+    ]
+    options = sf.Options(backend="interpreter")
+    free, driven = sf.compile(system, options), sf.compile(system.with_bodies(*bodies), options)
+    states = sample(assemble(system), 0, STATES)
+    motion = np.hstack([states.q[:, chosen.q], states.v[:, chosen.v], states.a[:, chosen.v]])
+    q = np.delete(states.q, chosen.q, axis=1)
+    v, a = np.delete(states.v, chosen.v, axis=1), np.delete(states.a, chosen.v, axis=1)
+    tau = free.inverse_dynamics(states.q, states.v, states.a)
+    tolerance = 1e-12 * max(1.0, np.abs(tau).max())
+    np.testing.assert_allclose(driven.prescribed_efforts(q, v, a, motion), tau[:, chosen.v], rtol=0, atol=tolerance)
+    wanted = np.delete(tau, chosen.v, axis=1)
+    np.testing.assert_allclose(driven.inverse_dynamics(q, v, a, u=motion), wanted, rtol=0, atol=tolerance)

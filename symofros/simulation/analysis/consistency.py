@@ -1,0 +1,60 @@
+"""Whether a motion meets the constraints: phi = 0, G v = b, G a = gamma."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from symofros.errors import ActuationError, Problem
+from symofros.runtime.calls.kernel import Array
+from symofros.runtime.constrained import STILL, residual_weights
+from symofros.runtime.model import ArrayLike, Model
+
+# Residual of phi = 0, and of G v = b and G a = gamma relative to their terms: what interpolated trajectories meet.
+CONSISTENT = 1e-6
+
+
+def consistent_jacobian(
+    model: Model, state: tuple[ArrayLike, ArrayLike, Array, Array], par: ArrayLike | None, t: ArrayLike
+) -> Array:
+    """G (..., nc, nv), at a motion that meets the constraints.
+
+    Raises:
+        ActuationError: It does not.
+    """
+    if not model.nc:
+        return np.zeros((0, model.nv))
+    q, v, a, u = state
+    G = model.constraint_jacobian(q, u=u, par=par, t=t)
+    speeds, size = np.asarray(v, dtype=np.float64), np.abs(G)
+    weights = np.array([residual_weights(one, model.record.measures) for one in G.reshape(-1, model.nc, model.nv)])
+    phi = model.constraint(q, u=u, par=par, t=t)
+    rate = model.constraint_rate(q, v, u=u, par=par, t=t)
+    gamma = model.constraint_bias(q, v, u=u, par=par, t=t)
+    square = np.square(speeds).max(axis=-1, keepdims=True, initial=0.0)
+    moved = (size @ np.abs(speeds)[..., None])[..., 0]
+    # At rest residuals are rounding; gamma is a sum of products of speeds, which may cancel.
+    rest = STILL * size.sum(axis=-1)
+    terms = (size @ np.abs(a)[..., None])[..., 0] + np.abs(gamma) + size.sum(axis=-1) * square + rest
+    residuals = {
+        "phi = {:.3g}": (phi * weights.reshape(phi.shape), np.ones_like(phi)),
+        "G v - b = {:.3g}": (rate, rest + moved + np.abs(rate - (G @ speeds[..., None])[..., 0])),
+        "G a - gamma = {:.3g}": ((G @ a[..., None])[..., 0] - gamma, terms),
+    }
+    for text, (residual, against) in residuals.items():
+        excess = np.abs(residual) - CONSISTENT * against
+        if excess.max(initial=0.0) > 0.0:
+            *index, row = (int(i) for i in np.unravel_index(int(np.argmax(excess)), excess.shape))
+            raise ActuationError(
+                Problem(
+                    f"model '{model.record.name}': the motion violates its constraints{place_in_batch(tuple(index))}",
+                    f"{text.format(residual[(*index, row)])} at '{model.names.constraints[row]}'",
+                    "efforts are those of a motion with phi = 0, G v = b and G a = gamma",
+                    "q and v from sf.assemble or model.project; a from forward_dynamics, or with G a = gamma",
+                )
+            )
+    return G
+
+
+def place_in_batch(index: tuple[int, ...]) -> str:
+    """Words for a state of a batch; none where there is but one."""
+    return f", state {index if len(index) > 1 else index[0]}" if index else ""
