@@ -14,6 +14,7 @@ from reference_models import MODELS
 from validation.mechanics.assembly import Mover, assemble
 
 G = 9.81
+INTERPRETED = sf.Options(backend="interpreter")
 # A sum over bodies of some hundred products, relative to the largest entry.
 ROUNDING = 1e-12
 FUNCTIONS = ("joint_wrenches", "prescribed_efforts", "closure_wrenches")
@@ -21,7 +22,7 @@ FUNCTIONS = ("joint_wrenches", "prescribed_efforts", "closure_wrenches")
 
 @cache
 def model(name: str) -> sf.Model:
-    return sf.compile(MODELS[name], sf.Options(backend="interpreter"))
+    return sf.compile(MODELS[name], INTERPRETED)
 
 
 def weight_and_inertia(
@@ -146,7 +147,7 @@ EVERYTHING = sf.System(
 
 def test_power_of_the_drives_and_actuators_is_the_rate_of_energy() -> None:
     """d(T + V)/dt = drives, actuator and damper: through rotors, beams, springs, potentials and connections."""
-    m = sf.compile(EVERYTHING, sf.Options(backend="interpreter"))
+    m = sf.compile(EVERYTHING, INTERPRETED)
     assert m.names.prescribed == ("q1", "q3") and m.names.joints == ("q1", "q2", "q3", "clamp", "boom.tip")
     rng = np.random.default_rng(1)
     y, dy, ddy = 0.3 * rng.normal(size=(3, m.nv))
@@ -164,11 +165,38 @@ def test_power_of_the_drives_and_actuators_is_the_rate_of_energy() -> None:
     assert slope(energy, 1e-4) == pytest.approx(sum(powers), abs=1e-9 * np.abs(powers).sum())
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_power_of_the_wrench_at_the_root_of_a_bent_beam(seed: int) -> None:
+    """Its root is moved in all six directions at once: the drive's efforts are the wrench, d(T + V)/dt its power."""
+    base = sf.Joint("base", "free", prescribed=True)
+    beam = sf.Beam(
+        "beam", base, 1.0, 0.5, 20.0, 30.0, 10.0, 0.01, bend_y=2, bend_z=2, twist=1, rotary_inertia=True, retain="all"
+    )
+    load = sf.RigidBody("load", sf.Joint("weld", "fixed", "beam", "tip"), sf.Inertia(0.3, (0.1, 0, 0), (0.1,) * 3))
+    m = sf.compile(sf.System("s", [beam, load]), INTERPRETED)
+    pose = sf.compile(sf.System("p", [sf.RigidBody("b", sf.Joint("p", "free"), sf.Inertia(1.0))]), INTERPRETED)
+    rng = np.random.default_rng(seed)
+    start, (twist, rate) = pose.random_state(rng)[0], rng.normal(size=(2, 6))
+    q, v = 0.1 * rng.normal(size=m.nv), rng.normal(size=m.nv)
+    u = np.concatenate([start, twist, rate])
+    a = m.forward_dynamics(q, v, u)
+
+    def energy(s: float) -> float:
+        moved = np.concatenate([pose.integrate(start, s * twist), twist + s * rate, rate])
+        x, w = q + s * v, v + s * a
+        return float(m.kinetic_energy(x, w, u=moved) + m.potential_energy(x, u=moved))
+
+    efforts = m.prescribed_efforts(q, v, a, u)
+    np.testing.assert_allclose(m.joint_wrenches(q, v, a, u)[0], efforts, rtol=1e-13)
+    powers = efforts * twist
+    assert slope(energy, 1e-4) == pytest.approx(powers.sum(), abs=1e-8 * np.abs(powers).sum())
+
+
 def test_power_of_a_crank_that_drives_a_loop_with_a_beam() -> None:
     """Wrenches through the loop are those of its multipliers: without them the drive of the crank would be wrong."""
     system = MODELS["flexible_slider_crank"]
     bodies = [replace(body, retain="all", damping=0.0) if isinstance(body, sf.Beam) else body for body in system.bodies]
-    m = sf.compile(replace(system, bodies=tuple(bodies)), sf.Options(backend="interpreter"))
+    m = sf.compile(replace(system, bodies=tuple(bodies)), INTERPRETED)
     motion = np.array([0.7, 3.0, 2.0])
     guess = 1e-4 * np.ones(m.nq)
     state = sf.assemble(m, guess, 0.1 * np.ones(m.nv), u=motion)
@@ -191,7 +219,7 @@ class TestClosedForms:
         mass, length, J, armature = 2.0, 0.5, 0.1, 0.03
         joint = sf.Joint("pin", "revolute", axis=(0, -1, 0), prescribed=True, armature=armature)
         body = sf.RigidBody("b", joint, sf.Inertia(mass, (0, 0, -length), (J, J, 0.1 * J)))
-        m = sf.compile(sf.System("p", [body]), sf.Options(backend="interpreter"))
+        m = sf.compile(sf.System("p", [body]), INTERPRETED)
         theta, rate, acceleration = 0.4, 3.0, 5.0
         u = np.array([theta, rate, acceleration])
         wanted = (J + mass * length**2 + armature) * acceleration + mass * G * length * np.sin(theta)
@@ -210,7 +238,7 @@ class TestClosedForms:
         clamp = sf.Joint("clamp", "fixed")
         beam = sf.Beam("beam", clamp, 2.0, 0.5, 1e9, 1e9, 1e9, 0.1, bend_y=2, bend_z=2, twist=1, loads=loads)
         weight = sf.RigidBody("weight", sf.Joint("weld", "fixed", "beam", "tip"), sf.Inertia(0.3, (0.1, 0, 0)))
-        m = sf.compile(sf.System("c", [beam, weight]), sf.Options(backend="interpreter"))
+        m = sf.compile(sf.System("c", [beam, weight]), INTERPRETED)
         root, tip = m.joint_wrenches(np.zeros(5), np.zeros(5), np.zeros(5), [])
         force = 1.0 * G + 6.0 + 2.0 + 0.3 * G
         assert root == pytest.approx([0, 0, force, 0, -(G + 6.0 + 4.0 + 0.3 * 2.1 * G), 0], abs=1e-12)
@@ -225,7 +253,7 @@ class TestClosedForms:
             [sf.Frame("end", (1, 0, 0))],
         )
         rest = sf.Closure("rest", ("world", None), ("b", "end"), ("z",))
-        m = sf.compile(sf.System("s", [bar], constraints=[rest]), sf.Options(backend="interpreter"))
+        m = sf.compile(sf.System("s", [bar], constraints=[rest]), INTERPRETED)
         _, lam = m.forward_dynamics([0.0], [0.0], [], multipliers=True)
         assert m.joint_wrenches([0.0], [0.0], [0.0], [], lam)[0] == pytest.approx([0, 0, 1.4 * G, 0, 0, 0], abs=1e-12)
 
@@ -244,7 +272,7 @@ class TestClosedForms:
         right = sf.RigidBody("right", joint, inertia, [sf.Frame("apex", (1, 0, 0))])
         pin = sf.Closure("pin", ("left", "apex"), ("right", "apex"), ("x", "z"))
         truss = sf.System("truss", [left, right], constraints=[pin], gravity=(0, 0, 0))
-        m = sf.compile(truss, sf.Options(backend="interpreter"))
+        m = sf.compile(truss, INTERPRETED)
         q = [half, np.pi - half]
         a, lam = m.forward_dynamics(q, [0.0, 0.0], [], multipliers=True)
         wrenches = m.joint_wrenches(q, [0.0, 0.0], a, [], lam)
