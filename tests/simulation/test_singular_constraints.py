@@ -59,6 +59,7 @@ def test_a_disc_that_falls_flat_in_a_batch_is_no_good_run() -> None:
 @settings(max_examples=25, deadline=None)
 @example(tilt=0.5, spin=0.01, turn=0.0, way=0)
 @example(tilt=1.2, spin=0.1, turn=0.0, way=3)
+@example(tilt=0.5, spin=0.0, turn=1.0, way=0)
 @given(
     tilt=st.floats(0.15, 1.4), spin=st.floats(-3.0, 3.0), turn=st.floats(-2.0, 2.0), way=st.integers(0, len(WAYS) - 1)
 )
@@ -66,7 +67,8 @@ def test_a_rolling_disc_keeps_its_energy_or_says_why_not(tilt: float, spin: floa
     q, v = disc(tilt, spin, turn)
     method, options = WAYS[way]
     run = sf.simulate(model("rolling_disc"), q, v, t_end=1.0, method=method, max_steps=5000, **options)  # type: ignore[arg-type]
-    assert not run.outcome.ok or change_of_energy(run) < 0.1, str(run.outcome)
+    noted = any(note.startswith("energy changes by") for note in run.outcome.notes)
+    assert noted or not run.outcome.ok or change_of_energy(run) < 0.1, str(run.outcome)
 
 
 @pytest.mark.parametrize("name", ["four_bar", "parallelogram", "slider_crank", "delta", "rolling_disc"])

@@ -15,7 +15,7 @@ from symofros.simulation.analysis.postures import nearest_to_singular
 from symofros.simulation.results.constraint_faults import jump, lost_energy, violation
 from symofros.simulation.results.input_faults import input_failure, input_fault
 from symofros.simulation.results.outcome import Kind, Outcome
-from symofros.simulation.results.step_size import remedy, step_size_note, unresolved_mode
+from symofros.simulation.results.step_size import energy_note, remedy, step_size_note, unresolved_mode
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded
 from symofros.simulation.stepping.status import Status
@@ -48,6 +48,8 @@ def diagnose(
     mode = unresolved_mode(stepper, settings, start, states, _steps_meant(settings) if failed else int(run.steps))
     if mode is not None:
         notes = (*notes, step_size_note(mode, stepper, settings, () if failed else states))
+    if status >= 0 and (mode is None or not mode.amplified) and (changed := energy_note(stepper, settings, states)):
+        notes = (*notes, changed)
 
     def outcome(kind: Kind, reason: str, advice: str = "") -> Outcome:
         return Outcome(kind, t, reason, advice, notes)

@@ -10,7 +10,6 @@ import numpy as np
 from symofros.errors import SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.manifold import retract
-from symofros.runtime.model import Model
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import Mode, largest_stable_step, states_to_examine, worst_mode
 from symofros.simulation.stepping.stepper import Stepper
@@ -19,6 +18,10 @@ from symofros.simulation.stepping.stepper import Stepper
 _MOMENT = 1e-3
 # Records, about, among which the fastest is looked for.
 _SPEEDS = 200
+# Records, about, among which energy is looked at first.
+_FEW = 32
+# Change of energy, over the largest kinetic energy, that is worth a note; work that explains a change, over it.
+_NOTED_CHANGE, _NOTED_WORK = 0.05, 0.1
 # Records at most this many steps apart show the work between them.
 _DENSE = 1.5
 
@@ -109,17 +112,43 @@ def _percent(share: float) -> str:
     return f"{100.0 * share:.2g} %" if share < 1.0 else "more than 100 %"
 
 
+def energy_note(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:
+    """Energy that changed although no force did work (17), in words; nothing where it is small or not shown.
+
+    Args:
+        stepper: Stepper of the run.
+        settings: Settings of the run.
+        states: All that it recorded: t (n), q, v, u.
+    """
+    few = [x[:: max(1, len(x) // _FEW)] for x in states]
+    with np.errstate(all="ignore"):  # What overflows is left out.
+        energies = _energies(stepper, few)
+        if energies is None:
+            return ""
+        kinetic, energy = energies
+        change, largest = float(np.abs(energy - energy[0]).max()), float(kinetic.max())
+        if not (math.isfinite(change) and change > _NOTED_CHANGE * largest > 0.0):
+            return ""
+        # Most forces that do work are seen at once; a short contact is seen among all records.
+        span = float(states[0][-1] - states[0][0])
+        for records in (few, states):
+            power = _power(stepper, span / int(stepper.run.steps), records)
+            if not float(np.abs(power).max()) * span <= _NOTED_WORK * change:
+                return ""
+    if int(stepper.run.steps) > _DENSE * (len(states[0]) - 1):
+        return ""
+    return (
+        f"energy changes by {change:.3g} J although no force does work, where the motion has {largest:.3g} J at most:"
+        f" {'a smaller dt' if not settings.adaptive else 'tighter tolerances'}, or another method"
+    )
+
+
 def _energy_that_appeared(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:
     """The change of energy that no force supplied, where the records show it: "... J appeared ...; ", or nothing."""
-    model, (t, q, v, u) = stepper.model, states
-    if model.record.driven or len(t) < 2 or not (np.isfinite(q).all() and np.isfinite(v).all()):
+    energies, t = _energies(stepper, states), states[0]
+    if energies is None:
         return ""
-    try:
-        kinetic = model.kinetic_energy(q, v, u=u, par=stepper.par)
-        energy = kinetic + model.potential_energy(q, u=u, par=stepper.par, t=t)
-        power = _power(model, stepper.par, t, q, v, u, _MOMENT * settings.dt)
-    except SymofrosError:  # Options.functions left the energies out.
-        return ""
+    (kinetic, energy), power = energies, _power(stepper, settings.dt, states)
     spans = np.diff(t)
     work, change = float(np.sum(0.5 * (power[1:] + power[:-1]) * spans)), float(energy[-1] - energy[0])
     known = spans.max() <= _DENSE * settings.dt or float(np.abs(power).max() * spans.sum()) <= 1e-2 * abs(change)
@@ -129,8 +158,22 @@ def _energy_that_appeared(stepper: Stepper, settings: Settings, states: Sequence
     return f"{appeared:.3g} J appeared that no force supplied, where the motion has {largest:.3g} J at most; "
 
 
-def _power(model: Model, par: Array, t: Array, q: Array, v: Array, u: Array, moment: float) -> Array:
+def _energies(stepper: Stepper, states: Sequence[Array]) -> tuple[Array, Array] | None:
+    """Kinetic and total energy (n) of records; None where motions are prescribed or the model has no energies."""
+    model, (t, q, v, u) = stepper.model, states
+    if model.record.driven or len(t) < 2 or not (np.isfinite(q).all() and np.isfinite(v).all()):
+        return None
+    try:
+        kinetic = model.kinetic_energy(q, v, u=u, par=stepper.par)
+        return kinetic, kinetic + model.potential_energy(q, u=u, par=stepper.par, t=t)
+    except SymofrosError:  # Options.functions left them out.
+        return None
+
+
+def _power(stepper: Stepper, step: float, states: Sequence[Array]) -> Array:
     """Rate of the energy along the motion (n), by central differences: the power of all but conservative forces."""
+    model, par, (t, q, v, u) = stepper.model, stepper.par, states
+    moment = _MOMENT * step
     a = model.forward_dynamics(q, v, u, par=par, t=t)
     ends = []
     for s in (moment, -moment):

@@ -138,3 +138,31 @@ def test_each_run_of_a_batch_is_judged_by_its_own_parameters() -> None:
         assert [note[:60] for note in many[i].outcome.notes] == [note[:60] for note in alone.outcome.notes]
         assert bool(many.outcome(i).notes) == (z[i] > 0.5)
     assert "past the limit of stability" in many.outcome(3).notes[0] and "steps, first seen in [1]" in str(many)
+
+
+def energy_notes(run: sf.Trajectory) -> list[str]:
+    return [note for note in run.outcome.notes if note.startswith("energy changes by")]
+
+
+@pytest.mark.parametrize("method", ["implicit_euler", "rk4"])
+def test_energy_that_no_force_takes_is_noted(method: str) -> None:
+    """A free oscillator must keep its energy; one that a damper or an input moves need not."""
+    for z in np.geomspace(1e-3, 1.0, 13):
+        k, steps = (z / H) ** 2, 200
+        free = sf.simulate(oscillator(), [1.0], [0.0], steps * H, method=method, dt=H, par=[k, 0.0])
+        change = np.abs(free.energy / free.energy[0] - 1.0).max()
+        if change > 0.1:
+            assert energy_notes(free), (z, change)
+        elif change < 0.03:
+            assert not energy_notes(free), (z, change)
+    damped = sf.simulate(oscillator(), [1.0], [0.0], 2.0, method=method, dt=1e-3, par=[100.0, 2.0])
+    driven = sf.simulate(oscillator(), [1.0], [0.0], 2.0, method=method, dt=1e-3, par=[100.0, 0.0], u={"x": "3*t"})
+    assert not energy_notes(damped) and not energy_notes(driven)
+
+
+def test_a_damped_contact_takes_energy_without_a_note() -> None:
+    """It lasts some hundredths of a second: few of the records show its power."""
+    stop = sf.Stop(1e4, damping=40.0, lower=0.0)
+    ball = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1), elements=(stop,)), sf.Inertia(1.0))
+    run = sf.simulate(sf.compile(sf.System("ball", [ball])), [1.0], t_end=2.0, method="rk4", dt=1e-3)
+    assert run.energy[-1] < 0.8 * run.energy[0] and not energy_notes(run)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
@@ -80,7 +81,9 @@ def test_comments_elsewhere_survive_any_new_value(name: str, value: Any, data: s
     source = YamlText(text)
     node = source.node(path)
     assert node is not None
-    inside = text[node.start : source.end(node)]
+    # Comments between a key and a value that stands below it are the value's.
+    key = re.search(r":[ \t]*\n(?:[ \t]*(?:#.*)?\n)*[ \t]*\Z", text[: node.start])
+    inside = text[key.start() if key else node.start : source.end(node)]
     comments = [line for line in text.splitlines() if line.strip().startswith("#") and line not in inside]
     left = apply(text, Edit("set", path, value)).splitlines()
     assert [line for line in left if line in comments] == comments
