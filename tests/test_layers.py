@@ -108,7 +108,8 @@ STUDIES = table("""
     stability:   accuracy
     studies:     accuracy oracle stability timing
     pareto:      stability studies timing
-    dashboard:   cross_check campaigns diagrams accuracy timing passes stability studies pareto
+    adversary:   accuracy
+    dashboard:   adversary cross_check campaigns diagrams accuracy timing passes stability studies pareto
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, nothing else.
 MAY_USE = HARNESS | {name: others | set(HARNESS) for name, others in STUDIES.items()} | {"oracle": {"mechanics"}}

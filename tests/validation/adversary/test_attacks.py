@@ -1,0 +1,137 @@
+"""Each attack sees the fault that it looks for, shrinks it, and finds nothing where nothing is planted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import symofros as sf
+from symofros.simulation.results.outcome import Outcome
+from validation.adversary.catalogue import ATTACKS
+from validation.adversary.search import Budget, Find, Tally, hunt
+
+Plant = Callable[[pytest.MonkeyPatch], None]
+FINE = "dop853"
+
+
+def hunted(name: str, folder: Path, examples: int, seed: int = 0) -> tuple[Find | None, Tally]:
+    tally = Tally()
+    return hunt(ATTACKS[name], folder, seed, Budget(inf, examples), tally, set()), tally
+
+
+def wrong(name: str, by: float) -> Plant:
+    """A method of models whose first result is wrong by a factor."""
+
+    def plant(monkeypatch: pytest.MonkeyPatch) -> None:
+        sound = getattr(sf.Model, name)
+
+        def faulty(*given: Any, **named: Any) -> Any:
+            result = sound(*given, **named)
+            return (result[0] * by, *result[1:]) if isinstance(result, tuple) else result * by
+
+        monkeypatch.setattr(sf.Model, name, faulty)
+
+    return plant
+
+
+def runs(change: Callable[[sf.Trajectory], sf.Trajectory], **options: Any) -> Plant:
+    """Runs, but for the finer ones, that are not what they should be."""
+
+    def plant(monkeypatch: pytest.MonkeyPatch) -> None:
+        sound = sf.simulate
+
+        def faulty(*given: Any, **named: Any) -> sf.Trajectory:
+            if named.get("method") == FINE or "rtol" in named and named["rtol"] == 1e-5:
+                return sound(*given, **named)
+            return change(sound(*given, **{**named, **options}))
+
+        monkeypatch.setattr(sf, "simulate", faulty)
+
+    return plant
+
+
+def silenced(run: sf.Trajectory) -> sf.Trajectory:
+    """A run that says that all is well, whatever it met."""
+    calm = Outcome("finished", run.outcome.t, "steps are done")
+    return replace(run, outcome=calm, bendings=tuple(replace(bending, error=0.0) for bending in run.bendings))
+
+
+def equilibria_without_estimates(monkeypatch: pytest.MonkeyPatch) -> None:
+    sound = sf.equilibrium
+
+    def faulty(*given: Any, **named: Any) -> sf.Equilibrium:  # type: ignore[name-defined]
+        rest = sound(*given, **named, beam_limit=inf)
+        return replace(rest, notes=(), bendings=tuple(replace(bending, error=0.0) for bending in rest.bendings))
+
+    monkeypatch.setattr(sf, "equilibrium", faulty)
+
+
+def always_converged(monkeypatch: pytest.MonkeyPatch) -> None:
+    sound = sf.inverse_kinematics
+    monkeypatch.setattr(sf, "inverse_kinematics", lambda *a, **k: replace(sound(*a, **k), converged=True))
+
+
+FAULTS: dict[str, Plant] = {
+    "rigid_trees": wrong("forward_dynamics", 1.0 + 1e-5),
+    "closed_dynamics": wrong("constrained_dynamics", 1.0 + 1e-6),
+    "loop_runs": runs(lambda run: replace(run, q=1.001 * run.q)),
+    "rolling_runs": runs(lambda run: replace(run, v=1.3 * run.v)),
+    "step_sizes": runs(silenced),
+    "beam_statics": equilibria_without_estimates,
+    "beam_runs": runs(silenced, beam_limit=inf),
+    "inverse_kinematics": always_converged,
+}
+
+
+def test_each_attack_has_a_planted_fault() -> None:
+    assert FAULTS.keys() == ATTACKS.keys()
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_planted_fault_is_found_and_its_scene_is_plain(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    attack = ATTACKS[name]
+    FAULTS[name](monkeypatch)
+    find, tally = hunted(name, tmp_path, 60)
+    assert find is not None and tally.tried <= 60
+    assert not attack.verdict(find.scene).sound
+    monkeypatch.undo()
+    assert attack.verdict(find.scene).sound
+
+
+@pytest.mark.parametrize("name", ATTACKS)
+def test_a_few_scenes_contradict_nothing(name: str, tmp_path: Path) -> None:
+    find, tally = hunted(name, tmp_path, 12)
+    assert find is None, find
+    assert tally.tried == 12 and tally.agreed > 0, tally
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ATTACKS)
+def test_many_scenes_contradict_nothing(name: str, tmp_path: Path) -> None:
+    find, tally = hunted(name, tmp_path, 200, seed=1)
+    assert find is None, find
+    assert tally.agreed > 10, tally
+
+
+@pytest.mark.parametrize("name", ATTACKS)
+def test_scenes_can_be_written_as_descriptions(name: str, tmp_path: Path) -> None:
+    find, _ = hunted_scene(name, tmp_path)
+    stated = ATTACKS[name].system(find)
+    sf.save(stated, tmp_path / "scene.yaml")
+    assert sf.load(tmp_path / "scene.yaml") == stated
+
+
+def hunted_scene(name: str, folder: Path) -> tuple[dict[str, Any], Tally]:
+    """The plainest scene of an attack."""
+    tally = Tally()
+    anything = replace(ATTACKS[name], judge=lambda scene: 1 / 0)
+    find = hunt(anything, folder, 0, Budget(inf, 40), tally, set())
+    assert find is not None and find.quantity == "ZeroDivisionError"
+    return find.scene, tally

@@ -1,0 +1,27 @@
+"""The attacks by name."""
+
+from __future__ import annotations
+
+from validation.adversary.attack import Attack
+from validation.adversary.attacks import (
+    beam_runs,
+    beam_statics,
+    closed_dynamics,
+    inverse_kinematics,
+    loop_runs,
+    rigid_trees,
+    rolling_runs,
+    step_sizes,
+)
+
+_MODULES = (
+    rigid_trees,
+    closed_dynamics,
+    loop_runs,
+    rolling_runs,
+    step_sizes,
+    beam_statics,
+    beam_runs,
+    inverse_kinematics,
+)
+ATTACKS: dict[str, Attack] = {module.ATTACK.name: module.ATTACK for module in _MODULES}
