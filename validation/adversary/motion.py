@@ -11,11 +11,11 @@ from validation.adversary.attack import Verdict, compared, refused, undecided, w
 from validation.mechanics.geometry import Array
 
 # Notes on fixed steps begin where modes err by a tenth of the speed in sum, estimated at a few states (section 8 of
-# docs/theory/simulation.md): what comes without a note may err by twice that.
-UNNOTED = 0.2
-# Share of the largest kinetic energy that may come or go in a run of a conservative mechanism without a word: twice
-# what a speed in error by a tenth makes of it.
-UNNOTED_ENERGY = 0.4
+# docs/theory/simulation.md), which is right within a factor of three.
+UNNOTED = 0.3
+# Share of the largest kinetic energy that may come or go in a run of a conservative mechanism without a word: what such
+# an error of the speed makes of it.
+UNNOTED_ENERGY = 2.0 * UNNOTED
 # Share by which the sensitive motion's start is moved, and growth of that from which no step would follow the motion.
 MOVED, SENSITIVE = 1e-6, 1e3
 # Adaptive steps of the finer run; with them the errors are far below those that are asked about.

@@ -32,7 +32,9 @@ def described(scene: Scene) -> sf.System:
 
 
 SOUND = replace(
-    Attack("toy", "numbers are small", "counting", st.fixed_dictionaries({"x": st.integers(0, 1000)}), described, judge),
+    Attack(
+        "toy", "numbers are small", "counting", st.fixed_dictionaries({"x": st.integers(0, 1000)}), described, judge
+    ),
     judge=lambda scene: compared("size", 1.0, 2.0, "small"),
 )
 FAULTY = replace(SOUND, judge=judge)

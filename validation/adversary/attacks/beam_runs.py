@@ -60,7 +60,12 @@ def _values(scene: Scene) -> dict[str, float]:
     force = EI / L**2
     P = scene["P"] * np.pi**2 / 4.0 * force
     return {
-        "L": L, "EI": EI, "P": P, "F": scene["F"] * force, "w": scene["w"] * force / L, "rho": scene["rho"],
+        "L": L,
+        "EI": EI,
+        "P": P,
+        "F": scene["F"] * force,
+        "w": scene["w"] * force / L,
+        "rho": scene["rho"],
     }
 
 
@@ -86,8 +91,14 @@ def judge(scene: Scene) -> Verdict:
     if not run.outcome.ok or not beams_only:
         return refused(run.outcome)
     fine = sf.simulate(
-        cantilever(_PARTS).model, t_end=t_end, par=par, method="rodas4", rtol=1e-5, atol=1e-7 * scene["L"],
-        output=times, max_steps=4000,
+        cantilever(_PARTS).model,
+        t_end=t_end,
+        par=par,
+        method="rodas4",
+        rtol=1e-5,
+        atol=1e-7 * scene["L"],
+        output=times,
+        max_steps=4000,
     )
     if not fine.outcome.ok or fine.outcome.notes:
         return undecided(f"four beams: {fine.outcome}")

@@ -50,7 +50,11 @@ def values_of(scene: Scene) -> dict[str, float]:
     L, EI = scene["L"], scene["EI"]
     force = EI / L**2
     return {
-        "L": L, "EI": EI, "P": scene["P"] * CRITICAL * force, "F": scene["F"] * force, "w": scene["w"] * force / L,
+        "L": L,
+        "EI": EI,
+        "P": scene["P"] * CRITICAL * force,
+        "F": scene["F"] * force,
+        "w": scene["w"] * force / L,
         "rho": 1.0,
     }
 

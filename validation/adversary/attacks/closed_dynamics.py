@@ -47,10 +47,14 @@ def held() -> sf.System:
     """A mass held along z, a light wheel held by a rod to a slider: rows of very different sizes."""
     rim = (sf.Frame("rim", ("L", 0, 0)),)
     bodies = (
-        sf.RigidBody("weight", sf.Joint("p", "planar", rotation=sf.Rotation.rpy(np.pi / 2, 0, 0)),
-                     sf.Inertia("m1", (0, 0, 0), ("J", "J", "J"))),
-        sf.RigidBody("wheel", sf.Joint("q", "revolute", axis=(0, -1, 0)),
-                     sf.Inertia("m2", (0, 0, 0), ("J", "J", "J")), rim),
+        sf.RigidBody(
+            "weight",
+            sf.Joint("p", "planar", rotation=sf.Rotation.rpy(np.pi / 2, 0, 0)),
+            sf.Inertia("m1", (0, 0, 0), ("J", "J", "J")),
+        ),
+        sf.RigidBody(
+            "wheel", sf.Joint("q", "revolute", axis=(0, -1, 0)), sf.Inertia("m2", (0, 0, 0), ("J", "J", "J")), rim
+        ),
         sf.RigidBody("slider", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia("m3")),
     )
     ties = (
@@ -69,8 +73,9 @@ def sleigh() -> sf.System:
         sf.RigidBody("mass", sf.Joint("s", "prismatic", "body", axis=(0, 1, 0)), sf.Inertia("m2")),
         sf.RigidBody("ballast", sf.Joint("r", "revolute", "mass"), sf.Inertia("m3", ("L", 0, 0), ("J", "J", "J"))),
     )
-    return sf.System("sleigh", bodies, _PARAMETERS, gravity=(0, -9.81, 0),
-                     constraints=(sf.KnifeEdge("edge", ("body", "edge")),))
+    return sf.System(
+        "sleigh", bodies, _PARAMETERS, gravity=(0, -9.81, 0), constraints=(sf.KnifeEdge("edge", ("body", "edge")),)
+    )
 
 
 _SYSTEMS = {"four_bar": four_bar, "held": held, "sleigh": sleigh}
@@ -116,7 +121,7 @@ def system(scene: Scene) -> sf.System:
 
 
 def state(scene: Scene, model: sf.Model) -> tuple[Array, Array]:
-    """q and v; loops need not be closed for the equations of accelerations to hold."""
+    """Q and v; loops need not be closed for the equations of accelerations to hold."""
     lengths = _sizes(model, scene)
     q = lengths * np.array(scene["angles"][: model.nq])
     signs = np.where(np.arange(model.nv) % 2, -0.7, 1.0)
@@ -167,12 +172,15 @@ def judge(scene: Scene) -> Verdict:
         root = [mpmath.sqrt(M[i, i]) for i in range(nv)]
         momentum = sum(r * abs(x) for r, x in zip(root, map(mpmath.mpf, map(float, v)), strict=True))
         terms = [
-            root[i] * sum(root[j] * abs(exact[j]) for j in range(nv)) + abs(b[i])
-            + sum(abs(G[k, i] * exact[nv + k]) for k in range(nc)) + root[i] * momentum * scene["speed"]
+            root[i] * sum(root[j] * abs(exact[j]) for j in range(nv))
+            + abs(b[i])
+            + sum(abs(G[k, i] * exact[nv + k]) for k in range(nc))
+            + root[i] * momentum * scene["speed"]
             for i in range(nv)
         ]
         terms += [
-            sum(abs(G[k, j] * exact[j]) for j in range(nv)) + abs(b[nv + k])
+            sum(abs(G[k, j] * exact[j]) for j in range(nv))
+            + abs(b[nv + k])
             + sum(abs(G[k, j] * v[j]) for j in range(nv)) * scene["speed"]
             for k in range(nc)
         ]

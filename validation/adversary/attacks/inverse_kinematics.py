@@ -78,8 +78,12 @@ def judge(scene: Scene) -> Verdict:
     claim = f"converged, with an error of {at.error:.3g}"
     reach = 2.2 * scene["L"]
     verdicts = [
-        compared("error of the position over the arm", float(np.linalg.norm(pose[:3] - p)) / reach,
-                 2.0 * TOLERANCE * max(1.0, 1.0 / reach) + ROUNDING, claim),
+        compared(
+            "error of the position over the arm",
+            float(np.linalg.norm(pose[:3] - p)) / reach,
+            2.0 * TOLERANCE * max(1.0, 1.0 / reach) + ROUNDING,
+            claim,
+        ),
         compared("excess over a limit", float(np.abs(at.q[:3]).max()) - _LIMIT, 1e-12, claim)
         if np.abs(at.q[:3]).max() > _LIMIT
         else compared("excess over a limit", 0.0, 1e-12, claim),

@@ -94,7 +94,7 @@ def _closed(model: sf.Model, run: sf.Trajectory, par: Array, L: float) -> Verdic
 
 ATTACK = Attack(
     "loop_runs",
-    "a run without a note keeps its loops in every record, its energy, and errs by less than a fifth",
+    "a run without a note keeps its loops in every record, its energy, and errs by less than three tenths",
     "the constraint at the records, energy, the eighth-order method at 1e-10",
     _scenes,
     system,

@@ -67,7 +67,7 @@ def judge(scene: Scene) -> Verdict:
 
 ATTACK = Attack(
     "rolling_runs",
-    "a run without a note keeps its energy and errs by less than a fifth",
+    "a run without a note keeps its energy and errs by less than three tenths",
     "energy, the eighth-order method at 1e-10",
     _scenes,
     system,
