@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 import symofros as sf
 from validation.mechanics.geometry import Array
 
+Value = float | sf.Expression
+
 # The choices that make a scene, as JSON writes them: numbers, texts, lists and objects.
 Scene = dict[str, Any]
 
@@ -139,6 +141,16 @@ class Mechanism:
             constraints=self.system.constraints,
             connections=self.system.connections,
         )
+
+
+def inertia(mass: Any, center: Any = (0.0, 0.0, 0.0), moments: Any = (0.0, 0.0, 0.0)) -> sf.Inertia:
+    """An inertia by formulas of the parameters."""
+    return sf.Inertia(sf.formula(mass), along(*center), tuple(map(sf.formula, moments)))
+
+
+def along(x: Any, y: Any = 0.0, z: Any = 0.0) -> tuple[Value, Value, Value]:
+    """A vector by formulas of the parameters."""
+    return sf.formula(x), sf.formula(y), sf.formula(z)
 
 
 def decades(low: int, high: int) -> st.SearchStrategy[float]:

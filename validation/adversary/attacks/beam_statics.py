@@ -22,7 +22,8 @@ def beam(name: str, root: sf.Joint, length: str, count: int, tip: bool) -> sf.Be
     spread = sf.BeamLoad((0.0, sf.formula("w", "load"), 0.0), axes="world")
     end = sf.BeamLoad((sf.formula("-P", "load"), sf.formula("F", "load"), 0.0), at=1.0, axes="world")
     loads = (end, spread) if tip else (spread,)
-    return sf.Beam(name, root, length, "rho", EI_z="EI", bend_y=count, family="legendre", loads=loads)
+    rho, EI = sf.formula("rho"), sf.formula("EI")
+    return sf.Beam(name, root, sf.formula(length), rho, EI_z=EI, bend_y=count, family="legendre", loads=loads)
 
 
 @cache
@@ -73,8 +74,8 @@ def judge(scene: Scene) -> Verdict:
     (bending,) = rest.bendings
     try:
         exact = elastica_tip(Loads(scene["P"] * CRITICAL, scene["F"], scene["w"])) - (1.0, 0.0)
-    except ArithmeticError as error:
-        return undecided(error)
+    except ArithmeticError as failure:
+        return undecided(failure)
     moved = p[:2] / scene["L"] - (1.0, 0.0)
     size = float(np.linalg.norm(exact))
     if size < 1e-12 and scene["P"] > 1.0:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from symofros.tools import evaluate_precisely
-from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, compared, decades, refused
+from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, along, compared, decades, inertia, refused
 from validation.mechanics.geometry import Array
 
 DIGITS = 50
@@ -27,8 +27,8 @@ _PARAMETERS = tuple(sf.Parameter(name, 1.0) for name in ("L", "m1", "m2", "m3", 
 
 def _bar(name: str, joint: sf.Joint, mass: str, more: str = "0") -> sf.RigidBody:
     j = f"{mass}*L^2/12 + {more}"
-    inertia = sf.Inertia(mass, ("L/2", 0, 0), (j, j, j))
-    return sf.RigidBody(name, joint, inertia, (sf.Frame("end", ("L", 0, 0)),))
+    mass_properties = inertia(mass, ("L/2", 0, 0), (j, j, j))
+    return sf.RigidBody(name, joint, mass_properties, (sf.Frame("end", along("L")),))
 
 
 def four_bar() -> sf.System:
@@ -37,7 +37,7 @@ def four_bar() -> sf.System:
     bodies = (
         _bar("crank", sf.Joint("q1", "revolute", axis=axis), "m1", "J"),
         _bar("coupler", sf.Joint("q2", "revolute", "crank", "end", axis=axis), "m2"),
-        _bar("rocker", sf.Joint("q3", "revolute", position=("L", 0, 0), axis=axis), "m3"),
+        _bar("rocker", sf.Joint("q3", "revolute", position=along("L"), axis=axis), "m3"),
     )
     loop = sf.Closure("loop", ("rocker", "end"), ("coupler", "end"), ("x", "z"))
     return sf.System("four_bar", bodies, _PARAMETERS, constraints=(loop,))
@@ -45,21 +45,21 @@ def four_bar() -> sf.System:
 
 def held() -> sf.System:
     """A mass held along z, a light wheel held by a rod to a slider: rows of very different sizes."""
-    rim = (sf.Frame("rim", ("L", 0, 0)),)
+    rim = (sf.Frame("rim", along("L")),)
     bodies = (
         sf.RigidBody(
             "weight",
             sf.Joint("p", "planar", rotation=sf.Rotation.rpy(np.pi / 2, 0, 0)),
-            sf.Inertia("m1", (0, 0, 0), ("J", "J", "J")),
+            inertia("m1", (0, 0, 0), ("J", "J", "J")),
         ),
         sf.RigidBody(
-            "wheel", sf.Joint("q", "revolute", axis=(0, -1, 0)), sf.Inertia("m2", (0, 0, 0), ("J", "J", "J")), rim
+            "wheel", sf.Joint("q", "revolute", axis=(0, -1, 0)), inertia("m2", (0, 0, 0), ("J", "J", "J")), rim
         ),
-        sf.RigidBody("slider", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia("m3")),
+        sf.RigidBody("slider", sf.Joint("x", "prismatic", axis=(1, 0, 0)), inertia("m3")),
     )
     ties = (
         sf.Closure("hold", ("world", None), ("weight", None), ("z",)),
-        sf.Rod("rod", ("wheel", "rim"), ("slider", None), "2*L"),
+        sf.Rod("rod", ("wheel", "rim"), ("slider", None), sf.formula("2*L")),
     )
     return sf.System("held", bodies, _PARAMETERS, constraints=ties)
 
@@ -67,11 +67,11 @@ def held() -> sf.System:
 def sleigh() -> sf.System:
     """A body on an edge, with a mass that slides across it."""
     pose = sf.Joint("pose", "planar")
-    body = sf.Inertia("m1", ("L", 0, 0), ("J", "J", "J"))
+    body = inertia("m1", ("L", 0, 0), ("J", "J", "J"))
     bodies = (
-        sf.RigidBody("body", pose, body, (sf.Frame("edge", ("-L", 0, 0)),)),
-        sf.RigidBody("mass", sf.Joint("s", "prismatic", "body", axis=(0, 1, 0)), sf.Inertia("m2")),
-        sf.RigidBody("ballast", sf.Joint("r", "revolute", "mass"), sf.Inertia("m3", ("L", 0, 0), ("J", "J", "J"))),
+        sf.RigidBody("body", pose, body, (sf.Frame("edge", along("-L")),)),
+        sf.RigidBody("mass", sf.Joint("s", "prismatic", "body", axis=(0, 1, 0)), inertia("m2")),
+        sf.RigidBody("ballast", sf.Joint("r", "revolute", "mass"), inertia("m3", ("L", 0, 0), ("J", "J", "J"))),
     )
     return sf.System(
         "sleigh", bodies, _PARAMETERS, gravity=(0, -9.81, 0), constraints=(sf.KnifeEdge("edge", ("body", "edge")),)
@@ -145,7 +145,7 @@ def judge(scene: Scene) -> Verdict:
     if int(rank) < 0:
         return refused("the state has no acceleration: rank -1")
     program = _program(scene["mechanism"])
-    inputs = {"q": q, "v": v, "u": np.zeros(model.nu), "par": par, "t": [0.0]}
+    inputs: dict[str, Any] = {"q": q, "v": v, "u": np.zeros(model.nu), "par": par, "t": [0.0]}
     numbers = {f.name: evaluate_precisely(program, f, inputs, DIGITS)[0] for f in program.functions}
     nv, nc = model.nv, model.nc
     with mpmath.workdps(DIGITS):

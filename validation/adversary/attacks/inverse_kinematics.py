@@ -9,7 +9,19 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from validation.adapters.pinocchio import tree as pinocchio
-from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, compared, decades, refused, undecided, worst
+from validation.adversary.attack import (
+    Attack,
+    Mechanism,
+    Scene,
+    Verdict,
+    along,
+    compared,
+    decades,
+    inertia,
+    refused,
+    undecided,
+    worst,
+)
 from validation.contract.interface import States, Subject, Unsupported
 
 TOLERANCE = 1e-10
@@ -30,13 +42,13 @@ def arm() -> Mechanism:
             f"q{i + 1}",
             "revolute",
             bodies[-1].name if bodies else "world",
-            position=(f"{length}*L", 0, 0),
+            position=along(f"{length}*L"),
             axis=axis,
             limits=sf.Limits(-_LIMIT, _LIMIT) if i < 3 else None,
         )
-        inertia = sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0))
-        frames = (sf.Frame("tool", ("0.1*L", 0, 0)),) if i == 5 else ()
-        bodies.append(sf.RigidBody(f"link{i + 1}", joint, inertia, frames))
+        mass_properties = inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0))
+        frames = (sf.Frame("tool", along("0.1*L")),) if i == 5 else ()
+        bodies.append(sf.RigidBody(f"link{i + 1}", joint, mass_properties, frames))
     options = sf.Options(("frame_pose", "frame_jacobian"), ("tool",))
     return Mechanism(sf.System("arm", tuple(bodies), (sf.Parameter("L", 1.0),)), options)
 

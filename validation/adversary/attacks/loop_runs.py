@@ -8,7 +8,18 @@ import numpy as np
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, compared, decades, refused, worst
+from validation.adversary.attack import (
+    Attack,
+    Mechanism,
+    Scene,
+    Verdict,
+    along,
+    compared,
+    decades,
+    inertia,
+    refused,
+    worst,
+)
 from validation.adversary.motion import against_finer, claimed_good
 from validation.mechanics.geometry import Array
 
@@ -19,8 +30,8 @@ _PARAMETERS = tuple(sf.Parameter(name, 1.0) for name in ("L", "a", "m"))
 
 def _bar(name: str, joint: sf.Joint, length: str, mass: str) -> sf.RigidBody:
     j = f"({mass})*({length})^2/12"
-    inertia = sf.Inertia(mass, (f"{length}/2", 0, 0), (f"{j}/100", j, j))
-    return sf.RigidBody(name, joint, inertia, (sf.Frame("end", (length, 0, 0)),))
+    mass_properties = inertia(mass, (f"{length}/2", 0, 0), (f"{j}/100", j, j))
+    return sf.RigidBody(name, joint, mass_properties, (sf.Frame("end", along(length)),))
 
 
 @cache
@@ -30,7 +41,7 @@ def four_bar() -> Mechanism:
     bodies = (
         _bar("crank", sf.Joint("q1", "revolute", axis=axis), "a*L", "m"),
         _bar("coupler", sf.Joint("q2", "revolute", "crank", "end", axis=axis), "L", "m"),
-        _bar("rocker", sf.Joint("q3", "revolute", position=("L", 0, 0), axis=axis), "L", "2*m"),
+        _bar("rocker", sf.Joint("q3", "revolute", position=along("L"), axis=axis), "L", "2*m"),
     )
     loop = sf.Closure("loop", ("rocker", "end"), ("coupler", "end"), ("x", "z"))
     return Mechanism(sf.System("four_bar", bodies, _PARAMETERS, constraints=(loop,)))

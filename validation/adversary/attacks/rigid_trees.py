@@ -57,7 +57,7 @@ def system(scene: Scene) -> sf.System:
         j = one["mass"] * one["gyration"] * length**2
         center = (one["offset"] * length, 0.0, 0.5 * one["offset"] * length)
         bodies.append(sf.RigidBody(f"b{i}", joint, sf.Inertia(one["mass"], center, (j, 1.5 * j, 2.0 * j))))
-    return sf.System("tree", bodies, gravity=(0.0, 0.0, -scene["gravity"]))
+    return sf.System("tree", tuple(bodies), gravity=(0.0, 0.0, -scene["gravity"]))
 
 
 def judge(scene: Scene) -> Verdict:

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, decades
+from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, decades, inertia
 from validation.adversary.motion import against_finer
 
 _PARAMETERS = tuple(sf.Parameter(name, 1.0) for name in ("r", "m"))
@@ -17,9 +17,9 @@ _PARAMETERS = tuple(sf.Parameter(name, 1.0) for name in ("r", "m"))
 @cache
 def disc() -> Mechanism:
     """A thin disc on the plane z = 0."""
-    inertia = sf.Inertia("m", (0, 0, 0), ("m*r^2/4", "m*r^2/4", "m*r^2/2"))
-    body = sf.RigidBody("disc", sf.Joint("pose", "free"), inertia)
-    contact = sf.Rolling("contact", ("disc", None), "r")
+    mass_properties = inertia("m", (0, 0, 0), ("m*r^2/4", "m*r^2/4", "m*r^2/2"))
+    body = sf.RigidBody("disc", sf.Joint("pose", "free"), mass_properties)
+    contact = sf.Rolling("contact", ("disc", None), sf.formula("r"))
     return Mechanism(sf.System("disc", (body,), _PARAMETERS, constraints=(contact,)))
 
 

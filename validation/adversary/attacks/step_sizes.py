@@ -9,7 +9,7 @@ import scipy.linalg
 from hypothesis import strategies as st
 
 import symofros as sf
-from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, compared, decades, refused
+from validation.adversary.attack import Attack, Mechanism, Scene, Verdict, along, compared, decades, inertia, refused
 from validation.adversary.motion import UNNOTED, against_finer, claimed_good
 
 _METHODS = ("rk4", "euler", "semi_implicit_euler", "implicit_euler", "generalized_alpha", "dopri5", "rodas4")
@@ -20,12 +20,12 @@ def masses() -> Mechanism:
     """Two masses in a row, each on a spring and a damper."""
 
     def element(k: str, c: str) -> tuple[sf.Spring, sf.Damper]:
-        return sf.Spring(k), sf.Damper(c)
+        return sf.Spring(sf.formula(k)), sf.Damper(sf.formula(c))
 
     along = (1, 0, 0)
     bodies = (
-        sf.RigidBody("a", sf.Joint("x", "prismatic", axis=along, elements=element("k1", "c1")), sf.Inertia("m1")),
-        sf.RigidBody("b", sf.Joint("y", "prismatic", "a", axis=along, elements=element("k2", "c2")), sf.Inertia("m2")),
+        sf.RigidBody("a", sf.Joint("x", "prismatic", axis=along, elements=element("k1", "c1")), inertia("m1")),
+        sf.RigidBody("b", sf.Joint("y", "prismatic", "a", axis=along, elements=element("k2", "c2")), inertia("m2")),
     )
     names = ("m1", "m2", "k1", "k2", "c1", "c2")
     return Mechanism(sf.System("masses", bodies, tuple(sf.Parameter(n, 1.0) for n in names), gravity=(0, 0, 0)))
@@ -37,8 +37,8 @@ def pendulum() -> Mechanism:
 
     def bar(name: str, joint: sf.Joint, length: str, mass: str) -> sf.RigidBody:
         j = f"{mass}*{length}^2/12"
-        inertia = sf.Inertia(mass, (f"{length}/2", 0, 0), (f"{j}/100", j, j))
-        return sf.RigidBody(name, joint, inertia, (sf.Frame("end", (length, 0, 0)),))
+        mass_properties = inertia(mass, (f"{length}/2", 0, 0), (f"{j}/100", j, j))
+        return sf.RigidBody(name, joint, mass_properties, (sf.Frame("end", along(length)),))
 
     axis = (0, -1, 0)
     bodies = (
